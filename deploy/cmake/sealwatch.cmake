@@ -1,0 +1,48 @@
+# Helpers by which each folder declares what it builds.
+#
+#   sealwatch_library(sealwatch_core SOURCES a.cpp LINK tl::expected PRIVATE_LINK Ceres::ceres)
+#   sealwatch_executable(sealwatch-state-detection SOURCES main.cpp LINK sealwatch_runtime)
+#   sealwatch_test(core_test SOURCES core_test.cpp LINK sealwatch_core LABELS unit)
+
+add_library(sealwatch_flags INTERFACE)
+target_compile_options(sealwatch_flags INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror>)
+if(SEALWATCH_SANITIZE)
+  target_compile_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE} -fno-omit-frame-pointer -g)
+  target_link_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE})
+endif()
+
+function(sealwatch_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINK;PRIVATE_LINK")
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK} $<BUILD_INTERFACE:sealwatch_flags>)
+endfunction()
+
+function(sealwatch_executable name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINK")
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} sealwatch_flags)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+endfunction()
+
+# Tests find the repository and the public recordings through these definitions.
+function(sealwatch_test name)
+  if(NOT SEALWATCH_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT" "SOURCES;LINK;LABELS")
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gmock GTest::gtest_main sealwatch_flags)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
+  target_compile_definitions(${name} PRIVATE
+    SEALWATCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SEALWATCH_BINARY_DIR="${PROJECT_BINARY_DIR}"
+    SEALWATCH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()

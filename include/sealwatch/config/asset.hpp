@@ -1,0 +1,103 @@
+// What is known of one actuator and of the place where it works: plain data, filled by services/common/runtime from YAML
+// (INTERFACES section 2) and by tests directly.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/core/time.hpp"
+
+namespace sealwatch {
+
+/// One physical parameter of the asset's model: psi_min <= psi <= psi_max, SI unit of the model's parameter table.
+struct ParameterSetting {
+  double value = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+  bool estimate = false;
+};
+
+/// One sensor. A zero range (max <= min) means that none is known.
+struct SensorSetting {
+  double noise_std = 0.0;        ///< channel's SI unit
+  double time_constant_s = 0.0;  ///< first-order low-pass; 0: none
+  double quantisation = 0.0;     ///< step, channel's SI unit; 0: none
+  double range_min = 0.0;        ///< channel's SI unit
+  double range_max = 0.0;
+};
+
+/// Seal condition theta as a line through two leakage resistances (MODEL section 4).
+struct SealSetting {
+  double resistance_100_Pa_s_m3 = 2.6e13;  ///< R_CL of a new seal, theta = 1
+  double resistance_60_Pa_s_m3 = 4.64e12;  ///< R_CL at theta = 0.6
+  double threshold = 0.60;                 ///< theta at which the seal has failed
+  [[nodiscard]] double condition(double resistance_Pa_s_m3) const {
+    return 0.6 + 0.4 * (resistance_Pa_s_m3 - resistance_60_Pa_s_m3) / (resistance_100_Pa_s_m3 - resistance_60_Pa_s_m3);
+  }
+  [[nodiscard]] double resistance_Pa_s_m3(double condition) const {
+    return resistance_60_Pa_s_m3 + (condition - 0.6) / 0.4 * (resistance_100_Pa_s_m3 - resistance_60_Pa_s_m3);
+  }
+  /// Standard error of theta for one of R_CL: the line's slope.
+  [[nodiscard]] double condition_std(double resistance_std_Pa_s_m3) const {
+    return 0.4 * resistance_std_Pa_s_m3 / (resistance_100_Pa_s_m3 - resistance_60_Pa_s_m3);
+  }
+};
+
+/// The partial stroke test as it should run (MODEL section 3).
+struct PstSetting {
+  double start_m = 0.060;
+  double stroke_m = -0.016;
+  double speed_m_s = 1.33e-3;
+  double hold_s = 3.0;
+  double interval_months = 1.0;
+  /// Expected length of a whole test [s]: rest, out, hold, back, hold.
+  [[nodiscard]] double expected_duration_s() const {
+    return 1.0 + 2.0 * (stroke_m < 0 ? -stroke_m : stroke_m) / speed_m_s + 2.0 * hold_s;
+  }
+};
+
+/// Physics that `explain` found and that the model carries (INTERFACES section 6).
+struct PhysicsTerm {
+  std::string id;
+  std::string element;
+  std::map<std::string, double> parameters;
+};
+
+/// Limits of one judged quantity: above (or below, when alarm < advisory) them the region changes.
+struct AlertLimits {
+  double advisory = 0.0;
+  double warning = 0.0;
+  double alarm = 0.0;
+};
+
+struct AssetConfig {
+  std::string asset_id;
+  std::string site;
+  std::string segment;
+  std::string model = "eha";
+  std::map<std::string, ParameterSetting> parameters;  ///< all of the model's, defaults filled in
+  std::map<std::string, SensorSetting> sensors;        ///< by channel; all of the model's, defaults filled in
+  std::optional<SealSetting> seal;                     ///< none: theta, and so the RUL, is not defined for this asset
+  PstSetting pst;
+  std::vector<PhysicsTerm> physics;
+  std::map<std::string, AlertLimits> alert_limits;  ///< by quantity, see state_detection; missing ones take defaults
+
+  /// Value of a parameter that the model has (asserts that it has it).
+  [[nodiscard]] double parameter(const std::string& name) const { return parameters.at(name).value; }
+};
+
+/// A vessel campaign that could replace an actuator.
+struct Campaign {
+  std::string label;  ///< "summer 2017"
+  UtcTime start;
+};
+
+struct SiteConfig {
+  std::string site;
+  std::vector<Campaign> campaigns;      ///< sorted by start
+  double booking_lead_time_months = 12.0;  ///< how long before a vessel must be booked
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,55 @@
+// The whole configuration: assets, sites, services, topics' QoS and topology, as validated before anything starts.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+
+namespace sealwatch {
+
+/// QoS of one topic where it departs from the defaults of docs/architecture.md.
+struct TopicQos {
+  bool keep_all = true;         ///< false: keep_last 1 (state topics)
+  bool transient_local = true;  ///< a late subscriber gets the last message of every asset
+  double lifespan_s = 0.0;      ///< 0: for ever
+};
+
+struct LoggingConfig {
+  std::string level = "info";  ///< trace, debug, info, warn, error
+  std::string directory;       ///< "" : standard error only
+  double rotate_at_MB = 10.0;
+  std::int32_t rotated_files = 5;
+};
+
+struct ServiceConfig {
+  bool enabled = true;
+  std::string journal;  ///< SOCI connection string; default "sqlite3://<state_directory>/<service>.db"
+  std::string recordings_directory;  ///< data_acquisition only: recordings dropped here are taken in; "" none
+};
+
+struct Configuration {
+  std::int32_t domain = 0;
+  std::string state_directory = "state";
+  std::string cyclonedds_uri;  ///< passed on as CYCLONEDDS_URI where the environment has none
+  LoggingConfig logging;
+  std::map<std::string, ServiceConfig> services;  ///< by service name
+  std::map<std::string, TopicQos> topics;         ///< by topic name
+  std::vector<SiteConfig> sites;
+  std::vector<AssetConfig> assets;
+
+  [[nodiscard]] const AssetConfig* find_asset(const std::string& asset_id) const {
+    for (const AssetConfig& asset : assets)
+      if (asset.asset_id == asset_id) return &asset;
+    return nullptr;
+  }
+  [[nodiscard]] const SiteConfig* find_site(const std::string& site) const {
+    for (const SiteConfig& candidate : sites)
+      if (candidate.site == site) return &candidate;
+    return nullptr;
+  }
+};
+
+}  // namespace sealwatch

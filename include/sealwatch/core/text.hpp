@@ -1,0 +1,21 @@
+// Small helpers for messages that people read.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sealwatch {
+
+/// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours), or "" when none
+/// is closer than half the word's length.
+[[nodiscard]] std::string nearest(std::string_view word, std::span<const std::string> candidates);
+
+/// "did you mean 'X'?" for the nearest candidate, else "known are: A, B, C".
+[[nodiscard]] std::string suggest(std::string_view word, std::span<const std::string> candidates);
+
+/// First 16 hex digits of the 64-bit FNV-1a hash of `bytes`: names contents, does not protect them.
+[[nodiscard]] std::string content_hash(std::string_view bytes);
+
+}  // namespace sealwatch

@@ -1,0 +1,73 @@
+// Topics out of and into advisory generation (ISO 13374 AG).
+#pragma once
+
+#include "sealwatch/message/common.hpp"
+
+namespace sealwatch {
+
+SEALWATCH_ENUM(AdvisoryPriority, information, low, medium, high, urgent)
+SEALWATCH_ENUM(AdvisoryAction, none, repeat_test, inspect_instrumentation, plan_replacement, book_vessel, replace_now)
+SEALWATCH_ENUM(AdvisoryState, active, acknowledged, superseded)
+
+/// OSA-CBM request for work: what a maintenance management system needs to make a work order.
+struct RequestForWork {
+  std::string work_id;            ///< same for the same piece of work over all its revisions
+  std::string work_type;          ///< "replace actuator"
+  std::string segment;            ///< where: site and segment of the asset
+  std::string solution_package;   ///< what to bring
+  bool start_before_known = false;
+  std::int64_t start_before_ns = 0;  ///< latest-by date
+  std::string remarks;
+  SEALWATCH_FIELDS(RequestForWork, work_id, work_type, segment, solution_package, start_before_known, start_before_ns,
+                   remarks)
+  friend bool operator==(const RequestForWork&, const RequestForWork&) = default;
+};
+
+/// Topic advisory: the current recommendation for one asset. A test that changes nothing repeats the advisory_id with a
+/// higher revision; a different recommendation has a new id and names the one it supersedes.
+struct Advisory {
+  std::string asset_id;  // key
+  Header header;         ///< message_id "advisory/<pst_id>", ".../acknowledged/<who>/<when>" for acknowledgements
+  std::string advisory_id;
+  std::int32_t revision = 1;
+  AdvisoryState state = AdvisoryState::active;
+  std::string supersedes_id;  ///< advisory_id, "" if none
+  AdvisoryPriority priority = AdvisoryPriority::information;
+  AdvisoryAction action = AdvisoryAction::none;
+  std::string recommendation;  ///< one or two sentences for the operator on shift
+  bool latest_by_known = false;
+  std::int64_t latest_by_ns = 0;
+  std::vector<std::string> reasons;  ///< in words; header.source_ids names the messages behind them
+  std::vector<RequestForWork> request_for_work;  ///< none or one
+  std::string acknowledged_by;
+  std::int64_t acknowledged_at_ns = 0;
+  std::string acknowledgement_remark;
+  SEALWATCH_FIELDS(Advisory, asset_id, header, advisory_id, revision, state, supersedes_id, priority, action,
+                   recommendation, latest_by_known, latest_by_ns, reasons, request_for_work, acknowledged_by,
+                   acknowledged_at_ns, acknowledgement_remark)
+  friend bool operator==(const Advisory&, const Advisory&) = default;
+};
+
+/// Topic acknowledgement: an operator has seen an advisory.
+struct Acknowledgement {
+  std::string asset_id;  // key
+  Header header;         ///< message_id "acknowledgement/<advisory_id>/<revision>"
+  std::string advisory_id;
+  std::string acknowledged_by;
+  std::string remark;
+  SEALWATCH_FIELDS(Acknowledgement, asset_id, header, advisory_id, acknowledged_by, remark)
+  friend bool operator==(const Acknowledgement&, const Acknowledgement&) = default;
+};
+
+/// Topic maintenance_event: the actuator was replaced (or its seal): histories start anew at event_time_ns.
+struct MaintenanceEvent {
+  std::string asset_id;  // key
+  Header header;         ///< message_id "maintenance_event/<asset>/<event time>"
+  std::string kind;      ///< "actuator_replaced" | "seal_replaced"
+  std::string reported_by;
+  std::string remark;
+  SEALWATCH_FIELDS(MaintenanceEvent, asset_id, header, kind, reported_by, remark)
+  friend bool operator==(const MaintenanceEvent&, const MaintenanceEvent&) = default;
+};
+
+}  // namespace sealwatch

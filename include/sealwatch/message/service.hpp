@@ -1,0 +1,49 @@
+// Topics by which the services keep each other honest: heartbeat with stream positions, and requests to send again.
+//
+// How nothing is lost. Every writer numbers its messages of a topic 1, 2, 3, ... in its journal. Its heartbeat says how
+// far each of its streams goes; a reader that is behind (it was dead, the writer was dead, a burst was dropped) asks
+// for the missing ones with resend_request, and the writer publishes them again from its journal.
+#pragma once
+
+#include "sealwatch/message/common.hpp"
+
+namespace sealwatch {
+
+struct StreamPosition {
+  std::string topic;
+  std::string writer_id;
+  std::uint64_t sequence = 0;  ///< last one written, or last one received without a gap
+  SEALWATCH_FIELDS(StreamPosition, topic, writer_id, sequence)
+  friend bool operator==(const StreamPosition&, const StreamPosition&) = default;
+};
+
+/// Topic service_status: about once a second from each service.
+struct ServiceStatus {
+  std::string service;  // key: "data_acquisition", ...
+  std::string writer_id;
+  std::string version;
+  std::int64_t started_ns = 0;
+  std::int64_t publishing_time_ns = 0;
+  std::int32_t process_id = 0;
+  std::uint64_t pending_inputs = 0;       ///< received, not yet concluded from
+  std::vector<StreamPosition> written;
+  std::vector<StreamPosition> received;
+  std::string state;                      ///< "running", "stopping"
+  std::string last_error;                 ///< "" if none
+  SEALWATCH_FIELDS(ServiceStatus, service, writer_id, version, started_ns, publishing_time_ns, process_id,
+                   pending_inputs, written, received, state, last_error)
+  friend bool operator==(const ServiceStatus&, const ServiceStatus&) = default;
+};
+
+/// Topic resend_request.
+struct ResendRequest {
+  std::string writer_id;  // key: whose stream
+  std::string topic;
+  std::uint64_t first_sequence = 0;
+  std::uint64_t last_sequence = 0;
+  std::string requested_by;
+  SEALWATCH_FIELDS(ResendRequest, writer_id, topic, first_sequence, last_sequence, requested_by)
+  friend bool operator==(const ResendRequest&, const ResendRequest&) = default;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,35 @@
+// Ports through which layers reach the heavy mathematics; implemented in services/common, injected by main.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time_series.hpp"
+#include "sealwatch/message/data_manipulation.hpp"
+#include "sealwatch/message/prognostic_assessment.hpp"
+
+namespace sealwatch {
+
+/// Gray-box prediction-error minimisation of one test.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+  /// Every fit that the recorded channels allow, the one to trust first: the whole actuator where voltage, current and
+  /// speed are recorded, the cylinder circuit where flow and pressures are. A fit that could not be made is a FitReport
+  /// with admissible = false and the reasons. Deterministic.
+  [[nodiscard]] virtual std::vector<FitReport> estimate(const AssetConfig& asset, const TimeSeries& samples,
+                                                        std::span<const Phase> phases) const = 0;
+};
+
+/// Simulation of the asset's model with given parameters, driven by the recorded input.
+class Simulator {
+ public:
+  virtual ~Simulator() = default;
+  /// Predicted channels at the recorded times, for each recorded output channel of the plant. Initial state and load factor
+  /// are estimated from the recording, nothing else is.
+  [[nodiscard]] virtual Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded) const = 0;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,47 @@
+// A layer of ISO 13374 as a pure function of its inputs: no transport, no clock of its own, no storage.
+//
+// Whoever runs it (a daemon, the command line in process, a test) keeps this contract:
+//   1. at start: restore(m) for every message this layer concluded before, in the order it concluded them;
+//   2. then receive(m) for every input that was received but not consumed before, in the order of receipt;
+//   3. then receive(m) for each new input, at most once for each message id.
+// After each receive the runner stores the conclusion's outputs and marks the consumed inputs in one transaction, and
+// only then publishes. A layer killed anywhere and started again by this contract ends with the same outputs.
+//
+// For that a layer keeps no state but (a) what it can rebuild from its own outputs in restore and (b) inputs that it has not
+// consumed yet.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/core/time.hpp"
+#include "sealwatch/message/topics.hpp"
+
+namespace sealwatch {
+
+struct Conclusion {
+  std::vector<Message> outputs;       ///< headers complete but for writer_id, stream_sequence, publishing_time_ns
+  std::vector<std::string> consumed;  ///< message ids of inputs that are not needed again
+};
+
+class Layer {
+ public:
+  virtual ~Layer() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual std::span<const Topic> inputs() const = 0;
+  [[nodiscard]] virtual std::span<const Topic> outputs() const = 0;
+  /// Takes back one of its own earlier outputs.
+  virtual void restore(const Message& own_output) = 0;
+  /// Takes one input; never fails: bad content becomes a message that says so.
+  [[nodiscard]] virtual Conclusion receive(const Message& input) = 0;
+  /// Lets time pass in live operation (never called in replay or offline): tests that became overdue, tests whose end
+  /// never came. Must depend on `now` only in whether it concludes, not in what.
+  [[nodiscard]] virtual Conclusion tick(UtcTime now) {
+    (void)now;
+    return {};
+  }
+};
+
+}  // namespace sealwatch

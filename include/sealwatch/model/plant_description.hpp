@@ -1,0 +1,58 @@
+// What a plant says about itself in one table, which code, configuration, documents and error messages share: its recorded
+// channels, its parameters with units, bounds and meaning, its elements.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/core/result.hpp"
+
+namespace sealwatch {
+
+struct ChannelDescription {
+  std::string name;
+  std::string unit;  ///< SI
+  std::string meaning;
+  bool input = false;            ///< drives the simulation
+  double noise_std = 0.0;        ///< default of the nominal asset, SI
+  double time_constant_s = 0.0;  ///< default first-order low-pass
+  double range_min = 0.0;        ///< plausible range, SI; no range when max <= min
+  double range_max = 0.0;
+};
+
+struct ParameterDescription {
+  std::string name;
+  std::string unit;  ///< SI
+  double value = 0.0;  ///< default of the nominal asset
+  double min = 0.0;    ///< psi_min
+  double max = 0.0;    ///< psi_max
+  std::string meaning;
+  bool positive = true;   ///< a positive scale: estimated as its logarithm
+  bool estimate = false;  ///< estimated by default where the channels allow it
+};
+
+struct ElementDescription {
+  std::string name;  ///< of INTERFACES section 5: "piston_seal"
+  std::string meaning;
+};
+
+struct PlantDescription {
+  std::string name;  ///< "eha", "eha_switched"
+  std::string meaning;
+  std::vector<ChannelDescription> channels;  ///< without `time`, which every plant has
+  std::vector<ParameterDescription> parameters;
+  std::vector<ElementDescription> elements;
+
+  [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
+  [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;
+};
+
+/// The plants that sealwatch knows, in a fixed order.
+[[nodiscard]] std::span<const PlantDescription> all_plants();
+
+/// The plant of that name; an Error naming the nearest one otherwise.
+[[nodiscard]] Result<const PlantDescription*> find_plant(std::string_view name);
+
+}  // namespace sealwatch

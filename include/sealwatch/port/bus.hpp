@@ -1,0 +1,39 @@
+// The bus between processes, as layers' runners see it. Implemented over Cyclone DDS in services/common/transport and in
+// memory (port/in_memory_bus.hpp); one contract suite tests both.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/message/topics.hpp"
+
+namespace sealwatch {
+
+using BusItem = std::variant<Message, ServiceStatus, ResendRequest>;
+
+/// One participant's view of the bus. Not thread-safe but for wake(): one thread publishes and receives (the heartbeat thread
+/// of a daemon owns a second Bus).
+///
+/// Contract: messages of one publisher on one topic arrive in order; nothing is lost between publishers and subscribers that are
+/// connected, however fast the burst; a late subscriber gets the last message of every asset of every publisher still alive;
+/// a publisher's end removes nothing that was delivered.
+class Bus {
+ public:
+  virtual ~Bus() = default;
+  /// From now on messages of these topics are received. Service topics are separate: see subscribe_service_topics.
+  [[nodiscard]] virtual Status subscribe(std::span<const Topic> topics) = 0;
+  [[nodiscard]] virtual Status subscribe_service_topics() = 0;
+  [[nodiscard]] virtual Status publish(const Message& message) = 0;
+  [[nodiscard]] virtual Status publish(const ServiceStatus& status) = 0;
+  [[nodiscard]] virtual Status publish(const ResendRequest& request) = 0;
+  /// Waits until something arrives, wake() is called or the time is over, and takes at most `most` items.
+  [[nodiscard]] virtual std::vector<BusItem> receive(std::chrono::milliseconds timeout, std::size_t most = 64) = 0;
+  /// Makes a receive that waits in another thread (or a signal handler) return.
+  virtual void wake() = 0;
+};
+
+}  // namespace sealwatch

@@ -1,5 +1,5 @@
-// What is known of one actuator and of the place where it works: plain data, filled by services/common/runtime from YAML
-// (INTERFACES section 2) and by tests directly.
+// What is known of one actuator and of the place where it works: plain data, filled by services/common/runtime from
+// YAML (INTERFACES section 2) and by tests directly.
 #pragma once
 
 #include <map>
@@ -96,7 +96,7 @@ struct Campaign {
 
 struct SiteConfig {
   std::string site;
-  std::vector<Campaign> campaigns;      ///< sorted by start
+  std::vector<Campaign> campaigns;         ///< sorted by start
   double booking_lead_time_months = 12.0;  ///< how long before a vessel must be booked
 };
 

@@ -26,7 +26,7 @@ struct LoggingConfig {
 
 struct ServiceConfig {
   bool enabled = true;
-  std::string journal;  ///< SOCI connection string; default "sqlite3://<state_directory>/<service>.db"
+  std::string journal;               ///< SOCI connection string; default "sqlite3://<state_directory>/<service>.db"
   std::string recordings_directory;  ///< data_acquisition only: recordings dropped here are taken in; "" none
 };
 

@@ -8,8 +8,8 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -29,30 +29,34 @@
 #define SEALWATCH_VISIT_TWO(field) visitor(std::string_view(#field), self.field, other.field);
 #define SEALWATCH_COUNT_ONE(field) +1
 
-#define SEALWATCH_FIELDS(Type, ...)                                                          \
-  static constexpr std::string_view kTypeName = #Type;                                       \
+#define SEALWATCH_FIELDS(Type, ...)                                                                  \
+  static constexpr std::string_view kTypeName = #Type;                                               \
   static constexpr std::size_t kFieldCount = 0 SEALWATCH_FOR_EACH(SEALWATCH_COUNT_ONE, __VA_ARGS__); \
-  template <class Visitor, class Self>                                                       \
-  static void visit(Visitor&& visitor, Self&& self) {                                        \
-    SEALWATCH_FOR_EACH(SEALWATCH_VISIT_ONE, __VA_ARGS__)                                     \
-  }                                                                                          \
-  template <class Visitor, class Self, class Other>                                          \
-  static void visit_pair(Visitor&& visitor, Self&& self, Other&& other) {                    \
-    SEALWATCH_FOR_EACH(SEALWATCH_VISIT_TWO, __VA_ARGS__)                                     \
+  template <class Visitor, class Self>                                                               \
+  static void visit(Visitor&& visitor, Self&& self) {                                                \
+    SEALWATCH_FOR_EACH(SEALWATCH_VISIT_ONE, __VA_ARGS__)                                             \
+  }                                                                                                  \
+  template <class Visitor, class Self, class Other>                                                  \
+  static void visit_pair(Visitor&& visitor, Self&& self, Other&& other) {                            \
+    SEALWATCH_FOR_EACH(SEALWATCH_VISIT_TWO, __VA_ARGS__)                                             \
   }
 
 namespace sealwatch {
 
 /// A struct with SEALWATCH_FIELDS.
 template <class T>
-concept Described = requires { T::kFieldCount; };
+concept Described = requires {
+  T::kFieldCount;
+};
 
 /// Names of an enum's values; specialised by SEALWATCH_ENUM. Values are 0, 1, 2, ...
 template <class Enum>
 struct EnumNames;
 
 template <class Enum>
-concept DescribedEnum = requires { EnumNames<Enum>::kNames; };
+concept DescribedEnum = requires {
+  EnumNames<Enum>::kNames;
+};
 
 template <DescribedEnum Enum>
 [[nodiscard]] constexpr std::string_view name_of(Enum value) {
@@ -72,9 +76,9 @@ template <DescribedEnum Enum>
 #define SEALWATCH_NAME_ONE(value) std::string_view(#value),
 
 /// Declares `enum class Type : std::int32_t { values... }` and its names. Use inside namespace sealwatch.
-#define SEALWATCH_ENUM(Type, ...)                                                                        \
-  enum class Type : std::int32_t { __VA_ARGS__ };                                                        \
-  template <>                                                                                            \
-  struct EnumNames<Type> {                                                                               \
-    static constexpr std::array kNames = {SEALWATCH_FOR_EACH(SEALWATCH_NAME_ONE, __VA_ARGS__)};          \
+#define SEALWATCH_ENUM(Type, ...)                                                               \
+  enum class Type : std::int32_t { __VA_ARGS__ };                                               \
+  template <>                                                                                   \
+  struct EnumNames<Type> {                                                                      \
+    static constexpr std::array kNames = {SEALWATCH_FOR_EACH(SEALWATCH_NAME_ONE, __VA_ARGS__)}; \
   };

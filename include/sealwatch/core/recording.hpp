@@ -13,14 +13,14 @@ namespace sealwatch {
 SEALWATCH_ENUM(TestKind, pst, full_stroke, other)
 
 struct Recording {
-  std::string file;                   ///< where it came from, as the user named it
-  std::string recording_id;           ///< sidecar's recording_id, else the file's stem
-  std::string asset_id;               ///< sidecar's asset_id, else ""
+  std::string file;          ///< where it came from, as the user named it
+  std::string recording_id;  ///< sidecar's recording_id, else the file's stem
+  std::string asset_id;      ///< sidecar's asset_id, else ""
   TestKind test = TestKind::pst;
   std::optional<UtcTime> start_time;  ///< unknown when the sidecar gives none
   std::string content_hash;           ///< of the file's bytes (16 hex digits)
   std::string note;
-  TimeSeries samples;                 ///< channel noise_std set where the sidecar gives it
+  TimeSeries samples;  ///< channel noise_std set where the sidecar gives it
 };
 
 }  // namespace sealwatch

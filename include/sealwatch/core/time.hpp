@@ -23,10 +23,14 @@ inline constexpr double kSecondsPerMonth = 365.2425 / 12.0 * kSecondsPerDay;
 [[nodiscard]] inline double seconds_between(UtcTime from, UtcTime to) {
   return static_cast<double>(to.nanoseconds - from.nanoseconds) * 1e-9;
 }
-[[nodiscard]] inline double months_between(UtcTime from, UtcTime to) { return seconds_between(from, to) / kSecondsPerMonth; }
+[[nodiscard]] inline double months_between(UtcTime from, UtcTime to) {
+  return seconds_between(from, to) / kSecondsPerMonth;
+}
 /// `time` plus `seconds` (rounded to the nanosecond).
 [[nodiscard]] UtcTime add_seconds(UtcTime time, double seconds);
-[[nodiscard]] inline UtcTime add_months(UtcTime time, double months) { return add_seconds(time, months * kSecondsPerMonth); }
+[[nodiscard]] inline UtcTime add_months(UtcTime time, double months) {
+  return add_seconds(time, months * kSecondsPerMonth);
+}
 
 /// Parses ISO 8601: "2031-04-12", "2031-04-12T03:00:00Z", "2031-04-12T03:00:00.25+02:00" (no zone means UTC).
 [[nodiscard]] Result<UtcTime> parse_utc(std::string_view text);

@@ -11,10 +11,10 @@ SEALWATCH_ENUM(AdvisoryState, active, acknowledged, superseded)
 
 /// OSA-CBM request for work: what a maintenance management system needs to make a work order.
 struct RequestForWork {
-  std::string work_id;            ///< same for the same piece of work over all its revisions
-  std::string work_type;          ///< "replace actuator"
-  std::string segment;            ///< where: site and segment of the asset
-  std::string solution_package;   ///< what to bring
+  std::string work_id;           ///< same for the same piece of work over all its revisions
+  std::string work_type;         ///< "replace actuator"
+  std::string segment;           ///< where: site and segment of the asset
+  std::string solution_package;  ///< what to bring
   bool start_before_known = false;
   std::int64_t start_before_ns = 0;  ///< latest-by date
   std::string remarks;
@@ -37,7 +37,7 @@ struct Advisory {
   std::string recommendation;  ///< one or two sentences for the operator on shift
   bool latest_by_known = false;
   std::int64_t latest_by_ns = 0;
-  std::vector<std::string> reasons;  ///< in words; header.source_ids names the messages behind them
+  std::vector<std::string> reasons;              ///< in words; header.source_ids names the messages behind them
   std::vector<RequestForWork> request_for_work;  ///< none or one
   std::string acknowledged_by;
   std::int64_t acknowledged_at_ns = 0;

@@ -19,10 +19,10 @@ struct RawSamples {
   std::string test_kind;     ///< "pst", "full_stroke", "other"; "" means pst
   std::string content_hash;  ///< of the whole recording where the sender knows it, else ""
   bool start_time_known = false;
-  std::int64_t start_time_ns = 0;    ///< UTC of time_s = 0
-  bool aborted = false;              ///< the sender says that the test was given up
-  std::string abort_reason;          ///< "MCS command had priority"
-  TimeSeries samples;                ///< time_s counts from the start of the test
+  std::int64_t start_time_ns = 0;  ///< UTC of time_s = 0
+  bool aborted = false;            ///< the sender says that the test was given up
+  std::string abort_reason;        ///< "MCS command had priority"
+  TimeSeries samples;              ///< time_s counts from the start of the test
   SEALWATCH_FIELDS(RawSamples, asset_id, header, source_id, block_number, boundary, recording_id, test_kind,
                    content_hash, start_time_known, start_time_ns, aborted, abort_reason, samples)
   friend bool operator==(const RawSamples&, const RawSamples&) = default;

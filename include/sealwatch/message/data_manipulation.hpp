@@ -34,17 +34,18 @@ struct TestWindow {
   Header header;         ///< message_id "test_window/<pst_id>"
   std::string recording_id;
   std::string test_kind;
-  bool complete = false;   ///< begin and end both seen, not aborted
+  bool complete = false;  ///< begin and end both seen, not aborted
   bool aborted = false;
   std::string abort_reason;
-  double sample_rate_Hz = 0.0;      ///< of the resampled window
-  double jitter_std_s = 0.0;        ///< of the recording's sampling intervals
-  double missing_share = 0.0;       ///< share of samples that had to be interpolated, 0..1
-  std::string filter;               ///< what was filtered and its phase, in words: "none", "4th-order zero-phase ..."
+  double sample_rate_Hz = 0.0;  ///< of the resampled window
+  double jitter_std_s = 0.0;    ///< of the recording's sampling intervals
+  double missing_share = 0.0;   ///< share of samples that had to be interpolated, 0..1
+  std::string filter;           ///< what was filtered and its phase, in words: "none", "4th-order zero-phase ..."
   std::vector<ChannelStatus> channel_status;
   std::vector<AlignmentRemark> alignment;
   std::vector<Phase> phases;
-  TimeSeries samples;  ///< uniform, unfiltered (estimators whiten themselves), aligned, noise_std estimated where unknown
+  TimeSeries
+      samples;  ///< uniform, unfiltered (estimators whiten themselves), aligned, noise_std estimated where unknown
   SEALWATCH_FIELDS(TestWindow, asset_id, header, recording_id, test_kind, complete, aborted, abort_reason,
                    sample_rate_Hz, jitter_std_s, missing_share, filter, channel_status, alignment, phases, samples)
   friend bool operator==(const TestWindow&, const TestWindow&) = default;

@@ -10,10 +10,10 @@ SEALWATCH_ENUM(FaultKind, internal_leakage, friction, pump, sensor, load, driver
 /// One member of the ambiguity group (OSA-CBM proposed event).
 struct ProposedFault {
   FaultKind kind = FaultKind::internal_leakage;
-  std::string element;            ///< element of INTERFACES section 5: "piston_seal", "sensor:pressure_a"
-  double likelihood = 0.0;        ///< 0..1; all proposals and "no fault" add up to 1
-  std::string iso14224_code;      ///< failure mode code, e.g. "INL" (internal leakage, valves)
-  std::string iso14224_mechanism; ///< failure mechanism code, e.g. "1.1 Leakage"
+  std::string element;             ///< element of INTERFACES section 5: "piston_seal", "sensor:pressure_a"
+  double likelihood = 0.0;         ///< 0..1; all proposals and "no fault" add up to 1
+  std::string iso14224_code;       ///< failure mode code, e.g. "INL" (internal leakage, valves)
+  std::string iso14224_mechanism;  ///< failure mechanism code, e.g. "1.1 Leakage"
   std::vector<std::string> evidence;
   SEALWATCH_FIELDS(ProposedFault, kind, element, likelihood, iso14224_code, iso14224_mechanism, evidence)
   friend bool operator==(const ProposedFault&, const ProposedFault&) = default;
@@ -21,11 +21,11 @@ struct ProposedFault {
 
 /// Topic health_report: one per test.
 struct HealthReport {
-  std::string asset_id;  // key
-  Header header;         ///< message_id "health_report/<pst_id>"
-  double health_grade = 1.0;              ///< 0 (failed) .. 1 (as new)
+  std::string asset_id;       // key
+  Header header;              ///< message_id "health_report/<pst_id>"
+  double health_grade = 1.0;  ///< 0 (failed) .. 1 (as new)
   bool trend_known = false;
-  double health_trend_per_year = 0.0;     ///< slope of the grade over the last tests
+  double health_trend_per_year = 0.0;  ///< slope of the grade over the last tests
   double health_trend_std_per_year = 0.0;
   double no_fault_likelihood = 1.0;
   std::vector<ProposedFault> ambiguity_group;  ///< most likely first

@@ -39,8 +39,8 @@ struct FitReport {
   std::string termination;  ///< why the optimiser stopped, in words
   bool converged = false;
   std::int32_t iterations = 0;
-  double cost = 0.0;        ///< 1/2 sum of squared whitened residuals
-  double load_factor = 0.0; ///< Phi of this test
+  double cost = 0.0;         ///< 1/2 sum of squared whitened residuals
+  double load_factor = 0.0;  ///< Phi of this test
   std::vector<EstimatedParameter> parameters;
   std::vector<double> covariance;  ///< row-major, free parameters in the order of `parameters`
   std::vector<ChannelFit> channels;
@@ -53,13 +53,13 @@ struct FitReport {
 
 /// Topic leakage_estimate: one per test, also for tests that were left out (with the reason).
 struct LeakageEstimate {
-  std::string asset_id;  // key
-  Header header;         ///< message_id "leakage_estimate/<pst_id>"
-  bool estimated = false;          ///< false: no estimate was possible at all, reasons say why
-  double resistance_Pa_s_m3 = 0.0; ///< R_CL
+  std::string asset_id;             // key
+  Header header;                    ///< message_id "leakage_estimate/<pst_id>"
+  bool estimated = false;           ///< false: no estimate was possible at all, reasons say why
+  double resistance_Pa_s_m3 = 0.0;  ///< R_CL
   double resistance_std_Pa_s_m3 = 0.0;
-  bool condition_known = false;    ///< theta is defined (the asset has seal resistances)
-  double condition = 0.0;          ///< theta: share of the nominal elastic modulus
+  bool condition_known = false;  ///< theta is defined (the asset has seal resistances)
+  double condition = 0.0;        ///< theta: share of the nominal elastic modulus
   double condition_std = 0.0;
   bool used_for_forecast = false;
   std::vector<std::string> reasons;  ///< why it was left out
@@ -102,10 +102,10 @@ struct Forecast {
 
 /// Topic remaining_life: one per test.
 struct RemainingLife {
-  std::string asset_id;  // key
-  Header header;         ///< message_id "remaining_life/<pst_id>"
-  double threshold = 0.0;       ///< theta_max
-  double condition = 0.0;       ///< latest theta that was used
+  std::string asset_id;    // key
+  Header header;           ///< message_id "remaining_life/<pst_id>"
+  double threshold = 0.0;  ///< theta_max
+  double condition = 0.0;  ///< latest theta that was used
   bool condition_known = false;
   double condition_std = 0.0;
   std::vector<Forecast> forecasts;  ///< windows side by side; the one in charge first

@@ -25,11 +25,11 @@ struct ServiceStatus {
   std::int64_t started_ns = 0;
   std::int64_t publishing_time_ns = 0;
   std::int32_t process_id = 0;
-  std::uint64_t pending_inputs = 0;       ///< received, not yet concluded from
+  std::uint64_t pending_inputs = 0;  ///< received, not yet concluded from
   std::vector<StreamPosition> written;
   std::vector<StreamPosition> received;
-  std::string state;                      ///< "running", "stopping"
-  std::string last_error;                 ///< "" if none
+  std::string state;       ///< "running", "stopping"
+  std::string last_error;  ///< "" if none
   SEALWATCH_FIELDS(ServiceStatus, service, writer_id, version, started_ns, publishing_time_ns, process_id,
                    pending_inputs, written, received, state, last_error)
   friend bool operator==(const ServiceStatus&, const ServiceStatus&) = default;

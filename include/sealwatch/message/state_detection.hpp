@@ -46,8 +46,8 @@ struct StateReport {
   AlertRegion region = AlertRegion::normal;  ///< worst of the judgements
   std::vector<RegionJudgement> judgements;
   std::vector<ResidualSummary> residuals;
-  bool pst_overdue = false;           ///< at the event time of this report a test was overdue, or this test came late
-  double overdue_days = 0.0;          ///< by how much
+  bool pst_overdue = false;   ///< at the event time of this report a test was overdue, or this test came late
+  double overdue_days = 0.0;  ///< by how much
   std::vector<std::string> stale_channels;
   SEALWATCH_FIELDS(StateReport, asset_id, header, verdict, verdict_reasons, region, judgements, residuals, pst_overdue,
                    overdue_days, stale_channels)

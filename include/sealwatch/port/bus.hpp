@@ -1,5 +1,5 @@
-// The bus between processes, as layers' runners see it. Implemented over Cyclone DDS in services/common/transport and in
-// memory (port/in_memory_bus.hpp); one contract suite tests both.
+// The bus between processes, as layers' runners see it. Implemented over Cyclone DDS in services/common/transport and
+// in memory (port/in_memory_bus.hpp); one contract suite tests both.
 #pragma once
 
 #include <chrono>
@@ -15,12 +15,12 @@ namespace sealwatch {
 
 using BusItem = std::variant<Message, ServiceStatus, ResendRequest>;
 
-/// One participant's view of the bus. Not thread-safe but for wake(): one thread publishes and receives (the heartbeat thread
-/// of a daemon owns a second Bus).
+/// One participant's view of the bus. Not thread-safe but for wake(): one thread publishes and receives (the heartbeat
+/// thread of a daemon owns a second Bus).
 ///
-/// Contract: messages of one publisher on one topic arrive in order; nothing is lost between publishers and subscribers that are
-/// connected, however fast the burst; a late subscriber gets the last message of every asset of every publisher still alive;
-/// a publisher's end removes nothing that was delivered.
+/// Contract: messages of one publisher on one topic arrive in order; nothing is lost between publishers and subscribers
+/// that are connected, however fast the burst; a late subscriber gets the last message of every asset of every
+/// publisher still alive; a publisher's end removes nothing that was delivered.
 class Bus {
  public:
   virtual ~Bus() = default;

@@ -27,8 +27,8 @@ class Estimator {
 class Simulator {
  public:
   virtual ~Simulator() = default;
-  /// Predicted channels at the recorded times, for each recorded output channel of the plant. Initial state and load factor
-  /// are estimated from the recording, nothing else is.
+  /// Predicted channels at the recorded times, for each recorded output channel of the plant. Initial state and load
+  /// factor are estimated from the recording, nothing else is.
   [[nodiscard]] virtual Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded) const = 0;
 };
 

@@ -7,8 +7,8 @@
 // After each receive the runner stores the conclusion's outputs and marks the consumed inputs in one transaction, and
 // only then publishes. A layer killed anywhere and started again by this contract ends with the same outputs.
 //
-// For that a layer keeps no state but (a) what it can rebuild from its own outputs in restore and (b) inputs that it has not
-// consumed yet.
+// For that a layer keeps no state but (a) what it can rebuild from its own outputs in restore and (b) inputs that it
+// has not consumed yet.
 #pragma once
 
 #include <span>

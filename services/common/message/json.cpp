@@ -26,8 +26,7 @@ std::string to_base64(const std::vector<double>& values) {
     std::uint32_t group = 0;
     for (std::size_t b = 0; b < 3; ++b)
       group = group << 8U | (k + b < size ? static_cast<unsigned char>(bytes[k + b]) : 0U);
-    for (std::size_t c = 0; c < 4; ++c)
-      text += k + c > size ? '=' : kAlphabet[group >> (18 - 6 * c) & 63U];
+    for (std::size_t c = 0; c < 4; ++c) text += k + c > size ? '=' : kAlphabet[group >> (18 - 6 * c) & 63U];
   }
   return text;
 }
@@ -36,7 +35,8 @@ bool from_base64(const std::string& text, std::vector<double>& values) {
   static const auto decode = [] {
     std::array<int, 256> table{};
     table.fill(-1);
-    for (std::size_t k = 0; k < kAlphabet.size(); ++k) table[static_cast<unsigned char>(kAlphabet[k])] = static_cast<int>(k);
+    for (std::size_t k = 0; k < kAlphabet.size(); ++k)
+      table[static_cast<unsigned char>(kAlphabet[k])] = static_cast<int>(k);
     return table;
   }();
   std::string bytes;

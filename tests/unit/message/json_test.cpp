@@ -1,0 +1,85 @@
+#include "services/common/message/json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "tests/unit/message/fill.hpp"
+
+namespace sealwatch {
+namespace {
+
+template <class T>
+class EveryTopic : public ::testing::Test {};
+
+using Topics =
+    ::testing::Types<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport, LeakageEstimate,
+                     RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent>;
+TYPED_TEST_SUITE(EveryTopic, Topics);
+
+TYPED_TEST(EveryTopic, ComesBackFieldByFieldInBothForms) {
+  for (const std::size_t length : {0U, 1U, 2U, 5U}) {
+    const Message message = testing::filled<TypeParam>(length);
+    for (const JsonForm form : {JsonForm::readable, JsonForm::exact}) {
+      const Result<Message> back = message_from_json(topic_of(message), to_json(message, form));
+      ASSERT_TRUE(back.has_value()) << back.error().describe();
+      EXPECT_EQ(*back, message) << to_json(message);
+    }
+  }
+}
+
+TEST(Json, TopicNamesFollowTheAlternatives) {
+  EXPECT_EQ(EnumNames<Topic>::kNames.size(), std::variant_size_v<Message>);
+  EXPECT_EQ(name_of(topic_of(Message(Advisory{}))), "advisory");
+  EXPECT_EQ(name_of(topic_of(Message(MaintenanceEvent{}))), "maintenance_event");
+}
+
+TEST(Json, ExactFormKeepsEveryBit) {
+  RawSamples block;
+  block.samples.time_s = {0.1, -0.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(),
+                          std::numeric_limits<double>::infinity()};
+  const Message back = message_from_json(Topic::raw_samples, to_json(Message(block), JsonForm::exact)).value();
+  const std::vector<double>& time = std::get<RawSamples>(back).samples.time_s;
+  ASSERT_EQ(time.size(), 5U);
+  EXPECT_EQ(std::memcmp(time.data(), block.samples.time_s.data(), 5 * sizeof(double)), 0);
+}
+
+TEST(Json, ReadableFormShowsEnumsByNameAndNanAsNull) {
+  HealthReport report;
+  report.health_grade = std::nan("");
+  report.ambiguity_group.push_back({.kind = FaultKind::pump,
+                                    .element = "pump",
+                                    .likelihood = 0.5,
+                                    .iso14224_code = {},
+                                    .iso14224_mechanism = {},
+                                    .evidence = {}});
+  const std::string text = to_json(Message(report));
+  EXPECT_NE(text.find("\"health_grade\":null"), std::string::npos) << text;
+  EXPECT_NE(text.find("\"kind\":\"pump\""), std::string::npos) << text;
+}
+
+TEST(Json, PassesOverUnknownFieldsAndKeepsDefaultsOfAbsentOnes) {
+  const Message message =
+      message_from_json(Topic::health_report, R"({"asset_id": "A", "a_later_field": [1, 2]})").value();
+  EXPECT_EQ(std::get<HealthReport>(message).asset_id, "A");
+  EXPECT_EQ(std::get<HealthReport>(message).health_grade, 1.0);
+}
+
+TEST(Json, NamesTheFieldThatIsWrong) {
+  const auto refusal = [](std::string_view text) {
+    return message_from_json(Topic::state_report, text).error().describe();
+  };
+  EXPECT_EQ(refusal("{"), "message of topic state_report: is not JSON");
+  EXPECT_EQ(refusal(R"({"judgements": [{"value": "high"}]})"),
+            "message of topic state_report: judgements[0].value: must be a number");
+  EXPECT_EQ(refusal(R"({"verdict": "splendid"})"),
+            "message of topic state_report: verdict: must be one of the enumeration's names");
+  EXPECT_EQ(refusal(R"({"header": {"replay": 3}})"),
+            "message of topic state_report: header.replay: has the wrong type");
+  EXPECT_EQ(refusal(R"({"residuals": {}})"), "message of topic state_report: residuals: must be an array");
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Installs, builds and runs every test of sealwatch. The last lines are ctest's own summary.
+#   tests/run.sh                 everything
+#   tests/run.sh -R forecast     what follows goes to ctest
+set -euo pipefail
+cd "$(dirname "$0")/.."
+deploy/install_packages.sh test
+deploy/build.sh release
+cd build/release
+exec ctest --output-on-failure --parallel "$(nproc)" "$@"

@@ -1,5 +1,5 @@
-// What a plant says about itself in one table, which code, configuration, documents and error messages share: its recorded
-// channels, its parameters with units, bounds and meaning, its elements.
+// What a plant says about itself in one table, which code, configuration, documents and error messages share: its
+// recorded channels, its parameters with units, bounds and meaning, its elements.
 #pragma once
 
 #include <span>
@@ -24,7 +24,7 @@ struct ChannelDescription {
 
 struct ParameterDescription {
   std::string name;
-  std::string unit;  ///< SI
+  std::string unit;    ///< SI
   double value = 0.0;  ///< default of the nominal asset
   double min = 0.0;    ///< psi_min
   double max = 0.0;    ///< psi_max

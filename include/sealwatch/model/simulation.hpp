@@ -1,0 +1,88 @@
+// Simulation of one recording with a plant's equations, and the forward sensitivities of the simulated channels.
+//
+//   auto simulation = PlantSimulation::create(asset, recorded);          // Result
+//   ModelValues values = (*simulation)->start();                         // asset's parameters, states from first
+//   samples std::vector<FreeQuantity> free = {*(*simulation)->find("R_CL"), *(*simulation)->find("load_factor"),
+//                                     *(*simulation)->find("initial:p_A")};
+//   auto outputs = (*simulation)->run(values, free);                     // Result: values and d values / d free
+//
+// The simulation is driven by the recorded input alone (linear between samples, or held). Sensors' low-pass filters are
+// applied to the sampled outputs and to their sensitivities. Initial state: what is free, and the plant's slow states
+// (`eha`: p_A, p_B, x), starts from ModelValues::initial_state; all other states start from the quasi-steady state that
+// goes with them (their time derivatives are zero), which is differentiated too.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time_series.hpp"
+#include "sealwatch/model/plant_description.hpp"
+
+namespace sealwatch {
+
+/// Everything that a simulation depends on besides the recording. SI units.
+struct ModelValues {
+  std::vector<double> parameters;     ///< in the order of PlantDescription::parameters
+  double load_factor = 0.0;           ///< Phi of this recording: load = phi (1 + Phi)
+  std::vector<double> initial_state;  ///< in the order of PlantSimulation::state_names()
+};
+
+/// One quantity with respect to which outputs are differentiated. Made by PlantSimulation::find.
+struct FreeQuantity {
+  enum class Kind { parameter, load_factor, initial_state };
+  Kind kind = Kind::parameter;
+  std::size_t index = 0;  ///< into ModelValues::parameters or ::initial_state
+  [[nodiscard]] double& in(ModelValues& values) const;
+  [[nodiscard]] double in(const ModelValues& values) const;
+};
+
+struct SimulationOptions {
+  double relative_tolerance = 1e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
+  double maximum_step_s = 0.25;      ///< so that no event of the input is stepped over
+  std::size_t maximum_steps = 200000;
+};
+
+struct SimulatedOutputs {
+  Eigen::MatrixXd values;                      ///< samples x channels
+  std::vector<Eigen::MatrixXd> sensitivities;  ///< one per free quantity: samples x channels, d value / d quantity
+  std::size_t steps = 0;                       ///< of the integrator
+  std::size_t evaluations = 0;                 ///< of the equations with their Jacobian
+};
+
+/// One recording, ready to be simulated as often as wanted. Immutable, so that threads may share it.
+class PlantSimulation {
+ public:
+  virtual ~PlantSimulation() = default;
+
+  /// An Error when the model is unknown, a needed input is not recorded or no simulated output is.
+  [[nodiscard]] static Result<std::unique_ptr<PlantSimulation>> create(const AssetConfig& asset,
+                                                                       const TimeSeries& recorded);
+
+  [[nodiscard]] virtual const PlantDescription& plant() const = 0;
+  /// The recorded output channels that the plant simulates: the columns of all matrices.
+  [[nodiscard]] virtual std::span<const std::string> channels() const = 0;
+  /// "z", "i", "omega", ...
+  [[nodiscard]] virtual std::span<const std::string> state_names() const = 0;
+  /// The states whose initial values should be estimated with every recording: p_A, p_B, x.
+  [[nodiscard]] virtual std::span<const std::string> slow_state_names() const = 0;
+  /// The asset's parameters, the initial state from the first samples, the load factor from the mean force balance.
+  [[nodiscard]] virtual const ModelValues& start() const = 0;
+  /// Recorded samples of channels(): samples x channels.
+  [[nodiscard]] virtual const Eigen::MatrixXd& recorded() const = 0;
+
+  /// "R_CL" (a parameter's name), "load_factor" or "initial:p_A"; an Error with the nearest name otherwise.
+  [[nodiscard]] Result<FreeQuantity> find(std::string_view quantity) const;
+
+  /// An Error when the integration fails (parameters that no step size can follow).
+  [[nodiscard]] virtual Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
+                                                     const SimulationOptions& options = {}) const = 0;
+};
+
+}  // namespace sealwatch

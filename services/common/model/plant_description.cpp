@@ -1,0 +1,46 @@
+#include "sealwatch/model/plant_description.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/model/plant_tables.hpp"
+
+namespace sealwatch {
+namespace {
+
+template <class Row>
+const Row* find_row(const std::vector<Row>& rows, std::string_view name) {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& candidate) { return candidate.name == name; });
+  return row == rows.end() ? nullptr : &*row;
+}
+
+}  // namespace
+
+const ChannelDescription* PlantDescription::find_channel(std::string_view channel) const {
+  return find_row(channels, channel);
+}
+
+const ParameterDescription* PlantDescription::find_parameter(std::string_view parameter) const {
+  return find_row(parameters, parameter);
+}
+
+std::span<const PlantDescription> all_plants() {
+  static const std::array plants = {describe_eha(), describe_eha_switched()};
+  return plants;
+}
+
+Result<const PlantDescription*> find_plant(std::string_view name) {
+  std::vector<std::string> names;
+  for (const PlantDescription& plant : all_plants()) {
+    if (plant.name == name) return &plant;
+    names.push_back(plant.name);
+  }
+  return fail(Error{.file = {},
+                    .place = {},
+                    .value = std::string(name),
+                    .rule = "is not a known model",
+                    .advice = suggest(name, names)});
+}
+
+}  // namespace sealwatch

@@ -1,6 +1,7 @@
 // Small helpers for messages that people read.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,5 +18,15 @@ namespace sealwatch {
 
 /// First 16 hex digits of the 64-bit FNV-1a hash of `bytes`: names contents, does not protect them.
 [[nodiscard]] std::string content_hash(std::string_view bytes);
+
+/// The same hash of bytes that come in pieces.
+class ContentHasher {
+ public:
+  void add(std::string_view bytes);
+  [[nodiscard]] std::string hex() const;
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;  // FNV offset basis
+};
 
 }  // namespace sealwatch

@@ -53,15 +53,23 @@ std::string suggest(std::string_view word, std::span<const std::string> candidat
   return known;
 }
 
-std::string content_hash(std::string_view bytes) {
-  std::uint64_t hash = 14695981039346656037ULL;
+void ContentHasher::add(std::string_view bytes) {
   for (const char byte : bytes) {
-    hash ^= static_cast<unsigned char>(byte);
-    hash *= 1099511628211ULL;
+    hash_ ^= static_cast<unsigned char>(byte);
+    hash_ *= 1099511628211ULL;  // FNV prime
   }
+}
+
+std::string ContentHasher::hex() const {
   char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
   return text;
+}
+
+std::string content_hash(std::string_view bytes) {
+  ContentHasher hasher;
+  hasher.add(bytes);
+  return hasher.hex();
 }
 
 }  // namespace sealwatch

@@ -7,6 +7,6 @@ preset=${1:-release}
 shift || true
 export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/ccache}"
 echo "== build: build/$preset"
-cmake --preset "$preset" "$@" >"build-$preset.log" 2>&1 || { cat "build-$preset.log"; exit 1; }
-mkdir -p build && mv "build-$preset.log" "build/$preset-configure.log"
+mkdir -p build
+cmake --preset "$preset" "$@" >"build/$preset-configure.log" 2>&1 || { cat "build/$preset-configure.log" >&2; exit 1; }
 cmake --build --preset "$preset"

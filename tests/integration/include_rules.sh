@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Who may include whom (docs/architecture.md). Prints each include that breaks a rule and fails; checks itself on a bad file first.
+#   include_rules.sh SOURCE_DIR
+set -euo pipefail
+cd "$1"
+
+# forbid WHERE(regex of files) WHAT(regex of the included path) WHY
+forbid() {
+  local where=$1 what=$2 why=$3
+  awk -v where="$where" -v what="$what" -v why="$why" '
+    FILENAME ~ where && match($0, /^[ \t]*#[ \t]*include[ \t]*[<"][^>"]+/) {
+      included = substr($0, RSTART, RLENGTH); sub(/^.*[<"]/, "", included)
+      if (included ~ what) { printf "%s:%d: includes %s: %s\n", FILENAME, FNR, included, why; bad = 1 }
+    }
+    END { exit bad }' "${files[@]}"
+}
+
+owner() {  # owner WHAT FOLDERS...: only these folders may include it
+  local what=$1; shift
+  local allowed; allowed=$(IFS='|'; echo "$*")
+  local others=()
+  for file in "${files[@]}"; do [[ $file =~ ^($allowed) ]] || others+=("$file"); done
+  local all=("${files[@]}"); files=("${others[@]}")
+  local status=0
+  forbid . "$what" "only $allowed may" || status=1
+  files=("${all[@]}")
+  return $status
+}
+
+rules() {
+  local failed=0
+  forbid '^include/' '^services/' 'headers in include/ know nothing of services/' || failed=1
+  forbid '^include/' '^(dds|yaml-cpp|soci|ceres|spdlog|nlohmann|CLI|matio|boost|sqlite3)' 'mathematics and plain types stand alone' || failed=1
+  forbid '^include/sealwatch/core/' '^sealwatch/[^c]|^sealwatch/config' 'core includes core only' || failed=1
+  forbid '^include/sealwatch/(model|ode|signal)/' '^sealwatch/(estimation|mismatch|forecast|port)/' 'model, ode and signal stand below estimation and forecast' || failed=1
+  local layers='data_acquisition|data_manipulation|state_detection|health_assessment|prognostic_assessment|advisory_generation'
+  for layer in ${layers//|/ }; do
+    local others; others=$(echo "$layers" | tr '|' '\n' | grep -v "^$layer\$" | paste -sd'|')
+    forbid "^services/$layer/" "^services/($others)/" 'a layer never includes another layer' || failed=1
+    forbid "^services/$layer/([^m]|m[^a])[^/]*$" '^services/common/(transport|runtime|store|estimation)/' 'a layer reaches transport, runtime, journal and estimation through ports that main injects' || failed=1
+  done
+  owner '^ceres/' services/common/estimation/ || failed=1
+  owner '^dds/' services/common/transport/ || failed=1
+  owner '^yaml-cpp/' services/common/runtime/ services/common/recording/ || failed=1
+  owner '^spdlog/' services/common/runtime/ || failed=1
+  owner '^soci/' services/common/store/ || failed=1
+  owner '^matio' services/common/recording/ || failed=1
+  owner '^CLI/' services/cli/ services/common/runtime/ || failed=1
+  owner '^nlohmann/' services/common/message/ services/cli/ || failed=1
+  return $failed
+}
+
+mapfile -t files < <(find include services -name '*.hpp' -o -name '*.cpp' | sort)
+[ ${#files[@]} -gt 50 ] || { echo "only ${#files[@]} files found under $1: wrong folder?"; exit 1; }
+
+# A rule that cannot fail is no rule: a forbidden include must be seen.
+trap 'rm -rf "$bad"' EXIT
+bad=$(mktemp -d)
+mkdir -p "$bad/include/sealwatch/core"
+echo '#include <ceres/ceres.h>' >"$bad/include/sealwatch/core/bad.hpp"
+good_files=("${files[@]}")
+(cd "$bad"; files=(include/sealwatch/core/bad.hpp); ! rules >/dev/null) || { echo "the rules do not see a forbidden include"; exit 1; }
+files=("${good_files[@]}")
+
+rules && echo "${#files[@]} files keep the include rules"

@@ -4,7 +4,7 @@
 //   ModelValues values = (*simulation)->start();                         // asset's parameters, states from first
 //   samples std::vector<FreeQuantity> free = {*(*simulation)->find("R_CL"), *(*simulation)->find("load_factor"),
 //                                     *(*simulation)->find("initial:p_A")};
-//   auto outputs = (*simulation)->run(values, free);                     // Result: values and d values / d free
+//   auto outputs = (*simulation)->run(values, free);                     // values and d values / d free
 //
 // The simulation is driven by the recorded input alone (linear between samples, or held). Sensors' low-pass filters are
 // applied to the sampled outputs and to their sensitivities. Initial state: what is free, and the plant's slow states
@@ -49,11 +49,13 @@ struct SimulationOptions {
   std::size_t maximum_steps = 200000;
 };
 
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 struct SimulatedOutputs {
-  Eigen::MatrixXd values;                      ///< samples x channels
-  std::vector<Eigen::MatrixXd> sensitivities;  ///< one per free quantity: samples x channels, d value / d quantity
-  std::size_t steps = 0;                       ///< of the integrator
-  std::size_t evaluations = 0;                 ///< of the equations with their Jacobian
+  RowMatrix values;         ///< samples x channels
+  RowMatrix sensitivities;  ///< (samples * channels) x free quantities; row = sample * channels + channel
+  std::size_t steps = 0;    ///< of the integrator
+  std::size_t linearisations = 0;
 };
 
 /// One recording, ready to be simulated as often as wanted. Immutable, so that threads may share it.
@@ -75,7 +77,7 @@ class PlantSimulation {
   /// The asset's parameters, the initial state from the first samples, the load factor from the mean force balance.
   [[nodiscard]] virtual const ModelValues& start() const = 0;
   /// Recorded samples of channels(): samples x channels.
-  [[nodiscard]] virtual const Eigen::MatrixXd& recorded() const = 0;
+  [[nodiscard]] virtual const RowMatrix& recorded() const = 0;
 
   /// "R_CL" (a parameter's name), "load_factor" or "initial:p_A"; an Error with the nearest name otherwise.
   [[nodiscard]] Result<FreeQuantity> find(std::string_view quantity) const;

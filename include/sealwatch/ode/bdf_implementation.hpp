@@ -1,0 +1,258 @@
+// Implementation of ode/bdf.hpp (included by it).
+#pragma once
+
+namespace sealwatch {
+
+// kappa, gamma, alpha = (1 - kappa) gamma and error constants kappa gamma + 1/(k+1) of Shampine and Reichelt, table 1.
+template <class System>
+const typename Bdf<System>::Coefficients& Bdf<System>::coefficients() {
+  static const Coefficients table = [] {
+    constexpr std::array kappa = {0.0, -0.1850, -1.0 / 9.0, -0.0823, -0.0415, 0.0};
+    Coefficients c;
+    for (int k = 0; k <= kMaximumOrder; ++k) {
+      c.gamma[k] = k == 0 ? 0.0 : c.gamma[k - 1] + 1.0 / k;
+      c.alpha[k] = (1.0 - kappa[k]) * c.gamma[k];
+      c.error[k] = kappa[k] * c.gamma[k] + 1.0 / (k + 1);
+    }
+    return c;
+  }();
+  return table;
+}
+
+template <class System>
+double Bdf<System>::norm(const double* values, std::size_t stride) const {
+  double largest = 0.0;
+  for (int row = 0; row < kStates; ++row) {
+    const double ratio = std::abs(values[row * stride]) / scale_[row];
+    if (!(ratio <= largest)) largest = ratio;  // keeps NaN
+  }
+  return largest;
+}
+
+template <class System>
+bool Bdf<System>::start(double time, const double* values) {
+  time_ = time;
+  order_ = 1;
+  equal_steps_ = 0;
+  for (auto& difference : differences_) std::fill(difference.begin(), difference.end(), 0.0);
+  std::copy(values, values + size(), differences_[0].begin());
+  Matrix jacobian;
+  Vector f;
+  for (int row = 0; row < kStates; ++row) state_[row] = values[row * stride_];
+  system_.linearise(time, state_.data(), f.data(), jacobian);
+  const double rate = norm(f.data(), 1);
+  if (!std::isfinite(rate)) return false;
+  step_ = std::min({options_.maximum_step, 1e-3, 10.0 / std::max(rate, 1e-6)});
+  double* slope = differences_[1].data();
+  for (int row = 0; row < kStates; ++row)
+    for (int other = 0; other < kStates; ++other)
+      for (int k = 1; k <= parameters_; ++k)
+        slope[row * stride_ + k] += jacobian[row][other] * values[other * stride_ + k];
+  system_.add_parameter_derivatives(time, state_.data(), 1.0, slope, stride_);
+  for (int row = 0; row < kStates; ++row) slope[row * stride_] = f[row];
+  for (double& value : differences_[1]) value *= step_;
+  return true;
+}
+
+template <class System>
+bool Bdf<System>::step() {
+  for (int tries = 0; tries < 60; ++tries) {
+    if (statistics_.steps >= options_.maximum_steps || time_ + step_ <= time_) return false;
+    if (step_ > options_.maximum_step) change_step(options_.maximum_step / step_);
+    if (!attempt()) {
+      ++statistics_.not_converged;
+      change_step(0.3);
+      continue;
+    }
+    if (error_ > 1.0) {
+      ++statistics_.rejected;
+      change_step(std::max(0.2, 0.8 * std::pow(error_, -1.0 / (order_ + 1))));
+      continue;
+    }
+    solve_sensitivities(step_ / coefficients().alpha[order_]);
+    accept();
+    choose_order_and_step();
+    return true;
+  }
+  return false;
+}
+
+// y^0 = sum D_m and psi = sum gamma_m D_m / alpha_k, for all columns.
+template <class System>
+void Bdf<System>::predict() {
+  const auto& c = coefficients();
+  const std::size_t count = size();
+  std::copy(differences_[0].begin(), differences_[0].end(), prediction_.begin());
+  std::fill(constants_.begin(), constants_.end(), 0.0);
+  for (int m = 1; m <= order_; ++m) {
+    const double weight = c.gamma[m] / c.alpha[order_];
+    const double* difference = differences_[m].data();
+    double* prediction = prediction_.data();
+    double* constants = constants_.data();
+    for (std::size_t j = 0; j < count; ++j) {
+      prediction[j] += difference[j];
+      constants[j] += weight * difference[j];
+    }
+  }
+}
+
+template <class System>
+bool Bdf<System>::factorise(double c, const double* state, double* f) {
+  Matrix matrix;
+  system_.linearise(time_ + step_, state, f, matrix);
+  ++statistics_.linearisations;
+  for (int row = 0; row < kStates; ++row) {
+    for (int column = 0; column < kStates; ++column) matrix[row][column] *= -c;
+    matrix[row][row] += 1.0;
+  }
+  return lu_.factorise(matrix);
+}
+
+template <class System>
+bool Bdf<System>::attempt() {
+  predict();
+  for (int row = 0; row < kStates; ++row) state_[row] = prediction_[row * stride_];
+  correction_.fill(0.0);
+  if (!solve_states(step_ / coefficients().alpha[order_])) return false;
+  error_ = coefficients().error[order_] * norm(correction_.data(), 1);
+  return std::isfinite(error_);
+}
+
+// Newton's iteration for d = y - y^0:  c f(y^0 + d) - psi - d = 0. The Jacobian is fresh at the prediction and is
+// renewed when the iteration contracts slowly. One correction suffices when the last observed contraction says that the
+// next one would be far below the allowed error.
+template <class System>
+bool Bdf<System>::solve_states(double c) {
+  constexpr int kIterations = 8;
+  constexpr double kConverged = 0.02;  // of the allowed local error
+  constexpr double kSlow = 0.2;
+  Vector f, change;
+  bool fresh = true;
+  double last = 0.0;
+  if (!factorise(c, state_.data(), f.data())) return false;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for (int row = 0; row < kStates; ++row) change[row] = c * f[row] - constants_[row * stride_] - correction_[row];
+    lu_.solve(change.data(), 1, 1);
+    const double size_of_change = norm(change.data(), 1);
+    if (!std::isfinite(size_of_change)) return false;
+    for (int row = 0; row < kStates; ++row) {
+      state_[row] += change[row];
+      correction_[row] += change[row];
+    }
+    double contraction = curvature_ * size_of_change;
+    if (iteration > 0 && last > 0.0) {
+      contraction = size_of_change / last;
+      curvature_ = std::max(0.7 * curvature_, contraction / last);
+      if (!fresh && contraction > 2.0) return false;
+    }
+    if (contraction < 1.0 && contraction * size_of_change < kConverged) return true;
+    fresh = iteration > 0 && contraction > kSlow;
+    if (fresh) {
+      if (!factorise(c, state_.data(), f.data())) return false;
+    } else {
+      system_.evaluate(time_ + step_, state_.data(), f.data());
+    }
+    last = size_of_change;
+  }
+  return false;
+}
+
+// (I - c J) S = S^0 + c df/dp - psi_S, all columns at once; work_ <- S - S^0 beside the states' correction.
+template <class System>
+void Bdf<System>::solve_sensitivities(double c) {
+  for (int row = 0; row < kStates; ++row) work_[row * stride_] = correction_[row];
+  if (parameters_ == 0) return;
+  const std::size_t count = size();
+  for (std::size_t j = 0; j < count; ++j) work_[j] = prediction_[j] - constants_[j];
+  system_.add_parameter_derivatives(time_ + step_, state_.data(), c, work_.data(), stride_);
+  lu_.solve(work_.data(), static_cast<int>(stride_), stride_);
+  for (std::size_t j = 0; j < count; ++j) work_[j] -= prediction_[j];
+  for (int row = 0; row < kStates; ++row) work_[row * stride_] = correction_[row];
+}
+
+template <class System>
+void Bdf<System>::accept() {
+  ++statistics_.steps;
+  time_ += step_;
+  ++equal_steps_;
+  const std::size_t count = size();
+  double* d2 = differences_[order_ + 2].data();
+  double* d1 = differences_[order_ + 1].data();
+  for (std::size_t j = 0; j < count; ++j) {
+    d2[j] = work_[j] - d1[j];
+    d1[j] = work_[j];
+  }
+  for (int m = order_; m >= 0; --m) {
+    double* lower = differences_[m].data();
+    const double* upper = differences_[m + 1].data();
+    for (std::size_t j = 0; j < count; ++j) lower[j] += upper[j];
+  }
+}
+
+// After order + 1 equal steps: the order, one lower or one higher, that allows the largest next step.
+template <class System>
+void Bdf<System>::choose_order_and_step() {
+  if (equal_steps_ < order_ + 1) return;
+  const auto& c = coefficients();
+  const auto factor = [&](double error, int order) { return error > 0.0 ? std::pow(error, -1.0 / (order + 1)) : 10.0; };
+  double best = factor(error_, order_);
+  int best_order = order_;
+  if (order_ > 1) {
+    const double lower = factor(c.error[order_ - 1] * norm(differences_[order_].data(), stride_), order_ - 1);
+    if (lower > best) best = lower, best_order = order_ - 1;
+  }
+  if (order_ < std::min(options_.maximum_order, kMaximumOrder)) {
+    const double higher = factor(c.error[order_ + 1] * norm(differences_[order_ + 2].data(), stride_), order_ + 1);
+    if (higher > best) best = higher, best_order = order_ + 1;
+  }
+  order_ = best_order;
+  const double change = std::min(10.0, 0.9 * best);
+  if (change >= 1.0 && change < 1.1) return;  // not worth the loss of accuracy that every change brings
+  change_step(std::min(change, options_.maximum_step / step_));
+}
+
+// Differences for the step factor * h from those for h: D' = (R(factor) R(1))^T D.
+template <class System>
+void Bdf<System>::change_step(double factor) {
+  const int n = order_ + 1;
+  using Square = std::array<std::array<double, kMaximumOrder + 1>, kMaximumOrder + 1>;
+  const auto polynomial = [n](double ratio) {
+    Square r{};
+    for (int j = 0; j < n; ++j) r[0][j] = 1.0;
+    for (int i = 1; i < n; ++i)
+      for (int j = 1; j < n; ++j) r[i][j] = r[i - 1][j] * (i - 1 - ratio * j) / i;
+    return r;
+  };
+  const Square r = polynomial(factor), u = polynomial(1.0);
+  Square product{};
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k) product[i][j] += r[i][k] * u[k][j];
+  const std::size_t count = size();
+  for (std::size_t position = 0; position < count; ++position) {
+    std::array<double, kMaximumOrder + 1> old{};
+    for (int k = 0; k < n; ++k) old[k] = differences_[k][position];
+    for (int j = 1; j < n; ++j) {
+      double sum = 0.0;
+      for (int k = 1; k < n; ++k) sum += product[k][j] * old[k];
+      differences_[j][position] = sum;
+    }
+  }
+  step_ *= factor;
+  equal_steps_ = 0;
+}
+
+// y(t) = D_0 + sum_m D_m prod_(i<m) (t - t_(n-i)) / ((i + 1) h)
+template <class System>
+void Bdf<System>::interpolate(double time, double* result) const {
+  std::copy(differences_[0].begin(), differences_[0].end(), result);
+  const std::size_t count = size();
+  double weight = 1.0;
+  for (int m = 1; m <= order_; ++m) {
+    weight *= (time - (time_ - step_ * (m - 1))) / (m * step_);
+    const double* difference = differences_[m].data();
+    for (std::size_t j = 0; j < count; ++j) result[j] += weight * difference[j];
+  }
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,124 @@
+#include "services/common/transport/channel.hpp"
+
+#include <array>
+#include <cassert>
+#include <memory>
+
+#include "services/common/transport/participant.hpp"
+
+namespace sealwatch::transport {
+namespace {
+
+/// Longer than the lease of 2 s after which a dead reader no longer counts: only a live reader that does not take makes
+/// a publish fail.
+constexpr dds_duration_t kMaxBlockingTime = DDS_SECS(5);
+/// Writers offer a finite liveliness lease, so that a foreign reader may ask to be told when they die.
+constexpr dds_duration_t kLivelinessLease = DDS_SECS(5);
+/// Messages of one asset that a reader with SlowReader::loses_oldest keeps.
+constexpr std::int32_t kClientDepth = 256;
+
+using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
+
+Qos common_qos(const TopicQos& settings) {
+  Qos qos(dds_create_qos(), &dds_delete_qos);
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlockingTime);
+  dds_qset_durability(qos.get(), settings.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_destination_order(qos.get(), DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP);
+  return qos;
+}
+
+Qos writer_qos(const TopicQos& settings) {
+  Qos qos = common_qos(settings);
+  if (settings.keep_all)
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+  else
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  // What a late subscriber gets is set here, not by the history: the last message of every asset.
+  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED);
+  dds_qset_writer_data_lifecycle(qos.get(), false);  // else a crash would look like a dispose of every asset
+  dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, kLivelinessLease);
+  if (settings.lifespan_s > 0)
+    dds_qset_lifespan(qos.get(), static_cast<dds_duration_t>(settings.lifespan_s * DDS_NSECS_IN_SEC));
+  return qos;
+}
+
+Qos reader_qos(const TopicQos& settings, SlowReader slow_reader, std::int32_t limit) {
+  Qos qos = common_qos(settings);
+  if (!settings.keep_all) {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  } else if (slow_reader == SlowReader::loses_oldest) {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kClientDepth);
+  } else {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+    dds_qset_resource_limits(qos.get(), limit, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  return qos;
+}
+
+void notify(dds_entity_t /*reader*/, void* signal) { static_cast<Signal*>(signal)->notify(); }
+
+}  // namespace
+
+Status Channel::open_topic() {
+  if (topic_ > 0) return {};
+  const std::string name = "sealwatch/" + type_->name;
+  const dds_entity_t topic = dds_create_topic(participant_, type_->descriptor, name.c_str(), nullptr, nullptr);
+  if (topic < 0) return dds_failure("topic " + type_->name, topic);
+  topic_ = topic;
+  return {};
+}
+
+Status Channel::subscribe(Signal& arrival) {
+  if (subscribed()) return {};
+  if (Status opened = open_topic(); !opened) return opened;
+  const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(&arrival),
+                                                                                 &dds_delete_listener);
+  dds_lset_data_available(listener.get(), notify);
+  const dds_entity_t reader = dds_create_reader(
+      participant_, topic_, reader_qos(qos_, slow_reader_, type_->reader_limit).get(), listener.get());
+  if (reader < 0) return dds_failure("reader of topic " + type_->name, reader);
+  reader_ = reader;
+  return {};
+}
+
+void Channel::take(std::deque<BusItem>& items) const {
+  // The batch must be the same in every call: Cyclone 0.10 overruns the array of loans when it becomes smaller.
+  std::array<void*, 64> samples{};
+  std::array<dds_sample_info_t, 64> infos;
+  assert(type_->batch <= samples.size());
+  const dds_return_t count =
+      dds_take(reader_, samples.data(), infos.data(), type_->batch, static_cast<std::uint32_t>(type_->batch));
+  assert(count >= 0);
+  for (dds_return_t k = 0; k < count; ++k)
+    if (infos[static_cast<std::size_t>(k)].valid_data)
+      items.push_back(type_->decode(samples[static_cast<std::size_t>(k)]));
+  if (count > 0) dds_return_loan(reader_, samples.data(), count);
+}
+
+Status Channel::open_writer() {
+  if (writer_ > 0) return {};
+  if (Status opened = open_topic(); !opened) return opened;
+  const dds_entity_t writer = dds_create_writer(participant_, topic_, writer_qos(qos_).get(), nullptr);
+  if (writer < 0) return dds_failure("writer of topic " + type_->name, writer);
+  writer_ = writer;
+  return {};
+}
+
+Status Channel::write(const DdsSample& sample) {
+  if (Status opened = open_writer(); !opened) return opened;
+  const dds_return_t code = dds_write(writer_, sample.get());
+  if (code == DDS_RETCODE_TIMEOUT)
+    return dds_failure("topic " + type_->name, code, "a subscriber does not take its messages; publish again later");
+  if (code < 0) return dds_failure("topic " + type_->name, code);
+  return {};
+}
+
+Result<std::size_t> Channel::subscribers() {
+  if (Status opened = open_writer(); !opened) return fail(opened.error());
+  const dds_return_t count = dds_get_matched_subscriptions(writer_, nullptr, 0);
+  if (count < 0) return dds_failure("subscribers of topic " + type_->name, count);
+  return static_cast<std::size_t>(count);
+}
+
+}  // namespace sealwatch::transport

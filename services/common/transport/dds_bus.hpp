@@ -1,0 +1,38 @@
+// Bus over Cyclone DDS: one participant, one DDS topic for each sealwatch topic ("sealwatch/" + name), writers made at
+// the first publish. QoS: docs/topics.md. No DDS type shows here; only services/common/transport includes DDS headers.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+
+#include "sealwatch/config/configuration.hpp"
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/port/bus.hpp"
+
+namespace sealwatch {
+
+/// What happens when a reader of this bus is full because its owner does not call receive.
+enum class SlowReader {
+  stops_publishers,  ///< nothing is lost: their publish waits, then fails (services)
+  loses_oldest,      ///< a watcher or a client must not be able to stop the services
+};
+
+class DdsBus : public Bus {
+ public:
+  /// Makes the writer of `topic` and waits until at least `count` readers of it are matched. For whoever sends from the
+  /// start on, like a replay: what is published before a reader is known reaches it only as the last of each asset.
+  [[nodiscard]] virtual Status wait_for_subscribers(Topic topic, std::size_t count,
+                                                    std::chrono::milliseconds timeout) = 0;
+};
+
+/// Joins configuration.domain. Cyclone's own settings come from the environment's CYCLONEDDS_URI where it is set, else
+/// from configuration.cyclonedds_uri, else they keep to this machine (loopback, multicast, lease of 2 s); all buses of
+/// a process that share a domain share the first one's settings.
+[[nodiscard]] Result<std::unique_ptr<DdsBus>> open_dds_bus(const Configuration& configuration,
+                                                           SlowReader slow_reader = SlowReader::stops_publishers);
+
+/// The same as the plain port.
+[[nodiscard]] Result<std::unique_ptr<Bus>> make_dds_bus(const Configuration& configuration);
+
+}  // namespace sealwatch

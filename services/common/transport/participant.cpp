@@ -1,0 +1,89 @@
+#include "services/common/transport/participant.hpp"
+
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <utility>
+
+namespace sealwatch::transport {
+namespace {
+
+/// Keeps to this machine, so that nothing listens on a network that nobody asked for. A process that died is noticed
+/// after 2 s (Cyclone's default: 10 s), because until then its readers hold up their publishers.
+constexpr const char* kLocalSettings =
+    "<CycloneDDS><Domain Id=\"any\">"
+    "<General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>"
+    "<Discovery><LeaseDuration>2s</LeaseDuration></Discovery>"
+    "</Domain></CycloneDDS>";
+
+/// The domains that this process made with settings of its own, by id; Cyclone allows each only once in a process.
+class Domains {
+ public:
+  Status enter(dds_domainid_t id, const std::string& settings) {
+    const std::lock_guard lock(mutex_);
+    Use& use = uses_[id];
+    if (use.count == 0 && !environment_decides()) {
+      use.domain = dds_create_domain(id, settings.empty() ? kLocalSettings : settings.c_str());
+      if (use.domain < 0 && use.domain != DDS_RETCODE_PRECONDITION_NOT_MET)  // that one: the program around us made it
+        return dds_failure("domain " + std::to_string(id), std::exchange(use.domain, 0),
+                           "check cyclonedds_uri; an unknown XML element is fatal, standard error has the details");
+    }
+    ++use.count;
+    return {};
+  }
+  void leave(dds_domainid_t id) {
+    const std::lock_guard lock(mutex_);
+    Use& use = uses_[id];
+    if (--use.count == 0 && use.domain > 0) dds_delete(std::exchange(use.domain, 0));
+  }
+
+ private:
+  struct Use {
+    int count = 0;
+    dds_entity_t domain = 0;
+  };
+  static bool environment_decides() {
+    const char* const uri = std::getenv("CYCLONEDDS_URI");
+    return uri != nullptr && *uri != '\0';
+  }
+  std::mutex mutex_;
+  std::map<dds_domainid_t, Use> uses_;
+};
+
+Domains& domains() {
+  static Domains instance;
+  return instance;
+}
+
+}  // namespace
+
+tl::unexpected<Error> dds_failure(std::string what, dds_return_t code, std::string advice) {
+  return fail(Error{.file = {},
+                    .place = std::move(what),
+                    .value = {},
+                    .rule = std::string("DDS says: ") + dds_strretcode(code),
+                    .advice = std::move(advice)});
+}
+
+Result<Participant> Participant::join(const Configuration& configuration) {
+  const auto id = static_cast<dds_domainid_t>(configuration.domain);
+  if (Status entered = domains().enter(id, configuration.cyclonedds_uri); !entered) return fail(entered.error());
+  const dds_entity_t handle = dds_create_participant(id, nullptr, nullptr);
+  if (handle < 0) {
+    domains().leave(id);
+    return dds_failure("participant in domain " + std::to_string(configuration.domain), handle,
+                       "check CYCLONEDDS_URI and that its network interface exists");
+  }
+  return Participant(handle, id);
+}
+
+Participant::Participant(Participant&& other) noexcept
+    : handle_(std::exchange(other.handle_, 0)), domain_(other.domain_) {}
+
+Participant::~Participant() {
+  if (handle_ <= 0) return;
+  dds_delete(handle_);
+  domains().leave(domain_);
+}
+
+}  // namespace sealwatch::transport

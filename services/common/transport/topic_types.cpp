@@ -1,0 +1,103 @@
+#include "services/common/transport/topic_types.hpp"
+
+#include <array>
+
+#include "idl/advisory_generation.h"
+#include "idl/data_acquisition.h"
+#include "idl/data_manipulation.h"
+#include "idl/health_assessment.h"
+#include "idl/prognostic_assessment.h"
+#include "idl/service.h"
+#include "idl/state_detection.h"
+#include "services/common/transport/codec.hpp"
+
+namespace sealwatch::transport {
+namespace {
+
+/// The C struct and the descriptor that idlc generated for a message type.
+template <class T>
+struct Generated;
+
+#define SEALWATCH_GENERATED(Type)                                                          \
+  template <>                                                                              \
+  struct Generated<Type> {                                                                 \
+    using Sample = sealwatch_##Type;                                                       \
+    static constexpr const dds_topic_descriptor_t* kDescriptor = &sealwatch_##Type##_desc; \
+  };
+SEALWATCH_GENERATED(RawSamples)
+SEALWATCH_GENERATED(SampleBlock)
+SEALWATCH_GENERATED(TestWindow)
+SEALWATCH_GENERATED(TestFeatures)
+SEALWATCH_GENERATED(StateReport)
+SEALWATCH_GENERATED(HealthReport)
+SEALWATCH_GENERATED(LeakageEstimate)
+SEALWATCH_GENERATED(RemainingLife)
+SEALWATCH_GENERATED(PstRequest)
+SEALWATCH_GENERATED(Advisory)
+SEALWATCH_GENERATED(Acknowledgement)
+SEALWATCH_GENERATED(MaintenanceEvent)
+SEALWATCH_GENERATED(ServiceStatus)
+SEALWATCH_GENERATED(ResendRequest)
+#undef SEALWATCH_GENERATED
+
+template <class T>
+BusItem decode(const void* sample) {
+  T message;
+  CopyFromDds().copy(*static_cast<const typename Generated<T>::Sample*>(sample), message);
+  if constexpr (std::is_constructible_v<Message, T&&>)
+    return Message(std::move(message));
+  else
+    return message;
+}
+
+constexpr std::int32_t kReaderLimit = 8192;
+constexpr std::size_t kBatch = 64;
+constexpr std::int32_t kBulkyReaderLimit = 128;
+constexpr std::size_t kBulkyBatch = 4;
+
+template <class T>
+TopicType describe(std::string_view name) {
+  constexpr bool bulky = requires(T message) { message.samples; };
+  return {.name = std::string(name),
+          .descriptor = Generated<T>::kDescriptor,
+          .decode = decode<T>,
+          .qos = {},
+          .reader_limit = bulky ? kBulkyReaderLimit : kReaderLimit,
+          .batch = bulky ? kBulkyBatch : kBatch};
+}
+
+template <std::size_t... Index>
+std::vector<TopicType> describe_all(std::index_sequence<Index...> /*topics*/) {
+  std::vector<TopicType> types = {
+      describe<std::variant_alternative_t<Index, Message>>(EnumNames<Topic>::kNames[Index])...};
+  types.push_back(describe<ServiceStatus>("service_status"));
+  types.back().qos.keep_all = false;  // a state: only the last heartbeat counts
+  types.push_back(describe<ResendRequest>("resend_request"));
+  types.back().qos.transient_local = false;  // an old request asks for what has long been sent
+  return types;
+}
+
+static_assert(std::variant_size_v<Message> == EnumNames<Topic>::kNames.size());
+
+}  // namespace
+
+const std::vector<TopicType>& topic_types() {
+  static const std::vector<TopicType> types = describe_all(std::make_index_sequence<std::variant_size_v<Message>>{});
+  return types;
+}
+
+template <class T>
+void DdsSample::lend(const T& message) {
+  using Sample = typename Generated<T>::Sample;
+  auto* const sample = new (memory_.allocate(sizeof(Sample), alignof(Sample))) Sample{};
+  LendToDds(memory_).lend(message, *sample);
+  sample_ = sample;
+}
+
+DdsSample::DdsSample(const Message& message) {
+  std::visit([this](const auto& alternative) { lend(alternative); }, message);
+}
+DdsSample::DdsSample(const ServiceStatus& status) { lend(status); }
+DdsSample::DdsSample(const ResendRequest& request) { lend(request); }
+
+}  // namespace sealwatch::transport

@@ -1,0 +1,205 @@
+#include "services/common/store/journal.hpp"
+
+#include "services/common/message/json.hpp"
+#include "services/common/store/database.hpp"
+
+namespace sealwatch {
+namespace {
+
+using soci::into;
+using soci::use;
+
+/// Messages read at once: bounds memory, as one window of a test has some hundred kilobytes.
+constexpr int kPage = 16;
+
+struct Row {
+  long long order = 0;
+  std::string topic;
+  std::string payload;
+  long long sequence = 0;
+  long long published = 0;
+};
+
+std::string topic_name(Topic topic) { return std::string(name_of(topic)); }
+
+/// The message of a row; throws Error where it cannot be read.
+Message message_of(const Row& row, const std::string& journal) {
+  const auto damaged = [&](const std::string& what) {
+    return Error{.file = journal,
+                 .place = "message " + std::to_string(row.order),
+                 .value = row.topic,
+                 .rule = what,
+                 .advice = "restore a backup of the journal"};
+  };
+  const auto topic = value_of<Topic>(row.topic);
+  if (!topic) throw damaged("is not a topic that this program knows");
+  Result<Message> message = message_from_json(*topic, row.payload);
+  if (!message) throw damaged(message.error().describe());
+  return std::move(*message);
+}
+
+Message stamped(Message message, const std::string& writer_id, std::uint64_t sequence, long long published) {
+  Header& header = header_of(message);
+  header.writer_id = writer_id;
+  header.stream_sequence = sequence;
+  header.publishing_time_ns = published;
+  return message;
+}
+
+/// Rows of "SELECT order, topic, payload, sequence, published ...", with :after bound where the query pages.
+std::vector<Row> rows_of(soci::session& sql, const std::string& query, long long after) {
+  std::vector<Row> rows;
+  Row row;
+  soci::statement statement = (sql.prepare << query, into(row.order), into(row.topic), into(row.payload),
+                               into(row.sequence), into(row.published), use(after, "after"));
+  statement.execute();
+  while (statement.fetch()) rows.push_back(row);
+  return rows;
+}
+
+}  // namespace
+
+Journal::Journal(std::unique_ptr<Database> database) : database_(std::move(database)) {}
+Journal::~Journal() = default;
+Journal::Journal(Journal&& other) noexcept = default;
+Journal& Journal::operator=(Journal&& other) noexcept = default;
+
+const std::string& Journal::writer_id() const { return database_->writer_id; }
+const std::map<Topic, std::uint64_t>& Journal::written() const { return database_->written; }
+std::uint64_t Journal::open_inputs() const { return database_->open_inputs; }
+
+Status Journal::for_each_page(const std::string& query, const Visitor& visit) {
+  long long after = 0;
+  for (;;) {
+    auto page = database_->guard("reading messages", [&] {
+      std::vector<Message> messages;
+      for (const Row& row : rows_of(database_->sql, query + std::to_string(kPage), after)) {
+        messages.push_back(message_of(row, database_->name));
+        after = row.order;
+      }
+      return messages;
+    });
+    if (!page) return fail(page.error());
+    if (page->empty()) return {};
+    for (const Message& message : *page)
+      if (const Status visited = visit(message); !visited) return visited;
+  }
+}
+
+Status Journal::for_each_output(const Visitor& visit) {
+  return for_each_page(
+      "SELECT ordinal, topic, payload, sequence, published FROM outputs WHERE ordinal > :after ORDER BY ordinal LIMIT ",
+      visit);
+}
+
+Status Journal::for_each_open_input(const Visitor& visit) {
+  return for_each_page(
+      "SELECT receipt, topic, payload, sequence, received FROM inputs WHERE consumed = 0 AND receipt > :after"
+      " ORDER BY receipt LIMIT ",
+      visit);
+}
+
+Result<std::vector<Message>> Journal::latest_outputs() {
+  return database_->guard("reading the last messages", [&] {
+    std::vector<Message> messages;
+    const std::string query =
+        "SELECT o.ordinal, o.topic, o.payload, o.sequence, o.published FROM outputs o JOIN"
+        " (SELECT topic, asset_id, max(sequence) AS last FROM outputs GROUP BY topic, asset_id) l"
+        " ON o.topic = l.topic AND o.sequence = l.last WHERE o.ordinal > :after ORDER BY o.ordinal";
+    for (const Row& row : rows_of(database_->sql, query, 0))
+      messages.push_back(stamped(message_of(row, database_->name), writer_id(),
+                                 static_cast<std::uint64_t>(row.sequence), row.published));
+    return messages;
+  });
+}
+
+Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, std::uint64_t last, std::size_t most) {
+  return database_->guard("reading messages to send again", [&] {
+    const std::string query =
+        "SELECT ordinal, topic, payload, sequence, published FROM outputs WHERE sequence > :after AND sequence <= " +
+        std::to_string(last) + " AND topic = '" + topic_name(topic) + "' ORDER BY sequence LIMIT " +
+        std::to_string(most);
+    std::vector<Message> messages;
+    for (const Row& row : rows_of(database_->sql, query, static_cast<long long>(first) - 1))
+      messages.push_back(stamped(message_of(row, database_->name), writer_id(),
+                                 static_cast<std::uint64_t>(row.sequence), row.published));
+    return messages;
+  });
+}
+
+Result<bool> Journal::has_input(const std::string& message_id) {
+  return database_->guard("looking for an input", [&] { return database_->statements->has_input(message_id); });
+}
+
+Result<std::string> Journal::last_unnumbered_input(Topic topic, const std::string& asset_id) {
+  return database_->guard("looking for the last input", [&] {
+    std::string message_id;
+    const std::string name = topic_name(topic);
+    database_->sql << "SELECT message_id FROM inputs WHERE topic = :topic AND asset_id = :asset AND sequence = 0"
+                      " ORDER BY receipt DESC LIMIT 1",
+        use(name, "topic"), use(asset_id, "asset"), into(message_id);
+    return message_id;
+  });
+}
+
+Result<std::vector<StreamPosition>> Journal::positions() {
+  return database_->guard("reading positions", [&] {
+    std::vector<StreamPosition> positions;
+    std::string topic;
+    std::string writer;
+    long long sequence = 0;
+    soci::statement statement =
+        (database_->sql.prepare << "SELECT topic, writer_id, sequence FROM positions ORDER BY topic, writer_id",
+         into(topic), into(writer), into(sequence));
+    statement.execute();
+    while (statement.fetch()) positions.push_back({topic, writer, static_cast<std::uint64_t>(sequence)});
+    return positions;
+  });
+}
+
+Status Journal::begin() {
+  return database_->guard("beginning a batch", [&] { database_->sql.begin(); });
+}
+
+Status Journal::commit() {
+  return database_->guard("committing a batch", [&] { database_->sql.commit(); });
+}
+
+void Journal::rollback() {
+  // A failure here changes nothing: the transaction that is not committed does not count.
+  (void)database_->guard("giving up a batch", [&] {
+    database_->sql.rollback();
+    database_->load_counters();
+  });
+}
+
+Status Journal::add_input(const Message& message, UtcTime received, bool consumed) {
+  return database_->guard("keeping an input", [&] {
+    database_->statements->add_input(++database_->last_receipt, message, received, consumed);
+    if (!consumed) ++database_->open_inputs;
+  });
+}
+
+Status Journal::consume(const std::string& message_id) {
+  return database_->guard("marking an input as consumed", [&] {
+    if (database_->statements->consume(message_id)) --database_->open_inputs;
+  });
+}
+
+Result<std::optional<Message>> Journal::add_output(const Message& message, UtcTime publishing_time) {
+  return database_->guard("keeping an output", [&]() -> std::optional<Message> {
+    const std::uint64_t sequence = database_->written[topic_of(message)] + 1;
+    const Message bare = stamped(message, {}, 0, 0);
+    if (!database_->statements->add_output(database_->last_ordinal + 1, bare, sequence, publishing_time))
+      return std::nullopt;
+    ++database_->last_ordinal;
+    database_->written[topic_of(message)] = sequence;
+    return stamped(bare, writer_id(), sequence, publishing_time.nanoseconds);
+  });
+}
+
+Status Journal::set_position(const StreamPosition& position) {
+  return database_->guard("keeping a position", [&] { database_->statements->set_position(position); });
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,79 @@
+// The journal of one service: what it received and what it concluded, kept before anything is published.
+//
+// Tables (docs/operations.md): inputs and outputs with their messages as exact JSON, positions of the streams that were
+// read, meta with the schema's version, the service and its writer id. All changes happen between begin and commit, so
+// that a process killed at any instant leaves whole batches only.
+//
+// The connection string is SOCI's: "sqlite3://FILE" (write-ahead log, one file for each service) or
+// "postgresql://dbname=... options='-c search_path=SERVICE'" (one schema for each service).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time.hpp"
+#include "sealwatch/message/topics.hpp"
+
+namespace sealwatch {
+
+class Journal {
+ public:
+  /// Opens or creates the journal of `service`. The writer id is made at creation and stays with the journal: a deleted
+  /// journal comes back as a new writer, whose streams start at 1 again.
+  [[nodiscard]] static Result<Journal> open(const std::string& connection, const std::string& service);
+  ~Journal();
+  Journal(Journal&& other) noexcept;
+  Journal& operator=(Journal&& other) noexcept;
+
+  [[nodiscard]] const std::string& writer_id() const;
+
+  // Reading. Outputs come back without stamps (writer id, sequence, publishing time) where the layer takes them back,
+  // with stamps where they go out.
+
+  using Visitor = std::function<Status(const Message&)>;
+  /// Every output in the order of conclusion, as the layer made it.
+  [[nodiscard]] Status for_each_output(const Visitor& visit);
+  /// Every input that was not consumed, in the order of receipt. `visit` may write to the journal.
+  [[nodiscard]] Status for_each_open_input(const Visitor& visit);
+  /// The last output of every topic and asset in the order of conclusion, stamped.
+  [[nodiscard]] Result<std::vector<Message>> latest_outputs();
+  /// Outputs of one topic's stream, first <= sequence <= last, at most `most`, stamped.
+  [[nodiscard]] Result<std::vector<Message>> outputs(Topic topic, std::uint64_t first, std::uint64_t last,
+                                                     std::size_t most);
+  [[nodiscard]] Result<bool> has_input(const std::string& message_id);
+  /// Message id of the last input of this asset that belonged to no stream; "" if there is none.
+  [[nodiscard]] Result<std::string> last_unnumbered_input(Topic topic, const std::string& asset_id);
+  /// How far each own stream goes, by topic.
+  [[nodiscard]] const std::map<Topic, std::uint64_t>& written() const;
+  /// How far other writers' streams were read.
+  [[nodiscard]] Result<std::vector<StreamPosition>> positions();
+  /// Inputs received and not consumed.
+  [[nodiscard]] std::uint64_t open_inputs() const;
+
+  // Writing, between begin and commit. After an error call rollback.
+
+  [[nodiscard]] Status begin();
+  [[nodiscard]] Status commit();
+  void rollback();
+  /// Keeps an input; its message only where it was not consumed already.
+  [[nodiscard]] Status add_input(const Message& message, UtcTime received, bool consumed);
+  /// Marks an input as not needed again and drops its message; unknown ids are passed over.
+  [[nodiscard]] Status consume(const std::string& message_id);
+  /// Numbers and keeps an output and returns it stamped, or nothing when this message id was concluded before.
+  [[nodiscard]] Result<std::optional<Message>> add_output(const Message& message, UtcTime publishing_time);
+  [[nodiscard]] Status set_position(const StreamPosition& position);
+
+ private:
+  struct Database;
+  explicit Journal(std::unique_ptr<Database> database);
+  [[nodiscard]] Status for_each_page(const std::string& query, const Visitor& visit);
+  std::unique_ptr<Database> database_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,85 @@
+#include "services/common/store/statements.hpp"
+
+#include "services/common/message/json.hpp"
+
+namespace sealwatch {
+
+using soci::into;
+using soci::use;
+
+JournalStatements::JournalStatements(soci::session& sql)
+    : find_input_((sql.prepare << "SELECT count(*) FROM inputs WHERE message_id = :message", into(count_),
+                   use(message_id_, "message"))),
+      insert_input_((sql.prepare << "INSERT INTO inputs(receipt, topic, writer_id, sequence, message_id, asset_id,"
+                                    " pst_id, received, consumed, payload) VALUES(:receipt, :topic, :writer,"
+                                    " :sequence, :message, :asset, :pst, :received, :consumed, :payload)",
+                     use(order_, "receipt"), use(topic_, "topic"), use(writer_id_, "writer"),
+                     use(sequence_, "sequence"), use(message_id_, "message"), use(asset_id_, "asset"),
+                     use(pst_id_, "pst"), use(time_, "received"), use(consumed_, "consumed"),
+                     use(payload_, payload_there_, "payload"))),
+      consume_input_((sql.prepare << "UPDATE inputs SET consumed = 1, payload = NULL"
+                                     " WHERE message_id = :message AND consumed = 0",
+                      use(message_id_, "message"))),
+      insert_output_((sql.prepare << "INSERT INTO outputs(ordinal, topic, sequence, message_id, asset_id, pst_id,"
+                                     " published, payload) VALUES(:ordinal, :topic, :sequence, :message, :asset,"
+                                     " :pst, :published, :payload) ON CONFLICT(message_id) DO NOTHING",
+                      use(order_, "ordinal"), use(topic_, "topic"), use(sequence_, "sequence"),
+                      use(message_id_, "message"), use(asset_id_, "asset"), use(pst_id_, "pst"),
+                      use(time_, "published"), use(payload_, payload_there_, "payload"))),
+      upsert_position_((sql.prepare << "INSERT INTO positions(topic, writer_id, sequence) VALUES(:topic, :writer,"
+                                       " :sequence) ON CONFLICT(topic, writer_id)"
+                                       " DO UPDATE SET sequence = excluded.sequence",
+                        use(topic_, "topic"), use(writer_id_, "writer"), use(sequence_, "sequence"))) {}
+
+bool JournalStatements::has_input(const std::string& message_id) {
+  message_id_ = message_id;
+  find_input_.execute(true);
+  return count_ != 0;
+}
+
+void JournalStatements::bind_message(const Message& message) {
+  const Header& header = header_of(message);
+  topic_ = name_of(topic_of(message));
+  message_id_ = header.message_id;
+  asset_id_ = asset_of(message);
+  pst_id_ = header.pst_id;
+}
+
+void JournalStatements::add_input(long long receipt, const Message& message, UtcTime received, bool consumed) {
+  bind_message(message);
+  order_ = receipt;
+  writer_id_ = header_of(message).writer_id;
+  sequence_ = static_cast<long long>(header_of(message).stream_sequence);
+  time_ = received.nanoseconds;
+  consumed_ = consumed ? 1 : 0;
+  payload_ = consumed ? std::string() : to_json(message, JsonForm::exact);
+  payload_there_ = consumed ? soci::i_null : soci::i_ok;
+  insert_input_.execute(true);
+}
+
+bool JournalStatements::consume(const std::string& message_id) {
+  message_id_ = message_id;
+  consume_input_.execute(true);
+  return consume_input_.get_affected_rows() > 0;
+}
+
+bool JournalStatements::add_output(long long ordinal, const Message& message, std::uint64_t sequence,
+                                   UtcTime publishing_time) {
+  bind_message(message);
+  order_ = ordinal;
+  sequence_ = static_cast<long long>(sequence);
+  time_ = publishing_time.nanoseconds;
+  payload_ = to_json(message, JsonForm::exact);
+  payload_there_ = soci::i_ok;
+  insert_output_.execute(true);
+  return insert_output_.get_affected_rows() > 0;
+}
+
+void JournalStatements::set_position(const StreamPosition& position) {
+  topic_ = position.topic;
+  writer_id_ = position.writer_id;
+  sequence_ = static_cast<long long>(position.sequence);
+  upsert_position_.execute(true);
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,248 @@
+// The journal's contract, on SQLite and, where SEALWATCH_TEST_POSTGRESQL holds a connection string, on PostgreSQL.
+#include "services/common/store/journal.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/message/fill.hpp"
+#include "tests/unit/store/place.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Message message(const std::string& id, const std::string& asset = "XT03-MV2", Topic topic = Topic::state_report) {
+  if (topic == Topic::state_report) {
+    StateReport report = testing::filled<StateReport>(2);
+    report.asset_id = asset;
+    report.header.message_id = id;
+    return report;
+  }
+  TestFeatures features = testing::filled<TestFeatures>(2);
+  features.asset_id = asset;
+  features.header.message_id = id;
+  return features;
+}
+
+Message without_stamps(Message m) {
+  header_of(m).writer_id.clear();
+  header_of(m).stream_sequence = 0;
+  header_of(m).publishing_time_ns = 0;
+  return m;
+}
+
+class JournalTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (!place_.usable()) GTEST_SKIP() << place_.why_not();
+  }
+  Journal open(const std::string& service = "state_detection") {
+    Result<Journal> journal = Journal::open(place_.connection(), service);
+    EXPECT_TRUE(journal.has_value()) << journal.error().describe();
+    return std::move(*journal);
+  }
+  /// Adds outputs of these ids in one batch and returns them as they would be published.
+  std::vector<Message> conclude(Journal& journal, const std::vector<Message>& messages) {
+    std::vector<Message> published;
+    EXPECT_TRUE(journal.begin());
+    for (const Message& m : messages) {
+      const auto added = journal.add_output(m, UtcTime{77});
+      EXPECT_TRUE(added.has_value()) << added.error().describe();
+      if (added && *added) published.push_back(**added);
+    }
+    EXPECT_TRUE(journal.commit());
+    return published;
+  }
+  void receive(Journal& journal, const Message& m, bool consumed) {
+    EXPECT_TRUE(journal.begin());
+    const Status added = journal.add_input(m, UtcTime{5}, consumed);
+    EXPECT_TRUE(added) << added.error().describe();
+    EXPECT_TRUE(journal.commit());
+  }
+  static std::vector<std::string> ids(const std::vector<Message>& messages) {
+    std::vector<std::string> found;
+    for (const Message& m : messages) found.push_back(header_of(m).message_id);
+    return found;
+  }
+  static std::vector<Message> all_outputs(Journal& journal) {
+    std::vector<Message> found;
+    EXPECT_TRUE(journal.for_each_output([&](const Message& m) { return found.push_back(m), Status(); }));
+    return found;
+  }
+  static std::vector<Message> open_inputs(Journal& journal) {
+    std::vector<Message> found;
+    EXPECT_TRUE(journal.for_each_open_input([&](const Message& m) { return found.push_back(m), Status(); }));
+    return found;
+  }
+
+  Place place_{GetParam()};
+};
+
+INSTANTIATE_TEST_SUITE_P(Backends, JournalTest, ::testing::Values("sqlite3", "postgresql"),
+                         [](const auto& backend) { return backend.param; });
+
+TEST_P(JournalTest, OutputsComeBackFieldByFieldInOrderAndStampedWhereTheyGoOut) {
+  const Message first = message("a");
+  const Message second = message("b", "XT04", Topic::test_features);
+  const Message third = message("c");
+  {
+    Journal journal = open();
+    const std::vector<Message> published = conclude(journal, {first, second, third});
+    ASSERT_EQ(published.size(), 3U);
+    EXPECT_EQ(header_of(published[0]).stream_sequence, 1U);
+    EXPECT_EQ(header_of(published[1]).stream_sequence, 1U) << "each topic is a stream of its own";
+    EXPECT_EQ(header_of(published[2]).stream_sequence, 2U);
+    EXPECT_EQ(header_of(published[2]).writer_id, journal.writer_id());
+    EXPECT_EQ(header_of(published[2]).publishing_time_ns, 77);
+  }
+  Journal journal = open();
+  EXPECT_THAT(all_outputs(journal), ElementsAre(without_stamps(first), without_stamps(second), without_stamps(third)));
+  const auto again = journal.outputs(Topic::state_report, 2, 9, 64);
+  ASSERT_TRUE(again.has_value()) << again.error().describe();
+  ASSERT_EQ(again->size(), 1U);
+  EXPECT_EQ(header_of(again->front()).stream_sequence, 2U);
+  EXPECT_EQ(header_of(again->front()).writer_id, journal.writer_id());
+  EXPECT_EQ(header_of(again->front()).publishing_time_ns, 77);
+}
+
+TEST_P(JournalTest, TheSameConclusionTwiceIsKeptOnce) {
+  Journal journal = open();
+  EXPECT_EQ(conclude(journal, {message("a"), message("a")}).size(), 1U);
+  EXPECT_THAT(conclude(journal, {message("a")}), IsEmpty());
+  EXPECT_EQ(journal.written().at(Topic::state_report), 1U);
+  EXPECT_EQ(header_of(conclude(journal, {message("b")}).at(0)).stream_sequence, 2U) << "no gap is left";
+}
+
+TEST_P(JournalTest, OpenInputsComeBackInOrderOfReceiptUntilConsumed) {
+  {
+    Journal journal = open();
+    receive(journal, message("z"), false);
+    receive(journal, message("a"), true);
+    receive(journal, message("m"), false);
+    EXPECT_EQ(journal.open_inputs(), 2U);
+  }
+  Journal journal = open();
+  EXPECT_EQ(journal.open_inputs(), 2U);
+  EXPECT_THAT(open_inputs(journal), ElementsAre(message("z"), message("m")));
+  ASSERT_TRUE(journal.begin());
+  ASSERT_TRUE(journal.consume("z"));
+  ASSERT_TRUE(journal.consume("z"));
+  ASSERT_TRUE(journal.consume("never received"));
+  ASSERT_TRUE(journal.commit());
+  EXPECT_EQ(journal.open_inputs(), 1U);
+  EXPECT_THAT(ids(open_inputs(journal)), ElementsAre("m"));
+  EXPECT_TRUE(journal.has_input("z").value()) << "its id is remembered";
+  EXPECT_TRUE(journal.has_input("a").value());
+  EXPECT_FALSE(journal.has_input("b").value());
+}
+
+TEST_P(JournalTest, MoreThanOnePageOfMessagesIsReadCompletely) {
+  Journal journal = open();
+  std::vector<Message> messages;
+  std::vector<std::string> expected;
+  for (int k = 0; k < 50; ++k) {
+    messages.push_back(message("id " + std::to_string(k)));
+    expected.push_back("id " + std::to_string(k));
+    receive(journal, messages.back(), false);
+  }
+  conclude(journal, messages);
+  EXPECT_EQ(ids(all_outputs(journal)), expected);
+  EXPECT_EQ(ids(open_inputs(journal)), expected);
+  const auto part = journal.outputs(Topic::state_report, 11, 40, 7);
+  ASSERT_TRUE(part.has_value());
+  EXPECT_EQ(ids(*part), std::vector<std::string>(expected.begin() + 10, expected.begin() + 17));
+}
+
+TEST_P(JournalTest, TheLastOutputOfEveryAssetAndTopicIsFound) {
+  Journal journal = open();
+  conclude(journal, {message("a1", "A"), message("b1", "B"), message("f1", "A", Topic::test_features),
+                     message("a2", "A"), message("a3", "A")});
+  const auto latest = journal.latest_outputs();
+  ASSERT_TRUE(latest.has_value()) << latest.error().describe();
+  EXPECT_THAT(ids(*latest), ElementsAre("b1", "f1", "a3"));
+}
+
+TEST_P(JournalTest, ABatchGivenUpLeavesNothingBehind) {
+  Journal journal = open();
+  conclude(journal, {message("kept")});
+  ASSERT_TRUE(journal.begin());
+  ASSERT_TRUE(journal.add_input(message("i"), UtcTime{}, false));
+  ASSERT_TRUE(journal.add_output(message("o"), UtcTime{}));
+  ASSERT_TRUE(journal.set_position({"raw_samples", "w", 9}));
+  journal.rollback();
+  EXPECT_FALSE(journal.has_input("i").value());
+  EXPECT_EQ(journal.open_inputs(), 0U);
+  EXPECT_THAT(journal.positions().value(), IsEmpty());
+  EXPECT_EQ(journal.written().at(Topic::state_report), 1U);
+  EXPECT_EQ(header_of(conclude(journal, {message("o")}).at(0)).stream_sequence, 2U);
+}
+
+TEST_P(JournalTest, AJournalThatEndsInsideABatchHasNothingOfIt) {
+  {
+    Journal journal = open();
+    ASSERT_TRUE(journal.begin());
+    ASSERT_TRUE(journal.add_output(message("o"), UtcTime{}));
+  }
+  Journal journal = open();
+  EXPECT_THAT(all_outputs(journal), IsEmpty());
+}
+
+TEST_P(JournalTest, PositionsAndWriterIdSurvive) {
+  std::string writer_id;
+  {
+    Journal journal = open();
+    writer_id = journal.writer_id();
+    EXPECT_THAT(writer_id, ::testing::MatchesRegex("state_detection-[0-9a-f]{16}"));
+    ASSERT_TRUE(journal.begin());
+    ASSERT_TRUE(journal.set_position({"test_features", "w1", 3}));
+    ASSERT_TRUE(journal.set_position({"test_features", "w1", 4}));
+    ASSERT_TRUE(journal.set_position({"raw_samples", "w2", 1}));
+    ASSERT_TRUE(journal.commit());
+  }
+  Journal journal = open();
+  EXPECT_EQ(journal.writer_id(), writer_id);
+  const std::vector<StreamPosition> expected = {{"raw_samples", "w2", 1}, {"test_features", "w1", 4}};
+  EXPECT_EQ(journal.positions().value(), expected);
+}
+
+TEST_P(JournalTest, TheLastInputOfNoStreamIsKnownByAsset) {
+  Journal journal = open();
+  Message foreign = message("foreign", "A");
+  header_of(foreign).stream_sequence = 0;
+  receive(journal, foreign, true);
+  receive(journal, message("numbered", "A"), true);
+  EXPECT_EQ(journal.last_unnumbered_input(Topic::state_report, "A").value(), "foreign");
+  EXPECT_EQ(journal.last_unnumbered_input(Topic::state_report, "B").value(), "");
+}
+
+TEST_P(JournalTest, AJournalOfAnotherServiceIsRefused) {
+  open("state_detection");
+  const Result<Journal> journal = Journal::open(place_.connection(), "health_assessment");
+  ASSERT_FALSE(journal.has_value());
+  EXPECT_THAT(journal.error().describe(), HasSubstr("'state_detection': must be 'health_assessment'"));
+}
+
+TEST_P(JournalTest, ANewerSchemaIsRefusedWithWhatToDo) {
+  open();
+  place_.execute("UPDATE meta SET value = '2' WHERE name = 'schema_version'");
+  const Result<Journal> journal = Journal::open(place_.connection(), "state_detection");
+  ASSERT_FALSE(journal.has_value());
+  EXPECT_THAT(journal.error().describe(), HasSubstr("'2': must be 1, the version that this program knows"));
+  EXPECT_THAT(journal.error().advice, HasSubstr("install the sealwatch that wrote this journal"));
+}
+
+TEST_P(JournalTest, ADamagedMessageIsAnErrorNotALoss) {
+  Journal journal = open();
+  conclude(journal, {message("a")});
+  place_.execute("UPDATE outputs SET payload = '{cut'");
+  const Status read = journal.for_each_output([](const Message&) { return Status(); });
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().describe(), HasSubstr("is not JSON"));
+  EXPECT_THAT(read.error().advice, HasSubstr("backup"));
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,0 +1,149 @@
+// What can be wrong with a journal's file, each with an error that says what to do.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "services/common/store/journal.hpp"
+#include "tests/unit/message/fill.hpp"
+#include "tests/unit/store/place.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::HasSubstr;
+
+Message big_message(int number) {
+  TestWindow window;
+  window.header.message_id = "test_window/" + std::to_string(number);
+  window.samples.time_s.assign(20'000, 1.0);
+  return window;
+}
+
+TEST(JournalFile, IsInWriteAheadMode) {
+  const Place place;
+  const auto journal = Journal::open(place.connection(), "state_detection");
+  ASSERT_TRUE(journal.has_value()) << journal.error().describe();
+  EXPECT_TRUE(std::filesystem::exists(place.directory() / "journal.db-wal"));
+}
+
+TEST(JournalFile, APathWithSpacesIsOne) {
+  const Place place;
+  const std::filesystem::path file = place.directory() / "two words.db";
+  const auto journal = Journal::open("sqlite3://" + file.string(), "state_detection");
+  ASSERT_TRUE(journal.has_value()) << journal.error().describe();
+  EXPECT_TRUE(std::filesystem::exists(file));
+}
+
+TEST(JournalFile, ThatIsNoDatabaseIsRefusedAndLeftAlone) {
+  const Place place;
+  const std::string text(5000, 'x');
+  std::ofstream(place.directory() / "journal.db") << text;
+  const auto journal = Journal::open(place.connection(), "state_detection");
+  ASSERT_FALSE(journal.has_value());
+  EXPECT_THAT(journal.error().describe(), HasSubstr("not a database"));
+  EXPECT_THAT(journal.error().advice, HasSubstr("restore a backup, or move the file aside"));
+  EXPECT_EQ(std::filesystem::file_size(place.directory() / "journal.db"), text.size());
+}
+
+TEST(JournalFile, InNoDirectoryNamesThePlace) {
+  const auto journal = Journal::open("sqlite3:///nowhere/at/all/journal.db", "state_detection");
+  ASSERT_FALSE(journal.has_value());
+  EXPECT_THAT(journal.error().describe(), HasSubstr("/nowhere/at/all/journal.db"));
+  EXPECT_THAT(journal.error().advice, HasSubstr("check that the directory exists"));
+}
+
+TEST(JournalFile, OfAnUnknownKindOfDatabaseIsRefused) {
+  const auto journal = Journal::open("oracel://x", "state_detection");
+  ASSERT_FALSE(journal.has_value());
+  EXPECT_THAT(journal.error().describe(), HasSubstr("oracel"));
+}
+
+TEST(JournalFile, ThatAnotherProcessWritesToIsALockedErrorNotALoss) {
+  const Place place;
+  auto first = Journal::open(place.connection(), "state_detection");
+  auto second =
+      Journal::open("sqlite3://timeout=1 dbname=" + (place.directory() / "journal.db").string(), "state_detection");
+  ASSERT_TRUE(first.has_value() && second.has_value());
+  ASSERT_TRUE(first->begin());
+  ASSERT_TRUE(first->add_output(big_message(1), UtcTime{}).has_value());
+  ASSERT_TRUE(second->begin());
+  const auto refused = second->add_output(big_message(2), UtcTime{});  // after the busy timeout
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_THAT(refused.error().describe(), HasSubstr("locked"));
+  EXPECT_THAT(refused.error().advice, HasSubstr("another process is writing"));
+  second->rollback();
+  EXPECT_TRUE(first->commit());
+}
+
+/// No file of this process may grow beyond this many bytes while it lives: a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST(JournalFile, OnAFullDiskKeepsWhatWasCommitted) {
+  const Place place;
+  auto journal = Journal::open(place.connection(), "state_detection");
+  ASSERT_TRUE(journal.has_value());
+  int committed = 0;
+  Status status;
+  {
+    const FullDisk disk(3'000'000);
+    while (status && committed < 100) {
+      status = journal->begin();
+      if (status) {
+        const auto added = journal->add_output(big_message(committed), UtcTime{});
+        if (!added) status = fail(added.error());
+      }
+      if (status) status = journal->commit();
+      if (status) ++committed;
+    }
+    ASSERT_FALSE(status) << "the disk never filled";
+    journal->rollback();
+  }
+  EXPECT_GT(committed, 1);
+  EXPECT_FALSE(status.error().describe().empty());
+  auto reopened = Journal::open(place.connection(), "state_detection");
+  ASSERT_TRUE(reopened.has_value()) << reopened.error().describe();
+  EXPECT_EQ(reopened->written().at(Topic::test_window), static_cast<std::uint64_t>(committed));
+}
+
+TEST(JournalFile, ThatMayNotBeWrittenIsRefused) {
+  const Place place;
+  ASSERT_TRUE(Journal::open(place.connection(), "state_detection").has_value());
+  if (::geteuid() == 0) {
+    // Root may write anywhere, so the file itself is made read-only for the library.
+    const auto journal =
+        Journal::open("sqlite3://readonly=true dbname=" + (place.directory() / "other.db").string(), "state_detection");
+    EXPECT_FALSE(journal.has_value());
+    return;
+  }
+  std::filesystem::permissions(place.directory() / "journal.db", std::filesystem::perms::owner_read);
+  auto journal = Journal::open(place.connection(), "state_detection");
+  const Status written = journal ? journal->begin() : fail(journal.error());
+  const auto added = written ? journal->add_output(big_message(1), UtcTime{}) : fail(written.error());
+  ASSERT_FALSE(added.has_value());
+  EXPECT_THAT(added.error().advice, HasSubstr("may write"));
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,0 +1,25 @@
+// The history that forecasters work on: one estimate of the seal condition per usable test.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sealwatch/core/time.hpp"
+
+namespace sealwatch::forecast {
+
+struct ConditionSample {
+  UtcTime time;
+  double condition = 0.0;      ///< theta: share of the nominal elastic modulus [1]
+  double condition_std = 0.0;  ///< PEM's standard error of theta [1]; 0 when not known
+  friend bool operator==(const ConditionSample&, const ConditionSample&) = default;
+};
+
+/// Marks months that cannot be believed by themselves. A sample is an outlier when it is further than five robust
+/// standard deviations from the line (Theil-Sen) through the up to twelve tests nearest to it in time, the scatter of
+/// those about their line being 1.4826 times the median absolute deviation, at least the median standard error. Two
+/// neighbouring samples out on the same side confirm each other and both stand: a real jump is believed with the second
+/// test that shows it. With fewer than six neighbours nothing is judged. `history` must be in the order of time.
+[[nodiscard]] std::vector<bool> isolated_outliers(std::span<const ConditionSample> history);
+
+}  // namespace sealwatch::forecast

@@ -1,0 +1,76 @@
+// From a history of seal conditions to the remaining useful life: one interface, any number of forecasters side by
+// side.
+//
+//   t_RUL = t_hat(theta_max) - now        (MODEL section 6)
+//
+// States. `past_threshold`: the condition is at or below theta_max. `insufficient_history`: the window is not filled.
+// `no_significant_trend`: the condition does not fall significantly, or so slowly that no date can be told. Only `ok`
+// carries numbers, and those are finite and not negative. docs/forecast.md gives every rule with its reason.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time.hpp"
+#include "sealwatch/forecast/condition_history.hpp"
+#include "sealwatch/message/prognostic_assessment.hpp"
+
+namespace sealwatch::forecast {
+
+/// A date whose failure probability is asked for: the next vessel campaign.
+struct FailureHorizon {
+  std::string label;
+  UtcTime before;
+};
+
+struct ForecastRequest {
+  std::vector<ConditionSample> history;  ///< since the last replacement, in the order of time
+  double threshold = 0.60;               ///< theta_max
+  UtcTime now;                           ///< from where the remaining life counts
+  std::optional<UtcTime> installed;      ///< when the seal was new; unknown: one month before its first test
+  std::vector<FailureHorizon> horizons;  ///< those not after `now` are passed over
+};
+
+class Forecaster {
+ public:
+  virtual ~Forecaster() = default;
+  /// Pure: the same request gives the same answer.
+  [[nodiscard]] virtual Forecast forecast(const ForecastRequest& request) const = 0;
+};
+
+/// Which forecaster, by name: "ols" (t on theta), "ols_log_time" (ln t on theta), "ols_drift" (as ols, and carries that
+/// the slope will change).
+struct ForecasterSettings {
+  std::string method = "ols";
+  int window_months = 36;
+};
+
+[[nodiscard]] const std::vector<std::string>& forecast_methods();
+[[nodiscard]] Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings);
+
+/// The forecasters of MODEL section 6, the one in charge first: ols with 36, 24, 48 months, then the others.
+[[nodiscard]] std::vector<ForecasterSettings> default_forecasters();
+
+/// Several forecasters that judge the same history.
+class ForecastPanel {
+ public:
+  [[nodiscard]] static Result<ForecastPanel> make(const std::vector<ForecasterSettings>& settings);
+
+  struct Answer {
+    std::vector<Forecast> forecasts;  ///< in the order of the settings
+    bool windows_disagree = false;    ///< 95 % intervals of two windows of one method do not overlap
+    std::string disagreement;
+    std::vector<ConditionSample> left_out;  ///< isolated outliers (condition_history.hpp)
+  };
+  /// Sorts the history by time and leaves isolated outliers out first.
+  [[nodiscard]] Answer forecast(ForecastRequest request) const;
+
+ private:
+  std::vector<std::unique_ptr<const Forecaster>> forecasters_;
+};
+
+}  // namespace sealwatch::forecast

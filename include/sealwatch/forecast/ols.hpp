@@ -1,0 +1,39 @@
+// Forecast by the straight degradation line (degradation_line.hpp) over the last months.
+#pragma once
+
+#include <string>
+
+#include "sealwatch/forecast/forecaster.hpp"
+
+namespace sealwatch::forecast {
+
+/// The time that is linear in the condition.
+enum class DegradationTime { months, log_months };
+
+struct OlsOptions {
+  std::string method = "ols";
+  int window_months = 36;
+  DegradationTime time = DegradationTime::months;
+  /// kappa: standard deviation of the future slope relative to the window's slope [1].
+  double slope_drift = 0.0;
+  /// One-sided level at which the slope must be negative. At 1 % all quantiles up to 97.5 % exist.
+  double significance = 0.01;
+  /// Share of the window's months that must have a usable test. Half: the rest is bridged, not guessed.
+  double fewest_tests_share = 0.5;
+  /// Beyond this an extrapolation of a few years means nothing: 2.5 times the service life of 20 years.
+  double horizon_months = 600.0;
+
+  [[nodiscard]] Status validate() const;
+};
+
+class OlsForecaster final : public Forecaster {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<const Forecaster>> make(const OlsOptions& options);
+  [[nodiscard]] Forecast forecast(const ForecastRequest& request) const override;
+
+ private:
+  explicit OlsForecaster(OlsOptions options) : options_(std::move(options)) {}
+  OlsOptions options_;
+};
+
+}  // namespace sealwatch::forecast

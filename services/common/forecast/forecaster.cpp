@@ -1,0 +1,95 @@
+#include "sealwatch/forecast/forecaster.hpp"
+
+#include <algorithm>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/forecast/ols.hpp"
+#include "sealwatch/forecast/words.hpp"
+
+namespace sealwatch::forecast {
+namespace {
+
+// Of the lives of MODEL section 5: see docs/forecast.md, "Why the line's own interval is too narrow".
+constexpr double kSlopeDrift = 0.20;
+
+std::vector<ConditionSample> take_outliers(std::vector<ConditionSample>& history) {
+  const std::vector<bool> outlier = isolated_outliers(history);
+  std::vector<ConditionSample> kept;
+  std::vector<ConditionSample> left_out;
+  for (std::size_t i = 0; i < history.size(); ++i) (outlier[i] ? left_out : kept).push_back(history[i]);
+  history = std::move(kept);
+  return left_out;
+}
+
+std::string describe(const Forecast& forecast) {
+  return std::to_string(forecast.window_months) + " months give " + in_months(forecast.rul_p50_months) +
+         " (95 %: " + in_months(forecast.interval_95_low_months) + " to " +
+         in_months(forecast.interval_95_high_months) + ")";
+}
+
+bool apart(const Forecast& a, const Forecast& b) {
+  return a.interval_95_high_months < b.interval_95_low_months || b.interval_95_high_months < a.interval_95_low_months;
+}
+
+std::string disagreement(const std::vector<Forecast>& forecasts) {
+  for (std::size_t i = 0; i < forecasts.size(); ++i)
+    for (std::size_t j = i + 1; j < forecasts.size(); ++j) {
+      const bool comparable = forecasts[i].state == ForecastState::ok && forecasts[j].state == ForecastState::ok &&
+                              forecasts[i].method == forecasts[j].method;
+      if (comparable && apart(forecasts[i], forecasts[j]))
+        return forecasts[i].method + ": " + describe(forecasts[i]) + ", " + describe(forecasts[j]) +
+               ": the rate of degradation has changed";
+    }
+  return {};
+}
+
+}  // namespace
+
+const std::vector<std::string>& forecast_methods() {
+  static const std::vector<std::string> methods{"ols", "ols_log_time", "ols_drift"};
+  return methods;
+}
+
+Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings) {
+  OlsOptions options{.method = settings.method, .window_months = settings.window_months};
+  if (settings.method == "ols_log_time")
+    options.time = DegradationTime::log_months;
+  else if (settings.method == "ols_drift")
+    options.slope_drift = kSlopeDrift;
+  else if (settings.method != "ols")
+    return fail(Error{.file = {},
+                      .place = "forecast method",
+                      .value = settings.method,
+                      .rule = "is not known",
+                      .advice = suggest(settings.method, forecast_methods())});
+  return OlsForecaster::make(options);
+}
+
+std::vector<ForecasterSettings> default_forecasters() {
+  return {{"ols", 36},          {"ols", 24},       {"ols", 48},       {"ols_log_time", 36}, {"ols_log_time", 24},
+          {"ols_log_time", 48}, {"ols_drift", 36}, {"ols_drift", 24}, {"ols_drift", 48}};
+}
+
+Result<ForecastPanel> ForecastPanel::make(const std::vector<ForecasterSettings>& settings) {
+  if (settings.empty()) return fail("at least one forecaster is needed");
+  ForecastPanel panel;
+  for (const ForecasterSettings& one : settings) {
+    auto forecaster = make_forecaster(one);
+    if (!forecaster) return fail(forecaster.error());
+    panel.forecasters_.push_back(std::move(*forecaster));
+  }
+  return panel;
+}
+
+ForecastPanel::Answer ForecastPanel::forecast(ForecastRequest request) const {
+  std::stable_sort(request.history.begin(), request.history.end(),
+                   [](const ConditionSample& a, const ConditionSample& b) { return a.time < b.time; });
+  Answer answer;
+  answer.left_out = take_outliers(request.history);
+  for (const auto& forecaster : forecasters_) answer.forecasts.push_back(forecaster->forecast(request));
+  answer.disagreement = disagreement(answer.forecasts);
+  answer.windows_disagree = !answer.disagreement.empty();
+  return answer;
+}
+
+}  // namespace sealwatch::forecast

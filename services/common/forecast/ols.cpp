@@ -1,0 +1,198 @@
+#include "sealwatch/forecast/ols.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sealwatch/forecast/degradation_line.hpp"
+#include "sealwatch/forecast/words.hpp"
+
+namespace sealwatch::forecast {
+namespace {
+
+constexpr int kFewestTests = 6;              // below, Student's t is so wide that no interval helps anybody
+constexpr double kLongestMonths = 1200.0;    // upper quantiles are cut here: a hundred years, still a date
+constexpr double kJitterMonths = 1.5;        // m monthly tests span m - 1 months, and each comes up to half a month off
+constexpr std::size_t kTestsForPresent = 3;  // the present condition is the median of so many tests
+
+/// Months since the seal was new <-> the time that the line is straight in.
+struct TimeAxis {
+  DegradationTime kind;
+  UtcTime installed;
+  double now_months;  ///< since installed
+  [[nodiscard]] double months(UtcTime time) const { return months_between(installed, time); }
+  [[nodiscard]] double y(double months) const { return kind == DegradationTime::months ? months : std::log(months); }
+  [[nodiscard]] double remaining_months(double y) const {
+    const double end = kind == DegradationTime::months ? y : std::exp(std::min(y, std::log(1e6)));
+    return std::clamp(end - now_months, 0.0, kLongestMonths);
+  }
+};
+
+TimeAxis time_axis(DegradationTime kind, const ForecastRequest& request) {
+  const UtcTime installed = request.installed.value_or(add_months(request.history.front().time, -1.0));
+  return {.kind = kind, .installed = installed, .now_months = months_between(installed, request.now)};
+}
+
+double present_condition(const std::vector<ConditionSample>& history) {
+  std::vector<double> last;
+  for (std::size_t i = history.size() - std::min(kTestsForPresent, history.size()); i < history.size(); ++i)
+    last.push_back(history[i].condition);
+  std::sort(last.begin(), last.end());
+  return last[last.size() / 2];
+}
+
+std::vector<ConditionSample> last_months(const std::vector<ConditionSample>& history, int window_months) {
+  const UtcTime begin = add_months(history.back().time, -window_months);
+  std::vector<ConditionSample> window;
+  for (const ConditionSample& sample : history)
+    if (sample.time > begin) window.push_back(sample);
+  return window;
+}
+
+Forecast& say(Forecast& forecast, ForecastState state, std::string explanation) {
+  forecast.state = state;
+  forecast.explanation = std::move(explanation);
+  return forecast;
+}
+
+Forecast& say_past_threshold(Forecast& forecast, const ForecastRequest& request, std::string explanation) {
+  forecast.end_of_life_ns = request.now.nanoseconds;
+  for (const FailureHorizon& horizon : request.horizons)
+    if (horizon.before > request.now)
+      forecast.failure_probability.push_back({horizon.before.nanoseconds, horizon.label, 1.0});
+  return say(forecast, ForecastState::past_threshold, std::move(explanation));
+}
+
+/// "" when the window is filled well enough.
+std::string missing_history(const OlsOptions& options, const ForecastRequest& request, std::size_t tests) {
+  const double reach = months_between(request.history.front().time, request.history.back().time);
+  if (reach < options.window_months - kJitterMonths)
+    return "history reaches back " + in_months(reach) + " of the " + std::to_string(options.window_months) +
+           " of this window (" + std::to_string(tests) + " usable tests so far)";
+  const int fewest =
+      std::max(kFewestTests, static_cast<int>(std::ceil(options.fewest_tests_share * options.window_months)));
+  if (static_cast<int>(tests) < fewest)
+    return std::to_string(tests) + " usable tests in the last " + std::to_string(options.window_months) +
+           " months, at least " + std::to_string(fewest) + " are needed";
+  return {};
+}
+
+std::optional<DegradationLine> fit(const TimeAxis& axis, const std::vector<ConditionSample>& window,
+                                   double slope_drift) {
+  std::vector<LinePoint> points;
+  for (const ConditionSample& sample : window)
+    if (axis.months(sample.time) > 0.0)
+      points.push_back({axis.y(axis.months(sample.time)), sample.condition, sample.condition_std});
+  return fit_degradation_line(points, slope_drift);
+}
+
+struct CrossingQuantiles {
+  double low, p10, p50, p90, high;  ///< y
+};
+
+std::optional<CrossingQuantiles> crossing_quantiles(const DegradationLine& line, double threshold) {
+  const auto low = line.crossing_quantile(threshold, 0.025);
+  const auto p10 = line.crossing_quantile(threshold, 0.10);
+  const auto p50 = line.crossing_quantile(threshold, 0.50);
+  const auto p90 = line.crossing_quantile(threshold, 0.90);
+  const auto high = line.crossing_quantile(threshold, 0.975);
+  if (!low || !p10 || !p50 || !p90 || !high) return std::nullopt;
+  return CrossingQuantiles{*low, *p10, *p50, *p90, *high};
+}
+
+void fill_numbers(Forecast& forecast, const ForecastRequest& request, const DegradationLine& line, const TimeAxis& axis,
+                  const CrossingQuantiles& crossing) {
+  forecast.rul_months = axis.remaining_months(crossing.p50);
+  forecast.rul_p10_months = axis.remaining_months(crossing.p10);
+  forecast.rul_p50_months = forecast.rul_months;
+  forecast.rul_p90_months = axis.remaining_months(crossing.p90);
+  forecast.interval_95_low_months = axis.remaining_months(crossing.low);
+  forecast.interval_95_high_months = axis.remaining_months(crossing.high);
+  forecast.end_of_life_ns = add_months(request.now, forecast.rul_months).nanoseconds;
+  for (const FailureHorizon& horizon : request.horizons)
+    if (horizon.before > request.now)
+      forecast.failure_probability.push_back(
+          {horizon.before.nanoseconds, horizon.label,
+           line.crossing_probability(request.threshold, axis.y(axis.months(horizon.before)))});
+}
+
+std::string describe_ok(const Forecast& forecast, const ForecastRequest& request, const DegradationLine& line) {
+  std::string text =
+      std::to_string(forecast.tests_used) + " tests, scatter of one " + as_condition(std::sqrt(line.scatter_variance));
+  const double age = months_between(request.history.back().time, request.now);
+  if (age > kJitterMonths) text += "; the last usable test was " + in_months(age) + " ago";
+  if (forecast.interval_95_high_months >= kLongestMonths)
+    text += "; upper limits are cut at " + in_months(kLongestMonths);
+  return text;
+}
+
+}  // namespace
+
+Status OlsOptions::validate() const {
+  const auto check = [](bool good, const char* place, double value, const char* rule) -> Status {
+    if (good) return {};
+    return fail(Error{.file = {}, .place = place, .value = std::to_string(value), .rule = rule, .advice = {}});
+  };
+  if (auto s = check(window_months >= 6 && window_months <= 240, "window_months", window_months, "must be 6 to 240");
+      !s)
+    return s;
+  if (auto s = check(slope_drift >= 0.0 && slope_drift <= 0.25, "slope_drift", slope_drift, "must be 0 to 0.25"); !s)
+    return s;
+  if (auto s = check(significance > 0.0 && significance <= 0.01, "significance", significance,
+                     "must be above 0, at most 0.01");
+      !s)
+    return s;
+  if (auto s = check(fewest_tests_share > 0.0 && fewest_tests_share <= 1.0, "fewest_tests_share", fewest_tests_share,
+                     "must be above 0, at most 1");
+      !s)
+    return s;
+  return check(horizon_months > 0.0 && horizon_months <= kLongestMonths, "horizon_months", horizon_months,
+               "must be above 0, at most 1200");
+}
+
+Result<std::unique_ptr<const Forecaster>> OlsForecaster::make(const OlsOptions& options) {
+  if (const Status valid = options.validate(); !valid) return fail(valid.error());
+  return std::unique_ptr<const Forecaster>(new OlsForecaster(options));
+}
+
+Forecast OlsForecaster::forecast(const ForecastRequest& request) const {
+  Forecast forecast;
+  forecast.method = options_.method;
+  forecast.window_months = options_.window_months;
+  if (request.history.empty()) return say(forecast, ForecastState::insufficient_history, "no usable test so far");
+
+  const std::vector<ConditionSample> window = last_months(request.history, options_.window_months);
+  forecast.tests_used = static_cast<int>(window.size());
+  const double present = present_condition(request.history);
+  if (present <= request.threshold)
+    return say_past_threshold(forecast, request,
+                              "the condition is " + as_condition(present) +
+                                  " (median of the last tests), the threshold " + as_condition(request.threshold));
+  if (const std::string missing = missing_history(options_, request, window.size()); !missing.empty())
+    return say(forecast, ForecastState::insufficient_history, missing);
+
+  const TimeAxis axis = time_axis(options_.time, request);
+  const auto line = fit(axis, window, options_.slope_drift);
+  if (!line) return say(forecast, ForecastState::insufficient_history, "fewer than three tests since the seal was new");
+  const double p = line->no_fall_probability();
+  const auto crossing = crossing_quantiles(*line, request.threshold);
+  if (p > options_.significance || !crossing)
+    return say(forecast, ForecastState::no_significant_trend,
+               "the condition does not fall significantly over these months (p = " + three_digits(p) + ")");
+  if (crossing->p50 <= axis.y(axis.now_months))
+    return say_past_threshold(forecast, request,
+                              "the fitted line is at " + as_condition(line->condition_at(axis.y(axis.now_months))) +
+                                  " now, the threshold is " + as_condition(request.threshold));
+  fill_numbers(forecast, request, *line, axis, *crossing);
+  if (forecast.rul_months > options_.horizon_months) {
+    Forecast nothing;
+    nothing.method = forecast.method;
+    nothing.window_months = forecast.window_months;
+    nothing.tests_used = forecast.tests_used;
+    return say(nothing, ForecastState::no_significant_trend,
+               "at this rate the end of life is more than " + in_months(options_.horizon_months) +
+                   " away: no date can be told");
+  }
+  return say(forecast, ForecastState::ok, describe_ok(forecast, request, *line));
+}
+
+}  // namespace sealwatch::forecast

@@ -1,0 +1,31 @@
+#include "sealwatch/forecast/words.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace sealwatch::forecast {
+namespace {
+
+std::string print(const char* form, double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), form, value);
+  return text.data();
+}
+
+}  // namespace
+
+std::string in_months(double months) { return print(std::abs(months) < 10.0 ? "%.1f months" : "%.0f months", months); }
+
+std::string in_percent(double share) {
+  if (share < 0.001) return "under 0.1 %";
+  if (share > 0.999) return "over 99.9 %";
+  const double percent = 100.0 * share;
+  return print(percent < 9.95 || percent > 99.0 ? "%.1f %%" : "%.0f %%", percent);
+}
+
+std::string as_condition(double condition) { return print("%.3f", condition); }
+
+std::string three_digits(double value) { return print("%.2e", value); }
+
+}  // namespace sealwatch::forecast

@@ -28,11 +28,11 @@ struct FailureHorizon {
 };
 
 struct ForecastRequest {
-  std::vector<ConditionSample> history;  ///< since the last replacement, in the order of time
-  double threshold = 0.60;               ///< theta_max
-  UtcTime now;                           ///< from where the remaining life counts
-  std::optional<UtcTime> installed;      ///< when the seal was new; unknown: one month before its first test
-  std::vector<FailureHorizon> horizons;  ///< those not after `now` are passed over
+  std::vector<ConditionSample> history = {};  ///< since the last replacement, in the order of time
+  double threshold = 0.60;                    ///< theta_max
+  UtcTime now = {};                           ///< from where the remaining life counts
+  std::optional<UtcTime> installed = {};      ///< when the seal was new; unknown: one month before its first test
+  std::vector<FailureHorizon> horizons = {};  ///< those not after `now` are passed over
 };
 
 class Forecaster {

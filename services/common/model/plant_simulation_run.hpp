@@ -1,0 +1,168 @@
+// One run of a PlantSimulationOf (included by plant_simulation.hpp).
+#pragma once
+
+namespace sealwatch {
+
+/// Coarser recordings are simulated at points between their samples too, because the sensors' filters take the signal
+/// as linear from point to point.
+inline constexpr double kLongestPointDistance_s = 0.0051;
+
+template <class Model>
+template <int Width>
+class PlantSimulationOf<Model>::Run {
+ public:
+  using System = PlantSystem<Model, Width>;
+  using Integrator = Bdf<System>;
+  using Vector = typename Integrator::Vector;
+
+  Run(const PlantSimulationOf& simulation, const ModelValues& values, std::span<const FreeQuantity> free,
+      const SimulationOptions& options)
+      : simulation_(simulation),
+        free_(free),
+        columns_(1 + free.size()),
+        system_(simulation.input_, values, free),
+        scale_(scaled(options.relative_tolerance)),
+        integrator_(system_, static_cast<int>(free.size()), scale_,
+                    {.maximum_step = options.maximum_step_s, .maximum_steps = options.maximum_steps}),
+        point_(integrator_.size(), 0.0),
+        signal_(columns_, 0.0) {
+    for (const SimulatedChannel& channel : simulation.channels_)
+      filters_.emplace_back(channel.time_constant_s, columns_);
+    const Eigen::Index rows = simulation.recorded_.rows(), channels = simulation.recorded_.cols();
+    outputs_.values.resize(rows, channels);
+    outputs_.sensitivities.resize(rows * channels, static_cast<Eigen::Index>(free.size()));
+  }
+
+  [[nodiscard]] Result<SimulatedOutputs> simulate(const ModelValues& values) {
+    const RecordedInput& input = simulation_.input_;
+    if (!initial_point(values)) return failure(input.times().front());
+    sample(0, 0.0);
+    for (std::size_t segment = 0; segment < input.segment_count(); ++segment)
+      if (!run_segment(segment)) return failure(integrator_.time());
+    outputs_.steps = integrator_.statistics().steps;
+    outputs_.linearisations = integrator_.statistics().linearisations;
+    return std::move(outputs_);
+  }
+
+ private:
+  static Vector scaled(double relative_tolerance) {
+    Vector scale;
+    for (int k = 0; k < kStates; ++k) scale[k] = Model::kScale[k] * relative_tolerance / 1e-6;
+    return scale;
+  }
+
+  [[nodiscard]] static tl::unexpected<Error> failure(double time) {
+    return fail(Error{.file = {},
+                      .place = "t = " + std::to_string(time) + " s",
+                      .value = {},
+                      .rule = "the simulation failed: no step size follows the equations from here",
+                      .advice = "check the parameters' values and the recorded input around this time"});
+  }
+
+  // Held states and their seeds from the values, quasi-steady ones with them.
+  [[nodiscard]] bool initial_point(const ModelValues& values) {
+    const std::size_t stride = integrator_.stride();
+    auto fast = Model::kQuasiSteady;
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      if (free_[k].kind != FreeQuantity::Kind::initial_state) continue;
+      fast[free_[k].index] = false;
+      point_[free_[k].index * stride + 1 + k] = 1.0;
+    }
+    Vector state;
+    std::copy(values.initial_state.begin(), values.initial_state.end(), state.begin());
+    const double begin = simulation_.input_.times().front();
+    QuasiSteadyState<System> rest(system_, fast, scale_);
+    if (!rest.solve(begin, state) || !rest.differentiate(begin, state, point_.data(), stride)) return false;
+    for (int k = 0; k < kStates; ++k) point_[k * stride] = state[k];
+    return true;
+  }
+
+  // The integrator may step beyond the segment's end, where the held input is continued: no step is shortened.
+  [[nodiscard]] bool run_segment(std::size_t segment) {
+    const RecordedInput& input = simulation_.input_;
+    const double end = input.segment_end(segment);
+    system_.set_segment(segment);
+    if (!integrator_.start(input.segment_begin(segment), point_.data())) return false;
+    while (next_ < input.times().size() && input.times()[next_] <= end) {
+      const double last = input.times()[next_ - 1], time = input.times()[next_];
+      const int points = std::max(1, static_cast<int>(std::ceil((time - last) / kLongestPointDistance_s)));
+      for (int k = 1; k <= points; ++k) {
+        const double at = k == points ? time : last + (time - last) * k / points;
+        while (integrator_.time() < at)
+          if (!integrator_.step()) return false;
+        integrator_.interpolate(at, point_.data());
+        if (k < points)
+          pass_sensors((time - last) / points);
+        else
+          sample(next_, (time - last) / points);
+      }
+      ++next_;
+    }
+    return true;
+  }
+
+  void pass_sensors(double step_s) {
+    for (std::size_t c = 0; c < filters_.size(); ++c) {
+      const int state = Model::kOutputs[simulation_.channels_[c].output].state;
+      const double* signal = signal_.data();
+      if (state >= 0)
+        signal = point_.data() + state * integrator_.stride();
+      else
+        compute_output(simulation_.channels_[c].output);
+      filters_[c].advance(step_s, signal);
+    }
+  }
+
+  void sample(std::size_t row, double step_s) {
+    pass_sensors(step_s);
+    const auto first = static_cast<Eigen::Index>(row * filters_.size());
+    double* sensitivities = outputs_.sensitivities.data() + first * outputs_.sensitivities.cols();
+    double* values = outputs_.values.data() + first;
+    for (const SensorFilter& filter : filters_) {
+      *values++ = filter.output()[0];
+      sensitivities = std::copy(filter.output().begin() + 1, filter.output().end(), sensitivities);
+    }
+  }
+
+  // dh/dp + dh/dy S by dual numbers whose states carry S.
+  void compute_output(int output) {
+    const std::size_t stride = integrator_.stride();
+    if (system_.blocks().empty()) {
+      typename System::template State<double> state;
+      for (int k = 0; k < kStates; ++k) state[k] = point_[k * stride];
+      signal_[0] = Model::output(output, state, system_.parameters());
+    }
+    for (const auto& block : system_.blocks()) {
+      typename System::template State<Dual<Width>> state;
+      for (int k = 0; k < kStates; ++k) {
+        state[k].value = point_[k * stride];
+        const double* seeds = point_.data() + k * stride + 1 + block.first;
+        std::copy(seeds, seeds + block.count, state[k].derivative.begin());
+      }
+      const auto result = Model::output(output, state, block.parameters);
+      signal_[0] = result.value;
+      std::copy(result.derivative.begin(), result.derivative.begin() + block.count, signal_.begin() + 1 + block.first);
+    }
+  }
+
+  const PlantSimulationOf& simulation_;
+  std::span<const FreeQuantity> free_;
+  std::size_t columns_;
+  System system_;
+  Vector scale_;
+  Integrator integrator_;
+  std::vector<double> point_, signal_;
+  std::vector<SensorFilter> filters_;
+  SimulatedOutputs outputs_;
+  std::size_t next_ = 1;
+};
+
+template <class Model>
+template <int Width>
+Result<SimulatedOutputs> PlantSimulationOf<Model>::run_with(const ModelValues& values,
+                                                            std::span<const FreeQuantity> free,
+                                                            const SimulationOptions& options) const {
+  return Run<Width>(*this, values, free, options).simulate(values);
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,25 @@
+// Standard deviation of a channel's sample noise from the data alone, never from a model's residuals.
+//
+//   third difference  d_k = y_k+3 - 3 y_k+2 + 3 y_k+1 - y_k  of white noise has variance 20 sigma^2 and hides any
+//   signal that is a parabola over four samples; its median absolute deviation is blind to the few samples where the
+//   signal jumps:
+//     sigma_hat = 1.4826 MAD(d) / sqrt(20)
+//   quantisation in steps of Delta adds Delta^2 / 12, the least that the noise can be.
+//
+// Noise that is correlated from sample to sample is underestimated: whoever uses the figure must test its residual for
+// whiteness (residual_statistics.hpp).
+#pragma once
+
+#include <span>
+
+namespace sealwatch {
+
+struct NoiseFloor {
+  double standard_deviation = 0.0;  ///< in the channel's unit; 0 when the data cannot tell
+  double quantisation_step = 0.0;   ///< in the channel's unit; 0 when none was seen
+};
+
+/// Uniform or slightly jittered samples. Fewer than 8 samples, or a constant channel, tell nothing.
+[[nodiscard]] NoiseFloor estimate_noise_floor(std::span<const double> values);
+
+}  // namespace sealwatch

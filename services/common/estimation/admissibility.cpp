@@ -1,0 +1,73 @@
+#include "sealwatch/estimation/admissibility.hpp"
+
+#include <cmath>
+
+#include "services/common/estimation/words.hpp"
+
+namespace sealwatch {
+namespace {
+
+// NRMSE that a perfect model would reach: with r = noise/spread, fit = 100 (1 - x r) where the fit's own is 100 (1 -
+// r).
+double attainable_nrmse_percent(const ChannelFit& channel) {
+  if (!(channel.noise_normalised_rms > 0.0)) return 100.0;
+  return 100.0 - (100.0 - channel.nrmse_percent) / channel.noise_normalised_rms;
+}
+
+void judge_channel(const ChannelFit& channel, const AdmissibilityOptions& options, std::vector<std::string>& reasons) {
+  if (!(channel.noise_normalised_rms <= options.largest_noise_normalised_rms))
+    reasons.push_back("misfit of " + channel.channel + " is " + in_words(channel.noise_normalised_rms) +
+                      " times its noise (at most " + in_words(options.largest_noise_normalised_rms) + ")");
+  if (channel.nrmse_percent < options.smallest_nrmse_percent &&
+      attainable_nrmse_percent(channel) >= options.attainable_nrmse_percent)
+    reasons.push_back("only " + in_words(channel.nrmse_percent) + " % of the course of " + channel.channel +
+                      " is reproduced (at least " + in_words(options.smallest_nrmse_percent) + " %)");
+}
+
+void judge_resistance(const EstimatedParameter& parameter, const AdmissibilityOptions& options,
+                      std::vector<std::string>& reasons) {
+  const double relative = parameter.std_error / parameter.value;
+  if (!std::isfinite(relative))
+    reasons.push_back(parameter.name + " cannot be identified from this recording");
+  else if (relative > options.largest_relative_std_error)
+    reasons.push_back("standard error of " + parameter.name + " is " + in_words(100.0 * relative) +
+                      " % of its value (at most " + in_words(100.0 * options.largest_relative_std_error) + " %)");
+}
+
+}  // namespace
+
+Status AdmissibilityOptions::validate() const {
+  const auto check = [](bool good, const char* place, double value, const char* rule) -> Status {
+    if (good) return {};
+    return fail(Error{.file = {}, .place = place, .value = in_words(value), .rule = rule, .advice = {}});
+  };
+  return check(largest_noise_normalised_rms > 1.0, "largest_noise_normalised_rms", largest_noise_normalised_rms,
+               "must be above 1, the noise floor")
+      .and_then([&] {
+        return check(smallest_nrmse_percent < attainable_nrmse_percent && attainable_nrmse_percent <= 100.0,
+                     "smallest_nrmse_percent", smallest_nrmse_percent,
+                     "must be below attainable_nrmse_percent, at most 100");
+      })
+      .and_then([&] {
+        return check(largest_relative_std_error > 0.0, "largest_relative_std_error", largest_relative_std_error,
+                     "must be positive");
+      });
+}
+
+void judge_admissibility(FitReport& report, const AdmissibilityOptions& options) {
+  if (!report.converged) report.reasons.push_back("the fit did not converge: " + report.termination);
+  for (const ChannelFit& channel : report.channels) judge_channel(channel, options, report.reasons);
+  bool has_resistance = false;
+  for (const EstimatedParameter& parameter : report.parameters) {
+    if (parameter.at_bound)
+      report.reasons.push_back(parameter.name + " ended at its bound " + in_words(parameter.value) + " " +
+                               parameter.unit);
+    if (parameter.name != "R_CL" || !parameter.free) continue;
+    has_resistance = true;
+    if (!parameter.at_bound) judge_resistance(parameter, options, report.reasons);
+  }
+  if (!has_resistance && report.reasons.empty()) report.reasons.emplace_back("R_CL was not estimated");
+  report.admissible = report.reasons.empty();
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,57 @@
+#include "sealwatch/estimation/noise_floor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace sealwatch {
+namespace {
+
+constexpr std::size_t kFewestSamples = 8;
+constexpr double kGaussianStdOverMad = 1.4826;     // standard deviation over median absolute deviation
+constexpr double kThirdDifferenceVariance = 20.0;  // 1 + 9 + 9 + 1
+constexpr double kLargestShareOffTheGrid = 0.01;   // of steps that are no multiple of the smallest
+constexpr double kGridTolerance = 1e-3;            // of a step: rounding of decimal numbers
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The smallest change between neighbours, if nearly all changes are multiples of it.
+double find_quantisation_step(std::span<const double> values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  const double rounding = 1e-12 * largest;
+  double step = 0.0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    const double change = std::abs(values[k] - values[k - 1]);
+    if (change > rounding && (step == 0.0 || change < step)) step = change;
+  }
+  if (step == 0.0) return 0.0;
+  std::size_t off_the_grid = 0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    const double steps = (values[k] - values[k - 1]) / step;
+    if (std::abs(steps - std::round(steps)) > kGridTolerance * std::max(1.0, std::abs(steps))) ++off_the_grid;
+  }
+  const bool on_the_grid =
+      static_cast<double>(off_the_grid) <= kLargestShareOffTheGrid * static_cast<double>(values.size());
+  return on_the_grid ? step : 0.0;
+}
+
+}  // namespace
+
+NoiseFloor estimate_noise_floor(std::span<const double> values) {
+  if (values.size() < kFewestSamples) return {};
+  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) return {};
+  std::vector<double> difference(values.size() - 3);
+  for (std::size_t k = 0; k < difference.size(); ++k)
+    difference[k] = std::abs(values[k + 3] - 3.0 * values[k + 2] + 3.0 * values[k + 1] - values[k]);
+  const double from_differences =
+      kGaussianStdOverMad * median(std::move(difference)) / std::sqrt(kThirdDifferenceVariance);
+  const double step = find_quantisation_step(values);
+  return {.standard_deviation = std::max(from_differences, step / std::sqrt(12.0)), .quantisation_step = step};
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,82 @@
+#include "sealwatch/estimation/residual_statistics.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+
+namespace sealwatch {
+namespace {
+
+constexpr std::size_t kFewestSamples = 8;
+constexpr double kCollinearity = 1e-9;  // of the largest column: below it a lagged input says nothing new
+
+double chi_squared_p(double statistic, std::size_t degrees_of_freedom) {
+  if (degrees_of_freedom == 0 || !std::isfinite(statistic)) return std::isnan(statistic) ? 1.0 : 0.0;
+  const boost::math::chi_squared distribution(static_cast<double>(degrees_of_freedom));
+  return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, statistic)));
+}
+
+Eigen::VectorXd centred(std::span<const double> values) {
+  const Eigen::Map<const Eigen::VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
+  return vector.array() - vector.mean();
+}
+
+}  // namespace
+
+double nrmse_percent(std::span<const double> recorded, std::span<const double> simulated) {
+  const auto size = static_cast<Eigen::Index>(std::min(recorded.size(), simulated.size()));
+  if (size == 0) return 0.0;
+  const Eigen::Map<const Eigen::VectorXd> y(recorded.data(), size), y_hat(simulated.data(), size);
+  const double spread = (y.array() - y.mean()).matrix().norm();
+  return spread > 0.0 ? 100.0 * (1.0 - (y - y_hat).norm() / spread) : 0.0;
+}
+
+double root_mean_square(std::span<const double> whitened_residual) {
+  if (whitened_residual.empty()) return 0.0;
+  double sum = 0.0;
+  for (const double value : whitened_residual) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(whitened_residual.size()));
+}
+
+double whiteness_p(std::span<const double> residual, std::size_t lags) {
+  if (residual.size() < kFewestSamples) return 1.0;
+  const Eigen::VectorXd e = centred(residual);
+  const double n = static_cast<double>(e.size());
+  const double variance = e.squaredNorm();
+  if (!(variance > 0.0)) return 1.0;
+  const Eigen::Index last = static_cast<Eigen::Index>(std::min(lags, residual.size() / 4));
+  double q = 0.0;
+  for (Eigen::Index k = 1; k <= last; ++k) {
+    const double rho = e.head(e.size() - k).dot(e.tail(e.size() - k)) / variance;
+    q += rho * rho / (n - static_cast<double>(k));
+  }
+  return chi_squared_p(n * (n + 2.0) * q, static_cast<std::size_t>(last));
+}
+
+PastInput::PastInput(std::span<const double> input, std::size_t span, std::size_t lags) {
+  lags = std::max<std::size_t>(1, lags);
+  const std::size_t spacing = std::max<std::size_t>(1, span / lags);
+  first_ = spacing * (lags - 1);
+  if (input.size() < first_ + 4 * lags) return;
+  const std::size_t rows = input.size() - first_;
+  Eigen::MatrixXd lagged(rows, lags);
+  for (std::size_t k = 0; k < lags; ++k)
+    lagged.col(static_cast<Eigen::Index>(k)) = centred(input.subspan(first_ - k * spacing, rows));
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(lagged);
+  qr.setThreshold(kCollinearity);
+  if (qr.maxPivot() > std::numeric_limits<double>::min())
+    basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(rows), qr.rank());
+}
+
+double PastInput::independence_p(std::span<const double> residual) const {
+  if (basis_.cols() == 0 || residual.size() != first_ + static_cast<std::size_t>(basis_.rows())) return 1.0;
+  const Eigen::VectorXd e = centred(residual.subspan(first_));
+  const double variance = e.squaredNorm();
+  if (!(variance > 0.0)) return 1.0;
+  const double explained = (basis_.transpose() * e).squaredNorm() / variance;
+  return chi_squared_p(explained * static_cast<double>(e.size()), static_cast<std::size_t>(basis_.cols()));
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,45 @@
+// Channels of a recording as a file names them: "pressure_a[bar]" becomes the plant's channel and a conversion to SI.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time_series.hpp"
+#include "sealwatch/core/units.hpp"
+#include "sealwatch/model/plant_description.hpp"
+
+namespace sealwatch {
+
+struct Column {
+  std::string name;
+  std::string si_unit;
+  UnitConversion to_si;
+};
+
+/// Samples and, one for each of their channels, the columns that they came from.
+struct ColumnarSamples {
+  TimeSeries samples;
+  std::vector<Column> columns;
+  std::string content_hash;
+};
+
+/// `text` as fit to be printed: control characters replaced, at most 60 characters.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// An error at a place of a file that the caller names.
+[[nodiscard]] Error error_at(std::string place, std::string_view value, std::string rule, std::string advice = {});
+
+/// The column of a header cell "channel[unit]" (no unit: SI). Errors name no place.
+[[nodiscard]] Result<Column> find_column(std::string_view cell, const PlantDescription& plant);
+
+/// All columns of a header; an Error in row 1 when one is unknown or there twice, or time is missing.
+[[nodiscard]] Result<std::vector<Column>> find_columns(std::span<const std::string_view> cells,
+                                                       const PlantDescription& plant);
+
+/// Splits `values`, one vector per column, into time and channels in the order of the file.
+[[nodiscard]] ColumnarSamples assemble(std::vector<Column> columns, std::vector<std::vector<double>> values);
+
+}  // namespace sealwatch

@@ -1,0 +1,149 @@
+#include "services/common/recording/csv_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "services/common/recording/csv_rows.hpp"
+#include "services/common/recording/recording_file.hpp"
+
+namespace sealwatch {
+namespace {
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+/// The finite number that `text` is, or the rule that it breaks.
+Result<double> parse_number(std::string_view text) {
+  text = trim(text);
+  if (text.empty()) return fail("the cell is empty", "leave out the whole row of a missing sample");
+  if (text.front() == '+') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) return fail("is out of a double's range");
+  if (error != std::errc{} || end != text.data() + text.size()) return fail("must be a number");
+  if (!std::isfinite(value)) return fail("must be a finite number", "leave out the whole row of a missing sample");
+  return value;
+}
+
+/// Number of characters after the decimal point, exponent included.
+std::size_t decimals(std::string_view number) {
+  const std::size_t point = number.rfind('.');
+  return point == std::string_view::npos ? 0 : number.size() - point - 1;
+}
+
+class CsvReader {
+ public:
+  CsvReader(std::istream& in, const PlantDescription& plant) : rows_(in), plant_(plant) {}
+
+  Result<ColumnarSamples> read() {
+    if (const Status header = read_header(); !header) return fail(header.error());
+    for (;;) {
+      const Result<bool> more = rows_.next(cells_);
+      if (!more) return fail(more.error());
+      if (!*more) break;
+      if (const Status row = read_row(); !row) return fail(row.error());
+    }
+    if (values_.front().empty()) return fail(error_at("row 2, column time", {}, "no samples follow the header"));
+    ColumnarSamples out = assemble(std::move(columns_), std::move(values_));
+    out.content_hash = rows_.content_hash();
+    return out;
+  }
+
+ private:
+  Status read_header() {
+    const Result<bool> header = rows_.next(cells_);
+    if (!header) return fail(header.error());
+    if (!*header) return fail(error_at("row 1, column 1", {}, "the file is empty", "a header row must come first"));
+    for (std::string_view& cell : cells_) cell = trim(cell);
+    Result<std::vector<Column>> columns = find_columns(cells_, plant_);
+    if (!columns) return fail(columns.error());
+    columns_ = std::move(*columns);
+    values_.resize(columns_.size());
+    const auto is_time = [](const Column& column) { return column.name == "time"; };
+    time_ = static_cast<std::size_t>(std::find_if(columns_.begin(), columns_.end(), is_time) - columns_.begin());
+    return {};
+  }
+
+  Status read_row() {
+    if (const bool blank = cells_.size() == 1 && trim(cells_[0]).empty(); blank && columns_.size() > 1) {
+      blank_row_ = blank_row_ > 0 ? blank_row_ : rows_.row();
+      return {};  // blank lines at the end are harmless
+    }
+    if (blank_row_ > 0)
+      return fail(error_in("1", {}, "follows a blank row", "take out row " + std::to_string(blank_row_)));
+    if (cells_.size() != columns_.size()) return fail(wrong_cell_count());
+    if ((values_.front().size() + 1) * columns_.size() > kMostNumbers) return fail(too_many());
+    for (std::size_t index = 0; index < cells_.size(); ++index) {
+      const Result<double> number = parse_number(cells_[index]);
+      if (!number) return fail(bad_number(index, number.error()));
+      const double value = columns_[index].to_si.to_si(*number);
+      if (!std::isfinite(value))
+        return fail(error_in(columns_[index].name, cells_[index], "is out of a double's range"));
+      values_[index].push_back(value);
+    }
+    const Status time = check_time();
+    return time ? check_last_row() : time;
+  }
+
+  Status check_time() const {
+    const std::vector<double>& time = values_[time_];
+    if (time.size() < 2 || time.back() > time[time.size() - 2]) return {};
+    const bool repeats = time.back() == time[time.size() - 2];
+    return fail(error_in("time", cells_[time_], repeats ? "time repeats" : "time goes back",
+                         "time must increase from row to row"));
+  }
+
+  /// Tells a cut-off number from a missing last line break (see the header).
+  Status check_last_row() {
+    const std::string_view number = trim(cells_.back());
+    if (!rows_.has_line_break() && values_.front().size() > 1 && decimals(number) < fewest_decimals_)
+      return fail(error_in(columns_.back().name, number, "the last line is cut off inside this number",
+                           "the file must end with a whole row"));
+    fewest_decimals_ = std::min(fewest_decimals_, decimals(number));
+    return {};
+  }
+
+  Error error_in(std::string_view column, std::string_view value, std::string rule, std::string advice = {}) const {
+    return error_at("row " + std::to_string(rows_.row()) + ", column " + std::string(column), value, std::move(rule),
+                    std::move(advice));
+  }
+  Error bad_number(std::size_t index, const Error& why) const {
+    const bool cut = !rows_.has_line_break() && index + 1 == columns_.size();
+    return error_in(columns_[index].name, cells_[index], cut ? why.rule + ": the last line is cut off" : why.rule,
+                    why.advice);
+  }
+  Error wrong_cell_count() const {
+    const bool few = cells_.size() < columns_.size();
+    const std::string column = few ? columns_[cells_.size()].name : std::to_string(columns_.size() + 1);
+    const std::string count =
+        std::to_string(cells_.size()) + " cells where the header has " + std::to_string(columns_.size());
+    if (few && !rows_.has_line_break()) return error_in(column, cells_.back(), "the last line is cut off: " + count);
+    return error_in(column, cells_.back(), "the row has " + count);
+  }
+  Error too_many() const {
+    return error_in(columns_.back().name, {}, "the file holds more than " + std::to_string(kMostNumbers) + " numbers",
+                    "one recording is one test: split the file");
+  }
+
+  CsvRows rows_;
+  const PlantDescription& plant_;
+  std::vector<std::string_view> cells_;
+  std::vector<Column> columns_;
+  std::vector<std::vector<double>> values_;  ///< by column
+  std::size_t time_ = 0;                     ///< index of the column time
+  std::size_t blank_row_ = 0;                ///< first blank row, 0: none yet
+  std::size_t fewest_decimals_ = std::numeric_limits<std::size_t>::max();
+};
+
+}  // namespace
+
+Result<ColumnarSamples> read_csv(std::istream& in, const PlantDescription& plant) {
+  return CsvReader(in, plant).read();
+}
+
+}  // namespace sealwatch

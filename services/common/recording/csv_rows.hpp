@@ -1,0 +1,45 @@
+// Rows of an RFC 4180 file, read in blocks: memory does not grow with the file.
+//
+//   row  = cell *("," cell) line-break         line-break = [CR] LF, may be missing after the last row
+//   cell = plain text | '"' *(text | '""') '"'
+// A UTF-8 byte order mark before the first row is skipped.
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/core/text.hpp"
+
+namespace sealwatch {
+
+class CsvRows {
+ public:
+  explicit CsvRows(std::istream& in) : in_(in) {}
+
+  /// Takes the next row; false at the end of the file. `cells` stay valid until the next call.
+  [[nodiscard]] Result<bool> next(std::vector<std::string_view>& cells);
+
+  [[nodiscard]] std::size_t row() const { return row_; }                    ///< of the last row taken, 1 for the first
+  [[nodiscard]] bool has_line_break() const { return has_line_break_; }     ///< of the last row taken
+  [[nodiscard]] std::string content_hash() const { return hasher_.hex(); }  ///< of all bytes read so far
+
+ private:
+  [[nodiscard]] bool fill();
+  [[nodiscard]] Result<std::size_t> find_row_end();
+  [[nodiscard]] Status split_row(char* begin, char* end, std::vector<std::string_view>& cells) const;
+
+  std::istream& in_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;  ///< first byte in buffer_ that no row has taken
+  std::size_t end_ = 0;    ///< past the last byte in buffer_
+  std::size_t row_ = 0;
+  bool has_line_break_ = false;
+  bool has_quotes_ = false;  ///< of the row being taken
+  ContentHasher hasher_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,153 @@
+#include "services/common/recording/mat_reader.hpp"
+
+#include <hdf5.h>
+#include <matio.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+
+#include "services/common/recording/recording_file.hpp"
+
+namespace sealwatch {
+namespace {
+
+const std::string kTooMany = "the file holds more than " + std::to_string(kMostNumbers) + " numbers";
+
+struct Close {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+};
+struct Free {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+using MatFile = std::unique_ptr<mat_t, Close>;
+using Variable = std::unique_ptr<matvar_t, Free>;
+
+Error variable_error(const std::string& name, std::string rule, std::string advice = {}) {
+  return error_at("row 1, column " + printable(name), {}, std::move(rule), std::move(advice));
+}
+
+template <class Number>
+std::vector<double> to_doubles(const matvar_t& variable, std::size_t count) {
+  const auto* const data = static_cast<const Number*>(variable.data);
+  return {data, data + count};
+}
+
+/// The `count` numbers of a variable whose data was read; none when it is not of a numeric class.
+std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return to_doubles<double>(variable, count);
+    case MAT_C_SINGLE:
+      return to_doubles<float>(variable, count);
+    case MAT_C_INT8:
+      return to_doubles<std::int8_t>(variable, count);
+    case MAT_C_UINT8:
+      return to_doubles<std::uint8_t>(variable, count);
+    case MAT_C_INT16:
+      return to_doubles<std::int16_t>(variable, count);
+    case MAT_C_UINT16:
+      return to_doubles<std::uint16_t>(variable, count);
+    case MAT_C_INT32:
+      return to_doubles<std::int32_t>(variable, count);
+    case MAT_C_UINT32:
+      return to_doubles<std::uint32_t>(variable, count);
+    default:
+      return {};
+  }
+}
+
+Result<std::size_t> vector_length(const matvar_t& variable, const std::string& name) {
+  const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT32;
+  const bool vector = variable.rank == 2 && (variable.dims[0] == 1 || variable.dims[1] == 1);
+  if (!numeric || variable.isComplex != 0 || !vector)
+    return fail(variable_error(name, "must be one vector of real numbers"));
+  const std::size_t length = variable.dims[0] * variable.dims[1];
+  if (length == 0) return fail(variable_error(name, "holds no samples"));
+  if (length > kMostNumbers) return fail(variable_error(name, kTooMany));
+  return length;
+}
+
+Result<std::vector<double>> read_vector(mat_t* file, matvar_t* variable, const std::string& name) {
+  const Result<std::size_t> length = vector_length(*variable, name);
+  if (!length) return fail(length.error());
+  if (Mat_VarReadDataAll(file, variable) != 0 || variable->data == nullptr ||
+      variable->nbytes < *length * static_cast<std::size_t>(variable->data_size))
+    return fail(variable_error(name, "its data cannot be read: the file is cut off or damaged"));
+  return numbers(*variable, *length);
+}
+
+Error sample_error(const std::string& name, std::size_t row, double value, std::string rule) {
+  return error_at("row " + std::to_string(row + 1) + ", column " + name, std::to_string(value), std::move(rule));
+}
+
+/// All samples finite, all vectors as long as time, time increasing.
+Status check(const ColumnarSamples& read) {
+  const std::vector<double>& time = read.samples.time_s;
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    if (!std::isfinite(time[row])) return fail(sample_error("time", row, time[row], "must be a finite number"));
+    if (row > 0 && time[row] <= time[row - 1])
+      return fail(sample_error("time", row, time[row], "time must increase from row to row"));
+  }
+  for (const Series& channel : read.samples.channels) {
+    if (channel.values.size() != time.size())
+      return fail(variable_error(channel.name, "has " + std::to_string(channel.values.size()) +
+                                                   " samples where time has " + std::to_string(time.size())));
+    for (std::size_t row = 0; row < time.size(); ++row)
+      if (!std::isfinite(channel.values[row]))
+        return fail(sample_error(channel.name, row, channel.values[row], "must be a finite number"));
+  }
+  return {};
+}
+
+/// A version 5 file is a header of 128 bytes and a chain of elements, each 8 bytes of tag and as many bytes as the tag
+/// says: a chain that leaves the file was cut off, which matio would take for the end.
+Status check_whole(const std::string& path) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file || std::fseek(file.get(), 0, SEEK_END) != 0) return fail("cannot be read");
+  const long size = std::ftell(file.get());
+  long at = 128;
+  while (at < size) {
+    std::uint32_t tag[2] = {0, 0};
+    std::fseek(file.get(), at, SEEK_SET);
+    if (std::fread(tag, sizeof tag, 1, file.get()) != 1) break;
+    at += 8 + static_cast<long>(tag[1]);
+  }
+  if (at == size) return {};
+  return fail(error_at("byte " + std::to_string(size), {}, "the file is cut off or damaged"));
+}
+
+}  // namespace
+
+Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what went wrong is returned, not printed
+  const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  if (!file) return fail("is not a MATLAB file of version 5 or 7.3, or it is damaged");
+  if (Mat_GetVersion(file.get()) == MAT_FT_MAT5)
+    if (const Status whole = check_whole(path); !whole) return fail(whole.error());
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> values;
+  std::size_t total = 0;
+  while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
+    names.emplace_back(variable->name != nullptr ? variable->name : "");
+    if (const Result<Column> known = find_column(names.back(), plant); !known)
+      return fail(variable_error(names.back(), known.error().rule, known.error().advice));
+    Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), names.back());
+    if (!samples) return fail(samples.error());
+    total += samples->size();
+    if (total > kMostNumbers) return fail(variable_error(names.back(), kTooMany));
+    values.push_back(std::move(*samples));
+  }
+  const std::vector<std::string_view> cells(names.begin(), names.end());
+  Result<std::vector<Column>> columns = find_columns(cells, plant);
+  if (!columns) return fail(columns.error());
+  ColumnarSamples out = assemble(std::move(*columns), std::move(values));
+  if (const Status status = check(out); !status) return fail(status.error());
+  return out;
+}
+
+}  // namespace sealwatch

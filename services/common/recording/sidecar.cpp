@@ -1,0 +1,159 @@
+#include "services/common/recording/sidecar.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "sealwatch/core/text.hpp"
+
+namespace sealwatch {
+namespace {
+
+const std::vector<std::string> kKeys = {"recording_id", "asset_id",      "test", "start_time",
+                                        "noise_std",    "interpolation", "note"};
+
+struct KeyValue {
+  std::string key;  ///< with its parents: "noise_std.pressure_a"
+  YAML::Node value;
+  int line = 0;  ///< 1 for the first
+};
+
+std::string place_of(int line, const std::string& key) {
+  const std::string where = line > 0 ? "line " + std::to_string(line) : "";
+  return key.empty() ? where : where + ", key " + printable(key);
+}
+
+Error key_error(const KeyValue& item, std::string rule, std::string advice = {}) {
+  return error_at(place_of(item.line, item.key), item.value.IsScalar() ? item.value.Scalar() : "", std::move(rule),
+                  std::move(advice));
+}
+
+/// The entries of a mapping, each key once and one of `known`.
+Result<std::vector<KeyValue>> entries(const YAML::Node& mapping, const std::string& prefix,
+                                      std::span<const std::string> known) {
+  std::vector<KeyValue> out;
+  std::set<std::string> seen;
+  for (const auto& entry : mapping) {
+    KeyValue item{.key = prefix, .value = entry.second, .line = entry.first.Mark().line + 1};
+    if (!entry.first.IsScalar()) return fail(key_error(item, "a key must be plain text"));
+    const std::string key = entry.first.Scalar();
+    item.key += key;
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      return fail(key_error(item, "is not a known key", suggest(printable(key), known)));
+    if (!seen.insert(key).second) return fail(key_error(item, "stands there twice"));
+    out.push_back(std::move(item));
+  }
+  return out;
+}
+
+Status read_test(const KeyValue& item, Sidecar& out) {
+  const std::optional<TestKind> kind = value_of<TestKind>(item.value.Scalar());
+  if (!kind) return fail(key_error(item, "must be pst, full_stroke or other"));
+  out.test = *kind;
+  return {};
+}
+
+Status read_start_time(const KeyValue& item, Sidecar& out) {
+  const Result<UtcTime> time = parse_utc(item.value.Scalar());
+  if (!time) return fail(key_error(item, time.error().rule, time.error().advice));
+  out.start_time = *time;
+  return {};
+}
+
+Status read_interpolation(const KeyValue& item, Sidecar& out) {
+  const std::string& word = item.value.Scalar();
+  if (word != "hold" && word != "linear") return fail(key_error(item, "must be hold or linear"));
+  out.interpolation_hold = word == "hold";
+  return {};
+}
+
+Status read_noise(const KeyValue& item, const PlantDescription& plant, Sidecar& out) {
+  if (item.value.IsNull()) return {};
+  if (!item.value.IsMap()) return fail(key_error(item, "must be a mapping", "noise_std: {pressure_a: 1.0e4}"));
+  std::vector<std::string> channels;
+  for (const ChannelDescription& channel : plant.channels) channels.push_back(channel.name);
+  const Result<std::vector<KeyValue>> noises = entries(item.value, "noise_std.", channels);
+  if (!noises) return fail(noises.error());
+  for (const KeyValue& noise : *noises) {
+    double value = 0.0;
+    if (!noise.value.IsScalar() || !YAML::convert<double>::decode(noise.value, value) || !(value > 0.0) ||
+        std::isinf(value))
+      return fail(key_error(noise, "must be a positive number", "leave it out where it is not known"));
+    out.noise_std[noise.key.substr(item.key.size() + 1)] = value;
+  }
+  return {};
+}
+
+Status read_entry(const KeyValue& item, const PlantDescription& plant, Sidecar& out) {
+  if (item.key == "noise_std") return read_noise(item, plant, out);
+  if (item.value.IsNull()) return {};  // "note:" with nothing behind it
+  if (!item.value.IsScalar()) return fail(key_error(item, "must be plain text"));
+  if (item.key == "test") return read_test(item, out);
+  if (item.key == "start_time") return read_start_time(item, out);
+  if (item.key == "interpolation") return read_interpolation(item, out);
+  (item.key == "recording_id" ? out.recording_id
+   : item.key == "asset_id"   ? out.asset_id
+                              : out.note) = item.value.Scalar();
+  return {};
+}
+
+Result<Sidecar> read_document(const YAML::Node& document, const PlantDescription& plant) {
+  Sidecar out;
+  if (!document.IsDefined() || document.IsNull()) return out;
+  if (!document.IsMap())
+    return fail(error_at(place_of(document.Mark().line + 1, ""), {}, "a sidecar must be a mapping of keys to values"));
+  const Result<std::vector<KeyValue>> items = entries(document, "", kKeys);
+  if (!items) return fail(items.error());
+  for (const KeyValue& item : *items)
+    if (const Status status = read_entry(item, plant, out); !status) return fail(status.error());
+  return out;
+}
+
+}  // namespace
+
+Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& plant) {
+  try {
+    return read_document(YAML::Load(text), plant);
+  } catch (const YAML::Exception& problem) {
+    return fail(error_at(place_of(problem.mark.line + 1, ""), {}, "is not YAML: " + problem.msg));
+  }
+}
+
+std::string format_sidecar(const Recording& recording) {
+  YAML::Emitter out;
+  out << YAML::BeginMap;
+  const auto text = [&out](const char* key, const std::string& value) {
+    if (!value.empty()) out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
+  };
+  text("recording_id", recording.recording_id);
+  text("asset_id", recording.asset_id);
+  out << YAML::Key << "test" << YAML::Value << std::string(name_of(recording.test));
+  if (recording.start_time) out << YAML::Key << "start_time" << YAML::Value << format_utc(*recording.start_time);
+  const auto known = [](const Series& channel) { return channel.noise_std > 0.0; };
+  if (std::any_of(recording.samples.channels.begin(), recording.samples.channels.end(), known)) {
+    out << YAML::Key << "noise_std" << YAML::Value << YAML::BeginMap;
+    for (const Series& channel : recording.samples.channels)
+      if (known(channel)) out << YAML::Key << channel.name << YAML::Value << channel.noise_std;
+    out << YAML::EndMap;
+  }
+  if (recording.samples.input_hold) out << YAML::Key << "interpolation" << YAML::Value << "hold";
+  text("note", recording.note);
+  out << YAML::EndMap;
+  return std::string(out.c_str()) + "\n";
+}
+
+void apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, Recording& recording) {
+  if (!sidecar.recording_id.empty()) recording.recording_id = sidecar.recording_id;
+  recording.asset_id = sidecar.asset_id;
+  recording.test = sidecar.test;
+  recording.start_time = sidecar.start_time;
+  recording.note = sidecar.note;
+  recording.samples.input_hold = sidecar.interpolation_hold;
+  for (std::size_t index = 0; index < columns.size(); ++index)
+    if (const auto noise = sidecar.noise_std.find(columns[index].name); noise != sidecar.noise_std.end())
+      recording.samples.channels[index].noise_std = noise->second * columns[index].to_si.scale;
+}
+
+}  // namespace sealwatch

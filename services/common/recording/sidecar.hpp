@@ -1,0 +1,34 @@
+// The sidecar NAME.yaml of a recording (INTERFACES section 1); every key is optional, an unknown one is an error.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "sealwatch/core/recording.hpp"
+#include "sealwatch/model/plant_description.hpp"
+#include "services/common/recording/columns.hpp"
+
+namespace sealwatch {
+
+struct Sidecar {
+  std::string recording_id;
+  std::string asset_id;
+  TestKind test = TestKind::pst;
+  std::optional<UtcTime> start_time;
+  std::map<std::string, double> noise_std;  ///< by channel, in the unit of the recording's column
+  bool interpolation_hold = false;          ///< "hold"; false: "linear"
+  std::string note;
+};
+
+/// Reads a sidecar's text. Errors name line and key, not the file.
+[[nodiscard]] Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& plant);
+
+/// The sidecar's text; noise_std in SI.
+[[nodiscard]] std::string format_sidecar(const Recording& recording);
+
+/// Sets what the sidecar says on a recording whose samples came from `columns`: noise_std of channels that were not
+/// recorded is passed over.
+void apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, Recording& recording);
+
+}  // namespace sealwatch

@@ -1,0 +1,154 @@
+// RFC 4180 and every rule of INTERFACES section 1 about the data file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/recording/csv_reader.hpp"
+#include "tests/unit/recording/plant.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Result<ColumnarSamples> read(const std::string& text) {
+  std::istringstream in(text);
+  return read_csv(in, test_plant());
+}
+
+TimeSeries samples_of(const std::string& text) {
+  const Result<ColumnarSamples> result = read(text);
+  EXPECT_TRUE(result) << result.error().describe();
+  return result ? result->samples : TimeSeries{};
+}
+
+std::string error_of(const std::string& text) {
+  const Result<ColumnarSamples> result = read(text);
+  EXPECT_FALSE(result) << "accepted:\n" << text;
+  return result ? "" : result.error().describe();
+}
+
+TEST(Csv, ConvertsUnitsToSi) {
+  const TimeSeries samples = samples_of(
+      "time[ms],pressure_a[bar],pressure_b,flow[L/min],position[mm],shaft_speed[rpm],fluid_temperature[degC],"
+      "valve_state[1]\n0,1.5,2e5,6,60,60,4,-1\n10,2.5,2.1e5,12,61,120,5,1\n");
+  EXPECT_THAT(samples.time_s, ElementsAre(0.0, 0.01));
+  EXPECT_THAT(samples.find("pressure_a")->values, ElementsAre(1.5e5, 2.5e5));
+  EXPECT_THAT(samples.find("pressure_b")->values, ElementsAre(2e5, 2.1e5));
+  EXPECT_DOUBLE_EQ(samples.find("flow")->values[0], 1e-4);
+  EXPECT_THAT(samples.find("position")->values, ElementsAre(0.060, 0.061));
+  EXPECT_DOUBLE_EQ(samples.find("shaft_speed")->values[1], 4.0 * 3.14159265358979323846);
+  EXPECT_THAT(samples.find("fluid_temperature")->values, ElementsAre(277.15, 278.15));
+  EXPECT_THAT(samples.find("valve_state")->values, ElementsAre(-1.0, 1.0));
+  EXPECT_EQ(samples.find("flow")->unit, "m3/s");
+}
+
+TEST(Csv, KeepsJitteredTimesAndMissingRows) {
+  EXPECT_THAT(samples_of("position,time\n1,0.000\n2,0.011\n3,0.0195\n4,0.9\n").time_s,
+              ElementsAre(0.0, 0.011, 0.0195, 0.9));
+}
+
+TEST(Csv, TakesEveryFormThatRfc4180Allows) {
+  const TimeSeries plain = samples_of("time,position\n0,1\n1,2\n");
+  EXPECT_EQ(samples_of("time,position\r\n0,1\r\n1,2\r\n"), plain);                   // CRLF
+  EXPECT_EQ(samples_of("time,position\n0,1\n1,2"), plain);                           // no last line break
+  EXPECT_EQ(samples_of("\xEF\xBB\xBFtime,position\n0,1\n1,2\n"), plain);             // byte order mark
+  EXPECT_EQ(samples_of("\"time\",\"position[m]\"\n\"0\",\"1\"\n1,\"2\"\n"), plain);  // quotes
+  EXPECT_EQ(samples_of("\"time[s]\",position\r\n\"0\",1\r\n\"1\",\"2\""), plain);    // quotes at the very end
+  EXPECT_EQ(samples_of("time, position\n 0, +1\n 1e0,\t0.2e1 \n\n\n"), plain);  // blanks around, blank lines behind
+}
+
+TEST(Csv, QuotedTextMayHoldQuotesCommasAndLineBreaks) {
+  EXPECT_THAT(error_of("time,\"posi\"\"tion,\nx\"\n0,1\n"), HasSubstr("row 1, column 2: 'posi\"tion,?x'"));
+}
+
+TEST(Csv, HeaderErrorsNameRowAndColumn) {
+  EXPECT_THAT(error_of("position,pressure_a\n0,1\n"), HasSubstr("row 1, column time: is missing"));
+  EXPECT_THAT(error_of("time,position,position[mm]\n0,1,1\n"),
+              HasSubstr("row 1, column 3: 'position[mm]': is recorded twice"));
+  EXPECT_THAT(error_of("time,time[ms]\n0,1\n"), HasSubstr("row 1, column 2: 'time[ms]': is recorded twice"));
+  EXPECT_THAT(error_of("time,presure_a\n0,1\n"), HasSubstr("row 1, column 2: 'presure_a'"));
+  EXPECT_THAT(error_of("time,presure_a\n0,1\n"), HasSubstr("did you mean 'pressure_a'?"));
+  EXPECT_THAT(error_of("time,pressure_a[baar]\n0,1\n"),
+              HasSubstr("unit 'baar' is not a known unit; did you mean 'bar'?"));
+  EXPECT_THAT(error_of("time,pressure_a[mm]\n0,1\n"), HasSubstr("unit 'mm' cannot be converted to Pa"));
+  EXPECT_THAT(error_of("time,pressure_a[bar\n0,1\n"), HasSubstr("channel[unit]"));
+  EXPECT_THAT(error_of("time,pressure_a[bar]x\n0,1\n"), HasSubstr("channel[unit]"));
+  EXPECT_THAT(error_of("time;position\n0;1\n"), HasSubstr("separated by commas"));
+  EXPECT_THAT(error_of("time,\n0,1\n"), HasSubstr("row 1, column 2"));
+}
+
+TEST(Csv, SampleErrorsNameRowAndColumn) {
+  EXPECT_THAT(error_of("time,position\n0,1\n1,abc\n"), HasSubstr("row 3, column position: 'abc': must be a number"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1,2x\n2,3\n"), HasSubstr("row 3, column position: '2x': must be a number"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1,\n"), HasSubstr("row 3, column position: the cell is empty"));
+  EXPECT_THAT(error_of("time,position\n0,nan\n"), HasSubstr("row 2, column position: 'nan': must be a finite number"));
+  EXPECT_THAT(error_of("time,position\n0,-inf\n"),
+              HasSubstr("row 2, column position: '-inf': must be a finite number"));
+  EXPECT_THAT(error_of("time,position\n0,1e999\n"), HasSubstr("out of a double's range"));
+  EXPECT_THAT(error_of("time,pressure_a[MPa]\n0,1e305\n"), HasSubstr("out of a double's range"));
+  EXPECT_THAT(error_of("time,position\n0,1,2\n"),
+              HasSubstr("row 2, column 3: '2': the row has 3 cells where the header has 2"));
+  EXPECT_THAT(error_of("time,position\n0\n1,2\n"), HasSubstr("row 2, column position: '0': the row has 1 cells"));
+  EXPECT_THAT(error_of("time,position\n0,1\n\n1,2\n"),
+              HasSubstr("row 4, column 1: follows a blank row; take out row 3"));
+}
+
+TEST(Csv, TimeMustIncrease) {
+  EXPECT_THAT(error_of("time,position\n0,1\n1,2\n0.5,3\n"), HasSubstr("row 4, column time: '0.5': time goes back"));
+  EXPECT_THAT(error_of("position,time[ms]\n0,1\n1,2\n0.5,2\n"), HasSubstr("row 4, column time: '2': time repeats"));
+}
+
+TEST(Csv, QuotingErrorsNameRowAndColumn) {
+  EXPECT_THAT(error_of("time,position\n0,\"1\"x\n"), HasSubstr("row 2, column 2: '1': text follows the closing quote"));
+  EXPECT_THAT(error_of("time,position\n0,1\"2\n\"\n"), HasSubstr("row 2, column 2"));
+  EXPECT_THAT(error_of("time,position\n0,\"1"), HasSubstr("the quoted cell is cut off"));
+}
+
+TEST(Csv, EmptyFiles) {
+  EXPECT_THAT(error_of(""), HasSubstr("row 1, column 1: the file is empty"));
+  EXPECT_THAT(error_of("\xEF\xBB\xBF"), HasSubstr("the file is empty"));
+  EXPECT_THAT(error_of("time,position\n"), HasSubstr("row 2, column time: no samples follow the header"));
+  EXPECT_THAT(error_of("time,position"), HasSubstr("row 2, column time: no samples follow the header"));
+}
+
+TEST(Csv, CutOffLastLine) {
+  EXPECT_THAT(error_of("time,position,pressure_a\n0,1,2\n1,2"),
+              HasSubstr("row 3, column pressure_a: '2': the last line is cut off: 2 cells where the header has 3"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1,2.5e-"),
+              HasSubstr("row 3, column position: '2.5e-': must be a number: the last line is cut off"));
+  EXPECT_THAT(error_of("time,position\n0,1.250\n1,1.500\n2,1.7"),
+              HasSubstr("row 4, column position: '1.7': the last line is cut off inside this number"));
+  EXPECT_THAT(error_of("time,position\n0,1.25e-05\n1,1.50e-05\n2,1.75e-0"), HasSubstr("cut off inside this number"));
+  EXPECT_THAT(error_of("time,position\n0,11373266.3\n1,11373262.9\n2,1137"), HasSubstr("cut off inside this number"));
+}
+
+TEST(Csv, EveryCutOfAFileIsAnErrorOrAValidShorterRecording) {
+  const std::string whole = "time[s],position[m]\n0.00,1.25e-05\n0.01,1.50e-05\n0.02,1.75e-05\n";
+  const TimeSeries all = samples_of(whole);
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const Result<ColumnarSamples> cut = read(whole.substr(0, length));
+    if (!cut) continue;
+    const std::size_t rows = cut->samples.time_s.size();
+    ASSERT_LE(rows, 3U);
+    for (std::size_t row = 1; row < rows; ++row)  // the first row has none before it to be judged by
+      EXPECT_EQ(cut->samples.channels[0].values[row], all.channels[0].values[row]) << "cut to " << length << " bytes";
+  }
+}
+
+TEST(Csv, RowsMayStraddleBlocks) {  // more than the reader's block of 1 MiB
+  std::string text = "time[s],position[m],\"valve_state\"\r\n";
+  for (int row = 0; row < 100000; ++row) text += std::to_string(row) + ",0.0" + std::to_string(row) + ",\"1\"\r\n";
+  const Result<ColumnarSamples> result = read(text);
+  ASSERT_TRUE(result) << result.error().describe();
+  ASSERT_EQ(result->samples.time_s.size(), 100000U);
+  for (int row = 0; row < 100000; ++row)
+    ASSERT_EQ(result->samples.channels[0].values[row], std::stod("0.0" + std::to_string(row)));
+  EXPECT_EQ(result->content_hash, content_hash(text));
+}
+
+}  // namespace
+}  // namespace sealwatch

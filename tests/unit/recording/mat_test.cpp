@@ -1,0 +1,156 @@
+// MATLAB files, version 5 (plain and compressed) and 7.3.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "tests/unit/recording/plant.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+struct Format {
+  const char* name;
+  mat_ft version;
+  matio_compression compression;
+};
+constexpr std::array kFormats = {Format{"v5", MAT_FT_MAT5, MAT_COMPRESSION_NONE},
+                                 Format{"v5_compressed", MAT_FT_MAT5, MAT_COMPRESSION_ZLIB},
+                                 Format{"v73", MAT_FT_MAT73, MAT_COMPRESSION_NONE}};
+
+class MatWriter {
+ public:
+  MatWriter(const std::string& path, const Format& format)
+      : file_(Mat_CreateVer(path.c_str(), nullptr, format.version)), compression_(format.compression) {}
+  ~MatWriter() { Mat_Close(file_); }
+  MatWriter(const MatWriter&) = delete;
+  MatWriter& operator=(const MatWriter&) = delete;
+
+  void column(const char* name, std::vector<double> values) {
+    put(name, MAT_C_DOUBLE, MAT_T_DOUBLE, {values.size(), 1}, values.data());
+  }
+  void put(const char* name, matio_classes kind, matio_types type, std::array<std::size_t, 2> size, void* data) {
+    matvar_t* variable = Mat_VarCreate(name, kind, type, 2, size.data(), data, 0);
+    Mat_VarWrite(file_, variable, compression_);
+    Mat_VarFree(variable);
+  }
+
+ private:
+  mat_t* file_;
+  matio_compression compression_;
+};
+
+class MatRecording : public ScratchFolder, public ::testing::WithParamInterface<Format> {
+ protected:
+  [[nodiscard]] std::string error_of(const std::string& file) const {
+    const Result<Recording> result = read_recording(file, test_plant());
+    EXPECT_FALSE(result) << "accepted " << file;
+    return result ? "" : result.error().describe();
+  }
+};
+
+TEST_P(MatRecording, ReadsVectorsOfEveryNumericClass) {
+  {
+    MatWriter writer(path("a.mat"), GetParam());
+    writer.column("time", {0.0, 0.01, 0.02});
+    std::array<float, 3> pressure = {1.5F, 2.5F, 3.5F};
+    writer.put("pressure_a", MAT_C_SINGLE, MAT_T_SINGLE, {1, 3}, pressure.data());  // a row vector
+    std::array<std::int8_t, 3> valve = {-1, 0, 1};
+    writer.put("valve_state", MAT_C_INT8, MAT_T_INT8, {3, 1}, valve.data());
+    writer.column("position", {0.06, 0.061, 0.062});
+  }
+  std::ofstream(path("a.yaml")) << "asset_id: X1\nnoise_std: {pressure_a: 3}\n";
+  const Result<Recording> result = read_recording(path("a.mat"), test_plant());
+  ASSERT_TRUE(result) << result.error().describe();
+  EXPECT_EQ(result->asset_id, "X1");
+  EXPECT_THAT(result->samples.time_s, ElementsAre(0.0, 0.01, 0.02));
+  EXPECT_THAT(result->samples.find("pressure_a")->values, ElementsAre(1.5, 2.5, 3.5));
+  EXPECT_EQ(result->samples.find("pressure_a")->noise_std, 3.0);
+  EXPECT_EQ(result->samples.find("pressure_a")->unit, "Pa");
+  EXPECT_THAT(result->samples.find("valve_state")->values, ElementsAre(-1.0, 0.0, 1.0));
+  EXPECT_THAT(result->samples.find("position")->values, ElementsAre(0.06, 0.061, 0.062));
+  std::ifstream bytes(path("a.mat"), std::ios::binary);
+  EXPECT_EQ(result->content_hash, content_hash(std::string(std::istreambuf_iterator<char>(bytes), {})));
+}
+
+TEST_P(MatRecording, BadVectorsAreErrors) {
+  const auto error_with = [this](auto&& fill) {
+    {
+      MatWriter writer(path("bad.mat"), GetParam());
+      fill(writer);
+    }
+    return error_of(path("bad.mat"));
+  };
+  EXPECT_THAT(error_with([](MatWriter& w) { w.column("position", {1.0}); }),
+              HasSubstr("bad.mat: row 1, column time: is missing"));
+  EXPECT_THAT(error_with([](MatWriter& w) {
+                w.column("time", {0.0});
+                w.column("positio", {1.0});
+              }),
+              HasSubstr("did you mean 'position'?"));
+  EXPECT_THAT(error_with([](MatWriter& w) {
+                w.column("time", {0.0, 1.0});
+                w.column("position", {1.0});
+              }),
+              HasSubstr("row 1, column position: has 1 samples where time has 2"));
+  EXPECT_THAT(error_with([](MatWriter& w) {
+                w.column("time", {0.0, 1.0, 1.0});
+              }),
+              HasSubstr("row 3, column time: '1.000000': time must increase"));
+  EXPECT_THAT(error_with([](MatWriter& w) {
+                w.column("time", {0.0, 1.0});
+                w.column("position", {0.0, std::nan("")});
+              }),
+              HasSubstr("row 2, column position: 'nan': must be a finite number"));
+  EXPECT_THAT(error_with([](MatWriter& w) {
+                std::array<double, 4> square{};
+                w.put("time", MAT_C_DOUBLE, MAT_T_DOUBLE, {2, 2}, square.data());
+              }),
+              HasSubstr("row 1, column time: must be one vector"));
+  EXPECT_THAT(error_with([](MatWriter& w) {
+                std::string text = "abc";
+                w.put("time", MAT_C_CHAR, MAT_T_UTF8, {1, 3}, text.data());
+              }),
+              HasSubstr("must be one vector"));
+}
+
+TEST_P(MatRecording, ACutFileIsAnError) {
+  {
+    MatWriter writer(path("a.mat"), GetParam());
+    std::vector<double> time, position;
+    for (int row = 0; row < 500; ++row) {
+      time.push_back(0.01 * row);
+      position.push_back(std::sin(row));
+    }
+    writer.column("time", time);
+    writer.column("position", position);
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path("a.mat"));
+  for (const double share : {0.999, 0.9, 0.6, 0.3, 0.01, 0.0}) {
+    std::filesystem::copy_file(path("a.mat"), path("cut.mat"), std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(path("cut.mat"), static_cast<std::uintmax_t>(share * static_cast<double>(size)));
+    EXPECT_THAT(error_of(path("cut.mat")), HasSubstr("cut.mat: ")) << share;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, MatRecording, ::testing::ValuesIn(kFormats),
+                         [](const auto& format) { return format.param.name; });
+
+class OtherFile : public ScratchFolder {};
+
+TEST_F(OtherFile, CsvNamedMatIsAnError) {
+  const Result<Recording> result = read_recording(write("a.mat", "time,position\n0,1\n"), test_plant());
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().describe(), HasSubstr("a.mat: is not a MATLAB file"));
+}
+
+}  // namespace
+}  // namespace sealwatch

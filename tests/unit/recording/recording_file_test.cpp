@@ -1,0 +1,132 @@
+// Files as a whole: data file, sidecar, hash, writing and reading back.
+#include "services/common/recording/recording_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sealwatch/core/text.hpp"
+#include "tests/unit/recording/plant.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::HasSubstr;
+
+class RecordingFile : public ScratchFolder {
+ protected:
+  static Recording read(const std::string& file) {
+    Result<Recording> result = read_recording(file, test_plant());
+    EXPECT_TRUE(result) << result.error().describe();
+    return result ? *result : Recording{};
+  }
+  static std::string error_of(const std::string& file) {
+    const Result<Recording> result = read_recording(file, test_plant());
+    EXPECT_FALSE(result) << "accepted " << file;
+    return result ? "" : result.error().describe();
+  }
+};
+
+Recording example() {
+  Recording out;
+  out.recording_id = "2031-04: \"PST\"";
+  out.asset_id = "XT03-MV2";
+  out.test = TestKind::other;
+  out.start_time = parse_utc("2031-04-12T03:00:00.25Z").value();
+  out.note = "two\nlines, # and: a 'colon'";
+  out.samples.input_hold = true;
+  out.samples.time_s = {0.0, 0.1, 1.0 / 3.0};
+  out.samples.channels = {
+      {.name = "pressure_a", .unit = "Pa", .noise_std = 1.0e4 / 3.0, .values = {1e7 / 3.0, -1e-5, 5e-324}},
+      {.name = "position",
+       .unit = "m",
+       .noise_std = 0.0,
+       .values = {0.06, 0.1 + 0.2, std::numeric_limits<double>::max()}}};
+  return out;
+}
+
+TEST_F(RecordingFile, WritesAndReadsBackTheVeryWordsAndNumbers) {
+  const Recording written = example();
+  ASSERT_TRUE(write_recording_csv(written, path("a.csv")));
+  const Recording back = read(path("a.csv"));
+  EXPECT_EQ(back.recording_id, written.recording_id);
+  EXPECT_EQ(back.asset_id, written.asset_id);
+  EXPECT_EQ(back.test, written.test);
+  EXPECT_EQ(back.start_time, written.start_time);
+  EXPECT_EQ(back.note, written.note);
+  EXPECT_EQ(back.samples, written.samples);
+  EXPECT_FALSE(std::filesystem::exists(path("a.csv.part")));
+}
+
+TEST_F(RecordingFile, RoundedFilesReadBackToTheirPrintedDigits) {
+  const Recording written = example();
+  ASSERT_TRUE(write_recording_csv(written, path("a.csv"), 6));
+  const Recording once = read(path("a.csv"));
+  EXPECT_NEAR(once.samples.channels[0].values[0], 1e7 / 3.0, 5.0);  // half a unit of the sixth digit of 3333333
+  EXPECT_EQ(once.samples.time_s, written.samples.time_s);           // times stay exact
+  ASSERT_TRUE(write_recording_csv(once, path("b.csv"), 6));
+  EXPECT_EQ(read(path("b.csv")).content_hash, once.content_hash);
+}
+
+TEST_F(RecordingFile, WithoutSidecarOnlyTheFileSpeaks) {
+  const std::string text = "time,position\n0,1\n";
+  const Recording recording = read(write("2009-03.csv", text));
+  EXPECT_EQ(recording.file, path("2009-03.csv"));
+  EXPECT_EQ(recording.recording_id, "2009-03");
+  EXPECT_EQ(recording.asset_id, "");
+  EXPECT_FALSE(recording.start_time);
+  EXPECT_EQ(recording.content_hash, content_hash(text));
+}
+
+TEST_F(RecordingFile, NoiseIsInTheColumnsUnit) {
+  write("a.yaml", "noise_std: {pressure_a: 0.1, fluid_temperature: 0.5, flow: 1}\n");
+  const Recording recording = read(write("a.csv", "time,fluid_temperature[degC],pressure_a[bar]\n0,4,1\n"));
+  EXPECT_EQ(recording.samples.find("pressure_a")->noise_std, 1e4);
+  EXPECT_EQ(recording.samples.find("fluid_temperature")->noise_std, 0.5);  // a difference: no offset
+}
+
+TEST_F(RecordingFile, TheSidecarDoesNotChangeTheHash) {
+  const std::string file = write("a.csv", "time,position\n0,1\n");
+  const std::string before = read(file).content_hash;
+  write("a.yaml", "note: mended\n");
+  EXPECT_EQ(read(file).content_hash, before);
+}
+
+TEST_F(RecordingFile, ErrorsNameTheFile) {
+  EXPECT_THAT(error_of(path("none.csv")), HasSubstr("none.csv: cannot be opened: No such file"));
+  EXPECT_THAT(error_of(path(".")), HasSubstr("is a directory"));
+  EXPECT_THAT(error_of(write("bad.csv", "time,position\n0,x\n")), HasSubstr("bad.csv: row 2, column position: 'x'"));
+  write("side.yaml", "tset: pst\n");
+  EXPECT_THAT(error_of(write("side.csv", "time,position\n0,1\n")), HasSubstr("side.yaml: line 1, key tset"));
+  write("long.yaml", "note: " + std::string(kLongestSidecar_bytes, 'x'));
+  EXPECT_THAT(error_of(write("long.csv", "time,position\n0,1\n")), HasSubstr("long.yaml: is longer than"));
+}
+
+TEST_F(RecordingFile, WritingNowhereIsAnError) {
+  const Status status = write_recording_csv(example(), path("no/such/folder/a.csv"));
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().describe(), HasSubstr("a.yaml: cannot be written"));
+}
+
+TEST(SharedRecordings, AllCanBeRead) {
+  const std::filesystem::path folder = std::filesystem::path(SEALWATCH_SHARED_DATA) / "pst_life" / "xt03-mv2";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the public recordings are not there: " << folder;
+  PlantDescription plant = test_plant();
+  for (const auto& [name, unit] : {std::pair{"motor_current", "A"}, {"velocity", "m/s"}})
+    plant.channels.push_back({.name = name, .unit = unit, .meaning = "of the test"});
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".csv") continue;
+    const Result<Recording> recording = read_recording(entry.path().string(), plant);
+    ASSERT_TRUE(recording) << recording.error().describe();
+    EXPECT_TRUE(recording->start_time) << entry.path();
+    EXPECT_GE(recording->samples.time_s.size(), 300U);
+    ++count;
+  }
+  EXPECT_GT(count, 100);
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,0 +1,68 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/common/recording/sidecar.hpp"
+#include "tests/unit/recording/plant.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string error_of(const std::string& text) {
+  const Result<Sidecar> result = parse_sidecar(text, test_plant());
+  EXPECT_FALSE(result) << "accepted:\n" << text;
+  return result ? "" : result.error().describe();
+}
+
+TEST(SidecarText, ReadsEveryKey) {
+  const Result<Sidecar> result = parse_sidecar(
+      "recording_id: 2031-04-PST-XT03-MV2\nasset_id: XT03-MV2\ntest: full_stroke\nstart_time: 2031-04-12T03:00:00Z\n"
+      "noise_std: {pressure_a: 1.0e4, position: 5e-6}\ninterpolation: hold\nnote: free text\n",
+      test_plant());
+  ASSERT_TRUE(result) << result.error().describe();
+  EXPECT_EQ(result->recording_id, "2031-04-PST-XT03-MV2");
+  EXPECT_EQ(result->asset_id, "XT03-MV2");
+  EXPECT_EQ(result->test, TestKind::full_stroke);
+  ASSERT_TRUE(result->start_time);
+  EXPECT_EQ(format_utc(*result->start_time), "2031-04-12T03:00:00Z");
+  EXPECT_EQ(result->noise_std.at("pressure_a"), 1.0e4);
+  EXPECT_EQ(result->noise_std.at("position"), 5e-6);
+  EXPECT_TRUE(result->interpolation_hold);
+  EXPECT_EQ(result->note, "free text");
+}
+
+TEST(SidecarText, EveryKeyIsOptional) {
+  for (const char* text : {"", "# nothing\n", "{}\n", "note:\n", "noise_std:\n"}) {
+    const Result<Sidecar> result = parse_sidecar(text, test_plant());
+    ASSERT_TRUE(result) << result.error().describe();
+    EXPECT_EQ(result->test, TestKind::pst);
+    EXPECT_FALSE(result->start_time);
+    EXPECT_TRUE(result->noise_std.empty());
+  }
+}
+
+TEST(SidecarText, ErrorsNameLineAndKey) {
+  EXPECT_THAT(error_of("test: pst\nassetid: X\n"),
+              HasSubstr("line 2, key assetid: 'X': is not a known key; did you mean 'asset_id'?"));
+  EXPECT_THAT(error_of("noise_std:\n  presure_a: 1\n"),
+              HasSubstr("line 2, key noise_std.presure_a: '1': is not a known key; did you mean 'pressure_a'?"));
+  EXPECT_THAT(error_of("noise_std: {position: fine}\n"),
+              HasSubstr("line 1, key noise_std.position: 'fine': must be a positive number"));
+  EXPECT_THAT(error_of("noise_std: {position: 0}\n"), HasSubstr("must be a positive number"));
+  EXPECT_THAT(error_of("noise_std: {position: .inf}\n"), HasSubstr("must be a positive number"));
+  EXPECT_THAT(error_of("noise_std: {position: .nan}\n"), HasSubstr("must be a positive number"));
+  EXPECT_THAT(error_of("noise_std: [1, 2]\n"), HasSubstr("key noise_std: must be a mapping"));
+  EXPECT_THAT(error_of("test: pts\n"), HasSubstr("line 1, key test: 'pts': must be pst, full_stroke or other"));
+  EXPECT_THAT(error_of("start_time: yesterday\n"), HasSubstr("line 1, key start_time: 'yesterday'"));
+  EXPECT_THAT(error_of("interpolation: cubic\n"),
+              HasSubstr("line 1, key interpolation: 'cubic': must be hold or linear"));
+  EXPECT_THAT(error_of("note: a\nnote: b\n"), HasSubstr("line 2, key note: 'b': stands there twice"));
+  EXPECT_THAT(error_of("note: {a: b}\n"), HasSubstr("line 1, key note: must be plain text"));
+  EXPECT_THAT(error_of("- pst\n"), HasSubstr("must be a mapping"));
+  EXPECT_THAT(error_of("[a, b]: c\n"), HasSubstr("a key must be plain text"));
+  EXPECT_THAT(error_of("test: pst\nnote: [open\n"), HasSubstr("is not YAML"));
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,0 +1,30 @@
+// Identity of messages: stamps that a layer must not see, and ids for senders that give none.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sealwatch/message/topics.hpp"
+
+namespace sealwatch {
+
+/// Whether a message belongs to a numbered stream (message/service.hpp). Foreign senders' messages need not.
+[[nodiscard]] bool is_numbered(const Message& message);
+
+/// The message as a layer sees it: writer id, sequence and publishing time cleared, as they differ from run to run and
+/// a layer's conclusions must not.
+[[nodiscard]] Message without_stamps(Message message);
+
+/// What is known of inputs that came before.
+struct EarlierInputs {
+  std::function<bool(const std::string& message_id)> has;
+  std::function<std::string(Topic topic, const std::string& asset_id)> last_unnumbered;
+};
+
+/// The id of an input: its own; else, for a sender that gives none, "<topic>/<asset>/<hash of content>", with "#2",
+/// "#3" behind it for later messages of equal content. Nothing when the message was received before: a sender's
+/// last message comes again whenever a service restarts.
+[[nodiscard]] std::optional<std::string> identify(const Message& message, const EarlierInputs& earlier);
+
+}  // namespace sealwatch

@@ -1,0 +1,299 @@
+#include "services/common/runtime/layer_runner.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "services/common/runtime/identity.hpp"
+#include "services/common/runtime/log.hpp"
+
+namespace sealwatch {
+namespace {
+
+using std::chrono::steady_clock;
+
+/// Items taken from the bus at once, and messages sent again at once.
+constexpr std::size_t kBatch = 64;
+constexpr std::chrono::milliseconds kSecond{1000};
+
+double steady_seconds() { return std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count(); }
+
+/// Samples come many times a second; what is concluded from whole tests comes once a month.
+LogLevel level_of(const Message& message) {
+  const Topic topic = topic_of(message);
+  return topic == Topic::raw_samples || topic == Topic::sample_block ? LogLevel::debug : LogLevel::info;
+}
+
+bool contains(std::span<const Topic> topics, Topic topic) { return std::ranges::find(topics, topic) != topics.end(); }
+
+}  // namespace
+
+LayerRunner::LayerRunner(Layer& layer, Bus& bus, Bus& heartbeat_bus, Journal& journal, const Clock& clock,
+                         RunnerOptions options)
+    : layer_(layer),
+      bus_(bus),
+      heartbeat_bus_(heartbeat_bus),
+      journal_(journal),
+      clock_(clock),
+      options_(std::move(options)) {}
+
+Status LayerRunner::start() {
+  // Subscribed first: what comes while the past is restored waits on the bus.
+  if (Status status = bus_.subscribe_service_topics(); !status) return status;
+  if (Status status = bus_.subscribe(layer_.inputs()); !status) return status;
+  const auto positions = journal_.positions();
+  if (!positions) return fail(positions.error());
+  for (const StreamPosition& known : *positions) committed_[{known.topic, known.writer_id}] = known.sequence;
+  reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
+
+  std::size_t restored = 0;
+  const Status outputs = journal_.for_each_output([&](const Message& output) {
+    layer_.restore(output);
+    replaying_ = header_of(output).replay;
+    ++restored;
+    return Status();
+  });
+  if (!outputs) return outputs;
+  const std::uint64_t open = journal_.open_inputs();
+  const Status inputs = in_batch([&] {
+    return journal_.for_each_open_input([&](const Message& input) {
+      const Conclusion conclusion = layer_.receive(without_stamps(input));
+      replaying_ = header_of(input).replay;
+      return keep(conclusion, {});
+    });
+  });
+  if (!inputs) return inputs;
+  log_event(LogLevel::info, "started",
+            {{"writer", journal_.writer_id()},
+             {"restored_outputs", std::to_string(restored)},
+             {"open_inputs", std::to_string(open)}});
+  if (Status status = publish_latest(true); !status) return status;
+  const UtcTime now = clock_.now();
+  heartbeat_ = std::make_unique<Heartbeat>(heartbeat_bus_, clock_,
+                                           ServiceStatus{.service = std::string(layer_.name()),
+                                                         .writer_id = journal_.writer_id(),
+                                                         .version = options_.version,
+                                                         .started_ns = now.nanoseconds,
+                                                         .publishing_time_ns = now.nanoseconds,
+                                                         .process_id = ::getpid(),
+                                                         .pending_inputs = 0,
+                                                         .written = {},
+                                                         .received = {},
+                                                         .state = "running",
+                                                         .last_error = {}},
+                                           options_.heartbeat);
+  report_progress();
+  return {};
+}
+
+Status LayerRunner::run(const std::atomic<bool>& stop) {
+  while (!stop) {
+    const auto until_next_second =
+        std::chrono::duration_cast<std::chrono::milliseconds>(last_second_ + kSecond - steady_clock::now());
+    const auto timeout = std::clamp(until_next_second, std::chrono::milliseconds(1), kSecond);
+    if (Status status = step(timeout); !status) return status;
+  }
+  return {};
+}
+
+Status LayerRunner::step(std::chrono::milliseconds timeout) {
+  // A slow layer takes no more from the bus than it can soon conclude from, so that the bus holds the writers back.
+  if (ready_.size() < kBatch) {
+    const bool work_waits = !ready_.empty() || !resends_.empty();
+    std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);
+    drained_ = items.size() < kBatch;
+    for (BusItem& item : items) sort_in(std::move(item));
+  }
+  if (!ready_.empty())
+    if (Status status = in_batch([this] { return take_ready(); }); !status) return status;
+  if (Status status = serve_resends(); !status) return status;
+  send_requests();
+  if (steady_clock::now() - last_second_ >= kSecond) {
+    last_second_ = steady_clock::now();
+    if (Status status = let_time_pass(); !status) return status;
+  }
+  report_progress();
+  return {};
+}
+
+void LayerRunner::sort_in(BusItem item) {
+  std::visit([this](auto& content) { sort_in(std::move(content)); }, item);
+}
+
+void LayerRunner::sort_in(Message message) {
+  if (!contains(layer_.inputs(), topic_of(message))) return;
+  if (!is_numbered(message)) {
+    ready_.push_back(std::move(message));
+    return;
+  }
+  for (Message& next : reader_->accept(std::move(message))) ready_.push_back(std::move(next));
+}
+
+void LayerRunner::sort_in(const ServiceStatus& status) {
+  if (status.writer_id == journal_.writer_id()) return;
+  for (const StreamPosition& written : status.written) {
+    const auto topic = value_of<Topic>(written.topic);
+    if (!topic || !contains(layer_.inputs(), *topic)) continue;
+    if (reader_->note_written(written, steady_seconds()))
+      log_event(LogLevel::warn, "writer was set back, reading its stream again from the start",
+                {{"service", status.service}, {"writer", written.writer_id}, {"topic", written.topic}});
+  }
+}
+
+void LayerRunner::sort_in(const ResendRequest& request) {
+  const auto topic = value_of<Topic>(request.topic);
+  if (request.writer_id != journal_.writer_id() || !topic || !journal_.written().contains(*topic)) return;
+  log_event(LogLevel::info, "sending again",
+            {{"topic", request.topic},
+             {"first", std::to_string(request.first_sequence)},
+             {"last", std::to_string(request.last_sequence)},
+             {"for", request.requested_by}});
+  resends_.add({*topic, std::max<std::uint64_t>(request.first_sequence, 1),
+                std::min(request.last_sequence, journal_.written().at(*topic))});
+}
+
+Status LayerRunner::in_batch(const std::function<Status()>& work) {
+  Status status = journal_.begin();
+  if (status) status = work();
+  if (status) status = journal_.commit();
+  if (!status) {
+    journal_.rollback();
+    return status;
+  }
+  for (const auto& [stream, sequence] : uncommitted_) committed_[stream] = sequence;
+  uncommitted_.clear();
+  for (const Message& message : std::exchange(outbox_, {})) publish(message, "concluded");
+  return {};
+}
+
+Status LayerRunner::take_ready() {
+  const auto begin = steady_clock::now();
+  do {
+    const Message message = std::move(ready_.front());
+    ready_.pop_front();
+    if (Status status = take(message); !status) return status;
+  } while (!ready_.empty() && steady_clock::now() - begin < options_.batch_time);
+  return {};
+}
+
+Status LayerRunner::take(const Message& message) {
+  Error problem;
+  const auto value_of_result = [&problem]<class T>(Result<T> result) {
+    if (!result) problem = result.error();
+    return std::move(result).value_or(T());
+  };
+  const EarlierInputs earlier = {
+      .has = [&](const std::string& known) { return value_of_result(journal_.has_input(known)); },
+      .last_unnumbered =
+          [&](Topic topic, const std::string& asset) {
+            return value_of_result(journal_.last_unnumbered_input(topic, asset));
+          }};
+  const auto id = identify(message, earlier);
+  if (!problem.rule.empty()) return fail(problem);
+  if (is_numbered(message)) {
+    const Header& header = header_of(message);
+    const StreamPosition position{std::string(name_of(topic_of(message))), header.writer_id, header.stream_sequence};
+    if (Status status = journal_.set_position(position); !status) return status;
+    uncommitted_[{position.topic, position.writer_id}] = position.sequence;
+  }
+  if (!id) return {};
+  Message input = message;
+  header_of(input).message_id = *id;
+  replaying_ = header_of(input).replay;
+  log_message(LogLevel::debug, "received", input);
+  const Conclusion conclusion = layer_.receive(without_stamps(input));
+  const bool consumed = std::ranges::find(conclusion.consumed, *id) != conclusion.consumed.end();
+  if (Status status = journal_.add_input(input, clock_.now(), consumed); !status) return status;
+  return keep(conclusion, *id);
+}
+
+Status LayerRunner::keep(const Conclusion& conclusion, const std::string& input_id) {
+  for (const Message& output : conclusion.outputs) {
+    auto kept = journal_.add_output(output, clock_.now());
+    if (!kept) return fail(kept.error());
+    if (*kept) outbox_.push_back(std::move(**kept));
+  }
+  for (const std::string& id : conclusion.consumed) {
+    if (id == input_id) continue;
+    if (Status status = journal_.consume(id); !status) return status;
+  }
+  return {};
+}
+
+Status LayerRunner::let_time_pass() {
+  if (options_.local_inputs)
+    for (Message& message : options_.local_inputs()) ready_.push_back(std::move(message));
+  if (replaying_) return {};
+  const Conclusion conclusion = layer_.tick(clock_.now());
+  if (conclusion.outputs.empty() && conclusion.consumed.empty()) return {};
+  return in_batch([&] { return keep(conclusion, {}); });
+}
+
+Status LayerRunner::serve_resends() {
+  const auto range = resends_.take(kBatch);
+  if (!range) return {};
+  const auto messages = journal_.outputs(range->topic, range->first, range->last, kBatch);
+  if (!messages) return fail(messages.error());
+  for (const Message& message : *messages) {
+    publish(message, "sent again");
+    sent_again_[{topic_of(message), asset_of(message)}] = header_of(message).stream_sequence;
+  }
+  return resends_.empty() ? publish_latest(false) : Status();
+}
+
+/// A late subscriber gets what each writer published last of every asset, which must be the latest: at the start (all
+/// of them), and after older messages were sent again.
+Status LayerRunner::publish_latest(bool all) {
+  if (!all && sent_again_.empty()) return {};
+  const auto latest = journal_.latest_outputs();
+  if (!latest) return fail(latest.error());
+  for (const Message& message : *latest) {
+    const auto sent = sent_again_.find({topic_of(message), asset_of(message)});
+    if (all || (sent != sent_again_.end() && sent->second < header_of(message).stream_sequence))
+      publish(message, "published again");
+  }
+  sent_again_.clear();
+  return {};
+}
+
+void LayerRunner::send_requests() {
+  if (!drained_ || !ready_.empty()) return;
+  for (const ResendRequest& request : reader_->requests(steady_seconds())) {
+    log_event(LogLevel::info, "asking again",
+              {{"topic", request.topic},
+               {"writer", request.writer_id},
+               {"first", std::to_string(request.first_sequence)},
+               {"last", std::to_string(request.last_sequence)}});
+    if (Status status = bus_.publish(request); !status)
+      log_event(LogLevel::warn, "request not published", {{"error", status.error().describe()}});
+  }
+}
+
+void LayerRunner::publish(const Message& message, std::string_view event) {
+  log_message(event == "concluded" ? level_of(message) : LogLevel::debug, event, message);
+  const Status published = bus_.publish(message);
+  if (published) return;
+  // Its readers will miss it and ask for it: it is in the journal.
+  last_error_ = published.error().describe();
+  log_message(LogLevel::warn, "not published", message, {{"error", last_error_}});
+}
+
+void LayerRunner::report_progress() {
+  std::vector<StreamPosition> written;
+  for (const auto& [topic, sequence] : journal_.written())
+    written.push_back({std::string(name_of(topic)), journal_.writer_id(), sequence});
+  std::vector<StreamPosition> received;
+  for (const Key& stream : reader_->active()) {
+    const auto position = committed_.find(stream);
+    received.push_back({stream.first, stream.second, position == committed_.end() ? 0 : position->second});
+  }
+  heartbeat_->update([&](ServiceStatus& status) {
+    status.pending_inputs = journal_.open_inputs() + ready_.size();
+    status.written = std::move(written);
+    status.received = std::move(received);
+    status.last_error = last_error_;
+  });
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,96 @@
+// Runs one layer over a bus with a journal, by the contract of port/layer.hpp and the stream protocol of
+// message/service.hpp.
+//
+//   receive -> put streams in order -> [journal: inputs, conclusions, positions: one transaction] -> publish
+//
+// What is published was committed before; what was committed and not published, because the process was killed in
+// between, is asked for by its readers, as the heartbeat says how far each stream goes. A layer that was stopped at any
+// point and is run again on the same journal ends with the same outputs.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sealwatch/port/bus.hpp"
+#include "sealwatch/port/layer.hpp"
+#include "services/common/runtime/heartbeat.hpp"
+#include "services/common/runtime/resend_queue.hpp"
+#include "services/common/runtime/stream_reader.hpp"
+#include "services/common/store/journal.hpp"
+
+namespace sealwatch {
+
+struct RunnerOptions {
+  std::string version = {};
+  Heartbeat::Options heartbeat = {};
+  /// A batch is committed when the layer has computed for this long.
+  std::chrono::milliseconds batch_time{100};
+  /// Inputs that come from no bus (recordings dropped into a directory), asked for about once a second. A message that
+  /// comes twice is taken once, by its id.
+  std::function<std::vector<Message>()> local_inputs = {};
+  StreamReader::Limits streams = {};
+};
+
+class LayerRunner {
+ public:
+  /// Everything must outlive the runner. `heartbeat_bus` is used by a thread of the runner's own.
+  LayerRunner(Layer& layer, Bus& bus, Bus& heartbeat_bus, Journal& journal, const Clock& clock,
+              RunnerOptions options = {});
+
+  /// Subscribes, gives the layer its past back, publishes the last state of every asset.
+  [[nodiscard]] Status start();
+  /// One round: takes what the bus has (waiting at most `timeout`), concludes, commits, publishes, serves requests.
+  /// After an Error the runner cannot go on: the layer may be ahead of the journal. Start again from the journal.
+  [[nodiscard]] Status step(std::chrono::milliseconds timeout);
+  /// Steps until `stop` is set (then wake the bus).
+  [[nodiscard]] Status run(const std::atomic<bool>& stop);
+  /// Whether nothing waits to be concluded, sent again or filled up, as far as this side knows.
+  [[nodiscard]] bool is_idle() const { return ready_.empty() && resends_.empty() && drained_; }
+
+ private:
+  using Key = std::pair<std::string, std::string>;  // topic, writer id
+
+  void sort_in(BusItem item);
+  void sort_in(Message message);
+  void sort_in(const ServiceStatus& status);
+  void sort_in(const ResendRequest& request);
+  /// Runs `work` inside a transaction and publishes what it concluded.
+  [[nodiscard]] Status in_batch(const std::function<Status()>& work);
+  [[nodiscard]] Status take_ready();
+  [[nodiscard]] Status take(const Message& message);
+  [[nodiscard]] Status keep(const Conclusion& conclusion, const std::string& input_id);
+  [[nodiscard]] Status let_time_pass();
+  [[nodiscard]] Status serve_resends();
+  [[nodiscard]] Status publish_latest(bool all);
+  void send_requests();
+  void publish(const Message& message, std::string_view event);
+  void report_progress();
+
+  Layer& layer_;
+  Bus& bus_;
+  Bus& heartbeat_bus_;
+  Journal& journal_;
+  const Clock& clock_;
+  RunnerOptions options_;
+  std::unique_ptr<StreamReader> reader_;
+  std::deque<Message> ready_;  ///< inputs in order, not yet taken
+  std::vector<Message> outbox_;
+  std::map<Key, std::uint64_t> committed_;                             ///< positions in the journal
+  std::map<Key, std::uint64_t> uncommitted_;                           ///< positions of the running batch
+  std::map<std::pair<Topic, std::string>, std::uint64_t> sent_again_;  ///< last sequence by topic and asset
+  ResendQueue resends_;
+  bool drained_ = false;    ///< the bus had nothing more at the last look
+  bool replaying_ = false;  ///< the last input was a recording played back: time does not pass
+  std::string last_error_;
+  std::chrono::steady_clock::time_point last_second_{};
+  std::unique_ptr<Heartbeat> heartbeat_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,94 @@
+#include "services/common/runtime/log.hpp"
+
+#include <spdlog/sinks/rotating_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace sealwatch {
+namespace {
+
+std::shared_ptr<spdlog::logger>& logger() {
+  static std::shared_ptr<spdlog::logger> instance;
+  return instance;
+}
+
+spdlog::level::level_enum spdlog_level(LogLevel level) {
+  switch (level) {
+    case LogLevel::trace:
+      return spdlog::level::trace;
+    case LogLevel::debug:
+      return spdlog::level::debug;
+    case LogLevel::info:
+      return spdlog::level::info;
+    case LogLevel::warn:
+      return spdlog::level::warn;
+    case LogLevel::error:
+      break;
+  }
+  return spdlog::level::err;
+}
+
+/// The value as it stands, or in quotes where a reader could not tell where it ends.
+std::string quoted(const std::string& value) {
+  if (!value.empty() && value.find_first_of(" \"\n\t=") == std::string::npos) return value;
+  std::string text = "\"";
+  for (const char letter : value) {
+    if (letter == '"' || letter == '\\') text += '\\';
+    text += letter == '\n' ? ' ' : letter;
+  }
+  return text + "\"";
+}
+
+spdlog::sink_ptr file_sink(const LoggingConfig& config, const std::string& service) {
+  std::filesystem::create_directories(config.directory);
+  return std::make_shared<spdlog::sinks::rotating_file_sink_mt>(
+      (std::filesystem::path(config.directory) / (service + ".log")).string(),
+      static_cast<std::size_t>(config.rotate_at_MB * 1e6), static_cast<std::size_t>(config.rotated_files));
+}
+
+}  // namespace
+
+Status start_logging(const LoggingConfig& config, const std::string& service) {
+  try {
+    std::vector<spdlog::sink_ptr> sinks = {std::make_shared<spdlog::sinks::stderr_sink_mt>()};
+    if (!config.directory.empty()) sinks.push_back(file_sink(config, service));
+    logger() = std::make_shared<spdlog::logger>(service, sinks.begin(), sinks.end());
+  } catch (const std::exception& exception) {
+    return fail(Error{.file = config.directory,
+                      .place = "key logging.directory",
+                      .value = {},
+                      .rule = exception.what(),
+                      .advice = "name a directory that this user may write to"});
+  }
+  logger()->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %n %v", spdlog::pattern_time_type::utc);
+  logger()->set_level(spdlog_level(value_of<LogLevel>(config.level).value_or(LogLevel::info)));
+  logger()->flush_on(spdlog::level::info);
+  return {};
+}
+
+void stop_logging() { logger().reset(); }
+
+bool logs(LogLevel level) { return logger() != nullptr && logger()->should_log(spdlog_level(level)); }
+
+void log_event(LogLevel level, std::string_view event, const LogFields& fields) {
+  if (!logs(level)) return;
+  std::string line(event);
+  for (const auto& [key, value] : fields) line.append(" ").append(key).append("=").append(quoted(value));
+  logger()->log(spdlog_level(level), line);
+}
+
+void log_message(LogLevel level, std::string_view event, const Message& message, LogFields fields) {
+  if (!logs(level)) return;
+  const Header& header = header_of(message);
+  const LogFields about = {{"topic", std::string(name_of(topic_of(message)))},
+                           {"pst", header.pst_id},
+                           {"asset", asset_of(message)},
+                           {"message", header.message_id}};
+  fields.insert(fields.begin(), about.begin(), about.end());
+  log_event(level, event, fields);
+}
+
+}  // namespace sealwatch

@@ -1,5 +1,6 @@
 #include "services/common/transport/channel.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <memory>
@@ -16,6 +17,8 @@ constexpr dds_duration_t kMaxBlockingTime = DDS_SECS(5);
 constexpr dds_duration_t kLivelinessLease = DDS_SECS(5);
 /// Messages of one asset that a reader with SlowReader::loses_oldest keeps.
 constexpr std::int32_t kClientDepth = 256;
+
+constexpr std::size_t kLargestBatch = 64;
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
@@ -56,7 +59,11 @@ Qos reader_qos(const TopicQos& settings, SlowReader slow_reader, std::int32_t li
   return qos;
 }
 
-void notify(dds_entity_t /*reader*/, void* signal) { static_cast<Signal*>(signal)->notify(); }
+void announce(dds_entity_t /*reader*/, void* argument) {
+  auto& arrivals = *static_cast<Arrivals*>(argument);
+  arrivals.signal.notify();
+  const std::lock_guard gate(arrivals.gate);
+}
 
 }  // namespace
 
@@ -69,12 +76,12 @@ Status Channel::open_topic() {
   return {};
 }
 
-Status Channel::subscribe(Signal& arrival) {
+Status Channel::subscribe(Arrivals& arrivals) {
   if (subscribed()) return {};
   if (Status opened = open_topic(); !opened) return opened;
-  const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(&arrival),
+  const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(&arrivals),
                                                                                  &dds_delete_listener);
-  dds_lset_data_available(listener.get(), notify);
+  dds_lset_data_available(listener.get(), announce);
   const dds_entity_t reader = dds_create_reader(
       participant_, topic_, reader_qos(qos_, slow_reader_, type_->reader_limit).get(), listener.get());
   if (reader < 0) return dds_failure("reader of topic " + type_->name, reader);
@@ -82,18 +89,27 @@ Status Channel::subscribe(Signal& arrival) {
   return {};
 }
 
-void Channel::take(std::deque<BusItem>& items) const {
+bool Channel::take_batch(std::vector<Stamped>& taken) const {
   // The batch must be the same in every call: Cyclone 0.10 overruns the array of loans when it becomes smaller.
-  std::array<void*, 64> samples{};
-  std::array<dds_sample_info_t, 64> infos;
-  assert(type_->batch <= samples.size());
+  std::array<void*, kLargestBatch> samples{};
+  std::array<dds_sample_info_t, kLargestBatch> infos;
+  assert(type_->batch <= kLargestBatch);
   const dds_return_t count =
       dds_take(reader_, samples.data(), infos.data(), type_->batch, static_cast<std::uint32_t>(type_->batch));
   assert(count >= 0);
-  for (dds_return_t k = 0; k < count; ++k)
-    if (infos[static_cast<std::size_t>(k)].valid_data)
-      items.push_back(type_->decode(samples[static_cast<std::size_t>(k)]));
+  for (std::size_t k = 0; static_cast<dds_return_t>(k) < count; ++k)
+    if (infos[k].valid_data)
+      taken.push_back({.published = infos[k].source_timestamp, .item = type_->decode(samples[k])});
   if (count > 0) dds_return_loan(reader_, samples.data(), count);
+  return count > 0;
+}
+
+void Channel::take(std::deque<BusItem>& items) const {
+  std::vector<Stamped> taken;
+  while (take_batch(taken)) {
+  }
+  std::ranges::stable_sort(taken, {}, &Stamped::published);
+  for (Stamped& one : taken) items.push_back(std::move(one.item));
 }
 
 Status Channel::open_writer() {
@@ -107,7 +123,8 @@ Status Channel::open_writer() {
 
 Status Channel::write(const DdsSample& sample) {
   if (Status opened = open_writer(); !opened) return opened;
-  const dds_return_t code = dds_write(writer_, sample.get());
+  last_written_ = std::max(last_written_ + 1, dds_time());  // the system's clock may be set back
+  const dds_return_t code = dds_write_ts(writer_, sample.get(), last_written_);
   if (code == DDS_RETCODE_TIMEOUT)
     return dds_failure("topic " + type_->name, code, "a subscriber does not take its messages; publish again later");
   if (code < 0) return dds_failure("topic " + type_->name, code);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <iterator>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -27,16 +28,16 @@ class CycloneBus final : public DdsBus {
     }
   }
 
-  [[nodiscard]] bool ok() const { return signal_.ok(); }
+  [[nodiscard]] bool ok() const { return arrivals_.signal.ok(); }
 
   Status subscribe(std::span<const Topic> topics) override {
     for (const Topic topic : topics)
-      if (Status made = channels_[static_cast<std::size_t>(topic)].subscribe(signal_); !made) return made;
+      if (Status made = channels_[static_cast<std::size_t>(topic)].subscribe(arrivals_); !made) return made;
     return {};
   }
   Status subscribe_service_topics() override {
     for (const std::size_t index : {transport::kServiceStatusIndex, transport::kResendRequestIndex})
-      if (Status made = channels_[index].subscribe(signal_); !made) return made;
+      if (Status made = channels_[index].subscribe(arrivals_); !made) return made;
     return {};
   }
 
@@ -51,10 +52,10 @@ class CycloneBus final : public DdsBus {
   std::vector<BusItem> receive(std::chrono::milliseconds timeout, std::size_t most) override {
     const auto deadline = Clock::now() + timeout;
     while (true) {
-      const bool woken = signal_.clear();  // before the take: what arrives after it notifies again
+      const bool woken = arrivals_.signal.clear();  // before the take: what arrives after it notifies again
       if (arrived_.empty()) take();
       if (!arrived_.empty() || woken || Clock::now() >= deadline) break;
-      signal_.wait_until(deadline);
+      arrivals_.signal.wait_until(deadline);
     }
     const auto end = std::next(arrived_.begin(), static_cast<std::ptrdiff_t>(std::min(most, arrived_.size())));
     std::vector<BusItem> items(std::move_iterator(arrived_.begin()), std::move_iterator(end));
@@ -62,7 +63,7 @@ class CycloneBus final : public DdsBus {
     return items;
   }
 
-  void wake() override { signal_.wake(); }
+  void wake() override { arrivals_.signal.wake(); }
 
   Status wait_for_subscribers(Topic topic, std::size_t count, std::chrono::milliseconds timeout) override {
     const auto deadline = Clock::now() + timeout;
@@ -82,11 +83,12 @@ class CycloneBus final : public DdsBus {
 
  private:
   void take() {
+    const std::lock_guard gate(arrivals_.gate);
     for (const Channel& channel : channels_)
       if (channel.subscribed()) channel.take(arrived_);
   }
 
-  transport::Signal signal_;  // outlives the participant, whose listeners use it
+  transport::Arrivals arrivals_;  // outlives the participant, whose listeners use it
   transport::Participant participant_;
   std::vector<Channel> channels_;
   std::deque<BusItem> arrived_;  ///< taken from DDS, not yet asked for

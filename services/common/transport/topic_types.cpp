@@ -52,7 +52,7 @@ BusItem decode(const void* sample) {
 
 constexpr std::int32_t kReaderLimit = 8192;
 constexpr std::size_t kBatch = 64;
-constexpr std::int32_t kBulkyReaderLimit = 128;
+constexpr std::int32_t kBulkyReaderLimit = 64;
 constexpr std::size_t kBulkyBatch = 4;
 
 template <class T>

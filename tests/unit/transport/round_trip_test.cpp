@@ -1,0 +1,153 @@
+// Every field of every topic through the codec and through Cyclone's own serialisation, over UDP.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "tests/unit/transport/filled.hpp"
+#include "tests/unit/transport/kits.hpp"
+
+namespace sealwatch::test {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr milliseconds kPatience{5000};
+
+template <class T>
+class RoundTrip : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(publisher_ && subscriber_);
+    if constexpr (std::is_constructible_v<Message, T>) {
+      const Topic topic = topic_of(Message(T{}));
+      ASSERT_TRUE(subscriber_->subscribe(std::span(&topic, 1)));
+    } else {
+      ASSERT_TRUE(subscriber_->subscribe_service_topics());
+      connect();
+    }
+  }
+
+  /// A volatile topic reaches only those who are known.
+  void connect() {
+    bool arrived = false;
+    for (int attempt = 0; !arrived && attempt < 100; ++attempt) {
+      ASSERT_TRUE(publisher_->publish(T{}));
+      arrived = !subscriber_->receive(milliseconds(50)).empty();
+    }
+    ASSERT_TRUE(arrived);
+    while (!subscriber_->receive(milliseconds(100)).empty()) {
+    }
+  }
+
+  [[nodiscard]] T through_dds(const T& message) {
+    Status published;
+    if constexpr (std::is_constructible_v<Message, T>)
+      published = publisher_->publish(Message(message));
+    else
+      published = publisher_->publish(message);
+    EXPECT_TRUE(published) << published.error().describe();
+    const std::vector<BusItem> items = subscriber_->receive(kPatience);
+    EXPECT_EQ(items.size(), 1U);
+    if (items.empty()) return T{};
+    if constexpr (std::is_constructible_v<Message, T>)
+      return std::get<T>(std::get<Message>(items.front()));
+    else
+      return std::get<T>(items.front());
+  }
+
+ private:
+  NetworkKit kit_;
+  std::unique_ptr<Bus> publisher_ = kit_.open();
+  std::unique_ptr<Bus> subscriber_ = kit_.open();
+};
+
+using AllTypes = testing::Types<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,
+                                LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent,
+                                ServiceStatus, ResendRequest>;
+TYPED_TEST_SUITE(RoundTrip, AllTypes);
+
+TYPED_TEST(RoundTrip, KeepsEveryFieldWithSequencesFilledEmptyAndLong) {
+  for (const std::size_t length : {3, 0, 40}) {
+    SCOPED_TRACE(length);
+    const auto message = filled<TypeParam>(length);
+    EXPECT_EQ(this->through_dds(message), message);
+  }
+}
+
+/// Each value of every enum must exist in the IDL: DDS refuses to write one that does not.
+template <DescribedEnum Enum, class T>
+void expect_all_values(Enum T::*field, auto&& through_dds) {
+  for (std::size_t value = 0; value < EnumNames<Enum>::kNames.size(); ++value) {
+    T message;
+    message.*field = static_cast<Enum>(value);
+    EXPECT_EQ(through_dds(message).*field, message.*field) << name_of(message.*field);
+  }
+}
+
+using RoundTripOfAdvisory = RoundTrip<Advisory>;
+TEST_F(RoundTripOfAdvisory, KeepsEveryValueOfItsEnums) {
+  const auto through = [this](const Advisory& advisory) { return through_dds(advisory); };
+  expect_all_values(&Advisory::priority, through);
+  expect_all_values(&Advisory::action, through);
+  expect_all_values(&Advisory::state, through);
+}
+
+// ---- names and order of enumerators: what a foreign reader of the IDL sees
+
+std::string idl_text() {
+  std::stringstream text;
+  for (const char* file : {"common", "data_acquisition", "data_manipulation", "state_detection", "health_assessment",
+                           "prognostic_assessment", "advisory_generation"})
+    text << std::ifstream(std::string(SEALWATCH_SOURCE_DIR "/idl/") + file + ".idl").rdbuf();
+  return text.str();
+}
+
+/// "BlockBoundary" -> "BLOCK_BOUNDARY"
+std::string shouted(std::string_view name) {
+  std::string result;
+  for (const char c : name) {
+    if (std::isupper(c) != 0 && !result.empty()) result += '_';
+    result += static_cast<char>(std::toupper(c));
+  }
+  return result;
+}
+
+template <DescribedEnum Enum>
+void expect_in_idl(const std::string& text, const std::string& name) {
+  const std::string prefix = shouted(name) + "_";
+  std::string expected = "@appendable enum " + name + " {";
+  for (const std::string_view& value : EnumNames<Enum>::kNames) {
+    expected += &value == &EnumNames<Enum>::kNames.front() ? " " : ", ";
+    expected += prefix;
+    for (const char c : value) expected += static_cast<char>(std::toupper(c));
+  }
+  expected += " };";
+  const std::string one_line = std::regex_replace(text, std::regex("\\s+"), " ");
+  EXPECT_NE(one_line.find(expected), std::string::npos) << "idl/ must have: " << expected;
+}
+
+TEST(Idl, EnumsHaveTheNamesAndTheOrderOfTheirCppOnes) {
+  const std::string text = idl_text();
+  expect_in_idl<ChannelState>(text, "ChannelState");
+  expect_in_idl<BlockBoundary>(text, "BlockBoundary");
+  expect_in_idl<PhaseKind>(text, "PhaseKind");
+  expect_in_idl<AlertRegion>(text, "AlertRegion");
+  expect_in_idl<PstVerdict>(text, "PstVerdict");
+  expect_in_idl<Reference>(text, "Reference");
+  expect_in_idl<FaultKind>(text, "FaultKind");
+  expect_in_idl<ForecastState>(text, "ForecastState");
+  expect_in_idl<AdvisoryPriority>(text, "AdvisoryPriority");
+  expect_in_idl<AdvisoryAction>(text, "AdvisoryAction");
+  expect_in_idl<AdvisoryState>(text, "AdvisoryState");
+}
+
+TEST(Idl, EverythingIsAppendableSoThatItMayGrow) {
+  const std::string text = idl_text();
+  const std::regex not_appendable("(^|\n)\\s*(?!//)(?!@appendable)(struct|enum)\\s+\\w+");
+  std::smatch match;
+  EXPECT_FALSE(std::regex_search(text, match, not_appendable)) << match.str();
+}
+
+}  // namespace
+}  // namespace sealwatch::test

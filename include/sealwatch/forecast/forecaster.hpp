@@ -64,6 +64,7 @@ class ForecastPanel {
     std::vector<Forecast> forecasts;  ///< in the order of the settings
     bool windows_disagree = false;    ///< 95 % intervals of two windows of one method do not overlap
     std::string disagreement;
+    std::vector<ConditionSample> used;      ///< in the order of time
     std::vector<ConditionSample> left_out;  ///< isolated outliers (condition_history.hpp)
   };
   /// Sorts the history by time and leaves isolated outliers out first.

@@ -87,6 +87,7 @@ ForecastPanel::Answer ForecastPanel::forecast(ForecastRequest request) const {
   Answer answer;
   answer.left_out = take_outliers(request.history);
   for (const auto& forecaster : forecasters_) answer.forecasts.push_back(forecaster->forecast(request));
+  answer.used = std::move(request.history);
   answer.disagreement = disagreement(answer.forecasts);
   answer.windows_disagree = !answer.disagreement.empty();
   return answer;

@@ -1,0 +1,53 @@
+#include "services/prognostic_assessment/asset_history.hpp"
+
+#include <algorithm>
+
+namespace sealwatch::prognostic_assessment {
+namespace {
+
+bool waits_for_confirmation(const LeakageEstimate& estimate) {
+  return estimate.reasons.size() == 1 && estimate.reasons.front().rfind(kUnconfirmed, 0) == 0;
+}
+
+}  // namespace
+
+void AssetHistory::add(const LeakageEstimate& estimate) {
+  concluded_.push_back(estimate.header.message_id);
+  if (!estimate.header.event_time_known) return;
+  HistoryEntry entry{.estimate_id = estimate.header.message_id,
+                     .sample = {.time = {estimate.header.event_time_ns},
+                                .condition = estimate.condition,
+                                .condition_std = estimate.condition_std},
+                     .eligible = estimate.used_for_forecast || waits_for_confirmation(estimate)};
+  const auto place = std::upper_bound(entries_.begin(), entries_.end(), entry, [](const auto& a, const auto& b) {
+    return std::tie(a.sample.time, a.estimate_id) < std::tie(b.sample.time, b.estimate_id);
+  });
+  entries_.insert(place, std::move(entry));
+}
+
+void AssetHistory::add_replacement(UtcTime time) { replacements_.push_back(time); }
+
+bool AssetHistory::has_estimate(const std::string& estimate_id) const {
+  return std::find(concluded_.begin(), concluded_.end(), estimate_id) != concluded_.end();
+}
+
+std::optional<UtcTime> AssetHistory::replaced_before(UtcTime now) const {
+  std::optional<UtcTime> last;
+  for (const UtcTime time : replacements_)
+    if (time <= now && (!last || time > *last)) last = time;
+  return last;
+}
+
+std::vector<HistoryEntry> AssetHistory::until(UtcTime now) const {
+  const std::optional<UtcTime> replaced = replaced_before(now);
+  std::vector<HistoryEntry> entries;
+  for (const HistoryEntry& entry : entries_)
+    if (entry.sample.time <= now && (!replaced || entry.sample.time > *replaced)) entries.push_back(entry);
+  return entries;
+}
+
+bool AssetHistory::has_later_than(UtcTime time) const {
+  return !entries_.empty() && entries_.back().sample.time > time;
+}
+
+}  // namespace sealwatch::prognostic_assessment

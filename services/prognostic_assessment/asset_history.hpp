@@ -1,0 +1,45 @@
+// What prognosis remembers of one asset, all of it rebuilt from its own outputs: estimates of each test and
+// replacements.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/forecast/condition_history.hpp"
+#include "sealwatch/message/prognostic_assessment.hpp"
+
+namespace sealwatch::prognostic_assessment {
+
+/// How the reason begins by which a test is left out only until the next one confirms it (condition_history.hpp).
+inline constexpr const char* kUnconfirmed = "stands alone: ";
+
+/// One test of the history.
+struct HistoryEntry {
+  std::string estimate_id;  ///< message id of its leakage_estimate
+  forecast::ConditionSample sample;
+  bool eligible = false;  ///< its estimate may take part in forecasts (an isolated outlier may too, once confirmed)
+};
+
+class AssetHistory {
+ public:
+  /// Takes an own output. Tests without event time are only remembered as concluded.
+  void add(const LeakageEstimate& estimate);
+  void add_replacement(UtcTime time);
+
+  [[nodiscard]] bool has_estimate(const std::string& estimate_id) const;
+  /// Last replacement not after `now`.
+  [[nodiscard]] std::optional<UtcTime> replaced_before(UtcTime now) const;
+  /// Tests after the last replacement up to and including `now`, in the order of time.
+  [[nodiscard]] std::vector<HistoryEntry> until(UtcTime now) const;
+  /// Whether a later test than `time` is known.
+  [[nodiscard]] bool has_later_than(UtcTime time) const;
+
+ private:
+  std::vector<std::string> concluded_;
+  std::vector<HistoryEntry> entries_;  ///< in the order of time; equal times by id
+  std::vector<UtcTime> replacements_;
+};
+
+}  // namespace sealwatch::prognostic_assessment

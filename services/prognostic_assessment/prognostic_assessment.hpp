@@ -1,0 +1,73 @@
+// Layer 5 of ISO 13374: the estimate of the leakage resistance from each test, the remaining useful life, and the
+// request for the next test.
+//
+// Driven by health_report, joined with the test_window of the same pst_id, in whatever order they come. A
+// maintenance_event is answered at once by a remaining_life that says so: by it the layer finds the replacement again
+// after a restart.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/configuration.hpp"
+#include "sealwatch/forecast/forecaster.hpp"
+#include "sealwatch/port/estimator.hpp"
+#include "sealwatch/port/layer.hpp"
+#include "services/prognostic_assessment/asset_history.hpp"
+
+namespace sealwatch::prognostic_assessment {
+
+struct Options {
+  std::vector<forecast::ForecasterSettings> forecasters = forecast::default_forecasters();  ///< the one in charge first
+  /// A test whose theta is less certain tells nothing: a tenth of theta is a quarter of the way from new to failed.
+  double largest_condition_std = 0.10;
+
+  [[nodiscard]] Status validate() const;
+};
+
+class PrognosticAssessment final : public Layer {
+ public:
+  /// Keeps references to `configuration` and `estimator`. An Error for options that make no sense.
+  [[nodiscard]] static Result<std::unique_ptr<PrognosticAssessment>> make(const Configuration& configuration,
+                                                                          const Estimator& estimator,
+                                                                          const Options& options = {});
+
+  [[nodiscard]] std::string_view name() const override { return "prognostic_assessment"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override;
+  [[nodiscard]] std::span<const Topic> outputs() const override;
+  void restore(const Message& own_output) override;
+  [[nodiscard]] Conclusion receive(const Message& input) override;
+
+ private:
+  /// Inputs of one test until both are there.
+  struct Pending {
+    std::optional<HealthReport> health;
+    std::optional<TestWindow> window;
+  };
+
+  PrognosticAssessment(const Configuration& configuration, const Estimator& estimator, const Options& options,
+                       forecast::ForecastPanel panel)
+      : configuration_(configuration), estimator_(estimator), options_(options), panel_(std::move(panel)) {}
+
+  template <class Input>
+  [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
+  [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
+  [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
+  [[nodiscard]] LeakageEstimate estimate(const HealthReport& health, const TestWindow& window) const;
+  /// Also marks `estimate` when it stands alone.
+  [[nodiscard]] RemainingLife remaining_life(LeakageEstimate& estimate) const;
+  [[nodiscard]] std::vector<forecast::FailureHorizon> campaigns(const AssetConfig& asset) const;
+  [[nodiscard]] std::vector<Forecast> no_forecast(const std::string& explanation) const;
+
+  const Configuration& configuration_;
+  const Estimator& estimator_;
+  Options options_;
+  forecast::ForecastPanel panel_;
+  std::map<std::string, Pending> pending_;       ///< by pst_id
+  std::map<std::string, AssetHistory> history_;  ///< by asset_id
+};
+
+}  // namespace sealwatch::prognostic_assessment

@@ -9,6 +9,7 @@
 namespace sealwatch {
 namespace {
 
+constexpr std::size_t kBlock_bytes = std::size_t{1} << 16U;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 Error cell_error(std::size_t row, std::size_t column, std::string_view text, std::string rule) {
@@ -39,8 +40,8 @@ bool CsvRows::fill() {
   if (begin_ > 0) std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  buffer_.resize(end_ + kLongestRow_bytes);
-  in_.read(buffer_.data() + end_, static_cast<std::streamsize>(kLongestRow_bytes));
+  buffer_.resize(end_ + kBlock_bytes);
+  in_.read(buffer_.data() + end_, static_cast<std::streamsize>(kBlock_bytes));
   const auto count = static_cast<std::size_t>(in_.gcount());
   hasher_.add({buffer_.data() + end_, count});
   end_ += count;

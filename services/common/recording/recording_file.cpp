@@ -55,10 +55,9 @@ Result<ColumnarSamples> read_samples(const std::string& path, const PlantDescrip
 
 std::string sidecar_path(const std::string& path) { return fs::path(path).replace_extension(".yaml").string(); }
 
-/// The sidecar of `path`; nothing said where there is none.
-Result<Sidecar> read_sidecar(const std::string& path, const PlantDescription& plant) {
-  const std::string file = sidecar_path(path);
-  if (std::error_code ignored; !fs::exists(file, ignored)) return Sidecar{};
+/// The text of the sidecar of `path`, "" where there is none.
+Result<std::string> read_sidecar_text(const std::string& file) {
+  if (std::error_code ignored; !fs::exists(file, ignored)) return std::string();
   Result<std::ifstream> in = open(file);
   if (!in) return fail(in.error());
   std::string text(kLongestSidecar_bytes + 1, '\0');
@@ -66,11 +65,27 @@ Result<Sidecar> read_sidecar(const std::string& path, const PlantDescription& pl
   text.resize(static_cast<std::size_t>(in->gcount()));
   if (text.size() > kLongestSidecar_bytes)
     return fail_in(file, error_at({}, {}, "is longer than " + std::to_string(kLongestSidecar_bytes) + " bytes"));
-  Result<Sidecar> sidecar = parse_sidecar(text, plant);
+  return text;
+}
+
+/// The sidecar of `path`; nothing said where there is none.
+Result<Sidecar> read_sidecar(const std::string& path, const PlantDescription& plant) {
+  const std::string file = sidecar_path(path);
+  const Result<std::string> text = read_sidecar_text(file);
+  if (!text) return fail(text.error());
+  Result<Sidecar> sidecar = parse_sidecar(*text, plant);
   return sidecar ? sidecar : fail_in(file, sidecar.error());
 }
 
 }  // namespace
+
+Result<std::string> recorded_asset_id(const std::string& path) {
+  const std::string file = sidecar_path(path);
+  const Result<std::string> text = read_sidecar_text(file);
+  if (!text) return fail(text.error());
+  Result<std::string> asset_id = parse_sidecar_asset_id(*text);
+  return asset_id ? asset_id : fail_in(file, asset_id.error());
+}
 
 Result<Recording> read_recording(const std::string& path, const PlantDescription& plant) {
   Result<ColumnarSamples> read = read_samples(path, plant);

@@ -28,6 +28,9 @@ inline constexpr std::size_t kLongestSidecar_bytes = std::size_t{1} << 16U;
 /// another recording of it.
 [[nodiscard]] Result<Recording> read_recording(const std::string& path, const PlantDescription& plant);
 
+/// The asset that the sidecar of `path` names, "" when there is none: with it the caller finds the plant to read with.
+[[nodiscard]] Result<std::string> recorded_asset_id(const std::string& path);
+
 /// All digits that it takes to read back the very same double.
 inline constexpr int kExactDigits = 0;
 

@@ -121,6 +121,15 @@ Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& p
   }
 }
 
+Result<std::string> parse_sidecar_asset_id(const std::string& text) {
+  try {
+    const YAML::Node asset_id = YAML::Load(text)["asset_id"];
+    return asset_id.IsDefined() && asset_id.IsScalar() ? asset_id.Scalar() : std::string();
+  } catch (const YAML::Exception& problem) {
+    return fail(error_at(place_of(problem.mark.line + 1, ""), {}, "is not YAML: " + problem.msg));
+  }
+}
+
 std::string format_sidecar(const Recording& recording) {
   YAML::Emitter out;
   out << YAML::BeginMap;

@@ -139,7 +139,7 @@ TEST(Csv, EveryCutOfAFileIsAnErrorOrAValidShorterRecording) {
   }
 }
 
-TEST(Csv, RowsMayStraddleBlocks) {  // more than the reader's block of 1 MiB
+TEST(Csv, RowsMayStraddleBlocks) {  // more than the reader's block of 64 KiB
   std::string text = "time[s],position[m],\"valve_state\"\r\n";
   for (int row = 0; row < 100000; ++row) text += std::to_string(row) + ",0.0" + std::to_string(row) + ",\"1\"\r\n";
   const Result<ColumnarSamples> result = read(text);

@@ -47,6 +47,15 @@ Recording example() {
   return out;
 }
 
+TEST_F(RecordingFile, NamesItsAssetBeforeThePlantIsKnown) {
+  const std::string file = write("a.csv", "time,anything\n");
+  EXPECT_EQ(recorded_asset_id(file).value(), "");
+  write("a.yaml", "asset_id: XT03-MV2\nnoise_std: {channel_of_another_plant: 1.0}\n");
+  EXPECT_EQ(recorded_asset_id(file).value(), "XT03-MV2");
+  write("a.yaml", "asset_id: [unclosed\n");
+  EXPECT_THAT(recorded_asset_id(file).error().describe(), HasSubstr("a.yaml: line"));
+}
+
 TEST_F(RecordingFile, WritesAndReadsBackTheVeryWordsAndNumbers) {
   const Recording written = example();
   ASSERT_TRUE(write_recording_csv(written, path("a.csv")));

@@ -17,7 +17,8 @@ double noise_std(const PlantSimulation& simulation, const AssetConfig& asset, co
   return nominal > 0.0 ? nominal : 1.0;
 }
 
-/// The fit's normal equations at one point.
+/// The fit's normal equations at one point. Each channel is weighted by its noise and its mean square misfit together,
+/// so that a channel which the model cannot follow does not bend all others: cost = sum_c n ln(noise_c^2 + mean r_c^2).
 struct LinearisedFit {
   double cost = 0.0;
   Eigen::MatrixXd hessian;
@@ -28,13 +29,15 @@ LinearisedFit linearise(const PlantSimulation& simulation, const AssetConfig& as
   const Eigen::Index channels = outputs.values.cols(), free = outputs.sensitivities.cols();
   LinearisedFit fit{0.0, Eigen::MatrixXd::Zero(free, free), Eigen::VectorXd::Zero(free)};
   for (Eigen::Index c = 0; c < channels; ++c) {
-    const double weight = 1.0 / noise_std(simulation, asset, simulation.channels()[static_cast<std::size_t>(c)]);
-    const Eigen::VectorXd residual = weight * (simulation.recorded().col(c) - outputs.values.col(c));
+    const double noise = noise_std(simulation, asset, simulation.channels()[static_cast<std::size_t>(c)]);
+    const Eigen::VectorXd residual = simulation.recorded().col(c) - outputs.values.col(c);
+    const auto samples = static_cast<double>(residual.size());
+    const double variance = noise * noise + residual.squaredNorm() / samples;
     const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> slopes(
         outputs.sensitivities.data() + c * free, residual.size(), free, Eigen::OuterStride<>(channels * free));
-    fit.cost += residual.squaredNorm();
-    fit.hessian += weight * weight * slopes.transpose() * slopes;
-    fit.gradient += weight * slopes.transpose() * residual;
+    fit.cost += samples * std::log(variance / (noise * noise));
+    fit.hessian += slopes.transpose() * slopes / variance;
+    fit.gradient += slopes.transpose() * residual / variance;
   }
   return fit;
 }

@@ -1,9 +1,10 @@
 // PlantSimulation for one plant: integration by segments of smooth input, sampling, sensors.
 //
 // Model says what the equations (sealwatch/model/<plant>.hpp) leave open:
-//   Equations; kStateNames, kSlowStates, kQuasiSteady, kScale (allowed local error of a step at relative tolerance
-//   1e-6); kInputs {name, hold}, input(values) -> Equations::Input; kOutputs {channel, state it equals or -1};
-//   output(k, state, parameters) of an output that is no state; start(asset values, recorded) -> ModelValues.
+//   Equations; kStateNames, kSlowStates, kQuasiSteady, kMaximumOrder, kScale (allowed local error of a step at relative
+//   tolerance 1e-6); kInputs {name, hold}, input(values) -> Equations::Input; kOutputs {channel, state it equals or
+//   -1}; output(k, state, input, parameters) of an output that is no state; start(asset values, recorded) ->
+//   ModelValues.
 #pragma once
 
 #include <algorithm>

@@ -23,7 +23,9 @@ class PlantSimulationOf<Model>::Run {
         system_(simulation.input_, values, free),
         scale_(scaled(options.relative_tolerance)),
         integrator_(system_, static_cast<int>(free.size()), scale_,
-                    {.maximum_step = options.maximum_step_s, .maximum_steps = options.maximum_steps}),
+                    {.maximum_step = options.maximum_step_s,
+                     .maximum_steps = options.maximum_steps,
+                     .maximum_order = Model::kMaximumOrder}),
         point_(integrator_.size(), 0.0),
         signal_(columns_, 0.0) {
     for (const SimulatedChannel& channel : simulation.channels_)
@@ -127,10 +129,11 @@ class PlantSimulationOf<Model>::Run {
   // dh/dp + dh/dy S by dual numbers whose states carry S.
   void compute_output(int output) {
     const std::size_t stride = integrator_.stride();
+    const auto input = system_.input_at(integrator_.time());
     if (system_.blocks().empty()) {
       typename System::template State<double> state;
       for (int k = 0; k < kStates; ++k) state[k] = point_[k * stride];
-      signal_[0] = Model::output(output, state, system_.parameters());
+      signal_[0] = Model::output(output, state, input, system_.parameters());
     }
     for (const auto& block : system_.blocks()) {
       typename System::template State<Dual<Width>> state;
@@ -139,7 +142,7 @@ class PlantSimulationOf<Model>::Run {
         const double* seeds = point_.data() + k * stride + 1 + block.first;
         std::copy(seeds, seeds + block.count, state[k].derivative.begin());
       }
-      const auto result = Model::output(output, state, block.parameters);
+      const auto result = Model::output(output, state, input, block.parameters);
       signal_[0] = result.value;
       std::copy(result.derivative.begin(), result.derivative.begin() + block.count, signal_.begin() + 1 + block.first);
     }

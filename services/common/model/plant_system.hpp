@@ -74,6 +74,13 @@ class PlantSystem {
     }
   }
 
+  [[nodiscard]] auto input_at(double t) const {
+    std::array<double, Model::kInputs.size()> values;
+    for (std::size_t channel = 0; channel < values.size(); ++channel)
+      values[channel] = input_.value(channel, t, segment_, cursor_);
+    return Model::input(values);
+  }
+
  private:
   template <class P>
   static void assign(typename Equations::template Parameters<P>& parameters, const ModelValues& values) {
@@ -108,13 +115,6 @@ class PlantSystem {
           if (index++ == which) parameter.derivative[direction] = 1.0;
         },
         parameters);
-  }
-
-  [[nodiscard]] auto input_at(double t) const {
-    std::array<double, Model::kInputs.size()> values;
-    for (std::size_t channel = 0; channel < values.size(); ++channel)
-      values[channel] = input_.value(channel, t, segment_, cursor_);
-    return Model::input(values);
   }
 
   const RecordedInput& input_;

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "sealwatch/core/text.hpp"
-#include "services/common/model/simulation_eha.hpp"
+#include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
 
 namespace sealwatch {
@@ -81,7 +81,8 @@ Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConf
     if (const Status status = check_input(recorded, {"motor_voltage"}); !status) return fail(status.error());
     return simulate_eha(**plant, asset, recorded);
   }
-  return fail("plant " + asset.model + " cannot be simulated");
+  if (const Status status = check_input(recorded, {"motor_duty", "valve_state"}); !status) return fail(status.error());
+  return simulate_eha_switched(**plant, asset, recorded);
 }
 
 Result<FreeQuantity> PlantSimulation::find(std::string_view quantity) const {

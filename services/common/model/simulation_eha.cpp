@@ -1,7 +1,6 @@
-#include "services/common/model/simulation_eha.hpp"
-
 #include "sealwatch/model/eha.hpp"
 #include "services/common/model/plant_simulation.hpp"
+#include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
 
 namespace sealwatch {
@@ -16,6 +15,7 @@ struct EhaModel {
                                                                   false, false, true, false};
   // Allowed local error of one step: small against what the nominal sensors resolve after averaging over a test.
   static constexpr std::array<double, Eha::kStates> kScale = {1e-4, 1e-4, 1e-3, 30.0, 30.0, 30.0, 30.0, 1e-7, 1e-9};
+  static constexpr int kMaximumOrder = 5;
   static constexpr std::array<ModelInput, 1> kInputs = {{{"motor_voltage", false}}};
   static constexpr std::array<ModelOutput, 9> kOutputs = {{{"motor_current", Eha::kI},
                                                            {"shaft_speed", Eha::kOmega},
@@ -31,7 +31,7 @@ struct EhaModel {
   static Eha::Input input(const std::array<double, 1>& values) { return {values[0]}; }
 
   template <class S, class P>
-  static auto output(int which, const Eha::State<S>& y, const EhaParameters<P>& p) {
+  static auto output(int which, const Eha::State<S>& y, const Eha::Input&, const EhaParameters<P>& p) {
     using R = decltype(y[0] * p.R_M);
     if (which == kDifferential) return R(y[Eha::kPA] - y[Eha::kPB]);
     if (which == kFlow) return R(Eha::valve_flow(y[Eha::kP1], y[Eha::kPA], y[Eha::kP2], p));

@@ -1,0 +1,16 @@
+// Makes the simulation of a recording, one function per plant, each with its heavy templates in a file of its own.
+#pragma once
+
+#include <memory>
+
+#include "sealwatch/model/simulation.hpp"
+
+namespace sealwatch {
+
+[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha(const PlantDescription& plant, const AssetConfig& asset,
+                                                            const TimeSeries& recorded);
+[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha_switched(const PlantDescription& plant,
+                                                                     const AssetConfig& asset,
+                                                                     const TimeSeries& recorded);
+
+}  // namespace sealwatch

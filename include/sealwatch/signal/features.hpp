@@ -3,7 +3,8 @@
 //
 //   p_L = p_A - r p_B            load pressure [Pa]; r = A_B / A_A, 1 for a piston of equal areas; where only the
 //                                differential pressure is recorded, p_L is that
-//   q_leak = q - A_A v - (V_A/beta) dp_A/dt     flow that neither moves the piston nor compresses the oil [m3/s], by the
+//   q_leak = q - A_A v - (V_A/beta) dp_A/dt     flow that neither moves the piston nor compresses the oil [m3/s], by
+//   the
 //                                mass balance of chamber A (MODEL section 2); positive from A to B
 //
 // Signs: x, v, q and p_L as in MODEL.md; features that say "drop", "decay" or "resistance" are positive as a rule.
@@ -11,9 +12,9 @@
 // of the asset's parameters.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sealwatch::signal {
 
@@ -38,11 +39,13 @@ inline constexpr FeatureDescription kFeatures[] = {
     {"speed_out", "m/s", "mean speed over the middle of the strokes out, positive"},
     {"speed_back", "m/s", "mean speed over the middle of the strokes back, positive"},
     {"breakaway_time", "s", "from the first sign of effort to half the stroke's speed"},
-    {"breakaway_pressure", "Pa", "largest change of p_L from rest, in the direction of the motion, until the piston runs"},
+    {"breakaway_pressure", "Pa",
+     "largest change of p_L from rest, in the direction of the motion, until the piston runs"},
     {"rest_pressure", "Pa", "mean of p_L at rest"},
     {"running_pressure_out", "Pa", "mean of p_L over the middle of the strokes out"},
     {"running_pressure_back", "Pa", "mean of p_L over the middle of the strokes back"},
-    {"friction_pressure", "Pa", "half of the difference of the running pressures: friction seen as pressure, load taken out"},
+    {"friction_pressure", "Pa",
+     "half of the difference of the running pressures: friction seen as pressure, load taken out"},
     {"hold_pressure", "Pa", "mean of p_L in the holds after a stroke out"},
     {"hold_decay", "Pa/s", "rate at which |p_L| falls in the holds after a stroke out"},
     {"leakage_flow", "m3/s", "q_leak at standstill (rest and all holds), the holds weighted by their precision"},
@@ -59,13 +62,20 @@ inline constexpr FeatureDescription kFeatures[] = {
     {"running_voltage_back", "V", "mean motor_voltage over the middle of the strokes back"},
     {"running_shaft_speed_out", "rad/s", "mean shaft_speed over the middle of the strokes out"},
     {"running_shaft_speed_back", "rad/s", "mean shaft_speed over the middle of the strokes back"},
-    {"volumetric_efficiency_out", "1", "A v / (alpha_P omega) in the strokes out: share of the pump's flow that moves the piston"},
+    {"volumetric_efficiency_out", "1",
+     "A v / (alpha_P omega) in the strokes out: share of the pump's flow that moves the piston"},
     {"volumetric_efficiency_back", "1", "the same in the strokes back; above 1 where the load drives the pump"},
-    {"drive_saturation", "1", "share of the test in which the drive (voltage or duty) stood still at its largest magnitude"},
+    {"drive_saturation", "1",
+     "share of the test in which the drive (voltage or duty) stood still at its largest magnitude"},
     {"fluid_temperature", "K", "mean fluid temperature"},
 };
 
 /// The table's row of that name; nullptr when there is none.
 [[nodiscard]] const FeatureDescription* find_feature(std::string_view name);
+
+class TestRecord;
+
+/// All features that the test gives, in the table's order.
+[[nodiscard]] std::vector<Feature> compute_features(const TestRecord& test);
 
 }  // namespace sealwatch::signal

@@ -1,10 +1,11 @@
 // Phases of a partial stroke test, from the piston's motion.
 //
-//   rest -> breakaway -> out -> hold -> back -> hold   (a bench may repeat it: breakaway -> out -> hold -> back -> hold)
+//   rest -> breakaway -> out -> hold -> back -> hold   (a bench may repeat it: breakaway -> out -> hold -> back ->
+//   hold)
 //
-// "out" is the direction of the first stroke, whichever sign it has. The piston runs while its speed exceeds 10 % of the
-// stroke's speed (95th percentile of |v|); it leaves that state below 5 %. Breakaway begins when the load pressure or
-// the drive departs from its level at standstill (else with the first motion) and ends at half the stroke's speed.
+// "out" is the direction of the first stroke, whichever sign it has. The piston runs while its speed exceeds 10 % of
+// the stroke's speed (95th percentile of |v|); it leaves that state below 5 %. Breakaway begins when the load pressure
+// or the drive departs from its level at standstill (else with the first motion) and ends at half the stroke's speed.
 // Every standstill after a stroke is a hold. Phases follow one another without gaps.
 #pragma once
 

@@ -1,0 +1,127 @@
+#include "sealwatch/signal/alignment.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "sealwatch/signal/statistics.hpp"
+
+namespace sealwatch::signal {
+namespace {
+
+/// Sums over the overlap of channel and delayed reference.
+struct Moments {
+  double count = 0, r = 0, y = 0, rr = 0, ry = 0, yy = 0;
+  void add(double reference, double channel) {
+    count += 1.0;
+    r += reference;
+    y += channel;
+    rr += reference * reference;
+    ry += reference * channel;
+    yy += channel * channel;
+  }
+  [[nodiscard]] double correlation() const {
+    const double variance = (rr - r * r / count) * (yy - y * y / count);
+    return variance > 0.0 ? (ry - r * y / count) / std::sqrt(variance) : 0.0;
+  }
+};
+
+double correlation_at(std::span<const double> reference, std::span<const double> channel, std::ptrdiff_t lag) {
+  Moments moments;
+  const auto count = static_cast<std::ptrdiff_t>(channel.size());
+  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, lag); i < std::min(count, count + lag); ++i)
+    moments.add(reference[i - lag], channel[i]);
+  return moments.correlation();
+}
+
+/// Cubic Hermite value and slope (per sample) at a fractional index inside 1..size-3.
+struct ValueAndSlope {
+  double value;
+  double slope;
+};
+ValueAndSlope hermite(std::span<const double> values, double index) {
+  const auto i = static_cast<std::size_t>(index);
+  const double u = index - static_cast<double>(i);
+  const double left = 0.5 * (values[i + 1] - values[i - 1]);
+  const double right = 0.5 * (values[i + 2] - values[i]);
+  const double change = values[i + 1] - values[i];
+  const double c2 = 3.0 * change - 2.0 * left - right;
+  const double c3 = left + right - 2.0 * change;
+  return {values[i] + u * (left + u * (c2 + u * c3)), left + u * (2.0 * c2 + 3.0 * u * c3)};
+}
+
+struct Refinement {
+  double step = 0.0;  ///< of the offset, in samples
+  double step_std = 0.0;
+  double gain = 0.0;
+  double correlation = 0.0;
+};
+
+/// One linearised least-squares step: y - mean = g (r - mean) + h (r' - mean), offset step = -h / g.
+std::optional<Refinement> refine(std::span<const double> reference, std::span<const double> channel, double offset) {
+  std::vector<double> r, s, y;
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    const double index = static_cast<double>(i) - offset;
+    if (index < 1.0 || index >= static_cast<double>(reference.size()) - 2.0) continue;
+    const ValueAndSlope at = hermite(reference, index);
+    r.push_back(at.value);
+    s.push_back(at.slope);
+    y.push_back(channel[i]);
+  }
+  if (y.size() < 8) return std::nullopt;
+  const double r_mean = mean(r).value;
+  const double s_mean = mean(s).value;
+  const double y_mean = mean(y).value;
+  double rr = 0, rs = 0, ss = 0, ry = 0, sy = 0, yy = 0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    r[i] -= r_mean, s[i] -= s_mean, y[i] -= y_mean;
+    rr += r[i] * r[i], rs += r[i] * s[i], ss += s[i] * s[i];
+    ry += r[i] * y[i], sy += s[i] * y[i], yy += y[i] * y[i];
+  }
+  const double determinant = rr * ss - rs * rs;
+  if (determinant <= 1e-12 * rr * ss || yy <= 0.0) return std::nullopt;
+  const double gain = (ss * ry - rs * sy) / determinant;
+  const double slope_gain = (rr * sy - rs * ry) / determinant;
+  if (gain == 0.0) return std::nullopt;
+  double square = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    y[i] -= gain * r[i] + slope_gain * s[i];
+    square += y[i] * y[i];
+  }
+  const double variance = square / static_cast<double>(y.size()) * autocorrelation_factor(y);
+  return Refinement{.step = -slope_gain / gain,
+                    .step_std = std::sqrt(variance * rr / determinant) / std::abs(gain),
+                    .gain = gain,
+                    .correlation = ry / std::sqrt(rr * yy)};
+}
+
+}  // namespace
+
+std::optional<OffsetEstimate> estimate_offset(std::span<const double> reference, std::span<const double> channel,
+                                              double interval_s, double largest_offset_s) {
+  assert(reference.size() == channel.size());
+  const auto count = static_cast<std::ptrdiff_t>(channel.size());
+  const std::ptrdiff_t largest = std::min(static_cast<std::ptrdiff_t>(largest_offset_s / interval_s), count / 2);
+  if (count < 16 || largest < 1) return std::nullopt;
+  std::ptrdiff_t best = 0;
+  double best_correlation = 0.0;
+  for (std::ptrdiff_t lag = -largest; lag <= largest; ++lag) {
+    const double correlation = std::abs(correlation_at(reference, channel, lag));
+    if (correlation > best_correlation) best = lag, best_correlation = correlation;
+  }
+  if (best_correlation <= 0.0 || std::abs(best) == largest) return std::nullopt;
+  double offset = static_cast<double>(best);
+  std::optional<Refinement> refinement;
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    refinement = refine(reference, channel, offset);
+    if (!refinement) return std::nullopt;
+    offset += std::clamp(refinement->step, -1.0, 1.0);  // the search has already found the right sample
+  }
+  return OffsetEstimate{.offset_s = offset * interval_s,
+                        .offset_std_s = refinement->step_std * interval_s,
+                        .gain = refinement->gain,
+                        .correlation = refinement->correlation};
+}
+
+}  // namespace sealwatch::signal

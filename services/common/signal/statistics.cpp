@@ -1,0 +1,112 @@
+#include "sealwatch/signal/statistics.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+namespace sealwatch::signal {
+namespace {
+
+constexpr double kQuartileOfNormal = 0.6745;  // |z| of a standard normal has this median
+constexpr double kLargestCorrelation = 0.99;  // a drifting signal still counts as a few independent values
+
+double smallest_step(std::span<const double> values) {
+  double step = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double change = std::abs(values[i] - values[i - 1]);
+    // Steps of the last bits come from the arithmetic, not from the sensor.
+    if (change > 1e-12 * std::abs(values[i]) && (step == 0.0 || change < step)) step = change;
+  }
+  return step;
+}
+
+}  // namespace
+
+double quantile(std::vector<double> values, double probability) {
+  assert(!values.empty());
+  const double place = probability * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(below);
+  std::nth_element(values.begin(), at, values.end());
+  if (below + 1 >= values.size()) return *at;
+  const double next = *std::min_element(at + 1, values.end());
+  return *at + (place - static_cast<double>(below)) * (next - *at);
+}
+
+double autocorrelation_factor(std::span<const double> residuals) {
+  double square = 0.0;
+  double product = 0.0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    square += residuals[i] * residuals[i];
+    if (i > 0) product += residuals[i] * residuals[i - 1];
+  }
+  if (square <= 0.0) return 1.0;
+  const double rho = std::clamp(product / square, 0.0, kLargestCorrelation);
+  return (1.0 + rho) / (1.0 - rho);
+}
+
+Estimate mean(std::span<const double> values) {
+  assert(values.size() >= 2);
+  const auto count = static_cast<double>(values.size());
+  const double average = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  std::vector<double> residuals(values.begin(), values.end());
+  double square = 0.0;
+  for (double& residual : residuals) {
+    residual -= average;
+    square += residual * residual;
+  }
+  return {average, std::sqrt(square / (count - 1.0) / count * autocorrelation_factor(residuals))};
+}
+
+Estimate slope(std::span<const double> values, double interval_s) {
+  assert(values.size() >= 3);
+  const auto count = static_cast<double>(values.size());
+  const double middle = (count - 1.0) / 2.0;
+  const double average = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double product = 0.0;
+  double spread = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double place = static_cast<double>(i) - middle;
+    product += place * (values[i] - average);
+    spread += place * place;
+  }
+  const double per_sample = product / spread;
+  std::vector<double> residuals(values.size());
+  double square = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    residuals[i] = values[i] - average - per_sample * (static_cast<double>(i) - middle);
+    square += residuals[i] * residuals[i];
+  }
+  const double variance = square / (count - 2.0) / spread * autocorrelation_factor(residuals);
+  return {per_sample / interval_s, std::sqrt(variance) / interval_s};
+}
+
+Estimate weighted_mean(std::span<const Estimate> estimates) {
+  assert(!estimates.empty());
+  double weights = 0.0;
+  double sum = 0.0;
+  for (const Estimate& estimate : estimates) {
+    if (estimate.std_error <= 0.0) return estimate;  // an exact value outweighs all others
+    const double weight = 1.0 / (estimate.std_error * estimate.std_error);
+    weights += weight;
+    sum += weight * estimate.value;
+  }
+  return {sum / weights, 1.0 / std::sqrt(weights)};
+}
+
+double estimate_noise_std(std::span<const double> values) {
+  std::vector<double> finite;
+  finite.reserve(values.size());
+  std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
+  if (finite.size() < 16) return 0.0;
+  std::vector<double> differences;
+  differences.reserve(finite.size());
+  for (std::size_t i = 2; i + 2 < finite.size(); ++i)
+    differences.push_back(
+        std::abs(finite[i - 2] - 4.0 * finite[i - 1] + 6.0 * finite[i] - 4.0 * finite[i + 1] + finite[i + 2]));
+  const double white = median(std::move(differences)) / kQuartileOfNormal / std::sqrt(70.0);
+  return std::max(white, smallest_step(finite) / std::sqrt(12.0));
+}
+
+}  // namespace sealwatch::signal

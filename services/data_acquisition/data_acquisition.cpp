@@ -1,0 +1,160 @@
+#include "services/data_acquisition/data_acquisition.hpp"
+
+#include <cassert>
+#include <cstdio>
+
+#include "services/data_acquisition/pst_id.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr Topic kInputs[] = {Topic::raw_samples};
+constexpr Topic kOutputs[] = {Topic::sample_block};
+constexpr const char* kProducer = "data_acquisition 0.1.0";
+
+/// What all blocks of one test share. Neither content nor block number: a block in the middle must be known by it.
+std::string identity(const std::string& asset_id, const std::string& source_id, const std::string& recording_id,
+                     bool start_known, std::int64_t start_ns) {
+  return asset_id + '\n' + source_id + '\n' + recording_id + '\n' + (start_known ? std::to_string(start_ns) : "");
+}
+std::string identity(const RawSamples& raw) {
+  return identity(raw.asset_id, raw.source_id, raw.recording_id, raw.start_time_known, raw.start_time_ns);
+}
+std::string identity(const SampleBlock& block) {
+  return identity(block.asset_id, block.source_id, block.recording_id, block.header.event_time_known,
+                  block.header.event_time_ns);
+}
+
+bool begins(const RawSamples& raw) {
+  return raw.boundary == BlockBoundary::begin || raw.boundary == BlockBoundary::whole || raw.block_number == 0;
+}
+
+bool ends(BlockBoundary boundary) { return boundary == BlockBoundary::end || boundary == BlockBoundary::whole; }
+
+/// Block 0 begins a test, whether its sender says so or not.
+BlockBoundary boundary_of(const RawSamples& raw) {
+  if (raw.block_number != 0) return raw.boundary;
+  return ends(raw.boundary) ? BlockBoundary::whole : BlockBoundary::begin;
+}
+
+}  // namespace
+
+Status DataAcquisitionOptions::validate() const {
+  const auto check = [](bool good, const char* option, double value, const char* rule) -> Status {
+    if (good) return {};
+    return fail(Error{.file = {}, .place = option, .value = std::to_string(value), .rule = rule, .advice = {}});
+  };
+  if (Status s = check(time_out_s > 0.0, "time_out_s", time_out_s, "must be positive"); !s) return s;
+  if (Status s = check(least_frozen_s > 0.0, "least_frozen_s", least_frozen_s, "must be positive"); !s) return s;
+  if (Status s = check(gap_factor > 1.0, "gap_factor", gap_factor, "must be above 1"); !s) return s;
+  if (Status s = check(failed_share >= 0.0 && failed_share <= 1.0, "failed_share", failed_share, "must be 0 to 1"); !s)
+    return s;
+  return check(unknown_missing_share >= 0.0 && unknown_missing_share <= 1.0, "unknown_missing_share",
+               unknown_missing_share, "must be 0 to 1");
+}
+
+DataAcquisition::DataAcquisition(std::vector<AssetConfig> assets, DataAcquisitionOptions options)
+    : assets_(std::move(assets)), options_(options) {
+  assert(options_.validate());
+}
+
+std::span<const Topic> DataAcquisition::inputs() const { return kInputs; }
+std::span<const Topic> DataAcquisition::outputs() const { return kOutputs; }
+
+OpenTest DataAcquisition::open(const std::string& asset_id) const {
+  for (const AssetConfig& asset : assets_) {
+    if (asset.asset_id != asset_id) continue;
+    const Result<const PlantDescription*> plant = find_plant(asset.model);
+    return {asset_id, &asset, plant ? *plant : nullptr, options_};
+  }
+  return {asset_id, nullptr, nullptr, options_};
+}
+
+void DataAcquisition::restore(const Message& own_output) {
+  const auto* block = std::get_if<SampleBlock>(&own_output);
+  if (!block || finished_.contains(block->header.pst_id)) return;
+  auto found = running_.find(block->asset_id);
+  if (found == running_.end())
+    found =
+        running_.emplace(block->asset_id, Running{block->header.pst_id, identity(*block), open(block->asset_id), {}})
+            .first;
+  found->second.test.absorb(*block);
+  if (ends(block->boundary)) finish(block->asset_id);
+}
+
+Conclusion DataAcquisition::receive(const Message& input) {
+  Conclusion conclusion;
+  if (const auto* raw = std::get_if<RawSamples>(&input)) take_raw(*raw, conclusion);
+  conclusion.consumed.push_back(header_of(input).message_id);
+  return conclusion;
+}
+
+void DataAcquisition::take_raw(const RawSamples& raw, Conclusion& conclusion) {
+  Running* running = running_test(raw, conclusion);
+  if (!running || running->test.seen(raw.block_number)) return;
+  running->idle_since.reset();
+  SampleBlock block = stamp(raw, running->pst_id);
+  running->test.complete(raw, block);
+  if (ends(block.boundary)) finish(raw.asset_id);
+  conclusion.outputs.emplace_back(std::move(block));
+}
+
+/// The open test that the block belongs to, opened if need be; null for a block of a test that is over.
+DataAcquisition::Running* DataAcquisition::running_test(const RawSamples& raw, Conclusion& conclusion) {
+  const auto found = running_.find(raw.asset_id);
+  const bool same = found != running_.end() && found->second.identity == identity(raw);
+  if (same && !begins(raw)) return &found->second;
+  if (!begins(raw) && finished_identities_.contains(identity(raw))) return nullptr;
+  const std::string pst_id = make_pst_id(raw);
+  if (same && found->second.pst_id == pst_id) return &found->second;
+  if (finished_.contains(pst_id)) return nullptr;
+  if (found != running_.end()) close(raw.asset_id, "cut: another test began before this one ended", conclusion);
+  return &running_.emplace(raw.asset_id, Running{pst_id, identity(raw), open(raw.asset_id), {}}).first->second;
+}
+
+SampleBlock DataAcquisition::stamp(const RawSamples& raw, const std::string& pst_id) const {
+  SampleBlock block;
+  block.asset_id = raw.asset_id;
+  block.header.message_id = "sample_block/" + pst_id + "/" + std::to_string(raw.block_number);
+  block.header.pst_id = pst_id;
+  if (!raw.header.message_id.empty()) block.header.source_ids = {raw.header.message_id};
+  block.header.producer = kProducer;
+  block.header.event_time_known = raw.start_time_known;
+  block.header.event_time_ns = raw.start_time_known ? raw.start_time_ns : 0;
+  block.header.replay = raw.header.replay;
+  block.source_id = raw.source_id;
+  block.block_number = raw.block_number;
+  block.boundary = boundary_of(raw);
+  block.recording_id = raw.recording_id;
+  block.test_kind = raw.test_kind.empty() ? "pst" : raw.test_kind;
+  block.aborted = raw.aborted;
+  block.abort_reason = raw.abort_reason;
+  return block;
+}
+
+void DataAcquisition::close(const std::string& asset_id, const std::string& reason, Conclusion& conclusion) {
+  conclusion.outputs.emplace_back(running_.at(asset_id).test.closing_block(reason));
+  finish(asset_id);
+}
+
+void DataAcquisition::finish(const std::string& asset_id) {
+  const auto found = running_.find(asset_id);
+  finished_.insert(found->second.pst_id);
+  finished_identities_.insert(found->second.identity);
+  running_.erase(found);
+}
+
+Conclusion DataAcquisition::tick(UtcTime now) {
+  Conclusion conclusion;
+  std::vector<std::string> silent;
+  for (auto& [asset_id, running] : running_) {
+    if (!running.idle_since) running.idle_since = now;
+    if (seconds_between(*running.idle_since, now) >= options_.time_out_s) silent.push_back(asset_id);
+  }
+  char reason[80];
+  std::snprintf(reason, sizeof reason, "cut: no samples for %.0f s", options_.time_out_s);
+  for (const std::string& asset_id : silent) close(asset_id, reason, conclusion);
+  return conclusion;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,55 @@
+// Layer 1 (ISO 13374 DA): raw samples become time-stamped sample blocks of one test each, with PST boundaries, a PST id
+// and the status of every channel.
+//
+// One raw block gives one sample block at once. A test begins with a block that says so, or with block 0, or with a
+// block of another test than the open one. It ends with a block that says so; when another test of the same actuator
+// begins first, or (live) when nothing comes for time_out_s, it is closed as cut by an empty end block with aborted
+// set. What was seen before changes nothing: blocks whose number came already and tests that are closed are passed
+// over. Blocks out of order go on as they come, under their numbers; data manipulation sorts them.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/port/layer.hpp"
+#include "services/data_acquisition/open_test.hpp"
+
+namespace sealwatch {
+
+class DataAcquisition final : public Layer {
+ public:
+  explicit DataAcquisition(std::vector<AssetConfig> assets, DataAcquisitionOptions options = {});
+
+  [[nodiscard]] std::string_view name() const override { return "data_acquisition"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override;
+  [[nodiscard]] std::span<const Topic> outputs() const override;
+  void restore(const Message& own_output) override;
+  [[nodiscard]] Conclusion receive(const Message& input) override;
+  [[nodiscard]] Conclusion tick(UtcTime now) override;
+
+ private:
+  struct Running {
+    std::string pst_id;
+    std::string identity;
+    OpenTest test;
+    std::optional<UtcTime> idle_since;  ///< first tick after the last block; decides when, never what
+  };
+  void take_raw(const RawSamples& raw, Conclusion& conclusion);
+  Running* running_test(const RawSamples& raw, Conclusion& conclusion);
+  [[nodiscard]] OpenTest open(const std::string& asset_id) const;
+  [[nodiscard]] SampleBlock stamp(const RawSamples& raw, const std::string& pst_id) const;
+  void close(const std::string& asset_id, const std::string& reason, Conclusion& conclusion);
+  void finish(const std::string& asset_id);
+
+  std::vector<AssetConfig> assets_;
+  DataAcquisitionOptions options_;
+  std::map<std::string, Running> running_;     ///< by asset
+  std::set<std::string> finished_;             ///< PST ids
+  std::set<std::string> finished_identities_;  ///< what blocks without a content hash are known by
+};
+
+}  // namespace sealwatch

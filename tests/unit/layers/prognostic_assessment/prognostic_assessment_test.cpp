@@ -1,0 +1,194 @@
+// The prognosis layer by its contract: joins, restarts, replacements, unordered tests, requests.
+#include "services/prognostic_assessment/prognostic_assessment.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <random>
+
+#include "tests/unit/layers/prognostic_assessment/fixtures.hpp"
+#include "tests/unit/layers/prognostic_assessment/layer_contract.hpp"
+
+namespace sealwatch::prognostic_assessment {
+namespace {
+
+using namespace sealwatch::test;
+using testing::Each;
+using testing::HasSubstr;
+
+class PrognosticAssessmentTest : public testing::Test {
+ protected:
+  std::unique_ptr<Layer> make() const { return PrognosticAssessment::make(configuration_, estimator_).value(); }
+  std::vector<Message> run(const std::vector<Message>& inputs, std::optional<std::size_t> death_after = {}) const {
+    return run_layer([this] { return make(); }, inputs, death_after);
+  }
+
+  Configuration configuration_ = configuration();
+  ScriptedEstimator estimator_;
+};
+
+TEST_F(PrognosticAssessmentTest, EveryTestGivesEstimateRemainingLifeAndRequest) {
+  const auto outputs = run(inputs_of(straight_life(1, 60)));
+  ASSERT_EQ(outputs.size(), 180u);
+  const RemainingLife life = of_kind<RemainingLife>(outputs).back();
+  EXPECT_EQ(life.header.message_id, "remaining_life/" + TestCase{.month = 60}.pst_id());
+  EXPECT_EQ(life.header.producer, "prognostic_assessment 0.1.0");
+  EXPECT_TRUE(life.header.replay && life.header.event_time_known);
+  EXPECT_EQ(life.header.source_ids.front(), "leakage_estimate/" + life.header.pst_id);
+  EXPECT_NEAR(life.condition, 0.76, 1e-9);
+  EXPECT_EQ(life.tests_since_replacement, 60);
+  const Forecast& in_charge = life.forecasts.front();
+  EXPECT_EQ(in_charge.method, "ols");
+  EXPECT_EQ(in_charge.window_months, 36);
+  ASSERT_EQ(in_charge.state, ForecastState::ok) << in_charge.explanation;
+  EXPECT_NEAR(in_charge.rul_months, 40.0, 1e-6);
+  ASSERT_EQ(in_charge.failure_probability.size(), 2u);
+  EXPECT_EQ(in_charge.failure_probability[0].label, "summer 2016");
+  EXPECT_LT(in_charge.failure_probability[0].probability, 0.01);
+  const LeakageEstimate estimate = of_kind<LeakageEstimate>(outputs).back();
+  EXPECT_THAT(estimate.header.source_ids,
+              testing::ElementsAre("health_report/" + estimate.header.pst_id, "test_window/" + estimate.header.pst_id));
+}
+
+TEST_F(PrognosticAssessmentTest, OrderOfTheJoinDoesNotMatter) {
+  const auto life = straight_life(1, 30);
+  std::vector<Message> reports_first;
+  for (const TestCase& test : life) reports_first.emplace_back(test.health());
+  for (const TestCase& test : life) reports_first.emplace_back(test.window());
+  EXPECT_EQ(run(reports_first), run(inputs_of(life)));
+}
+
+TEST_F(PrognosticAssessmentTest, DeathAnywhereChangesNothing) {
+  auto life = straight_life(1, 40);
+  life[10].admissible = false;
+  life[20].condition = 0.97;  // stands alone
+  life[30].fit_admissible = false;
+  auto inputs = inputs_of(life);
+  inputs.insert(inputs.begin() + 25, replacement(11.5));
+  std::swap(inputs[50], inputs[53]);  // one test's report before its window, across another test
+  const auto undisturbed = run(inputs);
+  for (std::size_t death = 0; death < inputs.size(); ++death) ASSERT_EQ(run(inputs, death), undisturbed) << death;
+}
+
+TEST_F(PrognosticAssessmentTest, RepeatedDeliveryChangesNothing) {
+  const auto life = straight_life(1, 30);
+  auto inputs = inputs_of(life);
+  const auto once = run(inputs);
+  for (const Message& again : inputs_of({life[3], life[29]})) inputs.push_back(again);
+  EXPECT_EQ(run(inputs), once);
+}
+
+TEST_F(PrognosticAssessmentTest, AfterReplacementTheHistoryStartsAnew) {
+  auto inputs = inputs_of(straight_life(1, 40));
+  inputs.emplace_back(replacement(40.5));
+  for (TestCase test : straight_life(41, 70)) {
+    test.condition = 1.0 - 0.005 * (test.month - 40.5);
+    for (const Message& message : inputs_of({test})) inputs.push_back(message);
+  }
+  const auto lives = of_kind<RemainingLife>(run(inputs));
+  ASSERT_EQ(lives.size(), 71u);
+  const RemainingLife& reset = lives[40];
+  EXPECT_EQ(reset.tests_since_replacement, 0);
+  EXPECT_THAT(reset.forecasts.front().explanation, HasSubstr("seal_replaced on 2013-05"));
+  EXPECT_EQ(lives[41].tests_since_replacement, 1);
+  EXPECT_EQ(lives[41].forecasts.front().state, ForecastState::insufficient_history);
+  const Forecast window_24 = lives.back().forecasts[1];
+  ASSERT_EQ(window_24.window_months, 24);
+  EXPECT_NEAR(window_24.rul_months, 40.5 + 80.0 - 70.0, 1e-6);
+}
+
+TEST_F(PrognosticAssessmentTest, ReplacementPartsTheHistoryByEventTimeNotByArrival) {
+  auto inputs = inputs_of(straight_life(1, 40));
+  inputs.emplace_back(replacement(30.5));  // reported ten months late
+  for (const Message& message : inputs_of(straight_life(41, 41))) inputs.push_back(message);
+  EXPECT_EQ(of_kind<RemainingLife>(run(inputs)).back().tests_since_replacement, 11);
+}
+
+TEST_F(PrognosticAssessmentTest, TestsInAnyOrderEndInTheSameForecast) {
+  auto life = straight_life(1, 59);
+  std::mt19937_64 random(4);
+  std::shuffle(life.begin(), life.end(), random);
+  life.push_back({.month = 60, .condition = 0.76});
+  const RemainingLife shuffled = of_kind<RemainingLife>(run(inputs_of(life))).back();
+  const RemainingLife in_order = of_kind<RemainingLife>(run(inputs_of(straight_life(1, 60)))).back();
+  EXPECT_EQ(shuffled, in_order);
+}
+
+TEST_F(PrognosticAssessmentTest, LateOldTestIsJudgedAtItsOwnTimeAndAsksForNothing) {
+  auto life = straight_life(1, 60);
+  const TestCase late = life[40];
+  life.erase(life.begin() + 40);
+  life.push_back(late);
+  const auto outputs = run(inputs_of(life));
+  EXPECT_NEAR(of_kind<RemainingLife>(outputs).back().forecasts.front().rul_months, 100.0 - 41.0, 1e-6);
+  EXPECT_EQ(of_kind<PstRequest>(outputs).size(), 59u);
+}
+
+TEST_F(PrognosticAssessmentTest, LeftOutTestsChangeNoForecast) {
+  auto life = straight_life(1, 60);
+  auto spoiled = life;
+  spoiled[45] = {.month = 46, .condition = 0.61, .admissible = false};
+  spoiled[50] = {.month = 51, .condition = 0.99, .fit_admissible = false};
+  const RemainingLife without = of_kind<RemainingLife>(run(inputs_of(spoiled))).back();
+  EXPECT_NEAR(without.forecasts.front().rul_months, 40.0, 1e-6);
+  EXPECT_EQ(without.forecasts.front().tests_used, 34);
+}
+
+TEST_F(PrognosticAssessmentTest, LoneMonthWaitsForConfirmation) {
+  auto life = straight_life(1, 61);
+  life[59].condition = life[60].condition = 0.65;
+  const auto outputs = run(inputs_of(life));
+  const auto estimates = of_kind<LeakageEstimate>(outputs);
+  EXPECT_FALSE(estimates[59].used_for_forecast);
+  EXPECT_THAT(estimates[59].reasons, testing::ElementsAre(HasSubstr("stands alone")));
+  EXPECT_THAT(of_kind<PstRequest>(outputs)[59].reason, HasSubstr("repeat"));
+  EXPECT_TRUE(estimates[60].used_for_forecast);
+  const auto lives = of_kind<RemainingLife>(outputs);
+  EXPECT_NEAR(lives[59].forecasts.front().rul_months, 40.0, 1e-6);
+  EXPECT_THAT(lives[59].forecasts.front().explanation, HasSubstr("2015-01-01 (0.650)"));
+  EXPECT_LT(lives[60].forecasts.front().rul_months, 35.0);  // both count now
+}
+
+TEST_F(PrognosticAssessmentTest, RequestsTheNextTestOrARepetition) {
+  auto life = straight_life(1, 2);
+  life[1].admissible = false;
+  const auto requests = of_kind<PstRequest>(run(inputs_of(life)));
+  ASSERT_EQ(requests.size(), 2u);
+  EXPECT_EQ(requests[0].due_time_ns, add_months(add_months(kInstalled, 1), 1.0).nanoseconds);
+  EXPECT_THAT(requests[0].reason, HasSubstr("regular"));
+  EXPECT_EQ(requests[1].due_time_ns, add_months(kInstalled, 2).nanoseconds);
+  EXPECT_THAT(requests[1].reason, HasSubstr("cut after 7.4 s"));
+}
+
+TEST_F(PrognosticAssessmentTest, SaysWhyThereIsNoForecast) {
+  const auto no_time = of_kind<RemainingLife>(run(inputs_of({{.time_known = false}}))).back();
+  EXPECT_THAT(no_time.forecasts.front().explanation, HasSubstr("no start time"));
+  const auto no_seal = of_kind<RemainingLife>(run(inputs_of({{.asset_id = "BENCH-1"}}))).back();
+  EXPECT_EQ(no_seal.forecasts.front().state, ForecastState::insufficient_history);
+  EXPECT_THAT(no_seal.forecasts.front().explanation, HasSubstr("no seal resistances"));
+  const auto outputs = run(inputs_of({{.asset_id = "NOBODY"}}));
+  EXPECT_THAT(of_kind<LeakageEstimate>(outputs).back().reasons, Each(HasSubstr("'NOBODY' is not configured")));
+  EXPECT_EQ(outputs.size(), 2u);
+}
+
+TEST_F(PrognosticAssessmentTest, AssetsDoNotMix) {
+  Configuration two = configuration_;
+  two.assets[1].seal = SealSetting{};
+  auto inputs = inputs_of(straight_life(1, 40));
+  for (TestCase test : straight_life(1, 40)) {
+    test.asset_id = "BENCH-1";
+    test.condition = 1.0 - 0.008 * test.month;
+    for (const Message& message : inputs_of({test})) inputs.push_back(message);
+  }
+  const auto outputs = run_layer([&] { return PrognosticAssessment::make(two, estimator_).value(); }, inputs);
+  EXPECT_NEAR(of_kind<RemainingLife>(outputs)[39].forecasts.front().rul_months, 60.0, 1e-6);
+  EXPECT_NEAR(of_kind<RemainingLife>(outputs)[79].forecasts.front().rul_months, 10.0, 1e-6);
+}
+
+TEST_F(PrognosticAssessmentTest, OptionsAreChecked) {
+  EXPECT_FALSE(PrognosticAssessment::make(configuration_, estimator_, {.largest_condition_std = 0.0}));
+  EXPECT_FALSE(PrognosticAssessment::make(configuration_, estimator_, {.forecasters = {{"oracle", 36}}}));
+}
+
+}  // namespace
+}  // namespace sealwatch::prognostic_assessment

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# sample_throughput.sh SAMPLE_THROUGHPUT: our blocks of 1000 doubles against ddsperf with the same payload, process to process on
+# loopback, in turns; the medians' ratio must be at least 0.5. Ours carries header, channel names and units besides, and is
+# decoded into RawSamples; ddsperf's payload is one octet sequence that it only counts.
+set -euo pipefail
+program=$1
+seconds=3 rounds=3 payload=8000 goal=0.5
+
+export CYCLONEDDS_URI="<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/>\
+</Interfaces></General><Discovery><Tag>throughput-$$</Tag></Discovery></Domain></CycloneDDS>"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+ours() {
+  "$program" subscribe "$seconds" >"$scratch/rate" &
+  local subscriber=$!
+  "$program" publish "$seconds"
+  wait "$subscriber"
+  cat "$scratch/rate"
+}
+
+# ddsperf prints for each second "rate 61.52 kS/s 3937.04 Mb/s"; the whole seconds between the first and the last line count.
+theirs() {
+  ddsperf -1 -D $((seconds + 2)) sub >"$scratch/ddsperf" &
+  local subscriber=$!
+  ddsperf -D $((seconds + 2)) -k all pub size $payload >/dev/null
+  wait "$subscriber" || true
+  sed -n 's/.* rate \([0-9.]*\) kS\/s.*/\1/p' "$scratch/ddsperf" | sort -n | awk '{r[NR]=$1} END {print 1000*r[int((NR+1)/2)]}'
+}
+
+median() { sort -n | awk '{r[NR]=$1} END {print r[int((NR+1)/2)]}'; }
+
+for _ in $(seq $rounds); do
+  ours >>"$scratch/ours"
+  theirs >>"$scratch/theirs"
+done
+awk -v ours="$(median <"$scratch/ours")" -v theirs="$(median <"$scratch/theirs")" -v goal=$goal -v payload=$payload 'BEGIN {
+  printf "sample transport: %.0f blocks/s (%.0f MB/s); ddsperf, %d octets: %.0f/s; ratio %.2f (goal %.1f)\n",
+         ours, ours * payload * 1e-6, payload, theirs, ours / theirs, goal
+  exit !(ours / theirs >= goal) }'

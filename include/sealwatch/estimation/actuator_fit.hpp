@@ -1,0 +1,63 @@
+// Prediction-error minimisation of a whole plant: one or several recordings, shared parameters.
+//
+//   minimise over psi, Phi_k, x0_k:  1/2 sum_k sum_t sum_c ((y_ktc - y_hat_ktc(psi, Phi_k, x0_k)) / sigma_kc)^2
+//   with psi_min <= psi <= psi_max
+//
+// psi: parameters that the asset marks `estimate`, positive ones as logarithms; Phi_k: load factor and x0_k: slow
+// initial states of recording k, its own. sigma_kc: noise of channel c, as given or as seen in the data. y_hat: the
+// simulation from the measured input alone (model/simulation.hpp), with its analytic sensitivities. The mean load phi
+// is never free: each recording has its load factor, and only phi (1 + Phi_k) shows. Where phi is 0 (a plant without a
+// mean load) phi itself is each recording's own load.
+//
+// Standard errors: (J'J)^-1 through singular values, so that what the data cannot tell has an infinite one; where the
+// residuals are not white they are raised to the Newey-West sandwich (covariance.hpp), and `termination` says so.
+// Interpolation: between samples the input is taken as linear. The error of that, estimated by leaving out every second
+// sample (it falls with the square of the distance), is added to sigma.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/time_series.hpp"
+#include "sealwatch/estimation/admissibility.hpp"
+#include "sealwatch/message/prognostic_assessment.hpp"
+
+namespace sealwatch {
+
+struct ActuatorFitOptions {
+  int maximum_iterations = 60;
+  /// The search ends when an iteration changes the cost by less than this for each recording. 0.25 in cost is the step
+  /// of a parameter by 0.7 standard errors; as each Gauss-Newton step is a small fraction of the one before, what is
+  /// left after it is hundredths. The integrator's own error moves the cost by some tenths: less cannot be resolved.
+  double cost_tolerance = 0.25;
+  double relative_tolerance = 1e-6;  ///< of the integrator
+  /// Where the first search ends badly, the shared parameters are started again at these multiples of the asset's
+  /// values.
+  std::vector<double> restart_factors = {0.5, 2.0};
+  bool estimate_shared = true;  ///< false: loads and initial states only
+  AdmissibilityOptions admissibility;
+
+  [[nodiscard]] Status validate() const;
+};
+
+/// What belongs to one recording of a joint fit.
+struct RecordingFit {
+  EstimatedParameter load;                        ///< "load_factor", or "phi" where that is the recording's own
+  std::vector<EstimatedParameter> initial_state;  ///< "initial:p_A", ...
+  std::vector<ChannelFit> channels;
+  TimeSeries simulated;  ///< recorded outputs as simulated, noise_std as used for whitening
+};
+
+struct JointFit {
+  FitReport
+      report;  ///< shared parameters; channels pooled over the recordings; parameters of its own for one recording
+  std::vector<RecordingFit> recordings;  ///< empty when no fit could be made
+};
+
+/// Fits all recordings together. Never fails: what cannot be fitted is a report with admissible = false and the
+/// reasons.
+[[nodiscard]] JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> recordings,
+                                    const ActuatorFitOptions& options = {});
+
+}  // namespace sealwatch

@@ -1,0 +1,77 @@
+#include "sealwatch/estimation/actuator_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sealwatch/estimation/covariance.hpp"
+#include "services/common/estimation/fit_report.hpp"
+#include "services/common/estimation/pem_search.hpp"
+#include "services/common/estimation/words.hpp"
+
+namespace sealwatch {
+namespace {
+
+std::vector<double> shared_start(const PemProblem& problem, double factor) {
+  std::vector<double> start;
+  for (const Unknown& unknown : problem.shared)
+    start.push_back(unknown.to_unknown(unknown.logarithmic ? unknown.start * factor : unknown.start));
+  return start;
+}
+
+bool fits_well(const PemOptimum& optimum, const ActuatorFitOptions& options) {
+  if (!optimum.converged) return false;
+  double squares = 0.0, count = 0.0;
+  for (const Linearisation& part : optimum.at_optimum) {
+    squares += part.residual.squaredNorm();
+    count += static_cast<double>(part.residual.size());
+  }
+  return std::sqrt(squares / count) <= options.admissibility.largest_noise_normalised_rms;
+}
+
+bool better(const PemOptimum& a, const PemOptimum& b) {
+  return a.converged != b.converged ? a.converged : a.cost < b.cost;
+}
+
+// From the asset's values; from others only where that ended badly.
+Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const ActuatorFitOptions& options) {
+  Result<PemOptimum> best = search(problem, shared_start(problem, 1.0), options);
+  if (problem.shared.empty() || (best && fits_well(*best, options))) return best;
+  for (const double factor : options.restart_factors) {
+    Result<PemOptimum> other = search(problem, shared_start(problem, factor), options);
+    if (other && (!best || better(*other, *best))) best = std::move(other);
+    if (best && fits_well(*best, options)) break;
+  }
+  return best;
+}
+
+}  // namespace
+
+Status ActuatorFitOptions::validate() const {
+  if (maximum_iterations < 1)
+    return fail("maximum_iterations must be at least 1, is " + std::to_string(maximum_iterations));
+  if (!(cost_tolerance > 0.0)) return fail("cost_tolerance must be positive, is " + in_words(cost_tolerance));
+  if (!(relative_tolerance > 0.0 && relative_tolerance <= 1e-3))
+    return fail("relative_tolerance must be positive and at most 1e-3, is " + in_words(relative_tolerance));
+  for (const double factor : restart_factors)
+    if (!(factor > 0.0)) return fail("restart_factors must be positive, one is " + in_words(factor));
+  return admissibility.validate();
+}
+
+JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> recordings,
+                      const ActuatorFitOptions& options) {
+  const auto failed = [&](const Error& error) {
+    return JointFit{.report = cannot_fit(asset.model, error.describe()), .recordings = {}};
+  };
+  if (const Status valid = options.validate(); !valid) return failed(valid.error());
+  Result<PemProblem> problem = make_pem_problem(asset, recordings, options.estimate_shared);
+  if (!problem) return failed(problem.error());
+  problem->simulation_options.relative_tolerance = options.relative_tolerance;
+  const Result<PemOptimum> optimum = search_from_several_starts(*problem, options);
+  if (!optimum) return failed(optimum.error());
+  JointFit fit = report_fit(asset, *problem, *optimum, recordings);
+  judge_admissibility(fit.report, options.admissibility);
+  return fit;
+}
+
+}  // namespace sealwatch

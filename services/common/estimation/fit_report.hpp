@@ -1,0 +1,14 @@
+// From the optimum of a search to what is reported of it.
+#pragma once
+
+#include <span>
+
+#include "sealwatch/estimation/actuator_fit.hpp"
+#include "services/common/estimation/pem_search.hpp"
+
+namespace sealwatch {
+
+[[nodiscard]] JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const PemOptimum& optimum,
+                                  std::span<const TimeSeries> recordings);
+
+}  // namespace sealwatch

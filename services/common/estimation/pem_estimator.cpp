@@ -1,0 +1,53 @@
+#include "sealwatch/estimation/pem_estimator.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sealwatch {
+namespace {
+
+class PemEstimator final : public Estimator {
+ public:
+  PemEstimator(ActuatorFitOptions actuator, CylinderCircuitOptions cylinder)
+      : actuator_(std::move(actuator)), cylinder_(cylinder) {}
+
+  [[nodiscard]] std::vector<FitReport> estimate(const AssetConfig& asset, const TimeSeries& samples,
+                                                std::span<const Phase> phases) const override {
+    std::vector<FitReport> fits;
+    fits.push_back(fit_actuator(asset, {&samples, 1}, actuator_).report);
+    if (asset.parameters.contains("A_C")) fits.push_back(fit_cylinder_circuit(asset, samples, phases, cylinder_));
+    std::stable_partition(fits.begin(), fits.end(), [](const FitReport& fit) { return fit.admissible; });
+    return fits;
+  }
+
+ private:
+  ActuatorFitOptions actuator_;
+  CylinderCircuitOptions cylinder_;
+};
+
+class PemSimulator final : public Simulator {
+ public:
+  explicit PemSimulator(ActuatorFitOptions options) : options_(std::move(options)) { options_.estimate_shared = false; }
+
+  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded) const override {
+    JointFit fit = fit_actuator(asset, {&recorded, 1}, options_);
+    if (fit.recordings.empty())
+      return fail(fit.report.reasons.empty() ? "cannot be simulated" : fit.report.reasons.front());
+    return std::move(fit.recordings.front().simulated);
+  }
+
+ private:
+  ActuatorFitOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Estimator> make_pem_estimator(ActuatorFitOptions actuator, CylinderCircuitOptions cylinder) {
+  return std::make_unique<PemEstimator>(std::move(actuator), cylinder);
+}
+
+std::unique_ptr<Simulator> make_simulator(ActuatorFitOptions options) {
+  return std::make_unique<PemSimulator>(std::move(options));
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,176 @@
+#include "services/common/estimation/pem_problem.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "services/common/estimation/channel_noise.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Status check_values(const TimeSeries& samples) {
+  for (const Series& channel : samples.channels) {
+    if (channel.values.size() != samples.time_s.size()) return fail(channel.name + " has not one value for each time");
+    if (!std::all_of(channel.values.begin(), channel.values.end(), [](double value) { return std::isfinite(value); }))
+      return fail(channel.name + " has values that are not numbers");
+  }
+  return {};
+}
+
+Unknown shared_unknown(const ParameterDescription& parameter, const ParameterSetting& setting, FreeQuantity quantity) {
+  const bool logarithmic = parameter.positive && setting.min > 0.0 && setting.value > 0.0;
+  const double span = setting.max - setting.min;
+  return {.name = parameter.name,
+          .unit = parameter.unit,
+          .quantity = quantity,
+          .logarithmic = logarithmic,
+          .scale = logarithmic ? setting.value : (span > 0.0 ? span : 1.0),
+          .start = setting.value,
+          .min = setting.min,
+          .max = setting.max};
+}
+
+Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const PlantSimulation& simulation) {
+  std::vector<Unknown> unknowns;
+  for (const ParameterDescription& parameter : simulation.plant().parameters) {
+    const auto setting = asset.parameters.find(parameter.name);
+    if (setting == asset.parameters.end() || !setting->second.estimate || parameter.name == "phi") continue;
+    const Result<FreeQuantity> quantity = simulation.find(parameter.name);
+    if (!quantity) return fail(quantity.error());
+    unknowns.push_back(shared_unknown(parameter, setting->second, *quantity));
+  }
+  return unknowns;
+}
+
+Unknown own_unknown(std::string name, std::string unit, FreeQuantity quantity, double start) {
+  return {.name = std::move(name),
+          .unit = std::move(unit),
+          .quantity = quantity,
+          .logarithmic = false,
+          .scale = start != 0.0 ? std::abs(start) : 1.0,
+          .start = start,
+          .min = -kInfinity,
+          .max = kInfinity};
+}
+
+// A load factor needs a mean load to be a factor of.
+Result<Unknown> load_unknown(const PlantSimulation& simulation) {
+  const Result<FreeQuantity> mean_load = simulation.find("phi");
+  if (!mean_load) return fail(mean_load.error());
+  if (mean_load->in(simulation.start()) != 0.0) {
+    Unknown load = own_unknown("load_factor", "1", *simulation.find("load_factor"), simulation.start().load_factor);
+    load.scale = 1.0;
+    return load;
+  }
+  Unknown load = own_unknown("phi", "N", *mean_load, 0.0);
+  const ParameterDescription& description = *simulation.plant().find_parameter("phi");
+  load.scale = 0.01 * (description.max - description.min);
+  return load;
+}
+
+Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation) {
+  std::vector<Unknown> unknowns;
+  Result<Unknown> load = load_unknown(simulation);
+  if (!load) return fail(load.error());
+  unknowns.push_back(std::move(*load));
+  for (const std::string& state : simulation.slow_state_names()) {
+    const Result<FreeQuantity> quantity = simulation.find("initial:" + state);
+    if (!quantity) return fail(quantity.error());
+    const char* unit = state.starts_with("p") ? "Pa" : "m";
+    unknowns.push_back(own_unknown("initial:" + state, unit, *quantity, quantity->in(simulation.start())));
+  }
+  return unknowns;
+}
+
+Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& recorded) {
+  if (const Status usable = check_values(recorded); !usable) return fail(usable.error());
+  Result<std::unique_ptr<PlantSimulation>> simulation = PlantSimulation::create(asset, recorded);
+  if (!simulation) return fail(simulation.error());
+  PemRecording recording{.simulation = std::move(*simulation), .noise_std = {}, .own = {}};
+  const std::span<const std::string> channels = recording.simulation->channels();
+  recording.noise_std.resize(static_cast<Eigen::Index>(channels.size()));
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const double noise_std = noise_std_of(asset, *recorded.find(channels[c]));
+    recording.noise_std(static_cast<Eigen::Index>(c)) = noise_std > 0.0 ? noise_std : kInfinity;
+  }
+  Result<std::vector<Unknown>> own = own_unknowns(*recording.simulation);
+  if (!own) return fail(own.error());
+  recording.own = std::move(*own);
+  return recording;
+}
+
+}  // namespace
+
+double Unknown::to_unknown(double value) const { return logarithmic ? std::log(value / scale) : value / scale; }
+double Unknown::to_value(double unknown) const { return logarithmic ? scale * std::exp(unknown) : scale * unknown; }
+double Unknown::slope(double unknown) const { return logarithmic ? to_value(unknown) : scale; }
+
+Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
+                                    bool estimate_shared) {
+  PemProblem problem;
+  for (const TimeSeries& recorded : recordings) {
+    Result<PemRecording> recording = make_recording(asset, recorded);
+    if (!recording) return fail(recording.error());
+    problem.recordings.push_back(std::move(*recording));
+  }
+  if (problem.recordings.empty()) return fail("there is no recording");
+  if (estimate_shared) {
+    Result<std::vector<Unknown>> shared = shared_unknowns(asset, *problem.recordings.front().simulation);
+    if (!shared) return fail(shared.error());
+    problem.shared = std::move(*shared);
+  }
+  return problem;
+}
+
+Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
+                                const std::vector<double>& own) {
+  const PemRecording& part = problem.recordings[recording];
+  ModelValues values = part.simulation->start();
+  std::vector<FreeQuantity> free;
+  Eigen::RowVectorXd slope(static_cast<Eigen::Index>(shared.size() + own.size()));
+  const auto set = [&](const Unknown& unknown, double at) {
+    unknown.quantity.in(values) = unknown.to_value(at);
+    slope(static_cast<Eigen::Index>(free.size())) = unknown.slope(at);
+    free.push_back(unknown.quantity);
+  };
+  for (std::size_t k = 0; k < shared.size(); ++k) set(problem.shared[k], shared[k]);
+  for (std::size_t k = 0; k < own.size(); ++k) set(part.own[k], own[k]);
+  Result<SimulatedOutputs> outputs = part.simulation->run(values, free, problem.simulation_options);
+  if (!outputs) return fail(outputs.error());
+  const Eigen::Index channels = part.noise_std.size(), samples = outputs->values.rows();
+  const Eigen::RowVectorXd weight = part.noise_std.cwiseInverse().transpose();
+  const RowMatrix residual = (part.simulation->recorded() - outputs->values) * weight.asDiagonal();
+  Linearisation result{.simulated = std::move(outputs->values),
+                       .residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()),
+                       .jacobian = std::move(outputs->sensitivities)};
+  for (Eigen::Index k = 0; k < samples; ++k)
+    for (Eigen::Index c = 0; c < channels; ++c)
+      result.jacobian.row(k * channels + c).array() *= -weight(c) * slope.array();
+  if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");
+  return result;
+}
+
+Eigen::MatrixXd compress(const Linearisation& linearisation) {
+  const Eigen::Index n = linearisation.jacobian.cols();
+  Eigen::MatrixXd gram(n + 1, n + 1);
+  gram.topLeftCorner(n, n).noalias() = linearisation.jacobian.transpose() * linearisation.jacobian;
+  gram.col(n).head(n).noalias() = linearisation.jacobian.transpose() * linearisation.residual;
+  gram.row(n).head(n) = gram.col(n).head(n).transpose();
+  gram(n, n) = linearisation.residual.squaredNorm();
+  Eigen::VectorXd scale = gram.diagonal().cwiseSqrt();
+  for (double& value : scale)
+    if (!(value > 0.0)) value = 1.0;
+  // Pivoted, so that columns that depend on each other only make a zero row.
+  const Eigen::LDLT<Eigen::MatrixXd> factor(scale.cwiseInverse().asDiagonal() * gram *
+                                            scale.cwiseInverse().asDiagonal());
+  const Eigen::VectorXd root = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
+  Eigen::MatrixXd result = factor.transpositionsP() * Eigen::MatrixXd(scale.asDiagonal());
+  result = factor.matrixU() * result;
+  return root.asDiagonal() * result;
+}
+
+}  // namespace sealwatch

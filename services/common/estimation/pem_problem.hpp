@@ -1,0 +1,58 @@
+// The least-squares problem behind fit_actuator: unknowns, whitened residuals and their Jacobian, one block a
+// recording.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sealwatch/model/simulation.hpp"
+
+namespace sealwatch {
+
+/// An unknown of the search: value = scale exp(unknown) for positive parameters, scale * unknown otherwise.
+struct Unknown {
+  std::string name, unit;
+  FreeQuantity quantity;
+  bool logarithmic = false;
+  double scale = 1.0;
+  double start = 0.0;           ///< of the quantity
+  double min = 0.0, max = 0.0;  ///< of the quantity
+  [[nodiscard]] double to_unknown(double value) const;
+  [[nodiscard]] double to_value(double unknown) const;
+  [[nodiscard]] double slope(double unknown) const;  ///< d value / d unknown
+};
+
+/// One recording: its simulation, the noise of its channels and its own unknowns.
+struct PemRecording {
+  std::unique_ptr<PlantSimulation> simulation;
+  Eigen::VectorXd noise_std;  ///< per channel; infinite: the channel is left out
+  std::vector<Unknown> own;   ///< load, slow initial states
+};
+
+struct PemProblem {
+  std::vector<Unknown> shared;
+  std::vector<PemRecording> recordings;
+  SimulationOptions simulation_options;
+};
+
+/// Whitened residuals of one recording and what they came from. Residual row = sample * channels + channel.
+struct Linearisation {
+  RowMatrix simulated;       ///< samples x channels
+  Eigen::VectorXd residual;  ///< (recorded - simulated) / noise
+  RowMatrix jacobian;        ///< d residual / d unknown: shared first, then own
+};
+
+[[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
+                                                  bool estimate_shared);
+
+/// An Error when the simulation fails there.
+[[nodiscard]] Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording,
+                                              const std::vector<double>& shared, const std::vector<double>& own);
+
+/// Upper part U of [J r] with U'U = [J r]'[J r]: the same least-squares problem in as many rows as it has unknowns plus
+/// one.
+[[nodiscard]] Eigen::MatrixXd compress(const Linearisation& linearisation);
+
+}  // namespace sealwatch

@@ -1,0 +1,154 @@
+#include "services/common/estimation/pem_search.hpp"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sealwatch {
+namespace {
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// One recording as one residual block of as many rows as it has unknowns, plus one (compress() in pem_problem.hpp):
+// Ceres sees the same cost, gradient and Gauss-Newton matrix as with all samples.
+class RecordingCost final : public ceres::CostFunction {
+ public:
+  RecordingCost(const PemProblem& problem, std::size_t recording) : problem_(problem), recording_(recording) {
+    shared_.resize(problem.shared.size());
+    own_.resize(problem.recordings[recording].own.size());
+    set_num_residuals(static_cast<int>(shared_.size() + own_.size()) + 1);
+    if (!shared_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(shared_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(own_.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    if (!update(parameters)) return false;
+    const auto n = static_cast<Eigen::Index>(shared_.size() + own_.size());
+    Eigen::Map<Eigen::VectorXd>(residuals, n + 1) = compressed_.col(n);
+    if (jacobians == nullptr) return true;
+    const auto shared = static_cast<Eigen::Index>(shared_.size()), own = static_cast<Eigen::Index>(own_.size());
+    std::size_t block = 0;
+    if (shared > 0 && jacobians[block++] != nullptr)
+      Eigen::Map<Matrix>(jacobians[0], n + 1, shared) = compressed_.leftCols(shared);
+    if (jacobians[block] != nullptr)
+      Eigen::Map<Matrix>(jacobians[block], n + 1, own) = compressed_.middleCols(shared, own);
+    return true;
+  }
+
+  /// At the given point, which usually is the one that was evaluated last.
+  [[nodiscard]] Result<Linearisation> take_linearisation(const std::vector<double>& shared,
+                                                         const std::vector<double>& own) const {
+    if (!known_ || shared != shared_ || own != own_) return linearise(problem_, recording_, shared, own);
+    known_ = false;
+    return std::move(linearisation_);
+  }
+
+ private:
+  // Ceres asks several times for the same point, first for the cost, then for its derivatives: both cost one
+  // simulation.
+  bool update(double const* const* parameters) const {
+    const double* shared = shared_.empty() ? nullptr : parameters[0];
+    const double* own = parameters[shared_.empty() ? 0 : 1];
+    if (known_ && std::equal(shared_.begin(), shared_.end(), shared) && std::equal(own_.begin(), own_.end(), own))
+      return true;
+    std::copy_n(shared, shared_.size(), shared_.begin());
+    std::copy_n(own, own_.size(), own_.begin());
+    Result<Linearisation> result = linearise(problem_, recording_, shared_, own_);
+    known_ = result.has_value();
+    if (!known_) return false;
+    linearisation_ = std::move(*result);
+    compressed_ = compress(linearisation_);
+    return true;
+  }
+
+  const PemProblem& problem_;
+  std::size_t recording_;
+  mutable std::vector<double> shared_, own_;
+  mutable Linearisation linearisation_;
+  mutable Eigen::MatrixXd compressed_;
+  mutable bool known_ = false;
+};
+
+void set_bounds(ceres::Problem& ceres_problem, const std::vector<Unknown>& unknowns, std::vector<double>& values) {
+  for (std::size_t k = 0; k < unknowns.size(); ++k) {
+    if (!(unknowns[k].max > unknowns[k].min)) continue;
+    const double lower = unknowns[k].to_unknown(unknowns[k].min), upper = unknowns[k].to_unknown(unknowns[k].max);
+    values[k] = std::clamp(values[k], lower, upper);
+    if (std::isfinite(lower)) ceres_problem.SetParameterLowerBound(values.data(), static_cast<int>(k), lower);
+    if (std::isfinite(upper)) ceres_problem.SetParameterUpperBound(values.data(), static_cast<int>(k), upper);
+  }
+}
+
+ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.maximum_iterations;
+  solver.function_tolerance = 0.0;     // CostResolved decides
+  solver.parameter_tolerance = 1e-12;  // unknowns are of the order of one
+  solver.logging_type = ceres::SILENT;
+  solver.num_threads = 1;
+  return solver;
+}
+
+// Ends the search when an iteration changes the cost, or a rejected one promised to change it, by no more than
+// `tolerance`.
+class CostResolved final : public ceres::IterationCallback {
+ public:
+  explicit CostResolved(double tolerance) : tolerance_(tolerance) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;
+    const double promised = iteration.cost_change / iteration.relative_decrease;  // by the linear model
+    const bool resolved = std::abs(iteration.cost_change) <= tolerance_ || (promised >= 0.0 && promised <= tolerance_);
+    return resolved ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double tolerance_;
+};
+
+// Ceres reports steps into parameter regions that cannot be simulated as warnings; they are ordinary rejected steps
+// here.
+void silence_ceres() { FLAGS_minloglevel = google::GLOG_FATAL; }
+
+}  // namespace
+
+Result<PemOptimum> search(const PemProblem& problem, const std::vector<double>& shared_start,
+                          const ActuatorFitOptions& options) {
+  silence_ceres();
+  PemOptimum optimum{.shared = shared_start, .own = {}, .at_optimum = {}, .termination = {}};
+  ceres::Problem ceres_problem;
+  std::vector<RecordingCost*> costs;
+  for (const PemRecording& recording : problem.recordings) {
+    std::vector<double>& own = optimum.own.emplace_back();
+    for (const Unknown& unknown : recording.own) own.push_back(unknown.to_unknown(unknown.start));
+  }
+  for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
+    costs.push_back(new RecordingCost(problem, k));  // owned by ceres_problem
+    std::vector<double*> blocks;
+    if (!problem.shared.empty()) blocks.push_back(optimum.shared.data());
+    blocks.push_back(optimum.own[k].data());
+    ceres_problem.AddResidualBlock(costs.back(), nullptr, blocks);
+  }
+  if (!problem.shared.empty()) set_bounds(ceres_problem, problem.shared, optimum.shared);
+  CostResolved resolved(options.cost_tolerance * static_cast<double>(problem.recordings.size()));
+  ceres::Solver::Options solver = solver_options(options);
+  solver.callbacks.push_back(&resolved);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &ceres_problem, &summary);
+  const bool within_tolerance = summary.termination_type == ceres::USER_SUCCESS;
+  optimum.converged = within_tolerance || summary.termination_type == ceres::CONVERGENCE;
+  optimum.cost = summary.final_cost;
+  optimum.iterations = static_cast<int>(summary.iterations.size());
+  optimum.termination =
+      within_tolerance ? "converged: the last step changed the cost by less than its tolerance" : summary.message;
+  for (std::size_t k = 0; k < costs.size(); ++k) {
+    Result<Linearisation> linearisation = costs[k]->take_linearisation(optimum.shared, optimum.own[k]);
+    if (!linearisation) return fail(linearisation.error());
+    optimum.at_optimum.push_back(std::move(*linearisation));
+  }
+  return optimum;
+}
+
+}  // namespace sealwatch

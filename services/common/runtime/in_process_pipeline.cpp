@@ -6,11 +6,12 @@
 
 namespace sealwatch {
 
-InProcessPipeline::InProcessPipeline(std::vector<Layer*> layers, Observer observer) : observer_(std::move(observer)) {
-  for (Layer* layer : layers) readers_.push_back({layer, {}, {}});
+InProcessPipeline::InProcessPipeline(std::vector<std::unique_ptr<Layer>> layers, Observer observer)
+    : observer_(std::move(observer)) {
+  for (auto& layer : layers) readers_.push_back({std::move(layer), {}, {}});
 }
 
-void InProcessPipeline::feed(const Message& message) {
+void InProcessPipeline::push(const Message& message) {
   waiting_.push_back(without_stamps(message));
   while (!waiting_.empty()) {
     const Message next = std::move(waiting_.front());

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -17,14 +18,14 @@ namespace sealwatch {
 class InProcessPipeline {
  public:
   using Observer = std::function<void(const Message&)>;
-  /// `observer` sees every message that a layer concluded, once. The layers must outlive the pipeline.
-  InProcessPipeline(std::vector<Layer*> layers, Observer observer);
-  /// Feeds one message from outside and all that follows from it.
-  void feed(const Message& message);
+  /// `observer` sees every message that a layer concluded, once.
+  InProcessPipeline(std::vector<std::unique_ptr<Layer>> layers, Observer observer);
+  /// Takes one message from outside and all that follows from it.
+  void push(const Message& message);
 
  private:
   struct Reader {
-    Layer* layer = nullptr;
+    std::unique_ptr<Layer> layer;
     std::set<std::string> received;
     std::map<std::pair<Topic, std::string>, std::string> last_unnumbered;  ///< message id by topic and asset
   };

@@ -1,0 +1,121 @@
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/yaml_map.hpp"
+
+namespace sealwatch {
+namespace {
+
+/// Shortest text that reads back as the same number.
+std::string exact(double number) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, number).ptr;
+  return {text, end};
+}
+
+using Entries = std::vector<std::pair<std::string, std::string>>;
+
+void write_flow(YAML::Emitter& out, const std::string& key, const Entries& entries) {
+  out << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginMap;
+  for (const auto& [name, value] : entries) out << YAML::Key << name << YAML::Value << value;
+  out << YAML::EndMap;
+}
+
+void write_parameters(YAML::Emitter& out, const AssetConfig& asset) {
+  out << YAML::Key << "parameters" << YAML::Value << YAML::BeginMap;
+  for (const auto& [name, setting] : asset.parameters)
+    write_flow(out, name,
+               {{"value", exact(setting.value)},
+                {"min", exact(setting.min)},
+                {"max", exact(setting.max)},
+                {"estimate", setting.estimate ? "true" : "false"}});
+  out << YAML::EndMap;
+}
+
+void write_sensors(YAML::Emitter& out, const AssetConfig& asset) {
+  out << YAML::Key << "sensors" << YAML::Value << YAML::BeginMap;
+  for (const auto& [channel, sensor] : asset.sensors) {
+    out << YAML::Key << channel << YAML::Value << YAML::Flow << YAML::BeginMap;
+    out << YAML::Key << "noise_std" << YAML::Value << exact(sensor.noise_std);
+    out << YAML::Key << "time_constant" << YAML::Value << exact(sensor.time_constant_s);
+    out << YAML::Key << "quantisation" << YAML::Value << exact(sensor.quantisation);
+    if (sensor.range_max > sensor.range_min)
+      out << YAML::Key << "range" << YAML::Value << YAML::BeginSeq << exact(sensor.range_min) << exact(sensor.range_max)
+          << YAML::EndSeq;
+    out << YAML::EndMap;
+  }
+  out << YAML::EndMap;
+}
+
+void write_seal(YAML::Emitter& out, const AssetConfig& asset) {
+  if (!asset.seal) {
+    out << YAML::Key << "seal" << YAML::Value << YAML::Null;
+    return;
+  }
+  write_flow(out, "seal",
+             {{"resistance_100", exact(asset.seal->resistance_100_Pa_s_m3)},
+              {"resistance_60", exact(asset.seal->resistance_60_Pa_s_m3)},
+              {"threshold", exact(asset.seal->threshold)}});
+}
+
+void write_limits(YAML::Emitter& out, const AssetConfig& asset) {
+  if (asset.alert_limits.empty()) return;
+  out << YAML::Key << "alert_limits" << YAML::Value << YAML::BeginMap;
+  for (const auto& [quantity, limits] : asset.alert_limits)
+    write_flow(
+        out, quantity,
+        {{"advisory", exact(limits.advisory)}, {"warning", exact(limits.warning)}, {"alarm", exact(limits.alarm)}});
+  out << YAML::EndMap;
+}
+
+void write_physics(YAML::Emitter& out, const AssetConfig& asset) {
+  if (asset.physics.empty()) return;
+  out << YAML::Key << "physics" << YAML::Value << YAML::BeginSeq;
+  for (const PhysicsTerm& term : asset.physics) {
+    out << YAML::BeginMap << YAML::Key << "id" << YAML::Value << term.id;
+    out << YAML::Key << "element" << YAML::Value << term.element;
+    Entries parameters;
+    for (const auto& [name, value] : term.parameters) parameters.emplace_back(name, exact(value));
+    write_flow(out, "parameters", parameters);
+    out << YAML::EndMap;
+  }
+  out << YAML::EndSeq;
+}
+
+}  // namespace
+
+std::string asset_to_yaml(const AssetConfig& asset) {
+  YAML::Emitter out;
+  out << YAML::BeginMap;
+  for (const auto& [key, value] : {std::pair{"asset_id", asset.asset_id},
+                                   {"site", asset.site},
+                                   {"segment", asset.segment},
+                                   {"model", asset.model}})
+    if (!value.empty()) out << YAML::Key << key << YAML::Value << value;
+  write_parameters(out, asset);
+  write_sensors(out, asset);
+  write_seal(out, asset);
+  write_flow(out, "pst",
+             {{"start", exact(asset.pst.start_m)},
+              {"stroke", exact(asset.pst.stroke_m)},
+              {"speed", exact(asset.pst.speed_m_s)},
+              {"hold", exact(asset.pst.hold_s)},
+              {"interval_months", exact(asset.pst.interval_months)}});
+  write_limits(out, asset);
+  write_physics(out, asset);
+  out << YAML::EndMap;
+  return std::string(out.c_str()) + "\n";
+}
+
+Status save_asset(const AssetConfig& asset, const std::string& file) {
+  std::ofstream stream(file);
+  stream << asset_to_yaml(asset);
+  stream.close();
+  if (stream) return {};
+  return fail(Error{file, {}, {}, "cannot be written", "check that the directory exists and that there is space"});
+}
+
+}  // namespace sealwatch

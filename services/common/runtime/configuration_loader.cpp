@@ -1,0 +1,173 @@
+#include "services/common/runtime/configuration_loader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/message/topics.hpp"
+#include "services/common/runtime/log.hpp"
+#include "services/common/runtime/yaml_map.hpp"
+
+namespace sealwatch {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// DDS domains are limited by the port numbers they are mapped to.
+constexpr NumberRule kDomain{.min = 0, .max = 232, .words = "must be a whole number from 0 to 232"};
+constexpr NumberRule kFiles{.min = 1, .max = 1000, .words = "must be a whole number from 1 to 1000"};
+
+template <class Enum>
+std::vector<std::string> names_of() {
+  return {EnumNames<Enum>::kNames.begin(), EnumNames<Enum>::kNames.end()};
+}
+
+void read_logging(YamlMap& root, LoggingConfig& logging) {
+  auto map = root.map("logging");
+  if (!map) return;
+  map->read("level", logging.level, names_of<LogLevel>());
+  map->read("directory", logging.directory);
+  map->read("rotate_at_MB", logging.rotate_at_MB, kPositive);
+  map->read("rotated_files", logging.rotated_files, kFiles);
+  map->finish();
+}
+
+void read_services(YamlMap& root, Configuration& configuration) {
+  for (const std::string& service : service_names()) configuration.services[service];
+  auto services = root.map("services");
+  if (!services) return;
+  for (const std::string& service : service_names()) {
+    auto map = services->map(service);
+    if (!map) continue;
+    ServiceConfig& config = configuration.services[service];
+    map->read("enabled", config.enabled);
+    map->read("journal", config.journal);
+    if (!config.journal.empty() && config.journal.find("://") == std::string::npos)
+      map->fault("journal", config.journal, "must be a connection string",
+                 "write sqlite3://FILE or postgresql://dbname=NAME");
+    if (service == "data_acquisition") map->read("recordings_directory", config.recordings_directory);
+    map->finish();
+  }
+  services->finish();
+}
+
+void read_topics(YamlMap& root, Configuration& configuration) {
+  auto topics = root.map("topics");
+  if (!topics) return;
+  for (const std::string& topic : names_of<Topic>()) {
+    auto map = topics->map(topic);
+    if (!map) continue;
+    TopicQos& qos = configuration.topics[topic];
+    map->read("keep_all", qos.keep_all);
+    map->read("transient_local", qos.transient_local);
+    map->read("lifespan_s", qos.lifespan_s, kNotNegative);
+    map->finish();
+  }
+  topics->finish();
+}
+
+void read_campaigns(YamlMap& site, SiteConfig& config) {
+  std::size_t index = 0;
+  for (const YAML::Node& node : site.list("campaigns")) {
+    YamlMap map = site.inside(node, "campaigns", index++);
+    Campaign campaign;
+    if (!map.read("start", campaign.start) && !map.has("start")) map.fault("start", {}, "must be given");
+    if (!map.read("label", campaign.label)) campaign.label = format_date(campaign.start);
+    map.finish();
+    config.campaigns.push_back(std::move(campaign));
+  }
+  std::ranges::stable_sort(config.campaigns, {}, &Campaign::start);
+}
+
+void read_sites(YamlMap& root, Configuration& configuration) {
+  std::size_t index = 0;
+  for (const YAML::Node& node : root.list("sites")) {
+    YamlMap map = root.inside(node, "sites", index++);
+    SiteConfig site;
+    if (!map.read("site", site.site) && !map.has("site")) map.fault("site", {}, "must be given");
+    if (configuration.find_site(site.site)) map.fault("site", site.site, "is there twice", "name each site once");
+    map.read("booking_lead_time_months", site.booking_lead_time_months, kNotNegative);
+    read_campaigns(map, site);
+    map.finish();
+    configuration.sites.push_back(std::move(site));
+  }
+}
+
+/// Asset files named under `assets:`, else all in the directory "assets" beside the file.
+std::vector<std::string> asset_files(YamlMap& root, const fs::path& directory) {
+  std::vector<std::string> files;
+  if (root.has("assets")) {
+    for (const YAML::Node& node : root.list("assets")) {
+      if (node.IsScalar())
+        files.push_back((directory / node.Scalar()).lexically_normal().string());
+      else
+        root.fault("assets", {}, "must be a list of file names");
+    }
+    return files;
+  }
+  (void)root.take("assets");
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(directory / "assets", none))
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path().lexically_normal().string());
+  std::ranges::sort(files);
+  return files;
+}
+
+void read_assets(const std::vector<std::string>& files, Configuration& configuration, std::vector<Error>& errors) {
+  std::vector<std::string> sites;
+  for (const SiteConfig& site : configuration.sites) sites.push_back(site.site);
+  std::map<std::string, std::string> file_of;
+  for (const std::string& file : files) {
+    Checked<AssetConfig> asset = check_asset(file, &sites);
+    if (!asset) {
+      errors.insert(errors.end(), asset.error().begin(), asset.error().end());
+      continue;
+    }
+    const auto [other, is_new] = file_of.emplace(asset->asset_id, file);
+    if (!is_new)
+      errors.push_back({file, "key asset_id", asset->asset_id,
+                        "is the id of another asset already, in " + other->second, "give each asset an id of its own"});
+    configuration.assets.push_back(std::move(*asset));
+  }
+}
+
+void set_journals(Configuration& configuration) {
+  for (auto& [service, config] : configuration.services)
+    if (config.journal.empty())
+      config.journal = "sqlite3://" + (fs::path(configuration.state_directory) / (service + ".db")).string();
+}
+
+}  // namespace
+
+const std::vector<std::string>& service_names() {
+  static const std::vector<std::string> names = {"data_acquisition",  "data_manipulation",     "state_detection",
+                                                 "health_assessment", "prognostic_assessment", "advisory_generation"};
+  return names;
+}
+
+Checked<Configuration> load_configuration(const std::string& path, const ConfigurationOverrides& overrides) {
+  const fs::path file = fs::is_directory(path) ? fs::path(path) / "sealwatch.yaml" : fs::path(path);
+  std::vector<Error> errors;
+  const auto root = load_yaml(file.string(), errors);
+  if (!root) return tl::unexpected(errors);
+  YamlMap map(file.string(), *root, {}, errors);
+  Configuration configuration;
+  map.read("domain", configuration.domain, kDomain);
+  map.read("state_directory", configuration.state_directory);
+  if (configuration.state_directory.empty()) map.fault("state_directory", {}, "must not be empty");
+  map.read("cyclonedds_uri", configuration.cyclonedds_uri);
+  read_logging(map, configuration.logging);
+  read_services(map, configuration);
+  read_topics(map, configuration);
+  read_sites(map, configuration);
+  const std::vector<std::string> files = asset_files(map, file.parent_path());
+  map.finish();
+  read_assets(files, configuration, errors);
+  if (!errors.empty()) return tl::unexpected(errors);
+  if (overrides.state_directory) configuration.state_directory = *overrides.state_directory;
+  if (overrides.domain) configuration.domain = *overrides.domain;
+  set_journals(configuration);
+  return configuration;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,34 @@
+// A daemon's main, around one layer:
+//
+//   int main(int argc, char** argv) {
+//     return sealwatch::run_daemon(argc, argv, {.service = "state_detection",
+//                                               .make_layer = [](const Configuration& c, const Clock&) { ... },
+//                                               .make_bus = sealwatch::make_dds_bus});
+//   }
+//
+// Exit status: 0 stopped by SIGTERM or SIGINT, 2 bad usage or configuration, 3 internal failure (the service manager
+// starts the daemon again and it goes on from its journal).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/configuration.hpp"
+#include "sealwatch/port/bus.hpp"
+#include "sealwatch/port/layer.hpp"
+
+namespace sealwatch {
+
+struct DaemonParts {
+  std::string service;  ///< "state_detection"
+  std::function<std::unique_ptr<Layer>(const Configuration&, const Clock&)> make_layer;
+  std::function<Result<std::unique_ptr<Bus>>(const Configuration&)> make_bus;
+  /// Optional: inputs that come from no bus, see RunnerOptions::local_inputs.
+  std::function<std::function<std::vector<Message>()>(const Configuration&)> make_local_inputs = {};
+};
+
+[[nodiscard]] int run_daemon(int argc, const char* const* argv, const DaemonParts& parts);
+
+}  // namespace sealwatch

@@ -1,0 +1,183 @@
+#include "services/common/runtime/yaml_map.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "sealwatch/core/text.hpp"
+
+namespace sealwatch {
+namespace {
+
+std::string line_of(const YAML::Mark& mark) { return mark.line < 0 ? "" : "line " + std::to_string(mark.line + 1); }
+
+}  // namespace
+
+std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>& errors) {
+  std::error_code ignored;
+  try {
+    if (!std::filesystem::is_regular_file(file, ignored)) throw YAML::BadFile(file);
+    YAML::Node root = YAML::LoadFile(file);
+    return root.IsNull() ? YAML::Node(YAML::NodeType::Map) : root;
+  } catch (const YAML::BadFile&) {
+    errors.push_back({file, {}, {}, "cannot be read", "check that the file exists and may be read"});
+  } catch (const YAML::Exception& exception) {
+    errors.push_back({file, line_of(exception.mark), {}, "is not YAML: " + exception.msg, {}});
+  }
+  return std::nullopt;
+}
+
+std::optional<double> number_of(const std::string& text) {
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* end = text.data() + text.size();
+  double value = 0.0;
+  const auto [stopped, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stopped != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+YamlMap::YamlMap(std::string file, YAML::Node node, std::string path, std::vector<Error>& errors)
+    : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)), errors_(&errors) {
+  if (node_.IsMap()) return;
+  const std::string place = line_of(node_.Mark()) + (path_.empty() ? "" : ", key " + path_);
+  errors_->push_back({file_, place, node_.IsScalar() ? node_.Scalar() : "", "must be a mapping of keys to values", {}});
+  node_ = YAML::Node(YAML::NodeType::Map);
+}
+
+bool YamlMap::has(const std::string& key) const {
+  return std::ranges::any_of(keys(), [&key](const std::string& there) { return there == key; });
+}
+
+std::vector<std::string> YamlMap::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& entry : node_) keys.push_back(entry.first.IsScalar() ? entry.first.Scalar() : "");
+  return keys;
+}
+
+std::optional<YAML::Node> YamlMap::take(const std::string& key) {
+  known_.push_back(key);
+  for (const auto& entry : node_)
+    if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
+  return std::nullopt;
+}
+
+void YamlMap::fault(const std::string& key, std::string value, std::string rule, std::string advice) const {
+  YAML::Mark mark = YAML::Mark::null_mark();
+  for (const auto& entry : node_)
+    if (entry.first.IsScalar() && entry.first.Scalar() == key) mark = entry.first.Mark();
+  if (mark.is_null() && !path_.empty()) mark = node_.Mark();
+  const std::string line = mark.is_null() ? "" : line_of(mark) + ", ";
+  errors_->push_back({file_, line + "key " + full(key), std::move(value), std::move(rule), std::move(advice)});
+}
+
+std::optional<std::string> YamlMap::scalar(const std::string& key, const char* rule) {
+  const auto node = take(key);
+  if (!node) return std::nullopt;
+  if (node->IsScalar()) return node->Scalar();
+  fault(key, {}, rule);
+  return std::nullopt;
+}
+
+bool YamlMap::read(const std::string& key, std::string& target) {
+  const auto text = scalar(key, "must be a text");
+  if (text) target = *text;
+  return text.has_value();
+}
+
+bool YamlMap::read(const std::string& key, std::string& target, const std::vector<std::string>& known) {
+  const auto text = scalar(key, "must be a text");
+  if (!text) return false;
+  if (std::ranges::find(known, *text) == known.end()) {
+    fault(key, *text, "is not known", suggest(*text, known));
+    return false;
+  }
+  target = *text;
+  return true;
+}
+
+bool YamlMap::read(const std::string& key, double& target, const NumberRule& rule) {
+  const auto text = scalar(key, rule.words);
+  if (!text) return false;
+  const auto number = number_of(*text);
+  if (!number || *number < rule.min || *number > rule.max || (rule.min_excluded && *number == rule.min)) {
+    fault(key, *text, rule.words);
+    return false;
+  }
+  target = *number;
+  return true;
+}
+
+bool YamlMap::read(const std::string& key, std::int32_t& target, const NumberRule& rule) {
+  double number = 0.0;
+  if (!read(key, number, rule)) return false;
+  if (number != std::floor(number)) {
+    fault(key, take(key)->Scalar(), rule.words);
+    return false;
+  }
+  target = static_cast<std::int32_t>(number);
+  return true;
+}
+
+bool YamlMap::read(const std::string& key, bool& target) {
+  constexpr const char* kRule = "must be true or false";
+  const auto text = scalar(key, kRule);
+  if (!text) return false;
+  if (*text != "true" && *text != "false") {
+    fault(key, *text, kRule);
+    return false;
+  }
+  target = *text == "true";
+  return true;
+}
+
+bool YamlMap::read(const std::string& key, UtcTime& target) {
+  const auto text = scalar(key, "must be a UTC time in ISO 8601");
+  if (!text) return false;
+  const auto time = parse_utc(*text);
+  if (!time) {
+    fault(key, *text, time.error().rule, time.error().advice);
+    return false;
+  }
+  target = *time;
+  return true;
+}
+
+std::optional<YamlMap> YamlMap::map(const std::string& key) {
+  const auto node = take(key);
+  if (!node || node->IsNull()) return std::nullopt;
+  return inside(*node, key);
+}
+
+YamlMap YamlMap::inside(const YAML::Node& node, const std::string& key) const {
+  return {file_, node, full(key), *errors_};
+}
+
+YamlMap YamlMap::inside(const YAML::Node& node, const std::string& key, std::size_t index) const {
+  std::string item = key;
+  item.append("[").append(std::to_string(index)).append("]");
+  return inside(node, item);
+}
+
+std::vector<YAML::Node> YamlMap::list(const std::string& key) {
+  const auto node = take(key);
+  if (!node || node->IsNull()) return {};
+  if (!node->IsSequence()) {
+    fault(key, node->IsScalar() ? node->Scalar() : "", "must be a list");
+    return {};
+  }
+  return {node->begin(), node->end()};
+}
+
+void YamlMap::finish() const {
+  std::set<std::string> seen;
+  for (const std::string& key : keys()) {
+    if (!seen.insert(key).second)
+      fault(key, key, "stands twice", "keep one of them");
+    else if (std::ranges::find(known_, key) == known_.end())
+      fault(key, key, "is not a known key", suggest(key, known_));
+  }
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,193 @@
+#include "services/data_manipulation/alignment_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "sealwatch/signal/alignment.hpp"
+#include "sealwatch/signal/filters.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr double kCutoff_Hz = 5.0;
+constexpr double kCutoffShare = 1.0 / 8.0;
+
+/// One channel's comparison with the reference.
+struct Comparison {
+  std::string channel;
+  signal::OffsetEstimate estimate;
+  bool timed = false;  ///< whether its time is comparable, not only its sign
+};
+
+class AlignmentCheck {
+ public:
+  AlignmentCheck(const TimeSeries& samples, const AssetView& asset, const DataManipulationOptions& options)
+      : samples_(samples),
+        asset_(asset),
+        options_(options),
+        interval_s_((samples.time_s.back() - samples.time_s.front()) / static_cast<double>(samples.time_s.size() - 1)),
+        filter_(signal::LowPass::butterworth(2, std::min(kCutoff_Hz, kCutoffShare / interval_s_), 1.0 / interval_s_)) {}
+
+  Alignment run() {
+    compare_motion();
+    judge_signs();
+    judge_offsets();
+    compare_pressures();
+    return std::move(alignment_);
+  }
+
+ private:
+  void compare_motion();
+  void judge_signs();
+  void judge_offsets();
+  void compare_pressures();
+  [[nodiscard]] std::optional<signal::OffsetEstimate> compare(std::vector<double> reference, double reference_lag_s,
+                                                              const Series& channel) const;
+  [[nodiscard]] bool offset_noticed(double offset_s, double std_s) const;
+  void note_sign(const std::string& channel, bool correct, const std::string& why);
+  void note_offset(const std::string& channel, double offset_s, double std_s, bool correct, const std::string& why);
+  AlignmentRemark& remark(const std::string& channel);
+
+  const TimeSeries& samples_;
+  const AssetView& asset_;
+  const DataManipulationOptions& options_;
+  double interval_s_;
+  signal::LowPass filter_;
+  std::vector<Comparison> comparisons_;  ///< with dx/dt
+  Alignment alignment_;
+};
+
+AlignmentRemark& AlignmentCheck::remark(const std::string& channel) {
+  for (AlignmentRemark& one : alignment_.remarks)
+    if (one.channel == channel) return one;
+  AlignmentRemark fresh;
+  fresh.channel = channel;
+  return alignment_.remarks.emplace_back(std::move(fresh));
+}
+
+void AlignmentCheck::note_sign(const std::string& channel, bool correct, const std::string& why) {
+  AlignmentRemark& one = remark(channel);
+  one.sign_swapped = true;
+  one.corrected = one.corrected || correct;
+  one.remark += std::string(one.remark.empty() ? "" : "; ") + "sign swapped: " + why;
+  if (correct) alignment_.corrections[channel].swap_sign = true;
+}
+
+void AlignmentCheck::note_offset(const std::string& channel, double offset_s, double std_s, bool correct,
+                                 const std::string& why) {
+  AlignmentRemark& one = remark(channel);
+  one.time_offset_s = offset_s;
+  one.time_offset_std_s = std_s;
+  one.corrected = one.corrected || correct;
+  char text[80];
+  std::snprintf(text, sizeof text, "%.0f +- %.0f ms %s: ", 1e3 * std::abs(offset_s), 1e3 * std_s,
+                offset_s > 0.0 ? "late" : "early");
+  one.remark += (one.remark.empty() ? "" : "; ") + (text + why);
+  if (correct) alignment_.corrections[channel].shift_s = offset_s;
+}
+
+/// Both sides get each other's sensor lag, so that what is left is no sensor's doing.
+std::optional<signal::OffsetEstimate> AlignmentCheck::compare(std::vector<double> reference, double reference_lag_s,
+                                                              const Series& channel) const {
+  const std::vector<double> smooth = filter_.apply_zero_phase(channel.values);
+  return signal::estimate_offset(signal::first_order_lag(reference, asset_.time_constant_s(channel.name), interval_s_),
+                                 signal::first_order_lag(smooth, reference_lag_s, interval_s_), interval_s_,
+                                 options_.largest_offset_s);
+}
+
+void AlignmentCheck::compare_motion() {
+  const Series* position = samples_.find("position");
+  if (!position) return;
+  const std::vector<double> speed = signal::derivative(filter_.apply_zero_phase(position->values), interval_s_);
+  for (const char* name : {"velocity", "flow", "shaft_speed", "motor_voltage", "motor_duty"}) {
+    const Series* channel = samples_.find(name);
+    if (!channel) continue;
+    const auto estimate = compare(speed, asset_.time_constant_s("position"), *channel);
+    if (!estimate || std::abs(estimate->correlation) < options_.least_sign_correlation) continue;
+    const bool timed = channel->name == "velocity" || channel->name == "flow";
+    comparisons_.push_back({name, *estimate, timed});
+  }
+}
+
+/// Position votes for itself; every comparison votes for or against it.
+void AlignmentCheck::judge_signs() {
+  std::size_t against = 0;
+  for (const Comparison& one : comparisons_)
+    if (one.estimate.gain < 0.0) ++against;
+  if (against == 0) return;
+  const std::size_t with = comparisons_.size() - against + 1;
+  if (against > with) {
+    note_sign("position", true, "all else moves the other way; corrected");
+    for (const Comparison& one : comparisons_)
+      if (one.estimate.gain > 0.0) note_sign(one.channel, true, "against most other channels; corrected");
+    return;
+  }
+  for (const Comparison& one : comparisons_) {
+    if (one.estimate.gain > 0.0) continue;
+    if (with > against)
+      note_sign(one.channel, true, "against most other channels; corrected");
+    else
+      note_sign(one.channel, false, "it contradicts position, and which of the two is wrong cannot be told");
+  }
+}
+
+bool AlignmentCheck::offset_noticed(double offset_s, double std_s) const {
+  const double least = std::max(options_.least_offset_s, options_.least_offset_samples * interval_s_);
+  return std::abs(offset_s) > options_.significance * std_s && std::abs(offset_s) > least;
+}
+
+void AlignmentCheck::judge_offsets() {
+  std::vector<const Comparison*> timed;
+  for (const Comparison& one : comparisons_)
+    if (one.timed && std::abs(one.estimate.correlation) >= options_.least_correlation) timed.push_back(&one);
+  std::vector<const Comparison*> late;
+  for (const Comparison* one : timed)
+    if (offset_noticed(one->estimate.offset_s, one->estimate.offset_std_s)) late.push_back(one);
+  if (late.empty()) return;
+  if (timed.size() == 1) {
+    note_offset(late[0]->channel, late[0]->estimate.offset_s, late[0]->estimate.offset_std_s, false,
+                "against position, and which of the two is wrong cannot be told");
+    return;
+  }
+  const signal::OffsetEstimate& a = timed[0]->estimate;
+  const signal::OffsetEstimate& b = timed[1]->estimate;
+  const bool agree = !offset_noticed(a.offset_s - b.offset_s, std::hypot(a.offset_std_s, b.offset_std_s));
+  if (late.size() == 2 && agree) {
+    note_offset("position", -0.5 * (a.offset_s + b.offset_s), 0.5 * std::hypot(a.offset_std_s, b.offset_std_s), true,
+                "velocity and flow agree with each other; corrected");
+    return;
+  }
+  for (const Comparison* one : late)
+    note_offset(one->channel, one->estimate.offset_s, one->estimate.offset_std_s, late.size() == 1,
+                late.size() == 1 ? "against the other channels; corrected"
+                                 : "against position; the three channels agree in no pair");
+}
+
+/// Absolute pressures have no sign to swap, so that pressure_differential is the one that is wrong.
+void AlignmentCheck::compare_pressures() {
+  const Series* pressure_a = samples_.find("pressure_a");
+  const Series* pressure_b = samples_.find("pressure_b");
+  const Series* differential = samples_.find("pressure_differential");
+  if (!pressure_a || !pressure_b || !differential) return;
+  std::vector<double> difference = pressure_a->values;
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= pressure_b->values[i];
+  const auto estimate =
+      compare(filter_.apply_zero_phase(difference), asset_.time_constant_s("pressure_a"), *differential);
+  if (!estimate) return;
+  if (estimate->correlation < -options_.least_sign_correlation)
+    note_sign("pressure_differential", true, "against pressure_a - pressure_b; corrected");
+  if (std::abs(estimate->correlation) >= options_.least_correlation &&
+      offset_noticed(estimate->offset_s, estimate->offset_std_s))
+    note_offset("pressure_differential", estimate->offset_s, estimate->offset_std_s, false,
+                "against pressure_a - pressure_b, and which is wrong cannot be told");
+}
+
+}  // namespace
+
+Alignment check_alignment(const TimeSeries& samples, const AssetView& asset, const DataManipulationOptions& options) {
+  return AlignmentCheck(samples, asset, options).run();
+}
+
+}  // namespace sealwatch

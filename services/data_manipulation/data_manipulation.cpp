@@ -1,0 +1,75 @@
+#include "services/data_manipulation/data_manipulation.hpp"
+
+#include <cassert>
+
+#include "services/data_manipulation/conclude_test.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr Topic kInputs[] = {Topic::sample_block};
+constexpr Topic kOutputs[] = {Topic::test_window, Topic::test_features};
+
+bool ends(const SampleBlock& block) {
+  return block.boundary == BlockBoundary::end || block.boundary == BlockBoundary::whole;
+}
+
+}  // namespace
+
+Status DataManipulationOptions::validate() const {
+  const auto check = [](bool good, const char* option, double value, const char* rule) -> Status {
+    if (good) return {};
+    return fail(Error{.file = {}, .place = option, .value = std::to_string(value), .rule = rule, .advice = {}});
+  };
+  if (Status s = check(longest_gap_s > 0.0, "longest_gap_s", longest_gap_s, "must be positive"); !s) return s;
+  if (Status s = check(least_samples >= 16, "least_samples", static_cast<double>(least_samples), "must be 16 or more");
+      !s)
+    return s;
+  if (Status s = check(largest_offset_s > 0.0, "largest_offset_s", largest_offset_s, "must be positive"); !s) return s;
+  if (Status s = check(significance > 0.0, "significance", significance, "must be positive"); !s) return s;
+  if (Status s = check(least_correlation > 0.0 && least_correlation < 1.0, "least_correlation", least_correlation,
+                       "must be between 0 and 1");
+      !s)
+    return s;
+  return check(complete_share > 0.0 && complete_share <= 1.0, "complete_share", complete_share, "must be 0 to 1");
+}
+
+DataManipulation::DataManipulation(std::vector<AssetConfig> assets, DataManipulationOptions options)
+    : assets_(std::move(assets)), options_(options) {
+  assert(options_.validate());
+}
+
+std::span<const Topic> DataManipulation::inputs() const { return kInputs; }
+std::span<const Topic> DataManipulation::outputs() const { return kOutputs; }
+
+void DataManipulation::restore(const Message& own_output) { concluded_.insert(header_of(own_output).pst_id); }
+
+Conclusion DataManipulation::receive(const Message& input) {
+  const auto* block = std::get_if<SampleBlock>(&input);
+  const std::string& pst_id = header_of(input).pst_id;
+  Conclusion conclusion;
+  if (!block || concluded_.contains(pst_id)) {
+    conclusion.consumed.push_back(header_of(input).message_id);
+    return conclusion;
+  }
+  waiting_[pst_id].push_back(*block);
+  if (!ends(*block)) return conclusion;
+  const auto test = waiting_.extract(pst_id);
+  for (const SampleBlock& one : test.mapped()) conclusion.consumed.push_back(one.header.message_id);
+  TestConclusion concluded = conclude_test(test.mapped(), view(block->asset_id), options_);
+  conclusion.outputs.emplace_back(std::move(concluded.window));
+  conclusion.outputs.emplace_back(std::move(concluded.features));
+  concluded_.insert(pst_id);
+  return conclusion;
+}
+
+AssetView DataManipulation::view(const std::string& asset_id) const {
+  for (const AssetConfig& asset : assets_) {
+    if (asset.asset_id != asset_id) continue;
+    const Result<const PlantDescription*> plant = find_plant(asset.model);
+    return {&asset, plant ? *plant : nullptr};
+  }
+  return {};
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,42 @@
+// Layer 2 (ISO 13374 DM): the sample blocks of one test become its window, cut once, and its features.
+//
+// Blocks are kept, unconsumed, until the one that ends the test comes; then everything is concluded at once and all of
+// them are consumed. Blocks of a test that is concluded already are consumed and change nothing.
+//
+// A test is complete when its begin and its end were recorded, it was not aborted, and the recording does not stop
+// short in the middle of the strokes; abort_reason says what was missing. FAILED channels are left out of the window;
+// their status says why.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/port/layer.hpp"
+#include "services/data_manipulation/asset_view.hpp"
+#include "services/data_manipulation/options.hpp"
+
+namespace sealwatch {
+
+class DataManipulation final : public Layer {
+ public:
+  explicit DataManipulation(std::vector<AssetConfig> assets, DataManipulationOptions options = {});
+
+  [[nodiscard]] std::string_view name() const override { return "data_manipulation"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override;
+  [[nodiscard]] std::span<const Topic> outputs() const override;
+  void restore(const Message& own_output) override;
+  [[nodiscard]] Conclusion receive(const Message& input) override;
+
+ private:
+  [[nodiscard]] AssetView view(const std::string& asset_id) const;
+
+  std::vector<AssetConfig> assets_;
+  DataManipulationOptions options_;
+  std::map<std::string, std::vector<SampleBlock>> waiting_;  ///< by PST id, in the order of receipt
+  std::set<std::string> concluded_;                          ///< PST ids
+};
+
+}  // namespace sealwatch

@@ -44,7 +44,7 @@ struct FreeQuantity {
 };
 
 struct SimulationOptions {
-  double relative_tolerance = 1e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
+  double relative_tolerance = 5e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
   double maximum_step_s = 0.25;      ///< so that no event of the input is stepped over
   std::size_t maximum_steps = 200000;
 };

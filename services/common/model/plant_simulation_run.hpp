@@ -38,7 +38,9 @@ class PlantSimulationOf<Model>::Run {
   [[nodiscard]] Result<SimulatedOutputs> simulate(const ModelValues& values) {
     const RecordedInput& input = simulation_.input_;
     if (!initial_point(values)) return failure(input.times().front());
-    sample(0, 0.0);
+    filtered_until_ = input.times().front();
+    pass_sensors(filtered_until_, point_.data());
+    sample(0);
     for (std::size_t segment = 0; segment < input.segment_count(); ++segment)
       if (!run_segment(segment)) return failure(integrator_.time());
     outputs_.steps = integrator_.statistics().steps;
@@ -82,41 +84,44 @@ class PlantSimulationOf<Model>::Run {
   // The integrator may step beyond the segment's end, where the held input is continued: no step is shortened.
   [[nodiscard]] bool run_segment(std::size_t segment) {
     const RecordedInput& input = simulation_.input_;
-    const double end = input.segment_end(segment);
     system_.set_segment(segment);
     if (!integrator_.start(input.segment_begin(segment), point_.data())) return false;
-    while (next_ < input.times().size() && input.times()[next_] <= end) {
-      const double last = input.times()[next_ - 1], time = input.times()[next_];
-      const int points = std::max(1, static_cast<int>(std::ceil((time - last) / kLongestPointDistance_s)));
-      for (int k = 1; k <= points; ++k) {
-        const double at = k == points ? time : last + (time - last) * k / points;
-        while (integrator_.time() < at)
-          if (!integrator_.step()) return false;
-        integrator_.interpolate(at, point_.data());
-        if (k < points)
-          pass_sensors((time - last) / points);
-        else
-          sample(next_, (time - last) / points);
-      }
-      ++next_;
+    for (; next_ < input.times().size() && input.times()[next_] <= input.segment_end(segment); ++next_) {
+      const double last = input.times()[next_ - 1], distance = input.times()[next_] - last;
+      const int points = static_cast<int>(std::ceil(distance / kLongestPointDistance_s));
+      for (int k = 1; k <= points; ++k)
+        if (!advance_to(k == points ? input.times()[next_] : last + distance * k / points, distance / points))
+          return false;
+      sample(next_);
     }
     return true;
   }
 
-  void pass_sensors(double step_s) {
-    for (std::size_t c = 0; c < filters_.size(); ++c) {
-      const int state = Model::kOutputs[simulation_.channels_[c].output].state;
-      const double* signal = signal_.data();
-      if (state >= 0)
-        signal = point_.data() + state * integrator_.stride();
-      else
-        compute_output(simulation_.channels_[c].output);
-      filters_[c].advance(step_s, signal);
+  // Steps until `time` is reached and passes the sensors the signal there, and at the ends of steps that are shorter
+  // than the distance between points: there the signal moves too fast to be taken as linear.
+  [[nodiscard]] bool advance_to(double time, double distance) {
+    while (integrator_.time() < time) {
+      const double begin = integrator_.time();
+      if (!integrator_.step()) return false;
+      const double end = integrator_.time();
+      if (end < time && end > filtered_until_ && end - begin < distance) pass_sensors(end, integrator_.values());
     }
+    integrator_.interpolate(time, point_.data());
+    pass_sensors(time, point_.data());
+    return true;
   }
 
-  void sample(std::size_t row, double step_s) {
-    pass_sensors(step_s);
+  void pass_sensors(double time, const double* point) {
+    for (std::size_t c = 0; c < filters_.size(); ++c) {
+      const int output = simulation_.channels_[c].output;
+      const int state = Model::kOutputs[output].state;
+      if (state < 0) compute_output(output, point);
+      filters_[c].advance(time - filtered_until_, state < 0 ? signal_.data() : point + state * integrator_.stride());
+    }
+    filtered_until_ = time;
+  }
+
+  void sample(std::size_t row) {
     const auto first = static_cast<Eigen::Index>(row * filters_.size());
     double* sensitivities = outputs_.sensitivities.data() + first * outputs_.sensitivities.cols();
     double* values = outputs_.values.data() + first;
@@ -127,19 +132,19 @@ class PlantSimulationOf<Model>::Run {
   }
 
   // dh/dp + dh/dy S by dual numbers whose states carry S.
-  void compute_output(int output) {
+  void compute_output(int output, const double* point) {
     const std::size_t stride = integrator_.stride();
     const auto input = system_.input_at(integrator_.time());
     if (system_.blocks().empty()) {
       typename System::template State<double> state;
-      for (int k = 0; k < kStates; ++k) state[k] = point_[k * stride];
+      for (int k = 0; k < kStates; ++k) state[k] = point[k * stride];
       signal_[0] = Model::output(output, state, input, system_.parameters());
     }
     for (const auto& block : system_.blocks()) {
       typename System::template State<Dual<Width>> state;
       for (int k = 0; k < kStates; ++k) {
-        state[k].value = point_[k * stride];
-        const double* seeds = point_.data() + k * stride + 1 + block.first;
+        state[k].value = point[k * stride];
+        const double* seeds = point + k * stride + 1 + block.first;
         std::copy(seeds, seeds + block.count, state[k].derivative.begin());
       }
       const auto result = Model::output(output, state, input, block.parameters);
@@ -158,6 +163,7 @@ class PlantSimulationOf<Model>::Run {
   std::vector<SensorFilter> filters_;
   SimulatedOutputs outputs_;
   std::size_t next_ = 1;
+  double filtered_until_ = 0.0;  ///< time of the sensors' last point
 };
 
 template <class Model>

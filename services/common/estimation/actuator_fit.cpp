@@ -6,18 +6,12 @@
 
 #include "sealwatch/estimation/covariance.hpp"
 #include "services/common/estimation/fit_report.hpp"
+#include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/estimation/pem_search.hpp"
 #include "services/common/estimation/words.hpp"
 
 namespace sealwatch {
 namespace {
-
-std::vector<double> shared_start(const PemProblem& problem, double factor) {
-  std::vector<double> start;
-  for (const Unknown& unknown : problem.shared)
-    start.push_back(unknown.to_unknown(unknown.logarithmic ? unknown.start * factor : unknown.start));
-  return start;
-}
 
 bool fits_well(const PemOptimum& optimum, const ActuatorFitOptions& options) {
   if (!optimum.converged) return false;
@@ -35,10 +29,10 @@ bool better(const PemOptimum& a, const PemOptimum& b) {
 
 // From the asset's values; from others only where that ended badly.
 Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const ActuatorFitOptions& options) {
-  Result<PemOptimum> best = search(problem, shared_start(problem, 1.0), options);
+  Result<PemOptimum> best = search(problem, start_point(problem, 1.0), options);
   if (problem.shared.empty() || (best && fits_well(*best, options))) return best;
   for (const double factor : options.restart_factors) {
-    Result<PemOptimum> other = search(problem, shared_start(problem, factor), options);
+    Result<PemOptimum> other = search(problem, start_point(problem, factor), options);
     if (other && (!best || better(*other, *best))) best = std::move(other);
     if (best && fits_well(*best, options)) break;
   }
@@ -67,7 +61,12 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   Result<PemProblem> problem = make_pem_problem(asset, recordings, options.estimate_shared);
   if (!problem) return failed(problem.error());
   problem->simulation_options.relative_tolerance = options.relative_tolerance;
-  const Result<PemOptimum> optimum = search_from_several_starts(*problem, options);
+  Result<PemOptimum> optimum = search_from_several_starts(*problem, options);
+  if (optimum && add_interpolation_error(*problem, *optimum, asset, recordings)) {
+    const int iterations = optimum->iterations;
+    optimum = search(*problem, optimum->point, options);
+    if (optimum) optimum->iterations += iterations;
+  }
   if (!optimum) return failed(optimum.error());
   JointFit fit = report_fit(asset, *problem, *optimum, recordings);
   judge_admissibility(fit.report, options.admissibility);

@@ -141,7 +141,7 @@ Uncertainty uncertainty_of(const PemProblem& problem, const PemOptimum& optimum,
   const Layout layout = lay_out(problem);
   std::vector<bool> held;
   for (std::size_t k = 0; k < problem.shared.size(); ++k)
-    held.push_back(at_bound(problem.shared[k], optimum.shared[k]));
+    held.push_back(at_bound(problem.shared[k], optimum.point.shared[k]));
   std::vector<Eigen::MatrixXd> roots, scores;
   Eigen::Index rows = 0, samples = 0;
   for (std::size_t k = 0; k < optimum.at_optimum.size(); ++k) {
@@ -202,10 +202,10 @@ void report_parameters(const PemProblem& problem, const PemOptimum& optimum, con
     fit.report.parameters.push_back(to_parameter(unknown, at, covariance.matrix(k, k)));
     slope.push_back(unknown.slope(at));
   };
-  for (std::size_t k = 0; k < problem.shared.size(); ++k) add(problem.shared[k], optimum.shared[k]);
+  for (std::size_t k = 0; k < problem.shared.size(); ++k) add(problem.shared[k], optimum.point.shared[k]);
   if (problem.recordings.size() == 1)
-    for (std::size_t k = 0; k < optimum.own.front().size(); ++k)
-      add(problem.recordings.front().own[k], optimum.own.front()[k]);
+    for (std::size_t k = 0; k < optimum.point.own.front().size(); ++k)
+      add(problem.recordings.front().own[k], optimum.point.own.front()[k]);
   for (std::size_t j = 0; j < slope.size(); ++j)
     for (std::size_t k = 0; k < slope.size(); ++k) {
       const double variance = covariance.matrix(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k));
@@ -238,8 +238,8 @@ JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const P
     fit.recordings.emplace_back().channels = channel_fits(problem.recordings[k], optimum.at_optimum[k], recordings[k]);
   const Uncertainty uncertainty = uncertainty_of(problem, optimum, is_coloured(fit.recordings));
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    const auto own = static_cast<Eigen::Index>(optimum.own[k].size());
-    complete(fit.recordings[k], problem.recordings[k], optimum.at_optimum[k], recordings[k], optimum.own[k],
+    const auto own = static_cast<Eigen::Index>(optimum.point.own[k].size());
+    complete(fit.recordings[k], problem.recordings[k], optimum.at_optimum[k], recordings[k], optimum.point.own[k],
              uncertainty.covariance.matrix.diagonal().segment(layout.own_begin[k], own));
   }
   report_parameters(problem, optimum, uncertainty.covariance, fit);

@@ -126,20 +126,31 @@ Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const Ti
   return problem;
 }
 
+ModelValues values_at(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
+                      const std::vector<double>& own) {
+  const PemRecording& part = problem.recordings[recording];
+  ModelValues values = part.simulation->start();
+  for (std::size_t k = 0; k < shared.size(); ++k)
+    problem.shared[k].quantity.in(values) = problem.shared[k].to_value(shared[k]);
+  for (std::size_t k = 0; k < own.size(); ++k) part.own[k].quantity.in(values) = part.own[k].to_value(own[k]);
+  return values;
+}
+
 Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                 const std::vector<double>& own) {
   const PemRecording& part = problem.recordings[recording];
-  ModelValues values = part.simulation->start();
   std::vector<FreeQuantity> free;
-  Eigen::RowVectorXd slope(static_cast<Eigen::Index>(shared.size() + own.size()));
-  const auto set = [&](const Unknown& unknown, double at) {
-    unknown.quantity.in(values) = unknown.to_value(at);
-    slope(static_cast<Eigen::Index>(free.size())) = unknown.slope(at);
-    free.push_back(unknown.quantity);
+  std::vector<double> slope;
+  const auto add = [&](const std::vector<Unknown>& unknowns, const std::vector<double>& at) {
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      free.push_back(unknowns[k].quantity);
+      slope.push_back(unknowns[k].slope(at[k]));
+    }
   };
-  for (std::size_t k = 0; k < shared.size(); ++k) set(problem.shared[k], shared[k]);
-  for (std::size_t k = 0; k < own.size(); ++k) set(part.own[k], own[k]);
-  Result<SimulatedOutputs> outputs = part.simulation->run(values, free, problem.simulation_options);
+  add(problem.shared, shared);
+  add(part.own, own);
+  Result<SimulatedOutputs> outputs =
+      part.simulation->run(values_at(problem, recording, shared, own), free, problem.simulation_options);
   if (!outputs) return fail(outputs.error());
   const Eigen::Index channels = part.noise_std.size(), samples = outputs->values.rows();
   const Eigen::RowVectorXd weight = part.noise_std.cwiseInverse().transpose();
@@ -147,9 +158,11 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
   Linearisation result{.simulated = std::move(outputs->values),
                        .residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), residual.size()),
                        .jacobian = std::move(outputs->sensitivities)};
-  for (Eigen::Index k = 0; k < samples; ++k)
-    for (Eigen::Index c = 0; c < channels; ++c)
-      result.jacobian.row(k * channels + c).array() *= -weight(c) * slope.array();
+  // One sample's block of channels x unknowns is contiguous: all samples are scaled by the same row.
+  const auto unknowns = static_cast<Eigen::Index>(slope.size());
+  const RowMatrix scale = -weight.transpose() * Eigen::Map<const Eigen::RowVectorXd>(slope.data(), unknowns);
+  Eigen::Map<RowMatrix>(result.jacobian.data(), samples, channels * unknowns).array().rowwise() *=
+      Eigen::Map<const Eigen::RowVectorXd>(scale.data(), scale.size()).array();
   if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");
   return result;
 }

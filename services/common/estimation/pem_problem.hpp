@@ -47,6 +47,9 @@ struct Linearisation {
 [[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
                                                   bool estimate_shared);
 
+[[nodiscard]] ModelValues values_at(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
+                                    const std::vector<double>& own);
+
 /// An Error when the simulation fails there.
 [[nodiscard]] Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording,
                                               const std::vector<double>& shared, const std::vector<double>& own);

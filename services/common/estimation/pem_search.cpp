@@ -114,24 +114,30 @@ void silence_ceres() { FLAGS_minloglevel = google::GLOG_FATAL; }
 
 }  // namespace
 
-Result<PemOptimum> search(const PemProblem& problem, const std::vector<double>& shared_start,
-                          const ActuatorFitOptions& options) {
-  silence_ceres();
-  PemOptimum optimum{.shared = shared_start, .own = {}, .at_optimum = {}, .termination = {}};
-  ceres::Problem ceres_problem;
-  std::vector<RecordingCost*> costs;
+PemPoint start_point(const PemProblem& problem, double factor) {
+  PemPoint point;
+  for (const Unknown& unknown : problem.shared)
+    point.shared.push_back(unknown.to_unknown(unknown.logarithmic ? unknown.start * factor : unknown.start));
   for (const PemRecording& recording : problem.recordings) {
-    std::vector<double>& own = optimum.own.emplace_back();
+    std::vector<double>& own = point.own.emplace_back();
     for (const Unknown& unknown : recording.own) own.push_back(unknown.to_unknown(unknown.start));
   }
+  return point;
+}
+
+Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options) {
+  silence_ceres();
+  PemOptimum optimum{.point = std::move(start), .at_optimum = {}, .termination = {}};
+  ceres::Problem ceres_problem;
+  std::vector<RecordingCost*> costs;
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
     costs.push_back(new RecordingCost(problem, k));  // owned by ceres_problem
     std::vector<double*> blocks;
-    if (!problem.shared.empty()) blocks.push_back(optimum.shared.data());
-    blocks.push_back(optimum.own[k].data());
+    if (!problem.shared.empty()) blocks.push_back(optimum.point.shared.data());
+    blocks.push_back(optimum.point.own[k].data());
     ceres_problem.AddResidualBlock(costs.back(), nullptr, blocks);
   }
-  if (!problem.shared.empty()) set_bounds(ceres_problem, problem.shared, optimum.shared);
+  if (!problem.shared.empty()) set_bounds(ceres_problem, problem.shared, optimum.point.shared);
   CostResolved resolved(options.cost_tolerance * static_cast<double>(problem.recordings.size()));
   ceres::Solver::Options solver = solver_options(options);
   solver.callbacks.push_back(&resolved);
@@ -144,7 +150,7 @@ Result<PemOptimum> search(const PemProblem& problem, const std::vector<double>& 
   optimum.termination =
       within_tolerance ? "converged: the last step changed the cost by less than its tolerance" : summary.message;
   for (std::size_t k = 0; k < costs.size(); ++k) {
-    Result<Linearisation> linearisation = costs[k]->take_linearisation(optimum.shared, optimum.own[k]);
+    Result<Linearisation> linearisation = costs[k]->take_linearisation(optimum.point.shared, optimum.point.own[k]);
     if (!linearisation) return fail(linearisation.error());
     optimum.at_optimum.push_back(std::move(*linearisation));
   }

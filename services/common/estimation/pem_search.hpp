@@ -9,9 +9,14 @@
 
 namespace sealwatch {
 
+/// Values of all unknowns.
+struct PemPoint {
+  std::vector<double> shared;
+  std::vector<std::vector<double>> own;  ///< per recording
+};
+
 struct PemOptimum {
-  std::vector<double> shared;             ///< unknowns
-  std::vector<std::vector<double>> own;   ///< unknowns, per recording
+  PemPoint point;
   std::vector<Linearisation> at_optimum;  ///< per recording
   double cost = 0.0;
   bool converged = false;
@@ -19,9 +24,10 @@ struct PemOptimum {
   std::string termination;
 };
 
-/// From the given start of the shared unknowns; the recordings' own start where their simulations say. An Error when
-/// the simulation cannot even be run at the start.
-[[nodiscard]] Result<PemOptimum> search(const PemProblem& problem, const std::vector<double>& shared_start,
-                                        const ActuatorFitOptions& options);
+/// The shared unknowns at `factor` times the asset's values, the recordings' own where their simulations say.
+[[nodiscard]] PemPoint start_point(const PemProblem& problem, double factor);
+
+/// An Error when the simulation cannot even be run at the start.
+[[nodiscard]] Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options);
 
 }  // namespace sealwatch

@@ -40,16 +40,20 @@ void append(const SampleBlock& block, TimeSeries& recorded) {
   }
 }
 
+bool is_discrete(const Series& channel) {
+  return std::all_of(channel.values.begin(), channel.values.end(),
+                     [](double value) { return std::isnan(value) || value == std::round(value); });
+}
+
 /// Discrete inputs (valves) and held voltages step; everything else runs smoothly between samples.
 signal::Interpolation interpolation(const Series& channel, const AssetView& asset, bool input_hold) {
   if (!asset.is_input(channel.name)) return signal::Interpolation::cubic;
-  const bool discrete = std::all_of(channel.values.begin(), channel.values.end(),
-                                    [](double value) { return std::isnan(value) || value == std::round(value); });
-  return discrete || input_hold ? signal::Interpolation::hold : signal::Interpolation::cubic;
+  return is_discrete(channel) || input_hold ? signal::Interpolation::hold : signal::Interpolation::cubic;
 }
 
 double noise_std(const Series& channel, const AssetView& asset) {
   if (channel.noise_std > 0.0) return channel.noise_std;
+  if (asset.is_input(channel.name) && is_discrete(channel)) return 0.0;
   const double estimate = signal::estimate_noise_std(channel.values);
   return estimate > 0.0 ? estimate : asset.noise_std(channel.name);
 }

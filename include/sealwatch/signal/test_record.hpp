@@ -61,7 +61,8 @@ class TestRecord {
 
   [[nodiscard]] Range range(const MotionPhase& phase) const;
   /// The middle of a stroke, where the piston runs steadily: from the first to the last sample above 95 % of the
-  /// stroke's median speed, less 0.3 s at either end for filters and sensor lags. Absent when shorter than 0.3 s.
+  /// stroke's median speed, less 0.3 s (at most a fifth) at either end for filters and sensor lags. Absent when shorter
+  /// than 0.3 s.
   [[nodiscard]] std::optional<Range> middle(const MotionPhase& stroke) const;
   /// A standstill less 0.5 s after the stroke before it and 0.2 s before the next. Absent when shorter than 0.3 s.
   [[nodiscard]] std::optional<Range> settled(const MotionPhase& standstill) const;

@@ -102,9 +102,12 @@ double estimate_noise_std(std::span<const double> values) {
   if (finite.size() < 16) return 0.0;
   std::vector<double> differences;
   differences.reserve(finite.size());
-  for (std::size_t i = 2; i + 2 < finite.size(); ++i)
-    differences.push_back(
-        std::abs(finite[i - 2] - 4.0 * finite[i - 1] + 6.0 * finite[i] - 4.0 * finite[i + 1] + finite[i + 2]));
+  for (std::size_t i = 2; i + 2 < finite.size(); ++i) {
+    const double difference =
+        finite[i - 2] - 4.0 * finite[i - 1] + 6.0 * finite[i] - 4.0 * finite[i + 1] + finite[i + 2];
+    if (difference != 0.0) differences.push_back(std::abs(difference));
+  }
+  if (differences.empty()) return 0.0;
   const double white = median(std::move(differences)) / kQuartileOfNormal / std::sqrt(70.0);
   return std::max(white, smallest_step(finite) / std::sqrt(12.0));
 }

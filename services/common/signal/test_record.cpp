@@ -14,6 +14,7 @@ namespace {
 constexpr double kCutoff_Hz = 5.0;           // strokes take seconds, sensor lags at most 50 ms
 constexpr double kCutoffShare = 1.0 / 8.0;   // of the sample rate, for slow recordings
 constexpr double kEdge_s = 0.3;              // at either end of a stroke's middle
+constexpr double kEdgeShare = 0.2;           // but not more than this share of it
 constexpr double kSettling_s = 0.5;          // after a stroke
 constexpr double kBefore_s = 0.2;            // before the next stroke: effort and filter reach back
 constexpr double kShortest_s = 0.3;          // a shorter range says nothing
@@ -126,7 +127,8 @@ std::optional<Range> TestRecord::middle(const MotionPhase& stroke) const {
   Range middle = whole;
   while (middle.begin < middle.end && std::abs(velocity_[middle.begin]) < steady) ++middle.begin;
   while (middle.begin < middle.end && std::abs(velocity_[middle.end - 1]) < steady) --middle.end;
-  const auto edge = static_cast<std::size_t>(std::ceil(kEdge_s / interval_s_));
+  const double edge_s = std::min(kEdge_s, kEdgeShare * interval_s_ * static_cast<double>(middle.size()));
+  const auto edge = static_cast<std::size_t>(std::ceil(edge_s / interval_s_));
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / interval_s_));
   if (middle.size() < 2 * edge + std::max<std::size_t>(shortest, 4)) return std::nullopt;
   return Range{middle.begin + edge, middle.end - edge};

@@ -1,0 +1,52 @@
+// What state detection remembers of one asset. All of it comes back from the asset's own earlier reports: restore() of
+// the layer plays them through the same two functions as the live run.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "sealwatch/message/state_detection.hpp"
+#include "services/state_detection/baseline.hpp"
+#include "services/state_detection/region.hpp"
+#include "services/state_detection/schedule.hpp"
+
+namespace sealwatch {
+
+class AssetHistory {
+ public:
+  AssetHistory(const RegionOptions& region, const BaselineOptions& baseline);
+
+  /// The actuator is a new one: baseline, regions and known channels start anew.
+  void restart();
+  /// Takes one judgement into its quantity's filter and fills in its regions.
+  void judge(RegionJudgement& judgement);
+  /// Takes a finished report whose judgements went through judge() already.
+  void learn(const StateReport& report);
+
+  [[nodiscard]] const Baseline& baseline() const { return baseline_; }
+  [[nodiscard]] const std::set<std::string>& known_channels() const { return known_channels_; }
+  /// Worst region of all quantities, those included that the last test could not give.
+  [[nodiscard]] AlertRegion worst_region() const;
+
+  Schedule schedule;
+  bool last_was_replay = false;
+  std::string last_overdue_id;  ///< message id of the last report on an overdue test
+  std::string last_judged_id;   ///< message id of the last report with a verdict of passed or failed
+
+ private:
+  RegionOptions region_options_;
+  BaselineOptions baseline_options_;
+  Baseline baseline_;
+  std::map<std::string, RegionFilter> filters_;  // by quantity and reference
+  std::set<std::string> known_channels_;         // OK in some judged test
+};
+
+/// Quantity of the judgement that says whether a channel was lost: "channel." + channel.
+inline constexpr std::string_view kChannelQuantity = "channel.";
+
+[[nodiscard]] inline bool is_judged(PstVerdict verdict) {
+  return verdict == PstVerdict::passed || verdict == PstVerdict::failed;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,138 @@
+#include "services/state_detection/indicators.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "services/state_detection/phase_means.hpp"
+
+namespace sealwatch {
+namespace {
+
+/// Temperature of the oil at the seabed, for which the asset's parameters hold (MODEL section 1).
+constexpr double kDesignTemperature_K = 277.15;
+
+using Optional = std::optional<double>;
+
+// Arithmetic that is absent as soon as one operand is.
+template <class Operation>
+Optional combine(const Optional& a, const Optional& b, Operation operation) {
+  if (!a || !b) return std::nullopt;
+  const double result = operation(*a, *b);
+  if (!std::isfinite(result)) return std::nullopt;
+  return result;
+}
+Optional operator+(const Optional& a, const Optional& b) {
+  return combine(a, b, [](double x, double y) { return x + y; });
+}
+Optional operator-(const Optional& a, const Optional& b) {
+  return combine(a, b, [](double x, double y) { return x - y; });
+}
+Optional operator*(const Optional& a, const Optional& b) {
+  return combine(a, b, [](double x, double y) { return x * y; });
+}
+Optional operator/(const Optional& a, const Optional& b) {
+  return combine(a, b, [](double x, double y) { return x / y; });
+}
+Optional absolute(const Optional& a) {
+  if (!a) return std::nullopt;
+  return std::abs(*a);
+}
+
+/// Reads the asset's parameters, the test's features and means by short names.
+class Balances {
+ public:
+  Balances(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window)
+      : asset_(asset), features_(features), window_(window), means_(window) {}
+
+  [[nodiscard]] std::vector<Quantity> all() {
+    hydraulic();
+    electric();
+    sensors();
+    add("closing_time", "s", parameter("x_C") / absolute(means_.speed_from_position(Motion::retracting)));
+    quality();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] Optional parameter(const char* name) const {
+    const auto found = asset_.parameters.find(name);
+    if (found == asset_.parameters.end()) return std::nullopt;
+    return found->second.value;
+  }
+  [[nodiscard]] Optional feature(const char* name) const { return feature_of(features_, name); }
+  [[nodiscard]] Optional dp(Motion motion) const { return means_.pressure_difference(motion); }
+  [[nodiscard]] Optional mean(const char* channel, Motion motion) const { return means_.mean(channel, motion); }
+
+  void add(const char* name, const char* unit, const Optional& value) {
+    if (value && std::isfinite(*value)) result_.push_back({name, unit, *value, false, 0.0});
+  }
+
+  void hydraulic() {
+    leakage_resistance_ = feature("leakage_resistance");
+    if (leakage_resistance_ && !(*leakage_resistance_ > 0.0)) leakage_resistance_.reset();  // noise about no flow
+    add("leakage_resistance", "Pa s/m3", leakage_resistance_);
+    add("friction_pressure", "Pa", feature("friction_pressure"));
+    add("breakaway_pressure", "Pa", feature("breakaway_pressure"));
+    load_pressure_ = (feature("running_pressure_out") + feature("running_pressure_back")) / Optional(2.0);
+    add("load_pressure", "Pa", load_pressure_);
+    add("hold_decay_rate", "1/s", feature("hold_decay") / absolute(feature("hold_pressure")));
+    const Optional delivered = parameter("alpha_P") * mean("shaft_speed", Motion::holding);
+    add("pump_slip", "m3/(s Pa)", (delivered - mean("flow", Motion::holding)) / dp(Motion::holding));
+  }
+
+  void electric() {
+    const Optional current = mean("motor_current", Motion::extending);
+    const Optional speed = mean("shaft_speed", Motion::extending);
+    const Optional torque = parameter("T_M") * current;
+    add("shaft_drag", "N m s/rad", (torque - parameter("alpha_P") * dp(Motion::extending)) / speed);
+    const Optional voltage = mean("motor_voltage", Motion::extending);
+    add("back_emf", "V s/rad", (voltage - parameter("R_M") * current) / speed);
+    const Optional load_current = parameter("alpha_P") * load_pressure_ / parameter("T_M");
+    add("load_free_current", "A", feature("peak_current") - absolute(load_current));
+  }
+
+  void sensors() {
+    const Optional up = means_.speed_from_position(Motion::extending);
+    const Optional down = means_.speed_from_position(Motion::retracting);
+    const Optional flow_up = mean("flow", Motion::extending);
+    const Optional flow = flow_up - mean("flow", Motion::retracting);
+    const Optional leakage = (dp(Motion::extending) - dp(Motion::retracting)) / leakage_resistance_;
+    const Optional area = parameter("A_C") ? parameter("A_C") : parameter("A_A");
+    add("flow_gain", "1", (flow - leakage) / (area * (up - down)));
+    const Optional speed = mean("shaft_speed", Motion::extending) - mean("shaft_speed", Motion::holding);
+    add("delivery_ratio", "1", (flow_up - mean("flow", Motion::holding)) / (parameter("alpha_P") * speed));
+    const Optional velocity = mean("velocity", Motion::extending) - mean("velocity", Motion::retracting);
+    add("velocity_gain", "1", velocity / (up - down));
+  }
+
+  void quality() {
+    add("fluid_temperature_deviation", "K", feature("fluid_temperature") - Optional(kDesignTemperature_K));
+    add("drive_saturation", "1", feature("drive_saturation"));
+    add("missing_share", "1", window_.missing_share);
+  }
+
+  const AssetConfig& asset_;
+  const TestFeatures& features_;
+  const TestWindow& window_;
+  PhaseMeans means_;
+  Optional leakage_resistance_;
+  Optional load_pressure_;
+  std::vector<Quantity> result_;
+};
+
+}  // namespace
+
+std::optional<double> feature_of(const TestFeatures& features, std::string_view name) {
+  for (const Quantity& feature : features.features)
+    if (feature.name == name) return feature.value;
+  return std::nullopt;
+}
+
+std::vector<Quantity> condition_indicators(const AssetConfig& asset, const TestFeatures& features,
+                                           const TestWindow& window) {
+  return Balances(asset, features, window).all();
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,34 @@
+// All judgements of one test, before hysteresis and delay.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/message/data_manipulation.hpp"
+#include "sealwatch/message/state_detection.hpp"
+#include "services/state_detection/baseline.hpp"
+
+namespace sealwatch {
+
+/// Indicators against fixed limits and against the asset's own baseline, where each applies.
+[[nodiscard]] std::vector<RegionJudgement> judge_indicators(const AssetConfig& asset,
+                                                            const std::vector<Quantity>& indicators,
+                                                            const Baseline& baseline);
+
+/// "residual.<channel>": of the nominal model in percent of the channel's variation (100 - nrmse_percent; not for a
+/// channel that hardly varies), of the own baseline as noise-normalised rms.
+[[nodiscard]] std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset,
+                                                           const std::vector<ResidualSummary>& residuals,
+                                                           const Baseline& baseline);
+
+/// "channel.<name>" for every channel that is OK or was in an earlier test: 0 is there, 1 is lost.
+[[nodiscard]] std::vector<RegionJudgement> judge_channels(const std::vector<ChannelStatus>& channels,
+                                                          const std::set<std::string>& known);
+
+/// Status of a channel that was OK in earlier tests and is not now; those that are not mentioned any more are NOT_USED.
+[[nodiscard]] std::vector<ChannelStatus> stale_channels(const std::vector<ChannelStatus>& channels,
+                                                        const std::set<std::string>& known);
+
+}  // namespace sealwatch

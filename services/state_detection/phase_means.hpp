@@ -1,0 +1,41 @@
+// Means of the recorded channels over the steady part of a test's phases.
+//
+// "Extending" is motion in +x, "retracting" in -x, whichever of the phases `out` and `back` that is; "holding" is the
+// phases `hold`. The first 30 % and the last 10 % of each phase are left out: sensors' filters and the pressures settle
+// there. Phases of one kind that occur more than once (a bench may run two cycles) are averaged, weighted by their
+// lengths.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/message/data_manipulation.hpp"
+
+namespace sealwatch {
+
+enum class Motion { extending, retracting, holding };
+
+class PhaseMeans {
+ public:
+  explicit PhaseMeans(const TestWindow& window);
+  /// Mean of a channel that is recorded and OK; nothing when there is no such channel or phase.
+  [[nodiscard]] std::optional<double> mean(std::string_view channel, Motion motion) const;
+  /// Speed from the position's change over the steady part [m/s].
+  [[nodiscard]] std::optional<double> speed_from_position(Motion motion) const;
+  /// p_A - p_B, from both pressures or from the differential sensor [Pa].
+  [[nodiscard]] std::optional<double> pressure_difference(Motion motion) const;
+
+ private:
+  struct Span {
+    std::size_t first;
+    std::size_t last;  // one past
+  };
+  [[nodiscard]] const Series* usable(std::string_view channel) const;
+  [[nodiscard]] std::vector<Span> spans(Motion motion) const;
+
+  const TestWindow& window_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,93 @@
+#include "services/state_detection/rules.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace sealwatch {
+namespace {
+
+/// The valve must close its full stroke in this time (MODEL section 1).
+constexpr double kClosingTime_s = 60.0;
+/// A ramp that is followed to the percent still measures a few percent long over its steady part.
+constexpr double kClosingTolerance = 1.05;
+
+/// Seal condition at which regions begin, as the share of the way from as new (theta 1) to the threshold that is left.
+/// 25 % left: plan; 12.5 % left: act; none left: failed. In nine years of slow ageing the first is years ahead of the
+/// last.
+constexpr double kLeftAdvisory = 0.25;
+constexpr double kLeftWarning = 0.125;
+
+/// Relative residual of the nominal model [%]: 100 means that the model explains nothing of what the channel did. A
+/// datasheet's model of a healthy actuator leaves up to about 20 %.
+constexpr AlertLimits kNominalResidual_percent{40.0, 70.0, 100.0};
+
+/// Oil at the seabed is at 4 degC; its viscosity, and with it every laminar leakage, changes by about 5 % per kelvin.
+constexpr AlertLimits kTemperatureDeviation_K{3.0, 6.0, 12.0};
+/// Share of a test in which the drive stands at its limit.
+constexpr AlertLimits kDriveSaturation{0.01, 0.05, 0.20};
+/// Share of samples that had to be interpolated.
+constexpr AlertLimits kMissingShare{0.01, 0.10, 0.30};
+
+struct NamedRule {
+  std::string_view quantity;
+  BaselineRule rule;
+};
+
+// Tolerances: what is of no consequence for the function, or what the test's own variation explains.
+constexpr std::array kRules = {
+    NamedRule{"friction_pressure", {0.15, 3e4, Side::both}},    // three times a pressure sensor's noise
+    NamedRule{"breakaway_pressure", {0.30, 2e5, Side::above}},  // one moment, not a mean; less is no fault
+    NamedRule{"load_pressure", {0.40, 0.0, Side::both}},        // the load factor differs by +-20 % between tests
+    NamedRule{"load_free_current", {0.30, 0.0, Side::above}},
+    NamedRule{"leakage_resistance", {0.30, 0.0, Side::both}},
+    NamedRule{"hold_decay_rate", {0.30, 0.02, Side::above}},  // 2 %/s: temperature and controller move pressures too
+    NamedRule{"pump_slip", {0.30, 0.0, Side::both}},
+    NamedRule{"shaft_drag", {0.20, 0.0, Side::both}},
+    NamedRule{"back_emf", {0.04, 0.0, Side::both}},
+    NamedRule{"flow_gain", {0.05, 0.0, Side::both}},
+    NamedRule{"delivery_ratio", {0.05, 0.0, Side::both}},
+    NamedRule{"velocity_gain", {0.05, 0.0, Side::both}},
+};
+/// A residual must grow by half before it means anything: it also carries the load's noise.
+constexpr BaselineRule kResidualRule{0.5, 0.5, Side::above};
+
+std::optional<AlertLimits> seal_limits(const SealSetting& seal) {
+  const auto resistance = [&](double left) {
+    return seal.resistance_Pa_s_m3(seal.threshold + left * (1.0 - seal.threshold));
+  };
+  return AlertLimits{resistance(kLeftAdvisory), resistance(kLeftWarning), resistance(0.0)};
+}
+
+}  // namespace
+
+double longest_closing_time_s(const AssetConfig& asset) {
+  const auto stroke = asset.parameters.find("x_C");
+  const bool known = stroke != asset.parameters.end() && asset.pst.speed_m_s > 0.0;
+  const double ramp_s = known ? stroke->second.value / asset.pst.speed_m_s : 0.0;
+  return kClosingTolerance * std::max(kClosingTime_s, ramp_s);
+}
+
+std::optional<AlertLimits> fixed_limits(const AssetConfig& asset, const std::string& quantity) {
+  if (const auto own = asset.alert_limits.find(quantity); own != asset.alert_limits.end()) return own->second;
+  if (quantity == "leakage_resistance" && asset.seal) return seal_limits(*asset.seal);
+  if (quantity == "closing_time") {
+    const double longest = longest_closing_time_s(asset);
+    return AlertLimits{0.98 * longest, longest, 1.1 * longest};
+  }
+  if (quantity == "fluid_temperature_deviation") return kTemperatureDeviation_K;
+  if (quantity == "drive_saturation") return kDriveSaturation;
+  if (quantity == "missing_share") return kMissingShare;
+  if (quantity.starts_with("residual.")) return kNominalResidual_percent;
+  return std::nullopt;
+}
+
+std::optional<BaselineRule> baseline_rule(const AssetConfig& asset, std::string_view quantity) {
+  // A seal with known resistances is judged on the way to its threshold; that it ages is no deviation.
+  if (quantity == "leakage_resistance" && asset.seal) return std::nullopt;
+  if (quantity.starts_with("residual.")) return kResidualRule;
+  for (const NamedRule& named : kRules)
+    if (named.quantity == quantity) return named.rule;
+  return std::nullopt;
+}
+
+}  // namespace sealwatch

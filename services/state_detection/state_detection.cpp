@@ -1,0 +1,226 @@
+#include "services/state_detection/state_detection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "services/state_detection/indicators.hpp"
+#include "services/state_detection/judgements.hpp"
+#include "services/state_detection/residual.hpp"
+#include "services/state_detection/verdict.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr const char* kProducer = "state_detection 0.1.0";
+constexpr std::string_view kEventPrefix = "maintenance_event/";
+
+void add_source(Header& header, const Header& source) {
+  const auto add = [&header](const std::string& id) {
+    auto& ids = header.source_ids;
+    if (!id.empty() && std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  };
+  add(source.message_id);
+  for (const std::string& id : source.source_ids) add(id);
+}
+
+bool is_first_after_replacement(const StateReport& report) {
+  return std::any_of(report.header.source_ids.begin(), report.header.source_ids.end(),
+                     [](const std::string& id) { return id.starts_with(kEventPrefix); });
+}
+
+/// Whether the maintenance was done before this test; unknown times count as before.
+bool is_before(const MaintenanceEvent& event, const TestFeatures& test) {
+  if (!event.header.event_time_known || !test.header.event_time_known) return true;
+  return event.header.event_time_ns <= test.header.event_time_ns;
+}
+
+std::string days_text(double days) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.0f days", days);
+  return buffer;
+}
+
+}  // namespace
+
+Status StateDetectionOptions::validate() const {
+  if (Status status = region.validate(); !status) return status;
+  if (Status status = baseline.validate(); !status) return status;
+  if (overdue_grace_share >= 0.0 && overdue_grace_share < 10.0) return {};
+  return fail(Error{{},
+                    "overdue_grace_share",
+                    std::to_string(overdue_grace_share),
+                    "must be in [0, 10)",
+                    "it is a share of the test interval"});
+}
+
+StateDetection::StateDetection(std::span<const AssetConfig> assets, std::shared_ptr<const Simulator> simulator,
+                               const StateDetectionOptions& options)
+    : simulator_(std::move(simulator)), options_(options) {
+  for (const AssetConfig& asset : assets) assets_.emplace(asset.asset_id, asset);
+}
+
+std::span<const Topic> StateDetection::inputs() const {
+  static constexpr std::array kInputs = {Topic::test_features, Topic::test_window, Topic::maintenance_event};
+  return kInputs;
+}
+
+std::span<const Topic> StateDetection::outputs() const {
+  static constexpr std::array kOutputs = {Topic::state_report};
+  return kOutputs;
+}
+
+StateDetection::AssetState& StateDetection::state_of(const std::string& asset_id) {
+  return states_.try_emplace(asset_id, AssetState{AssetHistory(options_.region, options_.baseline), {}, {}, {}})
+      .first->second;
+}
+
+void StateDetection::restore(const Message& own_output) {
+  const auto* report = std::get_if<StateReport>(&own_output);
+  if (report == nullptr) return;
+  AssetHistory& history = state_of(report->asset_id).history;
+  if (is_first_after_replacement(*report)) history.restart();
+  for (RegionJudgement judgement : report->judgements) history.judge(judgement);
+  history.learn(*report);
+}
+
+Conclusion StateDetection::receive(const Message& input) {
+  AssetState& state = state_of(asset_of(input));
+  state.history.last_was_replay = header_of(input).replay;
+  if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.push_back(*features);
+  if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.emplace(window->header.pst_id, *window);
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.events.push_back(*event);
+  Conclusion conclusion;
+  conclude_ready_tests(state, conclusion);
+  return conclusion;
+}
+
+void StateDetection::conclude_ready_tests(AssetState& state, Conclusion& conclusion) {
+  while (!state.tests.empty()) {
+    const TestFeatures& features = state.tests.front();
+    const auto window = state.windows.find(features.header.pst_id);
+    if (window == state.windows.end()) return;
+    conclude(state, features, window->second, conclusion);
+    conclusion.consumed.push_back(features.header.message_id);
+    conclusion.consumed.push_back(window->second.header.message_id);
+    state.windows.erase(window);
+    state.tests.pop_front();
+  }
+}
+
+void StateDetection::conclude(AssetState& state, const TestFeatures& features, const TestWindow& window,
+                              Conclusion& conclusion) {
+  StateReport report;
+  report.asset_id = features.asset_id;
+  report.header = features.header;
+  report.header.message_id = "state_report/" + features.header.pst_id;
+  report.header.producer = kProducer;
+  report.header.source_ids.clear();
+  add_source(report.header, features.header);
+  add_source(report.header, window.header);
+  for (const MaintenanceEvent& event : state.events) {
+    if (!is_before(event, features)) continue;
+    add_source(report.header, event.header);
+    state.history.restart();
+    if (event.header.event_time_known) state.history.schedule.tested(UtcTime{event.header.event_time_ns});
+  }
+  const auto asset = assets_.find(features.asset_id);
+  if (asset == assets_.end())
+    report.verdict_reasons.push_back("asset '" + features.asset_id + "' is not in the configuration");
+  else
+    judge(state, asset->second, features, window, report);
+  report.region = state.history.worst_region();
+  state.history.learn(report);
+  if (is_judged(report.verdict))
+    std::erase_if(state.events, [&](const MaintenanceEvent& event) {
+      if (!is_before(event, features)) return false;
+      conclusion.consumed.push_back(event.header.message_id);
+      return true;
+    });
+  conclusion.outputs.push_back(std::move(report));
+}
+
+void StateDetection::judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features,
+                           const TestWindow& window, StateReport& report) const {
+  AssetHistory& history = state.history;
+  const std::vector<Quantity> indicators = condition_indicators(asset, features, window);
+  Verdict verdict = judge_test(asset, features, indicators);
+  report.verdict = verdict.verdict;
+  report.verdict_reasons = std::move(verdict.reasons);
+  note_lateness(state, asset, report);
+  for (const ChannelStatus& stale : stale_channels(features.channel_status, history.known_channels())) {
+    report.stale_channels.push_back(stale.channel);
+    report.verdict_reasons.push_back("channel " + stale.channel + ", OK in earlier tests, is " +
+                                     std::string(name_of(stale.state)) +
+                                     (stale.reason.empty() ? "" : ": " + stale.reason));
+  }
+  if (!is_judged(report.verdict)) return;
+  report.judgements = judge_indicators(asset, indicators, history.baseline());
+  add_residuals(asset, features, window, report);
+  for (RegionJudgement& judgement : judge_residuals(asset, report.residuals, history.baseline()))
+    report.judgements.push_back(std::move(judgement));
+  for (RegionJudgement& judgement : judge_channels(features.channel_status, history.known_channels()))
+    report.judgements.push_back(std::move(judgement));
+  for (RegionJudgement& judgement : report.judgements) history.judge(judgement);
+}
+
+void StateDetection::add_residuals(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
+                                   StateReport& report) const {
+  if (simulator_ == nullptr) return;
+  Result<std::vector<ResidualSummary>> residuals =
+      residuals_of(asset, window, feature_of(features, "leakage_resistance"), *simulator_);
+  if (residuals)
+    report.residuals = std::move(*residuals);
+  else
+    report.verdict_reasons.push_back("no simulation residual: " + residuals.error().describe());
+}
+
+void StateDetection::note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const {
+  if (!report.header.event_time_known) return;
+  const auto late =
+      state.history.schedule.lateness(UtcTime{report.header.event_time_ns}, asset.pst, options_.overdue_grace_share);
+  if (!late) return;
+  report.pst_overdue = true;
+  report.overdue_days = late->days;
+  report.verdict_reasons.push_back("this test came " + days_text(late->days) + " after it was due on " +
+                                   format_date(late->due) + " (last judged test on " + format_date(late->last) + ")");
+}
+
+Conclusion StateDetection::tick(UtcTime now) {
+  Conclusion conclusion;
+  for (auto& [asset_id, state] : states_) {
+    if (state.history.last_was_replay || assets_.count(asset_id) == 0) continue;
+    std::optional<StateReport> report = overdue_report(asset_id, state, now);
+    if (!report || report->header.message_id == state.history.last_overdue_id) continue;
+    state.history.learn(*report);
+    conclusion.outputs.push_back(std::move(*report));
+  }
+  return conclusion;
+}
+
+std::optional<StateReport> StateDetection::overdue_report(const std::string& asset_id, const AssetState& state,
+                                                          UtcTime now) const {
+  Schedule schedule = state.history.schedule;
+  for (const MaintenanceEvent& event : state.events)
+    if (event.header.event_time_known) schedule.tested(UtcTime{event.header.event_time_ns});
+  const PstSetting& pst = assets_.at(asset_id).pst;
+  const auto overdue = schedule.overdue_from(pst, options_.overdue_grace_share);
+  if (!overdue || now < *overdue) return std::nullopt;
+  const auto late = schedule.lateness(*overdue, pst, options_.overdue_grace_share);  // says nothing about `now`
+  StateReport report;
+  report.asset_id = asset_id;
+  report.header.message_id = "state_report/" + asset_id + "/overdue/" + format_date(late->due);
+  report.header.producer = kProducer;
+  if (!state.history.last_judged_id.empty()) report.header.source_ids.push_back(state.history.last_judged_id);
+  report.header.event_time_known = true;
+  report.header.event_time_ns = overdue->nanoseconds;
+  report.verdict_reasons.push_back("no test has been judged since " + format_date(late->last) + "; one was due on " +
+                                   format_date(late->due));
+  report.region = std::max(AlertRegion::advisory, state.history.worst_region());
+  report.pst_overdue = true;
+  report.overdue_days = late->days;
+  return report;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,71 @@
+// State detection (ISO 13374 SD): alert regions, verdict on the partial stroke test, overdue tests, stale channels.
+// docs/health.md has all rules with their defaults and reasons.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/port/estimator.hpp"
+#include "sealwatch/port/layer.hpp"
+#include "services/state_detection/baseline.hpp"
+#include "services/state_detection/history.hpp"
+#include "services/state_detection/region.hpp"
+
+namespace sealwatch {
+
+struct StateDetectionOptions {
+  RegionOptions region;
+  BaselineOptions baseline;
+  double overdue_grace_share = 0.5;  ///< of the test interval, see schedule.hpp
+  [[nodiscard]] Status validate() const;
+};
+
+/// Concludes each asset's tests in the order of their test_features, each as soon as its test_window is there too. A
+/// maintenance_event starts the asset's history anew with the first test after it; it counts as consumed when a test
+/// after it has been judged.
+class StateDetection final : public Layer {
+ public:
+  /// `simulator` may be null: then there are no residuals. `options` must be valid.
+  StateDetection(std::span<const AssetConfig> assets, std::shared_ptr<const Simulator> simulator,
+                 const StateDetectionOptions& options = {});
+
+  [[nodiscard]] std::string_view name() const override { return "state_detection"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override;
+  [[nodiscard]] std::span<const Topic> outputs() const override;
+  void restore(const Message& own_output) override;
+  [[nodiscard]] Conclusion receive(const Message& input) override;
+  [[nodiscard]] Conclusion tick(UtcTime now) override;
+
+ private:
+  struct AssetState {
+    AssetHistory history;
+    std::deque<TestFeatures> tests;             // not concluded yet, in order of receipt
+    std::map<std::string, TestWindow> windows;  // by pst_id
+    std::vector<MaintenanceEvent> events;       // not consumed yet
+  };
+
+  [[nodiscard]] AssetState& state_of(const std::string& asset_id);
+  void conclude_ready_tests(AssetState& state, Conclusion& conclusion);
+  void conclude(AssetState& state, const TestFeatures& features, const TestWindow& window, Conclusion& conclusion);
+  void judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
+             StateReport& report) const;
+  void add_residuals(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
+                     StateReport& report) const;
+  void note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const;
+  [[nodiscard]] std::optional<StateReport> overdue_report(const std::string& asset_id, const AssetState& state,
+                                                          UtcTime now) const;
+
+  std::map<std::string, AssetConfig> assets_;
+  std::shared_ptr<const Simulator> simulator_;
+  StateDetectionOptions options_;
+  std::map<std::string, AssetState> states_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,102 @@
+#include "services/state_detection/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "services/state_detection/indicators.hpp"
+#include "services/state_detection/rules.hpp"
+
+namespace sealwatch {
+namespace {
+
+/// Share of the stroke that must be reached, and to which the piston must come back: the ramp's following error and the
+/// end of a minimum-energy hold stay well within it.
+constexpr double kStrokeTolerance = 0.05;
+/// A recording shorter than this share of a whole test has lost its end.
+constexpr double kWholeShare = 0.9;
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[200];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+bool has_phase(const TestFeatures& features, PhaseKind kind) {
+  return std::any_of(features.phases.begin(), features.phases.end(),
+                     [kind](const Phase& phase) { return phase.kind == kind; });
+}
+
+bool is_full_stroke(const TestFeatures& features) { return features.test_kind == "full_stroke"; }
+
+bool moved_as_a_test_does(const TestFeatures& features) {
+  const bool there = has_phase(features, PhaseKind::out) && has_phase(features, PhaseKind::hold);
+  return there && (is_full_stroke(features) || has_phase(features, PhaseKind::back));
+}
+
+/// The stroke that the test must reach.
+double required_stroke_m(const AssetConfig& asset, const TestFeatures& features) {
+  const auto full = asset.parameters.find("x_C");
+  if (is_full_stroke(features) && full != asset.parameters.end()) return full->second.value;
+  return std::abs(asset.pst.stroke_m);
+}
+
+/// Why nothing can be said, or "".
+std::string why_not_judged(const AssetConfig& asset, const TestFeatures& features) {
+  if (!features.test_kind.empty() && features.test_kind != "pst" && !is_full_stroke(features))
+    return "the recording is of kind '" + features.test_kind + "', not a stroke test";
+  const double expected_s = asset.pst.expected_duration_s();
+  if (!moved_as_a_test_does(features) && features.duration_s < kWholeShare * expected_s)
+    return text("the recording was cut after %.1f s of about %.0f s", features.duration_s, expected_s);
+  if (!features.complete) return text("the end of the test was not recorded (%.1f s were)", features.duration_s);
+  if (!feature_of(features, "travel")) return "the position was not recorded, so the stroke cannot be judged";
+  return {};
+}
+
+void judge_stroke(const AssetConfig& asset, const TestFeatures& features, std::vector<std::string>& failures) {
+  const double stroke_mm = 1e3 * required_stroke_m(asset, features);
+  const double travel_mm = 1e3 * feature_of(features, "travel").value_or(0.0);
+  if (travel_mm < (1.0 - kStrokeTolerance) * stroke_mm)
+    failures.push_back(text("the piston moved %.2f mm of the %.1f mm stroke", travel_mm, stroke_mm));
+  if (is_full_stroke(features)) return;  // it stays where it went
+  const auto error = feature_of(features, "return_error");
+  if (!error)
+    failures.push_back("the piston did not come back to where it started");
+  else if (1e3 * std::abs(*error) > kStrokeTolerance * std::max(stroke_mm, travel_mm))
+    failures.push_back(text("the piston came back %.2f mm away from where it started", 1e3 * std::abs(*error)));
+}
+
+void judge_speed(const AssetConfig& asset, const std::vector<Quantity>& indicators, Verdict& verdict,
+                 std::vector<std::string>& failures) {
+  const double longest_s = longest_closing_time_s(asset);
+  for (const Quantity& indicator : indicators) {
+    if (indicator.name != "closing_time") continue;
+    const std::string closing = text("at the speed of this test the full stroke closes in %.1f s, %.1f s are allowed",
+                                     indicator.value, longest_s);
+    if (indicator.value > longest_s)
+      failures.push_back(closing);
+    else
+      verdict.reasons.push_back(closing);
+  }
+}
+
+}  // namespace
+
+Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const std::vector<Quantity>& indicators) {
+  if (features.aborted) {
+    const std::string why = features.abort_reason.empty() ? "no reason given" : features.abort_reason;
+    return {PstVerdict::aborted, {text("given up after %.1f s: ", features.duration_s) + why}};
+  }
+  if (const std::string why = why_not_judged(asset, features); !why.empty()) return {PstVerdict::not_judged, {why}};
+
+  Verdict verdict{PstVerdict::passed, {}};
+  verdict.reasons.push_back(text("the piston moved %.2f mm", 1e3 * *feature_of(features, "travel")));
+  std::vector<std::string> failures;
+  judge_stroke(asset, features, failures);
+  judge_speed(asset, indicators, verdict, failures);
+  if (!failures.empty()) return {PstVerdict::failed, failures};
+  return verdict;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,59 @@
+#include "services/state_detection/residual.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/layers/state_detection/fake_simulator.hpp"
+#include "tests/unit/layers/state_detection/synthetic_test.hpp"
+
+namespace sealwatch {
+namespace {
+
+using synthetic::FakeSimulator;
+
+TEST(Residual, FiguresByHand) {
+  TimeSeries recorded;
+  recorded.time_s = {0, 1, 2, 3};
+  recorded.channels = {{"flow", "m3/s", 0.5, {1, -1, 1, -1}}};
+  TimeSeries simulated = recorded;
+  for (double& value : simulated.channels[0].values) value += 0.25;
+  const auto summaries = summarise_residuals(AssetConfig{}, recorded, simulated, Reference::nominal_model);
+  ASSERT_EQ(summaries.size(), 1U);
+  EXPECT_NEAR(summaries[0].noise_normalised_rms, 0.5, 1e-12);
+  EXPECT_NEAR(summaries[0].nrmse_percent, 75.0, 1e-12);
+}
+
+TEST(Residual, AgeingOfTheSealIsTakenOutOfTheOwnBaseline) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Condition worn;
+  worn.theta = 0.65;
+  const double truth = asset.seal->resistance_Pa_s_m3(0.65);
+  const synthetic::Test test = synthetic::make(worn, {});
+  const auto summaries = residuals_of(asset, test.window, truth, FakeSimulator(1.0, 50.0, truth));
+  ASSERT_TRUE(summaries);
+  ASSERT_EQ(summaries->size(), 14U);  // seven outputs, two references
+  for (const ResidualSummary& summary : *summaries) {
+    if (summary.reference == Reference::own_baseline)
+      EXPECT_NEAR(summary.noise_normalised_rms, 1.0, 1e-6) << summary.channel;
+    else
+      EXPECT_GT(summary.noise_normalised_rms, 50.0) << summary.channel;
+  }
+}
+
+TEST(Residual, FailedChannelsStayOut) {
+  synthetic::Circumstances circumstances;
+  circumstances.failed_channel = "flow";
+  const synthetic::Test test = synthetic::make({}, circumstances);
+  const auto summaries = residuals_of(synthetic::asset(), test.window, std::nullopt, FakeSimulator(1, 0, 1e13));
+  ASSERT_TRUE(summaries);
+  for (const ResidualSummary& summary : *summaries) EXPECT_NE(summary.channel, "flow");
+}
+
+TEST(Residual, ATestThatCannotBeSimulatedIsAnError) {
+  synthetic::Circumstances circumstances;
+  circumstances.absent_channel = "motor_voltage";
+  const synthetic::Test test = synthetic::make({}, circumstances);
+  EXPECT_FALSE(residuals_of(synthetic::asset(), test.window, std::nullopt, FakeSimulator(1, 0, 1e13)));
+}
+
+}  // namespace
+}  // namespace sealwatch

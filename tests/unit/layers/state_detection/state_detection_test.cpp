@@ -1,0 +1,346 @@
+#include "services/state_detection/state_detection.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/common/message/json.hpp"
+#include "tests/unit/layers/state_detection/fake_simulator.hpp"
+#include "tests/unit/layers/state_detection/synthetic_test.hpp"
+
+namespace sealwatch {
+namespace {
+
+using synthetic::Circumstances;
+using synthetic::Condition;
+using testing::Contains;
+using testing::HasSubstr;
+
+std::shared_ptr<const Simulator> simulator() { return std::make_shared<synthetic::FakeSimulator>(1.5, 0.0, 1e13); }
+
+StateDetection layer() {
+  const std::vector<AssetConfig> assets = {synthetic::asset("A1"), synthetic::asset("A2")};
+  return StateDetection(assets, simulator());
+}
+
+/// Plays messages by the runner's contract and remembers what a journal would.
+struct Journal {
+  std::vector<Message> received;
+  std::vector<Message> concluded;
+  std::vector<std::string> consumed;
+
+  void take(StateDetection& detection, const Message& input) {
+    received.push_back(input);
+    add(detection.receive(input));
+  }
+  void add(Conclusion conclusion) {
+    for (Message& output : conclusion.outputs) concluded.push_back(std::move(output));
+    for (std::string& id : conclusion.consumed) consumed.push_back(std::move(id));
+  }
+  /// A new layer as after a crash; what it concludes from unconsumed inputs is added.
+  StateDetection restart() {
+    StateDetection fresh = layer();
+    for (const Message& output : concluded) fresh.restore(output);
+    const std::vector<std::string> done = consumed;
+    for (const Message& input : received)
+      if (std::find(done.begin(), done.end(), header_of(input).message_id) == done.end()) add(fresh.receive(input));
+    return fresh;
+  }
+  [[nodiscard]] std::vector<std::string> text() const {
+    std::vector<std::string> lines;
+    for (const Message& output : concluded) lines.push_back(to_json(output, JsonForm::exact));
+    return lines;
+  }
+};
+
+MaintenanceEvent replacement(UtcTime time) {
+  MaintenanceEvent event;
+  event.asset_id = "A1";
+  event.header.message_id = "maintenance_event/A1/" + format_utc(time);
+  event.header.event_time_known = true;
+  event.header.event_time_ns = time.nanoseconds;
+  event.kind = "actuator_replaced";
+  return event;
+}
+
+/// A life with everything in it: late and cut tests, friction that grows, a lost channel, a replacement, two assets.
+std::vector<Message> eventful_life() {
+  std::vector<Message> messages;
+  for (int number = 0; number < 20; ++number) {
+    if (number == 8) continue;
+    if (number == 14) messages.emplace_back(replacement(synthetic::month(13, 20)));
+    Condition condition;
+    condition.load_factor = 0.2 * std::sin(1.7 * number);
+    condition.theta = 0.8 - 0.012 * number;
+    if (number > 9) condition.friction_N = 3600;
+    Circumstances circumstances;
+    circumstances.number = number;
+    circumstances.asset_id = number % 5 == 2 ? "A2" : "A1";
+    if (number == 5) circumstances.cut_after_s = 7.4;
+    if (number == 14) circumstances.aborted = true;
+    if (number == 11) circumstances.failed_channel = "flow";
+    const synthetic::Test test = synthetic::make(condition, circumstances);
+    messages.emplace_back(test.window);
+    messages.emplace_back(test.features);
+  }
+  return messages;
+}
+
+const StateReport& last_report(const Journal& journal) { return std::get<StateReport>(journal.concluded.back()); }
+
+const RegionJudgement& judgement(const StateReport& report, const std::string& quantity, Reference reference) {
+  for (const RegionJudgement& j : report.judgements)
+    if (j.quantity == quantity && j.reference == reference) return j;
+  ADD_FAILURE() << "no judgement of " << quantity;
+  static const RegionJudgement none;
+  return none;
+}
+
+void play(StateDetection& detection, Journal& journal, const Condition& condition, const Circumstances& circumstances) {
+  const synthetic::Test test = synthetic::make(condition, circumstances);
+  journal.take(detection, test.window);
+  journal.take(detection, test.features);
+}
+
+TEST(StateDetection, KilledAnywhereItEndsWithTheSameReports) {
+  const std::vector<Message> life = eventful_life();
+  Journal undisturbed;
+  StateDetection detection = layer();
+  for (const Message& message : life) undisturbed.take(detection, message);
+  for (std::size_t cut = 0; cut <= life.size(); ++cut) {
+    Journal journal;
+    StateDetection before = layer();
+    for (std::size_t k = 0; k < cut; ++k) journal.take(before, life[k]);
+    StateDetection after = journal.restart();
+    for (std::size_t k = cut; k < life.size(); ++k) journal.take(after, life[k]);
+    ASSERT_EQ(journal.text(), undisturbed.text()) << "cut at " << cut;
+    EXPECT_EQ(journal.consumed, undisturbed.consumed) << "cut at " << cut;
+  }
+}
+
+TEST(StateDetection, OrderOfArrivalOfTheWindowDoesNotMatter) {
+  Journal in_order;
+  Journal features_first;
+  StateDetection one = layer();
+  StateDetection other = layer();
+  std::vector<Message> windows;
+  for (const Message& message : eventful_life()) {
+    in_order.take(one, message);
+    if (std::holds_alternative<TestWindow>(message))
+      windows.push_back(message);
+    else
+      features_first.take(other, message);
+  }
+  // Newest window first: every test waits for the older ones of its asset.
+  for (auto window = windows.rbegin(); window != windows.rend(); ++window) features_first.take(other, *window);
+  std::vector<std::string> expected = in_order.text();
+  std::vector<std::string> found = features_first.text();
+  // The replacement comes before the tests here, which by event time it does not change.
+  std::sort(expected.begin(), expected.end());
+  std::sort(found.begin(), found.end());
+  EXPECT_EQ(found, expected);
+}
+
+TEST(StateDetection, HeaderNamesTestSourcesAndTimes) {
+  Journal journal;
+  StateDetection detection = layer();
+  Circumstances circumstances;
+  circumstances.number = 3;
+  circumstances.replay = true;
+  play(detection, journal, {}, circumstances);
+  const Header& header = last_report(journal).header;
+  EXPECT_EQ(header.message_id, "state_report/A1-3");
+  EXPECT_EQ(header.pst_id, "A1-3");
+  EXPECT_EQ(header.producer, "state_detection 0.1.0");
+  EXPECT_TRUE(header.replay);
+  EXPECT_EQ(header.event_time_ns, synthetic::month(3).nanoseconds);
+  EXPECT_THAT(header.source_ids, testing::ElementsAre("test_features/A1-3", "sample_block/A1-3/0", "test_window/A1-3"));
+}
+
+TEST(StateDetection, LoadVariationAloneRaisesNothing) {
+  Journal journal;
+  StateDetection detection = layer();
+  for (int number = 0; number < 40; ++number) {
+    Condition condition;
+    condition.load_factor = 0.2 * std::sin(2.3 * number);
+    Circumstances circumstances;
+    circumstances.number = number;
+    play(detection, journal, condition, circumstances);
+    EXPECT_EQ(last_report(journal).region, AlertRegion::normal) << "test " << number;
+    EXPECT_EQ(last_report(journal).verdict, PstVerdict::passed);
+  }
+}
+
+TEST(StateDetection, GrowingFrictionIsSeenAgainstTheOwnBaselineAfterTwoTests) {
+  Journal journal;
+  StateDetection detection = layer();
+  for (int number = 0; number < 12; ++number) {
+    Condition condition;
+    if (number >= 8) condition.friction_N = 3200;  // +33 %
+    Circumstances circumstances;
+    circumstances.number = number;
+    play(detection, journal, condition, circumstances);
+    const RegionJudgement& friction = judgement(last_report(journal), "friction_pressure", Reference::own_baseline);
+    EXPECT_EQ(friction.raw_region, number < 8 ? AlertRegion::normal : AlertRegion::warning) << number;
+    EXPECT_EQ(friction.region, number < 9 ? AlertRegion::normal : AlertRegion::warning) << number;
+  }
+  EXPECT_EQ(last_report(journal).region, AlertRegion::warning);
+}
+
+TEST(StateDetection, SealIsJudgedOnTheWayToItsThreshold) {
+  Journal journal;
+  StateDetection detection = layer();
+  std::vector<AlertRegion> regions;
+  int number = 0;
+  for (const double theta : {0.95, 0.80, 0.72, 0.69, 0.69, 0.64, 0.64, 0.59, 0.59}) {
+    Condition condition;
+    condition.theta = theta;
+    Circumstances circumstances;
+    circumstances.number = number++;
+    play(detection, journal, condition, circumstances);
+    regions.push_back(last_report(journal).region);
+  }
+  using enum AlertRegion;
+  EXPECT_THAT(regions,
+              testing::ElementsAre(normal, normal, normal, normal, advisory, advisory, warning, warning, alarm));
+}
+
+TEST(StateDetection, ResidualsAreJudgedAgainstBothReferences) {
+  Journal journal;
+  StateDetection detection = layer();
+  play(detection, journal, {}, {});
+  const StateReport& report = last_report(journal);
+  EXPECT_EQ(report.residuals.size(), 14U);
+  EXPECT_EQ(judgement(report, "residual.pressure_a", Reference::nominal_model).unit, "%");
+  EXPECT_NEAR(judgement(report, "residual.pressure_a", Reference::own_baseline).value, 1.5, 1e-6);
+}
+
+TEST(StateDetection, ALateTestSaysHowLate) {
+  Journal journal;
+  StateDetection detection = layer();
+  play(detection, journal, {}, {});
+  Circumstances late;
+  late.number = 2;
+  play(detection, journal, {}, late);
+  EXPECT_TRUE(last_report(journal).pst_overdue);
+  EXPECT_NEAR(last_report(journal).overdue_days, 30.4, 0.1);
+  EXPECT_THAT(last_report(journal).verdict_reasons, Contains(HasSubstr("30 days after it was due on 2031-02-09")));
+}
+
+TEST(StateDetection, ACutTestDoesNotCountAsTested) {
+  Journal journal;
+  StateDetection detection = layer();
+  play(detection, journal, {}, {});
+  Circumstances cut;
+  cut.number = 1;
+  cut.cut_after_s = 7.4;
+  play(detection, journal, {}, cut);
+  EXPECT_FALSE(last_report(journal).pst_overdue);
+  EXPECT_TRUE(last_report(journal).judgements.empty());
+  Circumstances next;
+  next.number = 2;
+  play(detection, journal, {}, next);
+  EXPECT_TRUE(last_report(journal).pst_overdue);
+}
+
+TEST(StateDetection, OverdueOncePerDueDateAndNotInReplay) {
+  for (const bool replay : {false, true}) {
+    Journal journal;
+    StateDetection detection = layer();
+    Circumstances circumstances;
+    circumstances.replay = replay;
+    play(detection, journal, {}, circumstances);
+    EXPECT_TRUE(detection.tick(synthetic::month(1, 10)).outputs.empty());
+    Conclusion overdue = detection.tick(synthetic::month(2));
+    ASSERT_EQ(overdue.outputs.size(), replay ? 0U : 1U);
+    if (replay) continue;
+    const StateReport& report = std::get<StateReport>(overdue.outputs.front());
+    EXPECT_EQ(report.header.message_id, "state_report/A1/overdue/2031-02-09");
+    EXPECT_EQ(report.header.pst_id, "");
+    EXPECT_TRUE(report.pst_overdue);
+    EXPECT_EQ(report.region, AlertRegion::advisory);
+    // Asked later, it would say the same.
+    StateDetection later = layer();
+    for (const Message& output : journal.concluded) later.restore(output);
+    EXPECT_EQ(later.tick(synthetic::month(7)).outputs, overdue.outputs);
+    // And it says it once, also after a restart.
+    EXPECT_TRUE(detection.tick(synthetic::month(3)).outputs.empty());
+    journal.add(overdue);
+    StateDetection restarted = journal.restart();
+    EXPECT_TRUE(restarted.tick(synthetic::month(9)).outputs.empty());
+    // The next test opens a new due date.
+    Circumstances next;
+    next.number = 3;
+    play(restarted, journal, {}, next);
+    EXPECT_EQ(restarted.tick(synthetic::month(5)).outputs.size(), 1U);
+  }
+}
+
+TEST(StateDetection, UnknownEventTimeIsNeverLate) {
+  Journal journal;
+  StateDetection detection = layer();
+  for (int number = 0; number < 12; ++number) {
+    Circumstances circumstances;
+    circumstances.number = number;
+    circumstances.event_time_known = false;
+    play(detection, journal, {}, circumstances);
+    EXPECT_EQ(last_report(journal).verdict, PstVerdict::passed);
+    EXPECT_FALSE(last_report(journal).pst_overdue);
+    EXPECT_FALSE(last_report(journal).header.event_time_known);
+  }
+  EXPECT_TRUE(detection.tick(synthetic::month(100)).outputs.empty());
+}
+
+TEST(StateDetection, ALostChannelIsStaleAndAnAdvisory) {
+  for (const bool absent : {false, true}) {
+    Journal journal;
+    StateDetection detection = layer();
+    for (int number = 0; number < 4; ++number) {
+      Circumstances circumstances;
+      circumstances.number = number;
+      if (number >= 2) (absent ? circumstances.absent_channel : circumstances.failed_channel) = "flow";
+      play(detection, journal, {}, circumstances);
+      const StateReport& report = last_report(journal);
+      EXPECT_EQ(report.stale_channels.size(), number >= 2 ? 1U : 0U);
+      EXPECT_EQ(report.region, number >= 3 ? AlertRegion::advisory : AlertRegion::normal);
+    }
+    EXPECT_THAT(last_report(journal).stale_channels, testing::ElementsAre("flow"));
+    EXPECT_THAT(last_report(journal).verdict_reasons, Contains(HasSubstr(absent ? "NOT_USED" : "frozen for 4.0 s")));
+  }
+}
+
+TEST(StateDetection, AReplacementStartsTheBaselineAnew) {
+  Journal journal;
+  StateDetection detection = layer();
+  for (int number = 0; number < 10; ++number) {
+    if (number == 6) journal.take(detection, replacement(synthetic::month(5, 20)));
+    Condition condition;
+    if (number >= 6) condition.friction_N = 4000;  // the new one is tighter
+    Circumstances circumstances;
+    circumstances.number = number;
+    play(detection, journal, condition, circumstances);
+    EXPECT_EQ(last_report(journal).region, AlertRegion::normal) << number;
+  }
+  EXPECT_THAT(journal.consumed, Contains(HasSubstr("maintenance_event/A1")));
+}
+
+TEST(StateDetection, AnAssetThatIsNotConfiguredIsNotJudged) {
+  Journal journal;
+  StateDetection detection = layer();
+  Circumstances circumstances;
+  circumstances.asset_id = "nobody";
+  play(detection, journal, {}, circumstances);
+  EXPECT_EQ(last_report(journal).verdict, PstVerdict::not_judged);
+  EXPECT_THAT(last_report(journal).verdict_reasons, Contains(HasSubstr("'nobody' is not in the configuration")));
+}
+
+TEST(StateDetection, OptionsAreChecked) {
+  EXPECT_TRUE(StateDetectionOptions{}.validate());
+  StateDetectionOptions options;
+  options.overdue_grace_share = -1;
+  EXPECT_FALSE(options.validate());
+  options = {};
+  options.baseline.tests = 2;
+  EXPECT_FALSE(options.validate());
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,0 +1,93 @@
+#include "services/state_detection/verdict.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/state_detection/indicators.hpp"
+#include "tests/unit/layers/state_detection/synthetic_test.hpp"
+
+namespace sealwatch {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Verdict judge(const synthetic::Condition& condition, const synthetic::Circumstances& circumstances) {
+  const AssetConfig asset = synthetic::asset();
+  const synthetic::Test test = synthetic::make(condition, circumstances);
+  return judge_test(asset, test.features, condition_indicators(asset, test.features, test.window));
+}
+
+TEST(Verdict, HealthyTestPasses) {
+  const Verdict verdict = judge({}, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::passed);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("16.00 mm"), HasSubstr("closes in 60.1 s, 63.2 s are allowed")));
+}
+
+TEST(Verdict, ShortStrokeFails) {
+  synthetic::Condition condition;
+  condition.stroke_m = 0.012;
+  const Verdict verdict = judge(condition, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::failed);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("12.00 mm of the 16.0 mm")));
+}
+
+TEST(Verdict, SlowClosingFails) {
+  synthetic::Condition condition;
+  condition.speed_m_s = 1.1e-3;
+  const Verdict verdict = judge(condition, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::failed);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("72.7 s")));
+}
+
+TEST(Verdict, NotComingBackFails) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Test test = synthetic::make({}, {});
+  for (Quantity& feature : test.features.features)
+    if (feature.name == "return_error") feature.value = -2e-3;
+  EXPECT_THAT(judge_test(asset, test.features, {}).reasons, ElementsAre(HasSubstr("2.00 mm away")));
+  std::erase_if(test.features.features, [](const Quantity& f) { return f.name == "return_error"; });
+  const Verdict verdict = judge_test(asset, test.features, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::failed);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("did not come back")));
+}
+
+TEST(Verdict, CutTestIsNotJudged) {
+  synthetic::Circumstances cut;
+  cut.cut_after_s = 7.4;
+  const Verdict verdict = judge({}, cut);
+  EXPECT_EQ(verdict.verdict, PstVerdict::not_judged);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("cut after 7.4 s of about 31 s")));
+}
+
+TEST(Verdict, AbortedTestSaysWhy) {
+  synthetic::Circumstances aborted;
+  aborted.aborted = true;
+  aborted.cut_after_s = 9.0;
+  const Verdict verdict = judge({}, aborted);
+  EXPECT_EQ(verdict.verdict, PstVerdict::aborted);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("MCS command had priority")));
+}
+
+TEST(Verdict, WithoutPositionItIsNotJudged) {
+  synthetic::Circumstances circumstances;
+  circumstances.failed_channel = "position";
+  EXPECT_EQ(judge({}, circumstances).verdict, PstVerdict::not_judged);
+}
+
+TEST(Verdict, OtherRecordingsAreNotJudged) {
+  synthetic::Circumstances circumstances;
+  circumstances.test_kind = "other";
+  EXPECT_EQ(judge({}, circumstances).verdict, PstVerdict::not_judged);
+}
+
+TEST(Verdict, FullStrokeMustReachTheFullStroke) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Test test = synthetic::make({}, {});
+  test.features.test_kind = "full_stroke";
+  EXPECT_EQ(judge_test(asset, test.features, {}).verdict, PstVerdict::failed);
+  test.features.features.front().value = 0.0799;  // travel
+  EXPECT_EQ(judge_test(asset, test.features, {}).verdict, PstVerdict::passed);
+}
+
+}  // namespace
+}  // namespace sealwatch

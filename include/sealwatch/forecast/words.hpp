@@ -7,6 +7,8 @@ namespace sealwatch::forecast {
 
 /// 18.43 -> "18 months", 2.34 -> "2.3 months", 1.0 -> "1.0 months".
 [[nodiscard]] std::string in_months(double months);
+/// 12.3 -> "12 days", 2.34 -> "2.3 days".
+[[nodiscard]] std::string in_days(double days);
 /// 0.1234 -> "12 %", 0.034 -> "3.4 %", 0.0001 -> "under 0.1 %", 0.9999 -> "over 99.9 %".
 [[nodiscard]] std::string in_percent(double share);
 /// 0.72345 -> "0.723": theta and its standard errors.

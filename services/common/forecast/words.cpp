@@ -17,6 +17,8 @@ std::string print(const char* form, double value) {
 
 std::string in_months(double months) { return print(std::abs(months) < 10.0 ? "%.1f months" : "%.0f months", months); }
 
+std::string in_days(double days) { return print(std::abs(days) < 10.0 ? "%.1f days" : "%.0f days", days); }
+
 std::string in_percent(double share) {
   if (share < 0.001) return "under 0.1 %";
   if (share > 0.999) return "over 99.9 %";

@@ -1,0 +1,168 @@
+#include "services/advisory_generation/advisory_generation.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "services/advisory_generation/advisory_revision.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+constexpr std::array kInputs{Topic::remaining_life,   Topic::health_report,   Topic::state_report,
+                             Topic::leakage_estimate, Topic::acknowledgement, Topic::maintenance_event};
+constexpr std::array kOutputs{Topic::advisory};
+
+}  // namespace
+
+Result<std::unique_ptr<AdvisoryGeneration>> AdvisoryGeneration::make(const Configuration& configuration,
+                                                                     const Options& options) {
+  if (const Status valid = options.validate(); !valid) return fail(valid.error());
+  return std::unique_ptr<AdvisoryGeneration>(new AdvisoryGeneration(configuration, options));
+}
+
+std::span<const Topic> AdvisoryGeneration::inputs() const { return kInputs; }
+std::span<const Topic> AdvisoryGeneration::outputs() const { return kOutputs; }
+
+void AdvisoryGeneration::restore(const Message& own_output) {
+  const auto* advisory = std::get_if<Advisory>(&own_output);
+  if (!advisory) return;
+  Asset& asset = assets_[advisory->asset_id];
+  asset.concluded.push_back(advisory->header.message_id);
+  if (advisory->state == AdvisoryState::superseded) return;
+  asset.current = *advisory;
+  const Header& header = advisory->header;
+  if (is_answer_to_replacement(*advisory)) {
+    asset.memory = {};
+    asset.replaced = UtcTime{header.event_time_ns};
+  } else if (header.message_id == "advisory/" + header.pst_id && !advisory->reasons.empty()) {
+    if (const auto record = from_words(advisory->reasons.back()))
+      asset.memory.restore(record->verdict, record->in_force);
+    if (header.event_time_known) asset.last_test = UtcTime{header.event_time_ns};
+  }
+}
+
+Conclusion AdvisoryGeneration::receive(const Message& input) {
+  if (const auto* life = std::get_if<RemainingLife>(&input)) return join(*life, &Pending::life);
+  if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health);
+  if (const auto* leakage = std::get_if<LeakageEstimate>(&input)) return join(*leakage, &Pending::leakage);
+  if (const auto* state = std::get_if<StateReport>(&input))
+    return state->header.pst_id.empty() ? overdue(*state) : join(*state, &Pending::state);
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) return replaced(*event);
+  if (const auto* seen = std::get_if<Acknowledgement>(&input)) return acknowledged(*seen);
+  return {.outputs = {}, .consumed = {header_of(input).message_id}};
+}
+
+template <class Input>
+Conclusion AdvisoryGeneration::join(const Input& input, std::optional<Input> Pending::*slot) {
+  const std::string& pst_id = input.header.pst_id;
+  const auto& concluded = assets_[input.asset_id].concluded;
+  const bool known = std::find(concluded.begin(), concluded.end(), "advisory/" + pst_id) != concluded.end();
+  if (pst_id.empty() || known) return {.outputs = {}, .consumed = {input.header.message_id}};
+  Pending& test = pending_[pst_id];
+  test.*slot = input;
+  if (!test.complete()) return {};
+  const Evidence evidence{*test.life, *test.health, *test.state, *test.leakage};
+  pending_.erase(pst_id);
+  Conclusion conclusion = advise(evidence);
+  conclusion.consumed = {evidence.life.header.message_id, evidence.health.header.message_id,
+                         evidence.state.header.message_id, evidence.leakage.header.message_id};
+  return conclusion;
+}
+
+Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
+  Conclusion conclusion;
+  const std::string& asset_id = evidence.life.asset_id;
+  Asset& asset = assets_[asset_id];
+  const Header& cause = evidence.life.header;
+  std::optional<UtcTime> now;
+  if (cause.event_time_known) now = UtcTime{cause.event_time_ns};
+  if (now && ((asset.last_test && *now < *asset.last_test) || (asset.replaced && *now < *asset.replaced)))
+    return conclusion;
+  if (now) asset.last_test = now;
+
+  const SiteConfig* site = site_of(asset_id);
+  const Assessment assessment = assess(evidence, site, options_);
+  const InForce& in_force = asset.memory.judge(assessment.verdict, now, options_);
+  const Recommendation recommendation = recommend(evidence, assessment, in_force, site);
+
+  Advisory advisory = revision_of(asset.current, asset_id, recommendation, cause);
+  advisory.header.source_ids = source_ids(evidence);
+  advisory.reasons = assessment.reasons;
+  advisory.reasons.insert(advisory.reasons.end(), recommendation.also.begin(), recommendation.also.end());
+  advisory.reasons.push_back(in_words(assessment.verdict, in_force));
+  if (is_replacement(advisory.action)) advisory.request_for_work = {work_order(advisory, recommendation)};
+  put_out(std::move(advisory), conclusion);
+  return conclusion;
+}
+
+Conclusion AdvisoryGeneration::overdue(const StateReport& report) {
+  Conclusion conclusion{.outputs = {}, .consumed = {report.header.message_id}};
+  Asset& asset = assets_[report.asset_id];
+  const bool already_tested =
+      asset.last_test && report.header.event_time_known && UtcTime{report.header.event_time_ns} < *asset.last_test;
+  const bool answered = std::find(asset.concluded.begin(), asset.concluded.end(),
+                                  "advisory/" + report.header.message_id) != asset.concluded.end();
+  if (!report.pst_overdue || already_tested || answered) return conclusion;
+  put_out(with_overdue_test(asset.current, report), conclusion);
+  return conclusion;
+}
+
+Conclusion AdvisoryGeneration::replaced(const MaintenanceEvent& event) {
+  Conclusion conclusion{.outputs = {}, .consumed = {event.header.message_id}};
+  Asset& asset = assets_[event.asset_id];
+  const UtcTime time{event.header.event_time_ns};
+  const bool newer_known = asset.replaced && *asset.replaced >= time;
+  if (!event.header.event_time_known || newer_known) return conclusion;
+  asset.memory = {};
+  asset.replaced = time;
+  put_out(after_replacement(asset.current, event), conclusion);
+  return conclusion;
+}
+
+Conclusion AdvisoryGeneration::acknowledged(const Acknowledgement& acknowledgement) {
+  Conclusion conclusion{.outputs = {}, .consumed = {acknowledgement.header.message_id}};
+  Asset& asset = assets_[acknowledgement.asset_id];
+  if (!asset.current) return conclusion;
+  std::optional<Advisory> answer = with_acknowledgement(*asset.current, acknowledgement);
+  if (!answer) return conclusion;
+  const auto& concluded = asset.concluded;
+  if (std::find(concluded.begin(), concluded.end(), answer->header.message_id) == concluded.end())
+    put_out(std::move(*answer), conclusion);
+  return conclusion;
+}
+
+void AdvisoryGeneration::put_out(Advisory advisory, Conclusion& conclusion) {
+  Asset& asset = assets_[advisory.asset_id];
+  if (asset.current && asset.current->advisory_id == advisory.supersedes_id && advisory.revision == 1) {
+    Advisory old = superseded(*asset.current, advisory);
+    asset.concluded.push_back(old.header.message_id);
+    conclusion.outputs.emplace_back(std::move(old));
+  }
+  asset.concluded.push_back(advisory.header.message_id);
+  asset.current = advisory;
+  conclusion.outputs.emplace_back(std::move(advisory));
+}
+
+const SiteConfig* AdvisoryGeneration::site_of(const std::string& asset_id) const {
+  const AssetConfig* asset = configuration_.find_asset(asset_id);
+  return asset ? configuration_.find_site(asset->site) : nullptr;
+}
+
+RequestForWork AdvisoryGeneration::work_order(const Advisory& advisory, const Recommendation& recommendation) const {
+  const AssetConfig* asset = configuration_.find_asset(advisory.asset_id);
+  const std::optional<UtcTime>& replaced = assets_.at(advisory.asset_id).replaced;
+  RequestForWork work;
+  work.work_id = "work/" + advisory.asset_id + "/" + (replaced ? "seal of " + format_date(*replaced) : "first seal");
+  work.work_type = "replace actuator";
+  work.segment = asset ? asset->site + (asset->segment.empty() ? "" : "/" + asset->segment) : "";
+  work.solution_package = "spare actuator" + (asset ? " (model " + asset->model + ")" : std::string()) +
+                          " with new piston seal, vessel with remotely operated vehicle";
+  if (recommendation.work_before) {
+    work.start_before_known = true;
+    work.start_before_ns = recommendation.work_before->nanoseconds;
+  }
+  work.remarks = advisory.recommendation;
+  return work;
+}
+
+}  // namespace sealwatch::advisory_generation

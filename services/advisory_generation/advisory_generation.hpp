@@ -1,0 +1,72 @@
+// Layer 6 of ISO 13374: one recommendation for each asset, with its priority, latest-by date and reasons.
+//
+// Driven by remaining_life, joined with health_report, state_report and leakage_estimate of the same pst_id, in
+// whatever order they come. Acknowledgements, replacements and overdue tests are answered at once. Tests older than the
+// last one judged change nothing. docs/advisories.md has the decision table and the rules against flapping.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/configuration.hpp"
+#include "sealwatch/port/layer.hpp"
+#include "services/advisory_generation/options.hpp"
+#include "services/advisory_generation/recommendation.hpp"
+#include "services/advisory_generation/verdicts.hpp"
+
+namespace sealwatch::advisory_generation {
+
+class AdvisoryGeneration final : public Layer {
+ public:
+  /// Keeps a reference to `configuration`. An Error for options that make no sense.
+  [[nodiscard]] static Result<std::unique_ptr<AdvisoryGeneration>> make(const Configuration& configuration,
+                                                                        const Options& options = {});
+
+  [[nodiscard]] std::string_view name() const override { return "advisory_generation"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override;
+  [[nodiscard]] std::span<const Topic> outputs() const override;
+  void restore(const Message& own_output) override;
+  [[nodiscard]] Conclusion receive(const Message& input) override;
+
+ private:
+  /// Inputs of one test until all are there.
+  struct Pending {
+    std::optional<RemainingLife> life;
+    std::optional<HealthReport> health;
+    std::optional<StateReport> state;
+    std::optional<LeakageEstimate> leakage;
+    [[nodiscard]] bool complete() const { return life && health && state && leakage; }
+  };
+  /// What is remembered of one asset, all of it rebuilt from its advisories.
+  struct Asset {
+    std::optional<Advisory> current;
+    VerdictMemory memory;
+    std::optional<UtcTime> last_test;
+    std::optional<UtcTime> replaced;
+    std::vector<std::string> concluded;  ///< message ids of all advisories
+  };
+
+  AdvisoryGeneration(const Configuration& configuration, const Options& options)
+      : configuration_(configuration), options_(options) {}
+
+  template <class Input>
+  [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
+  [[nodiscard]] Conclusion advise(const Evidence& evidence);
+  [[nodiscard]] Conclusion overdue(const StateReport& report);
+  [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
+  [[nodiscard]] Conclusion acknowledged(const Acknowledgement& acknowledgement);
+  /// Remembers `advisory` and puts it out, after the one that it supersedes.
+  void put_out(Advisory advisory, Conclusion& conclusion);
+  [[nodiscard]] const SiteConfig* site_of(const std::string& asset_id) const;
+  [[nodiscard]] RequestForWork work_order(const Advisory& advisory, const Recommendation& recommendation) const;
+
+  const Configuration& configuration_;
+  Options options_;
+  std::map<std::string, Pending> pending_;  ///< by pst_id
+  std::map<std::string, Asset> assets_;     ///< by asset_id
+};
+
+}  // namespace sealwatch::advisory_generation

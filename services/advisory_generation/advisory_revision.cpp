@@ -1,0 +1,143 @@
+#include "services/advisory_generation/advisory_revision.hpp"
+
+#include <algorithm>
+
+#include "sealwatch/forecast/words.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+constexpr const char* kProducer = "advisory_generation 0.1.0";
+
+/// The header of an answer to `cause`, whose test (if it has one) or message names it.
+Header answer_to(const Header& cause) {
+  Header header;
+  header.message_id = "advisory/" + (cause.pst_id.empty() ? cause.message_id : cause.pst_id);
+  header.pst_id = cause.pst_id;
+  header.producer = kProducer;
+  header.event_time_known = cause.event_time_known;
+  header.event_time_ns = cause.event_time_ns;
+  header.replay = cause.replay;
+  header.source_ids = {cause.message_id};
+  return header;
+}
+
+bool comes_earlier(const Advisory& current, const Advisory& next) {
+  return next.latest_by_known && (!current.latest_by_known || next.latest_by_ns < current.latest_by_ns);
+}
+
+}  // namespace
+
+Advisory revision_of(const std::optional<Advisory>& current, const std::string& asset_id,
+                     const Recommendation& recommendation, const Header& cause) {
+  Advisory next;
+  next.asset_id = asset_id;
+  next.header = answer_to(cause);
+  next.priority = recommendation.priority;
+  next.action = recommendation.action;
+  next.recommendation = recommendation.text;
+  next.latest_by_known = recommendation.latest_by.has_value();
+  next.latest_by_ns = recommendation.latest_by.value_or(UtcTime{}).nanoseconds;
+  if (current && current->action == next.action && current->priority == next.priority) {
+    next.advisory_id = current->advisory_id;
+    next.revision = current->revision + 1;
+    next.supersedes_id = current->supersedes_id;
+    if (current->state == AdvisoryState::acknowledged && !comes_earlier(*current, next)) {
+      next.state = AdvisoryState::acknowledged;
+      next.acknowledged_by = current->acknowledged_by;
+      next.acknowledged_at_ns = current->acknowledged_at_ns;
+      next.acknowledgement_remark = current->acknowledgement_remark;
+    }
+  } else {
+    next.advisory_id = "recommendation/" + (cause.pst_id.empty() ? cause.message_id : cause.pst_id);
+    next.supersedes_id = current ? current->advisory_id : "";
+  }
+  return next;
+}
+
+Advisory superseded(Advisory old, const Advisory& successor) {
+  const std::vector<std::string> sources = {old.header.message_id};
+  old.header.message_id = successor.header.message_id + "/superseded";
+  old.header.pst_id = successor.header.pst_id;
+  old.header.event_time_known = successor.header.event_time_known;
+  old.header.event_time_ns = successor.header.event_time_ns;
+  old.header.replay = successor.header.replay;
+  old.header.source_ids = sources;
+  old.state = AdvisoryState::superseded;
+  return old;
+}
+
+std::optional<Advisory> with_acknowledgement(const Advisory& current, const Acknowledgement& acknowledgement) {
+  Advisory answer = current;
+  const std::string who_and_when =
+      acknowledgement.acknowledged_by + "/" + format_utc({acknowledgement.header.event_time_ns});
+  answer.header.source_ids = {current.header.message_id, acknowledgement.header.message_id};
+  if (acknowledgement.advisory_id != current.advisory_id) {
+    answer.header.message_id = current.header.message_id + "/noted/" + who_and_when;
+    answer.acknowledgement_remark = "acknowledgement of '" + acknowledgement.advisory_id + "' by " +
+                                    acknowledgement.acknowledged_by + " not applied: this advisory is '" +
+                                    current.advisory_id + "'";
+    return answer;
+  }
+  if (current.state == AdvisoryState::acknowledged) return std::nullopt;
+  answer.header.message_id = current.header.message_id + "/acknowledged/" + who_and_when;
+  answer.state = AdvisoryState::acknowledged;
+  answer.acknowledged_by = acknowledgement.acknowledged_by;
+  answer.acknowledged_at_ns = acknowledgement.header.event_time_ns;
+  answer.acknowledgement_remark = acknowledgement.remark;
+  return answer;
+}
+
+Advisory with_overdue_test(const std::optional<Advisory>& current, const StateReport& report) {
+  Recommendation call;
+  call.priority = AdvisoryPriority::medium;
+  call.action = AdvisoryAction::repeat_test;
+  call.text = "Run the partial stroke test: it is overdue by " + forecast::in_days(report.overdue_days) + ".";
+  const bool same = current && current->priority == call.priority && current->action == call.action;
+  const bool more_urgent_stands = current && current->priority >= call.priority && !same;
+  if (!more_urgent_stands) {
+    Advisory advisory = revision_of(current, report.asset_id, call, report.header);
+    advisory.reasons = {call.text};
+    return advisory;
+  }
+  Advisory advisory = *current;
+  advisory.header = answer_to(report.header);
+  advisory.revision = current->revision + 1;
+  advisory.reasons.insert(advisory.reasons.begin(), "also: " + call.text);
+  return advisory;
+}
+
+Advisory after_replacement(const std::optional<Advisory>& current, const MaintenanceEvent& event) {
+  Recommendation fresh;
+  fresh.text = "No action needed: " + event.kind + " on " + format_date({event.header.event_time_ns}) +
+               ", the history starts anew.";
+  Header cause = event.header;
+  cause.pst_id.clear();
+  std::optional<Advisory> none_of_its_kind = current;
+  if (none_of_its_kind) none_of_its_kind->action = AdvisoryAction::replace_now;  // never a mere revision
+  Advisory advisory = revision_of(none_of_its_kind, event.asset_id, fresh, cause);
+  advisory.reasons = {event.kind + " reported by " + event.reported_by +
+                      (event.remark.empty() ? "" : ": " + event.remark)};
+  return advisory;
+}
+
+bool is_answer_to_replacement(const Advisory& advisory) {
+  return !advisory.header.source_ids.empty() &&
+         advisory.header.message_id.rfind("advisory/maintenance_event/", 0) == 0 &&
+         advisory.header.message_id == "advisory/" + advisory.header.source_ids.front();
+}
+
+std::vector<std::string> source_ids(const Evidence& evidence) {
+  std::vector<std::string> ids;
+  const auto add = [&](const std::string& id) {
+    if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  };
+  for (const Header* header :
+       {&evidence.life.header, &evidence.leakage.header, &evidence.health.header, &evidence.state.header})
+    add(header->message_id);
+  for (const Header* header : {&evidence.leakage.header, &evidence.health.header, &evidence.state.header})
+    for (const std::string& id : header->source_ids) add(id);
+  return ids;
+}
+
+}  // namespace sealwatch::advisory_generation

@@ -1,0 +1,39 @@
+// How advisories follow each other: revisions of the same recommendation, superseding, acknowledgements. Pure
+// functions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/advisory_generation.hpp"
+#include "sealwatch/message/state_detection.hpp"
+#include "services/advisory_generation/recommendation.hpp"
+
+namespace sealwatch::advisory_generation {
+
+/// The next advisory after `current`: a higher revision when action and priority stay (an acknowledgement stays too,
+/// unless the latest-by date comes earlier), else a new one that names the one it supersedes. Reasons and sources are
+/// not filled.
+[[nodiscard]] Advisory revision_of(const std::optional<Advisory>& current, const std::string& asset_id,
+                                   const Recommendation& recommendation, const Header& cause);
+
+/// `old` as it is published once `successor` takes its place.
+[[nodiscard]] Advisory superseded(Advisory old, const Advisory& successor);
+
+/// `current` acknowledged; with a remark when the acknowledgement names another advisory; none when it is acknowledged
+/// already.
+[[nodiscard]] std::optional<Advisory> with_acknowledgement(const Advisory& current,
+                                                           const Acknowledgement& acknowledgement);
+
+/// The call for an overdue test: its own advisory, or a reason more where something at least as urgent stands.
+[[nodiscard]] Advisory with_overdue_test(const std::optional<Advisory>& current, const StateReport& report);
+
+/// The fresh start after a replacement.
+[[nodiscard]] Advisory after_replacement(const std::optional<Advisory>& current, const MaintenanceEvent& event);
+[[nodiscard]] bool is_answer_to_replacement(const Advisory& advisory);
+
+/// Message ids behind an advisory, down to the window with the waveform; each once.
+[[nodiscard]] std::vector<std::string> source_ids(const Evidence& evidence);
+
+}  // namespace sealwatch::advisory_generation

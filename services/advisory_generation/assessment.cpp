@@ -1,0 +1,116 @@
+#include "services/advisory_generation/assessment.hpp"
+
+#include <algorithm>
+
+#include "services/advisory_generation/reasons.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+// Campaigns come about once a year: one that is longer before the P10 end of life is not the last before it, later ones
+// are just not known yet.
+constexpr double kCampaignSpacing_months = 12.0;
+constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+
+const ProposedFault* dominant_fault(const HealthReport& health, const Options& options) {
+  if (health.ambiguity_group.empty()) return nullptr;
+  const ProposedFault& first = health.ambiguity_group.front();
+  return first.likelihood >= options.dominant_likelihood ? &first : nullptr;
+}
+
+/// Last date at which the seal may be replaced: the last campaign that keeps the failure probability down, else the end
+/// of life that comes true earlier with that probability.
+UtcTime replace_by(const Forecast& forecast, UtcTime now, const Options& options) {
+  const UtcTime early_end = add_months(now, forecast.rul_p10_months);
+  std::optional<UtcTime> campaign;
+  for (const FailureProbability& candidate : forecast.failure_probability) {
+    const bool near_enough = months_between({candidate.before_ns}, early_end) <= kCampaignSpacing_months;
+    if (candidate.probability <= options.largest_failure_probability && near_enough)
+      campaign = UtcTime{candidate.before_ns};
+  }
+  return start_of_day(campaign.value_or(early_end));
+}
+
+WearLevel level_for(double months_to_booking, const Options& options) {
+  if (months_to_booking < 0.0) return WearLevel::book_at_once;
+  if (months_to_booking <= options.booking_horizon_months) return WearLevel::book;
+  return months_to_booking <= options.planning_horizon_months ? WearLevel::plan : WearLevel::none;
+}
+
+void judge_wear(TestVerdict& verdict, const Evidence& evidence, const SiteConfig* site, const Options& options) {
+  if (!evidence.leakage.used_for_forecast || evidence.life.forecasts.empty()) return;
+  const Forecast& forecast = evidence.life.forecasts.front();
+  const UtcTime now{evidence.life.header.event_time_ns};
+  switch (forecast.state) {
+    case ForecastState::insufficient_history:
+      return;
+    case ForecastState::no_significant_trend:
+      verdict.wear = WearLevel::none;
+      return;
+    case ForecastState::past_threshold:
+      verdict.wear = WearLevel::replace;
+      verdict.replace_by = start_of_day(now);
+      verdict.urgent = true;
+      return;
+    case ForecastState::ok:
+      verdict.replace_by = replace_by(forecast, now, options);
+      verdict.urgent = forecast.rul_p10_months <= options.urgent_months;
+      verdict.wear =
+          verdict.urgent
+              ? WearLevel::replace
+              : level_for(months_between(now, *verdict.replace_by) - booking_lead_time_months(site), options);
+      return;
+  }
+}
+
+/// An alarm whose cause is in the actuator asks for planning whatever the forecast says. State detection has its own
+/// hysteresis and delay, so it is taken at once.
+std::string actuator_alarm(const Evidence& evidence, const Options& options) {
+  const ProposedFault* fault = dominant_fault(evidence.health, options);
+  if (evidence.state.region != AlertRegion::alarm || !fault) return {};
+  if (fault->kind == FaultKind::sensor || fault->kind == FaultKind::load) return {};
+  return describe(*fault);
+}
+
+std::string doubt_in_instruments(const Evidence& evidence, const Options& options) {
+  const ProposedFault* fault = dominant_fault(evidence.health, options);
+  if (fault && fault->kind == FaultKind::sensor) return describe(*fault);
+  if (!evidence.state.stale_channels.empty()) return "no fresh samples of " + joined(evidence.state.stale_channels);
+  return {};
+}
+
+std::string reason_to_repeat(const Evidence& evidence) {
+  const StateReport& state = evidence.state;
+  if (state.verdict == PstVerdict::failed || state.verdict == PstVerdict::aborted)
+    return "the test " + std::string(name_of(state.verdict)) +
+           (state.verdict_reasons.empty() ? "" : ": " + joined(state.verdict_reasons));
+  const bool repetition_helps = evidence.life.threshold > 0.0 && evidence.leakage.header.event_time_known;
+  if (evidence.leakage.used_for_forecast || !repetition_helps) return {};
+  return "the test could not be used" +
+         (evidence.leakage.reasons.empty() ? "" : ": " + evidence.leakage.reasons.front());
+}
+
+}  // namespace
+
+UtcTime start_of_day(UtcTime time) {
+  const std::int64_t into_day = ((time.nanoseconds % kDay_ns) + kDay_ns) % kDay_ns;
+  return {time.nanoseconds - into_day};
+}
+
+double booking_lead_time_months(const SiteConfig* site) {
+  return site ? site->booking_lead_time_months : SiteConfig{}.booking_lead_time_months;
+}
+
+Assessment assess(const Evidence& evidence, const SiteConfig* site, const Options& options) {
+  Assessment assessment;
+  judge_wear(assessment.verdict, evidence, site, options);
+  assessment.alarm_reason = actuator_alarm(evidence, options);
+  assessment.instruments_reason = doubt_in_instruments(evidence, options);
+  assessment.verdict.instruments_doubted = !assessment.instruments_reason.empty();
+  assessment.verdict.failed = evidence.state.verdict == PstVerdict::failed;
+  assessment.repeat_reason = reason_to_repeat(evidence);
+  assessment.reasons = reasons_of(evidence);
+  return assessment;
+}
+
+}  // namespace sealwatch::advisory_generation

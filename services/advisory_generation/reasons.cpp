@@ -1,0 +1,87 @@
+#include "services/advisory_generation/reasons.hpp"
+
+#include "sealwatch/forecast/words.hpp"
+#include "services/advisory_generation/assessment.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+using forecast::as_condition;
+using forecast::in_months;
+using forecast::in_percent;
+using forecast::three_digits;
+
+void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) {
+  if (life.forecasts.empty()) return;
+  const Forecast& forecast = life.forecasts.front();
+  const std::string name = "forecast " + forecast.method + ", " + std::to_string(forecast.window_months) + " months: ";
+  if (forecast.state != ForecastState::ok) {
+    reasons.push_back(name + std::string(name_of(forecast.state)) + ", " + forecast.explanation);
+  } else {
+    reasons.push_back(name + in_months(forecast.rul_p50_months) + " left (80 %: " + in_months(forecast.rul_p10_months) +
+                      " to " + in_months(forecast.rul_p90_months) + "), end of life " +
+                      format_date({forecast.end_of_life_ns}) + "; " + forecast.explanation);
+    for (const FailureProbability& one : forecast.failure_probability)
+      reasons.push_back("failure before " + one.label + " (" + format_date({one.before_ns}) +
+                        "): " + in_percent(one.probability));
+  }
+  if (life.windows_disagree) reasons.push_back("windows disagree: " + life.disagreement);
+}
+
+void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& leakage, const RemainingLife& life) {
+  if (leakage.estimated) {
+    std::string text = "R_CL = " + three_digits(leakage.resistance_Pa_s_m3) + " +- " +
+                       three_digits(leakage.resistance_std_Pa_s_m3) + " Pa s/m3";
+    if (leakage.condition_known)
+      text = "seal condition " + as_condition(leakage.condition) + " +- " + as_condition(leakage.condition_std) +
+             " (limit " + as_condition(life.threshold) + "), " + text;
+    reasons.push_back(text);
+  }
+  if (!leakage.used_for_forecast) reasons.push_back("left out of the forecast: " + joined(leakage.reasons));
+}
+
+void add_health(std::vector<std::string>& reasons, const HealthReport& health) {
+  std::string text = "health grade " + as_condition(health.health_grade);
+  if (health.trend_known)
+    text += ", " + as_condition(health.health_trend_per_year) + " +- " +
+            as_condition(health.health_trend_std_per_year) + " a year";
+  if (!health.ambiguity_group.empty()) text += "; most likely fault: " + describe(health.ambiguity_group.front());
+  reasons.push_back(text);
+}
+
+void add_state(std::vector<std::string>& reasons, const StateReport& state) {
+  for (const RegionJudgement& judgement : state.judgements)
+    if (judgement.region == AlertRegion::alarm || judgement.region == AlertRegion::warning)
+      reasons.push_back(judgement.quantity + " is in region " + std::string(name_of(judgement.region)) + " against " +
+                        std::string(name_of(judgement.reference)) + ": " + three_digits(judgement.value) + " " +
+                        judgement.unit + " (warning " + three_digits(judgement.warning_limit) + ", alarm " +
+                        three_digits(judgement.alarm_limit) + ")");
+  if (state.verdict != PstVerdict::passed)
+    reasons.push_back("partial stroke test " + std::string(name_of(state.verdict)) +
+                      (state.verdict_reasons.empty() ? "" : ": " + joined(state.verdict_reasons)));
+  if (state.pst_overdue) reasons.push_back("the test came " + forecast::in_days(state.overdue_days) + " late");
+}
+
+}  // namespace
+
+std::vector<std::string> reasons_of(const Evidence& evidence) {
+  std::vector<std::string> reasons;
+  add_forecast(reasons, evidence.life);
+  add_condition(reasons, evidence.leakage, evidence.life);
+  add_health(reasons, evidence.health);
+  add_state(reasons, evidence.state);
+  return reasons;
+}
+
+std::string describe(const ProposedFault& fault) {
+  return std::string(name_of(fault.kind)) + " of " + fault.element + ", likelihood " + as_condition(fault.likelihood) +
+         (fault.iso14224_code.empty() ? "" : " (ISO 14224 " + fault.iso14224_code + ")");
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+}  // namespace sealwatch::advisory_generation

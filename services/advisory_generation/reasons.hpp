@@ -1,0 +1,22 @@
+// Reasons in words, with numbers, units and dates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/health_assessment.hpp"
+
+namespace sealwatch::advisory_generation {
+
+struct Evidence;
+
+/// Forecast, failure probabilities, seal condition, health, alert regions, verdict of the test; in this order.
+[[nodiscard]] std::vector<std::string> reasons_of(const Evidence& evidence);
+
+/// "internal_leakage of piston_seal, likelihood 0.81 (ISO 14224 INL)"
+[[nodiscard]] std::string describe(const ProposedFault& fault);
+
+/// "a, b, c"
+[[nodiscard]] std::string joined(const std::vector<std::string>& parts);
+
+}  // namespace sealwatch::advisory_generation

@@ -1,0 +1,150 @@
+#include "services/advisory_generation/recommendation.hpp"
+
+#include <algorithm>
+
+#include "sealwatch/forecast/words.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z') text.front() = static_cast<char>(text.front() - 32);
+  return text;
+}
+
+/// "Seal condition is 0.760 (limit 0.600); its end of life is expected on 2018-05-02, with 80 % between ... and ...".
+std::string outlook(const RemainingLife& life) {
+  std::string text;
+  if (life.condition_known)
+    text = "Seal condition is " + forecast::as_condition(life.condition) + " (limit " +
+           forecast::as_condition(life.threshold) + ")";
+  if (life.forecasts.empty()) return text.empty() ? text : text + ".";
+  const Forecast& forecast = life.forecasts.front();
+  const std::string join = text.empty() ? "" : text + "; ";
+  const UtcTime now{life.header.event_time_ns};
+  switch (forecast.state) {
+    case ForecastState::ok:
+      return join + "its end of life is expected on " + format_date({forecast.end_of_life_ns}) +
+             ", with 80 % between " + format_date(add_months(now, forecast.rul_p10_months)) + " and " +
+             format_date(add_months(now, forecast.rul_p90_months)) + ".";
+    case ForecastState::past_threshold:
+      return text + ": the limit is passed.";
+    case ForecastState::no_significant_trend:
+      return join + "it shows no significant fall.";
+    case ForecastState::insufficient_history:
+      return join + "no forecast yet: " + forecast.explanation + ".";
+  }
+  return text;
+}
+
+std::string campaign_at(const SiteConfig* site, UtcTime day) {
+  if (site)
+    for (const Campaign& campaign : site->campaigns)
+      if (start_of_day(campaign.start) == day) return "in campaign " + campaign.label + " (" + format_date(day) + ")";
+  return "before " + format_date(day);
+}
+
+struct Context {
+  const Evidence& evidence;
+  const Assessment& assessment;
+  const InForce& in_force;
+  const SiteConfig* site;
+  std::optional<UtcTime> book_by;
+};
+
+Recommendation by_wear(const Context& c) {
+  Recommendation r;
+  r.work_before = c.in_force.replace_by;
+  r.latest_by = c.book_by;
+  const std::string when = r.work_before ? campaign_at(c.site, *r.work_before) : "at the next opportunity";
+  const std::string booked_by = c.book_by ? format_date(*c.book_by) : "the next schedule meeting";
+  std::string view = " ";
+  view += capitalised(outlook(c.evidence.life));
+  switch (c.in_force.wear) {
+    case WearLevel::none:
+      r.text = "No action needed." + view;
+      r.work_before = r.latest_by = std::nullopt;
+      return r;
+    case WearLevel::plan:
+      r.priority = AdvisoryPriority::medium;
+      r.action = AdvisoryAction::plan_replacement;
+      r.text = "Plan to replace the piston seal " + when + "; the vessel must be booked by " + booked_by + "." + view;
+      return r;
+    case WearLevel::book:
+      r.priority = AdvisoryPriority::high;
+      r.action = AdvisoryAction::book_vessel;
+      r.text = "Book a vessel by " + booked_by + " to replace the piston seal " + when + "." + view;
+      return r;
+    case WearLevel::book_at_once:
+      r.priority = AdvisoryPriority::urgent;
+      r.action = AdvisoryAction::book_vessel;
+      r.text = "Book a vessel at once to replace the piston seal " + when + "; the regular booking date " + booked_by +
+               " has passed." + view;
+      return r;
+    case WearLevel::replace:
+      r.priority = AdvisoryPriority::urgent;
+      r.action = AdvisoryAction::replace_now;
+      r.latest_by = r.work_before;
+      r.text = "Replace the piston seal now, its function is no longer assured." + view;
+      return r;
+  }
+  return r;
+}
+
+/// Everything that calls for something, the one that is meant first on equal priority first.
+std::vector<Recommendation> calls(const Context& c) {
+  std::vector<Recommendation> calls{by_wear(c)};
+  const auto call = [&](AdvisoryPriority priority, AdvisoryAction action, std::string text) {
+    Recommendation r;
+    r.priority = priority;
+    r.action = action;
+    r.text = std::move(text);
+    calls.push_back(std::move(r));
+  };
+  const Assessment& a = c.assessment;
+  if (c.in_force.failing && !c.in_force.instruments_doubted) {
+    call(AdvisoryPriority::urgent, AdvisoryAction::replace_now,
+         "Replace the actuator now: it failed its partial stroke test repeatedly. " +
+             capitalised(outlook(c.evidence.life)));
+    calls.back().latest_by = calls.back().work_before = start_of_day({c.evidence.life.header.event_time_ns});
+  }
+  if (a.verdict.failed)
+    call(AdvisoryPriority::high, AdvisoryAction::repeat_test,
+         "Repeat the partial stroke test: " + a.repeat_reason + ".");
+  if (!a.alarm_reason.empty())
+    call(AdvisoryPriority::medium, AdvisoryAction::plan_replacement,
+         "Plan to replace the actuator: its measurements are in alarm, most likely " + a.alarm_reason + ".");
+  if (c.in_force.instruments_doubted)
+    call(c.in_force.failing ? AdvisoryPriority::high : AdvisoryPriority::medium,
+         AdvisoryAction::inspect_instrumentation,
+         "Inspect the instrumentation: " +
+             (a.instruments_reason.empty() ? "doubted in the last tests" : a.instruments_reason) + ".");
+  if (!a.repeat_reason.empty())
+    call(AdvisoryPriority::low, AdvisoryAction::repeat_test,
+         "Repeat the partial stroke test: " + a.repeat_reason + ".");
+  return calls;
+}
+
+}  // namespace
+
+Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& in_force,
+                         const SiteConfig* site) {
+  Context context{evidence, assessment, in_force, site, std::nullopt};
+  if (in_force.replace_by)
+    context.book_by = start_of_day(add_months(*in_force.replace_by, -booking_lead_time_months(site)));
+  const std::vector<Recommendation> all = calls(context);
+  const auto first =
+      std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.priority < b.priority; });
+  Recommendation chosen = *first;
+  for (auto other = all.begin(); other != all.end(); ++other)
+    if (other != first && other->action != AdvisoryAction::none && other->action != chosen.action)
+      chosen.also.push_back("also: " + other->text);
+  return chosen;
+}
+
+bool is_replacement(AdvisoryAction action) {
+  return action == AdvisoryAction::plan_replacement || action == AdvisoryAction::book_vessel ||
+         action == AdvisoryAction::replace_now;
+}
+
+}  // namespace sealwatch::advisory_generation

@@ -1,0 +1,28 @@
+// From what is in force to one recommendation: the most urgent call for work, in words for the operator on shift.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/advisory_generation.hpp"
+#include "services/advisory_generation/assessment.hpp"
+
+namespace sealwatch::advisory_generation {
+
+struct Recommendation {
+  AdvisoryPriority priority = AdvisoryPriority::information;
+  AdvisoryAction action = AdvisoryAction::none;
+  std::string text;                    ///< one or two sentences
+  std::optional<UtcTime> latest_by;    ///< when the action must have been taken
+  std::optional<UtcTime> work_before;  ///< when the seal must have been replaced
+  std::vector<std::string> also;       ///< less urgent calls, as reasons
+};
+
+[[nodiscard]] Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& in_force,
+                                       const SiteConfig* site);
+
+/// Whether the action is work on the actuator, for which a work order is made.
+[[nodiscard]] bool is_replacement(AdvisoryAction action);
+
+}  // namespace sealwatch::advisory_generation

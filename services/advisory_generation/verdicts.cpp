@@ -1,0 +1,150 @@
+#include "services/advisory_generation/verdicts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+constexpr const char* kStart = "judged by itself this test says: ";
+constexpr const char* kMiddle = "; in force: ";
+constexpr std::size_t kMostRemembered = 60;  // five years of tests: more than any sensible confirmation
+
+template <class T>
+std::vector<T> newest(const std::vector<T>& values, std::size_t count) {
+  return {values.end() - static_cast<std::ptrdiff_t>(std::min(count, values.size())), values.end()};
+}
+
+/// The value that `wanted` of `values` reach, worst first by `worse`; none when there are fewer.
+template <class T, class Worse>
+std::optional<T> reached_by(std::vector<T> values, std::size_t wanted, Worse worse) {
+  if (values.size() < wanted) return std::nullopt;
+  std::sort(values.begin(), values.end(), worse);
+  return values[wanted - 1];
+}
+
+template <class T>
+std::vector<T> votes(const std::vector<TestVerdict>& verdicts, std::optional<T> TestVerdict::*field) {
+  std::vector<T> values;
+  for (const TestVerdict& verdict : verdicts)
+    if (verdict.*field) values.push_back(*(verdict.*field));
+  return values;
+}
+
+bool raised(const std::vector<TestVerdict>& last, bool TestVerdict::*flag, bool before, const Options& options) {
+  const auto says_yes = [&](const TestVerdict& verdict) { return verdict.*flag; };
+  const auto recent = newest(last, options.confirming_window);
+  const auto count = static_cast<std::size_t>(std::count_if(recent.begin(), recent.end(), says_yes));
+  if (count >= options.confirming_tests) return true;
+  const auto row = newest(last, options.easing_tests);
+  return before && std::any_of(row.begin(), row.end(), says_yes);
+}
+
+std::string words(const std::string& wear, const std::optional<UtcTime>& replace_by, bool doubted, bool failed) {
+  return "wear " + wear + ", replace by " + (replace_by ? format_date(*replace_by) : "open") + ", instruments " +
+         (doubted ? "doubted" : "trusted") + ", stroke " + (failed ? "failed" : "done");
+}
+
+struct Words {
+  std::string wear;
+  std::optional<UtcTime> replace_by;
+  bool doubted = false;
+  bool failed = false;
+};
+
+std::optional<Words> read(std::string text) {
+  std::erase(text, ',');
+  std::istringstream stream(text);
+  std::string skip;
+  std::string date;
+  std::string instruments;
+  std::string stroke;
+  Words read;
+  stream >> skip >> read.wear >> skip >> skip >> date >> skip >> instruments >> skip >> stroke;
+  if (!stream) return std::nullopt;
+  if (const auto time = parse_utc(date)) read.replace_by = *time;
+  read.doubted = instruments == "doubted";
+  read.failed = stroke == "failed";
+  return read;
+}
+
+}  // namespace
+
+const InForce& VerdictMemory::judge(const TestVerdict& verdict, std::optional<UtcTime> now, const Options& options) {
+  remember(verdict);
+  if (verdict.wear) judge_wear(verdict, options);
+  if (verdict.replace_by && now) judge_date(verdict, *now, options);
+  in_force_.instruments_doubted =
+      raised(last_, &TestVerdict::instruments_doubted, in_force_.instruments_doubted, options);
+  in_force_.failing = raised(last_, &TestVerdict::failed, in_force_.failing, options);
+  return in_force_;
+}
+
+void VerdictMemory::judge_wear(const TestVerdict& verdict, const Options& options) {
+  const auto levels = votes(last_, &TestVerdict::wear);
+  const auto worse = std::greater<>();
+  const auto confirmed = reached_by(newest(levels, options.confirming_window), options.confirming_tests, worse);
+  const auto row = newest(levels, options.easing_tests);
+  if (row.size() == options.easing_tests) in_force_.wear = std::min(in_force_.wear, *reached_by(row, 1, worse));
+  if (confirmed) in_force_.wear = std::max(in_force_.wear, *confirmed);
+  if (verdict.urgent) in_force_.wear = std::max(in_force_.wear, *verdict.wear);
+}
+
+void VerdictMemory::judge_date(const TestVerdict& verdict, UtcTime now, const Options& options) {
+  if (!in_force_.replace_by) {
+    in_force_.replace_by = verdict.replace_by;
+    return;
+  }
+  const auto dates = votes(last_, &TestVerdict::replace_by);
+  const auto worse = std::less<>();
+  const auto confirmed = reached_by(newest(dates, options.confirming_window), options.confirming_tests, worse);
+  const auto row = newest(dates, options.easing_tests);
+  UtcTime date = *in_force_.replace_by;
+  const bool may_ease = in_force_.wear != WearLevel::replace && row.size() == options.easing_tests;
+  if (may_ease) date = std::max(date, *reached_by(row, 1, worse));
+  if (confirmed) date = std::min(date, *confirmed);
+  if (verdict.urgent) date = std::min(date, *verdict.replace_by);
+  const double left = std::max(months_between(now, *in_force_.replace_by), 0.0);
+  const double tolerance = std::max(options.date_tolerance_months, options.date_tolerance_share * left);
+  if (std::abs(months_between(*in_force_.replace_by, date)) > tolerance) in_force_.replace_by = date;
+}
+
+void VerdictMemory::restore(const TestVerdict& verdict, const InForce& in_force) {
+  remember(verdict);
+  in_force_ = in_force;
+}
+
+void VerdictMemory::remember(const TestVerdict& verdict) {
+  if (last_.size() == kMostRemembered) last_.erase(last_.begin());
+  last_.push_back(verdict);
+}
+
+std::string in_words(const TestVerdict& verdict, const InForce& in_force) {
+  const std::string wear = verdict.wear ? std::string(name_of(*verdict.wear)) : "not_judged";
+  return kStart + words(wear, verdict.replace_by, verdict.instruments_doubted, verdict.failed) + kMiddle +
+         words(std::string(name_of(in_force.wear)), in_force.replace_by, in_force.instruments_doubted,
+               in_force.failing);
+}
+
+std::optional<VerdictRecord> from_words(const std::string& line) {
+  const auto middle = line.find(kMiddle);
+  if (line.rfind(kStart, 0) != 0 || middle == std::string::npos) return std::nullopt;
+  const std::size_t start = std::string(kStart).size();
+  const auto test = read(line.substr(start, middle - start));
+  const auto force = read(line.substr(middle + std::string(kMiddle).size()));
+  if (!test || !force) return std::nullopt;
+  VerdictRecord record;
+  record.verdict = {.wear = value_of<WearLevel>(test->wear),
+                    .replace_by = test->replace_by,
+                    .instruments_doubted = test->doubted,
+                    .failed = test->failed};
+  record.in_force = {.wear = value_of<WearLevel>(force->wear).value_or(WearLevel::none),
+                     .replace_by = force->replace_by,
+                     .instruments_doubted = force->doubted,
+                     .failing = force->failed};
+  return record;
+}
+
+}  // namespace sealwatch::advisory_generation

@@ -1,0 +1,72 @@
+// What single tests ask for, and what is in force after all of them: the memory that keeps one month's noise from
+// flapping the advice.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/core/fields.hpp"
+#include "sealwatch/core/time.hpp"
+#include "services/advisory_generation/options.hpp"
+
+namespace sealwatch {
+
+/// How far the seal's wear calls for work, in order.
+SEALWATCH_ENUM(WearLevel, none, plan, book, book_at_once, replace)
+
+}  // namespace sealwatch
+
+namespace sealwatch::advisory_generation {
+
+/// What one test asks for by itself. A test that says nothing about the wear (left out of the forecast, history too
+/// short) has no wear level and does not vote.
+struct TestVerdict {
+  std::optional<WearLevel> wear;
+  std::optional<UtcTime> replace_by;  ///< whole days
+  bool urgent = false;                ///< takes force at once, without confirmation
+  bool instruments_doubted = false;
+  bool failed = false;  ///< the valve did not do its partial stroke
+  friend bool operator==(const TestVerdict&, const TestVerdict&) = default;
+};
+
+/// What is in force.
+struct InForce {
+  WearLevel wear = WearLevel::none;
+  std::optional<UtcTime> replace_by;  ///< whole days
+  bool instruments_doubted = false;
+  bool failing = false;
+  friend bool operator==(const InForce&, const InForce&) = default;
+};
+
+/// The last tests' verdicts and what is in force after them.
+class VerdictMemory {
+ public:
+  /// Takes the next test, done at `now`: worse levels and earlier dates by k of n or urgently, better ones only after a
+  /// row of tests (Options).
+  const InForce& judge(const TestVerdict& verdict, std::optional<UtcTime> now, const Options& options);
+  /// Takes back a test with what was in force after it.
+  void restore(const TestVerdict& verdict, const InForce& in_force);
+  [[nodiscard]] const InForce& in_force() const { return in_force_; }
+
+ private:
+  void remember(const TestVerdict& verdict);
+  void judge_wear(const TestVerdict& verdict, const Options& options);
+  void judge_date(const TestVerdict& verdict, UtcTime now, const Options& options);
+
+  std::vector<TestVerdict> last_;  ///< newest last, bounded
+  InForce in_force_;
+};
+
+/// Both in one line that stands as the last reason of every advisory, for people and for restore():
+/// "judged by itself this test says: wear book, replace by 2017-06-01, instruments trusted, stroke done; in force:
+/// ...".
+[[nodiscard]] std::string in_words(const TestVerdict& verdict, const InForce& in_force);
+struct VerdictRecord {
+  TestVerdict verdict;
+  InForce in_force;
+};
+[[nodiscard]] std::optional<VerdictRecord> from_words(const std::string& line);
+
+}  // namespace sealwatch::advisory_generation

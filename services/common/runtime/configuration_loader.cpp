@@ -131,10 +131,17 @@ void read_assets(const std::vector<std::string>& files, Configuration& configura
   }
 }
 
-void set_journals(Configuration& configuration) {
-  for (auto& [service, config] : configuration.services)
-    if (config.journal.empty())
-      config.journal = "sqlite3://" + (fs::path(configuration.state_directory) / (service + ".db")).string();
+/// Journals, logs and recordings are in the state directory unless the file says otherwise.
+void place_in_state_directory(Configuration& configuration) {
+  const fs::path state = configuration.state_directory;
+  const auto place = [&state](std::string& directory) {
+    if (!directory.empty()) directory = (state / directory).lexically_normal().string();
+  };
+  place(configuration.logging.directory);
+  for (auto& [service, config] : configuration.services) {
+    place(config.recordings_directory);
+    if (config.journal.empty()) config.journal = "sqlite3://" + (state / (service + ".db")).string();
+  }
 }
 
 }  // namespace
@@ -166,7 +173,7 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   if (!errors.empty()) return tl::unexpected(errors);
   if (overrides.state_directory) configuration.state_directory = *overrides.state_directory;
   if (overrides.domain) configuration.domain = *overrides.domain;
-  set_journals(configuration);
+  place_in_state_directory(configuration);
   return configuration;
 }
 

@@ -54,7 +54,10 @@ spdlog::sink_ptr file_sink(const LoggingConfig& config, const std::string& servi
 Status start_logging(const LoggingConfig& config, const std::string& service) {
   try {
     std::vector<spdlog::sink_ptr> sinks = {std::make_shared<spdlog::sinks::stderr_sink_mt>()};
-    if (!config.directory.empty()) sinks.push_back(file_sink(config, service));
+    if (!config.directory.empty()) {
+      sinks.front()->set_level(spdlog::level::warn);
+      sinks.push_back(file_sink(config, service));
+    }
     logger() = std::make_shared<spdlog::logger>(service, sinks.begin(), sinks.end());
   } catch (const std::exception& exception) {
     return fail(Error{.file = config.directory,

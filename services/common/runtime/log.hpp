@@ -21,8 +21,9 @@ SEALWATCH_ENUM(LogLevel, trace, debug, info, warn, error)
 
 using LogFields = std::vector<std::pair<std::string_view, std::string>>;
 
-/// From now on lines go to standard error and, where the configuration names a directory, to "<service>.log" in it,
-/// which is renamed to "<service>.1.log" and so on when it is full. Before this call nothing is logged.
+/// From now on lines go to standard error or, where the configuration names a directory, to "<service>.log" in it (then
+/// standard error gets warnings and errors alone). A full file is renamed to "<service>.1.log" and so on. Before this
+/// call nothing is logged.
 [[nodiscard]] Status start_logging(const LoggingConfig& config, const std::string& service);
 /// Writes what is buffered and closes the file.
 void stop_logging();

@@ -56,7 +56,7 @@ class Bdf {
   Bdf(const System& system, int parameters, const Vector& scale, BdfOptions options = {})
       : system_(system),
         parameters_(parameters),
-        stride_((1 + parameters + 3) / 4 * 4),
+        stride_(parameters == 0 ? 1 : (1 + parameters + 3) / 4 * 4),
         scale_(scale),
         options_(options) {
     for (auto& difference : differences_) difference.assign(size(), 0.0);
@@ -78,7 +78,7 @@ class Bdf {
   [[nodiscard]] bool start(double time, const double* values);
   /// One accepted step; false when no step size works.
   [[nodiscard]] bool step();
-  /// [y | S] at a time within the last step (or shortly beside it), to `result`.
+  /// [y | S] at a time within the last step, to `result`.
   void interpolate(double time, double* result) const;
 
  private:

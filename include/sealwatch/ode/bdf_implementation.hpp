@@ -245,14 +245,16 @@ void Bdf<System>::change_step(double factor) {
 // y(t) = D_0 + sum_m D_m prod_(i<m) (t - t_(n-i)) / ((i + 1) h)
 template <class System>
 void Bdf<System>::interpolate(double time, double* result) const {
-  std::copy(differences_[0].begin(), differences_[0].end(), result);
+  // One pass over the columns with all five terms (those beyond the order have weight zero): faster than one pass for
+  // each.
+  std::array<double, kMaximumOrder + 1> weight{1.0};
+  for (int m = 1; m <= order_; ++m) weight[m] = weight[m - 1] * (time - (time_ - step_ * (m - 1))) / (m * step_);
+  std::array<const double*, kMaximumOrder + 1> d;
+  for (int m = 0; m <= kMaximumOrder; ++m) d[m] = differences_[m].data();
   const std::size_t count = size();
-  double weight = 1.0;
-  for (int m = 1; m <= order_; ++m) {
-    weight *= (time - (time_ - step_ * (m - 1))) / (m * step_);
-    const double* difference = differences_[m].data();
-    for (std::size_t j = 0; j < count; ++j) result[j] += weight * difference[j];
-  }
+  for (std::size_t j = 0; j < count; ++j)
+    result[j] = d[0][j] + weight[1] * d[1][j] + weight[2] * d[2][j] + weight[3] * d[3][j] + weight[4] * d[4][j] +
+                weight[5] * d[5][j];
 }
 
 }  // namespace sealwatch

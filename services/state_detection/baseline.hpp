@@ -1,6 +1,6 @@
 // The asset's own baseline: what its first tests after commissioning or replacement looked like.
 //
-//   mean, s : mean and standard deviation of a quantity over its first k <= K passed tests
+//   mean, s : mean and standard deviation of a quantity over its first k <= K passed tests in which it was normal
 //   width   = max(tolerance, t_{k-1} s sqrt(1 + 1/k))     prediction interval of one more test
 //   limits  = mean +- width (advisory), +- 2 width (warning), +- 3 width (alarm), on the side that the value is on
 //
@@ -19,7 +19,7 @@
 namespace sealwatch {
 
 struct BaselineOptions {
-  int tests = 6;  ///< K: half a year of monthly tests
+  int tests = 12;  ///< K: a year of monthly tests
   [[nodiscard]] Status validate() const;
 };
 

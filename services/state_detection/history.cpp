@@ -30,7 +30,8 @@ void AssetHistory::learn(const StateReport& report) {
   for (const RegionJudgement& judgement : report.judgements) {
     if (judgement.quantity.starts_with(kChannelQuantity))
       known_channels_.insert(judgement.quantity.substr(kChannelQuantity.size()));
-    else if (judgement.reference == Reference::own_baseline && report.verdict == PstVerdict::passed)
+    else if (judgement.reference == Reference::own_baseline && judgement.raw_region == AlertRegion::normal &&
+             report.verdict == PstVerdict::passed)
       baseline_.learn(judgement.quantity, judgement.value);
   }
 }

@@ -1,0 +1,23 @@
+// Whether a test's recording may be used for prognosis. A test that may not is kept and marked with the reasons.
+//
+//   - the test was not judged (cut, no position, not a stroke test) or aborted
+//   - no hold was found: the holds are the mandatory control of the leakage resistance (MODEL section 4)
+//   - the drive was saturated, the oil off its temperature, or too many samples were missing: the test alone stands in
+//   the
+//     warning region of drive_saturation, fluid_temperature_deviation or missing_share
+//   - neither the cylinder circuit (flow, pressures or their difference, position or velocity) nor the whole actuator
+//     (voltage or duty, shaft speed, a pressure, position) has all its channels in order
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/data_manipulation.hpp"
+#include "sealwatch/message/state_detection.hpp"
+
+namespace sealwatch {
+
+/// Empty when admissible.
+[[nodiscard]] std::vector<std::string> inadmissible_reasons(const StateReport& report, const TestFeatures& features);
+
+}  // namespace sealwatch

@@ -1,0 +1,45 @@
+#include "services/health_assessment/grade.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace sealwatch {
+namespace {
+
+constexpr std::array<std::string_view, 7> kFunctional = {"friction_pressure", "breakaway_pressure", "load_free_current",
+                                                         "pump_slip",         "shaft_drag",         "back_emf",
+                                                         "closing_time"};
+/// Deviation of the alarm limit, in advisory widths.
+constexpr double kAlarmWidths = 3.0;
+constexpr double kGradePerRegion = 0.25;
+
+double seal_grade(const AssetConfig& asset, const std::vector<Deviation>& deviations) {
+  const Deviation* leakage = find_deviation(deviations, "leakage_resistance");
+  if (leakage != nullptr && asset.seal) {
+    const double theta = asset.seal->condition(leakage->judgement.value);
+    return std::clamp((theta - asset.seal->threshold) / (1.0 - asset.seal->threshold), 0.0, 1.0);
+  }
+  if (leakage == nullptr) leakage = find_deviation(deviations, "hold_decay_rate");
+  if (leakage == nullptr) return 1.0;
+  const bool is_resistance = leakage->judgement.quantity == "leakage_resistance";
+  const double worse = is_resistance ? -leakage->value : leakage->value;
+  return std::clamp(1.0 - worse / kAlarmWidths, 0.0, 1.0);
+}
+
+double functional_grade(const StateReport& report) {
+  AlertRegion worst = AlertRegion::normal;
+  for (const RegionJudgement& judgement : report.judgements)
+    if (std::find(kFunctional.begin(), kFunctional.end(), judgement.quantity) != kFunctional.end())
+      worst = std::max(worst, judgement.region);
+  return 1.0 - kGradePerRegion * static_cast<double>(static_cast<int>(worst));
+}
+
+}  // namespace
+
+double health_grade(const AssetConfig& asset, const StateReport& report, const std::vector<Deviation>& deviations) {
+  if (report.verdict == PstVerdict::failed) return 0.0;
+  return std::min(seal_grade(asset, deviations), functional_grade(report));
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,25 @@
+// Health grade of the actuator: 1 as new, 0 failed.
+//
+//   seal      g_s = (theta - theta_max) / (1 - theta_max), theta from leakage_resistance (SealSetting), within [0, 1];
+//             without seal resistances 1 - d/3, d the advisory widths by which the leakage (or the hold's decay) is off
+//   rest      g_r = 1, 0.75, 0.5, 0.25 for the worst region normal .. alarm of friction, breakaway, current, pump,
+//   shaft,
+//             drive and closing time
+//   grade     min(g_s, g_r); 0 for a test with the verdict failed
+//
+// Regions have hysteresis and delay already, so that one odd test does not move g_r. The seal's part follows its
+// measurement, for its trend is wanted. What only concerns sensors or the load does not lower the actuator's grade.
+#pragma once
+
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/message/state_detection.hpp"
+#include "services/health_assessment/deviations.hpp"
+
+namespace sealwatch {
+
+[[nodiscard]] double health_grade(const AssetConfig& asset, const StateReport& report,
+                                  const std::vector<Deviation>& deviations);
+
+}  // namespace sealwatch

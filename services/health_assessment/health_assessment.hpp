@@ -1,0 +1,55 @@
+// Health assessment (ISO 13374 HA): health grade with trend, ambiguity group of proposed faults, admissibility of the
+// recording for prognosis. docs/health.md has all rules with their defaults and reasons.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/port/layer.hpp"
+#include "services/health_assessment/trend.hpp"
+
+namespace sealwatch {
+
+struct HealthAssessmentOptions {
+  int trend_tests = 24;  ///< how many tests the trend looks back on: two years of monthly tests
+  [[nodiscard]] Status validate() const;
+};
+
+/// Concludes each asset's tests in the order of their state reports, each as soon as its features are there too.
+/// Reports on overdue tests belong to no test and change nobody's health: they are consumed.
+///
+/// A test that was not judged says nothing about health: its report carries over the grade and the proposals of the
+/// last one that did, and says so. A state report concluded from a maintenance_event starts the asset's history anew.
+class HealthAssessment final : public Layer {
+ public:
+  explicit HealthAssessment(std::span<const AssetConfig> assets, const HealthAssessmentOptions& options = {});
+
+  [[nodiscard]] std::string_view name() const override { return "health_assessment"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override;
+  [[nodiscard]] std::span<const Topic> outputs() const override;
+  void restore(const Message& own_output) override;
+  [[nodiscard]] Conclusion receive(const Message& input) override;
+
+ private:
+  struct AssetState {
+    std::deque<StateReport> reports;               // not concluded yet, in order of receipt
+    std::map<std::string, TestFeatures> features;  // by pst_id
+    std::vector<GradeAt> grades;                   // of admissible tests since the last replacement, oldest first
+    std::optional<HealthReport> last;
+  };
+
+  [[nodiscard]] HealthReport conclude(AssetState& state, const StateReport& report, const TestFeatures& features) const;
+  void learn(AssetState& state, const HealthReport& report) const;
+
+  std::map<std::string, AssetConfig> assets_;
+  HealthAssessmentOptions options_;
+  std::map<std::string, AssetState> states_;
+};
+
+}  // namespace sealwatch

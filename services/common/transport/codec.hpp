@@ -125,12 +125,11 @@ class CopyFromDds {
   template <class Number>
   requires std::is_arithmetic_v<Number>
   void copy(const Number& from, Number& to) const { to = from; }
-  /// A value that this version does not know (the sender is newer) leaves the field at its default.
+  /// DDS drops a message with an enumerator that this version's IDL does not have.
   template <class From, DescribedEnum To>
-  requires std::is_enum_v<From>
+    requires std::is_enum_v<From>
   void copy(const From& from, To& to) const {
-    const auto value = static_cast<std::size_t>(from);
-    if (value < EnumNames<To>::kNames.size()) to = static_cast<To>(value);
+    to = static_cast<To>(from);
   }
   void copy(const char* from, std::string& to) const { to = from == nullptr ? "" : from; }
 

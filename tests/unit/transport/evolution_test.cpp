@@ -15,12 +15,12 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPatience{20'000};
 constexpr std::array kPstRequest = {Topic::pst_request};
 
-/// A program that was built against another version of the IDL; it shares the process's domain with the bus.
+/// A program that was built against another version of the IDL, in domain 0 of this process.
 class Foreigner {
  public:
-  explicit Foreigner(const dds_topic_descriptor_t& descriptor) {
+  explicit Foreigner(const dds_topic_descriptor_t& descriptor, const char* topic = "sealwatch/pst_request") {
     participant_ = dds_create_participant(0, nullptr, nullptr);
-    topic_ = dds_create_topic(participant_, &descriptor, "sealwatch/pst_request", nullptr, nullptr);
+    topic_ = dds_create_topic(participant_, &descriptor, topic, nullptr, nullptr);
     dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
     dds_qset_durability(qos_, DDS_DURABILITY_TRANSIENT_LOCAL);
   }
@@ -31,9 +31,9 @@ class Foreigner {
   Foreigner(const Foreigner&) = delete;
   Foreigner& operator=(const Foreigner&) = delete;
 
-  void write(const void* sample) const {
-    const dds_entity_t writer = dds_create_writer(participant_, topic_, qos_, nullptr);
-    ASSERT_GE(dds_write(writer, sample), 0);
+  void write(const void* sample) {
+    if (writer_ == 0) writer_ = dds_create_writer(participant_, topic_, qos_, nullptr);
+    ASSERT_GE(dds_write(writer_, sample), 0);
   }
 
   /// The first sample that comes, as a loan that lives as long as the foreigner; null when none does.
@@ -51,6 +51,7 @@ class Foreigner {
  private:
   dds_entity_t participant_ = 0;
   dds_entity_t topic_ = 0;
+  dds_entity_t writer_ = 0;
   dds_qos_t* qos_ = dds_create_qos();
 };
 
@@ -72,11 +73,12 @@ class Evolution : public testing::Test {
     EXPECT_EQ(items.size(), 1U);
     return items.empty() ? PstRequest{} : std::get<PstRequest>(std::get<Message>(items.front()));
   }
-  std::unique_ptr<Bus> bus_ = SameDomainKit().open();
+  std::unique_ptr<Bus> domain_0_ = SameDomainKit().open();  // sets the domain up for foreigners
+  std::unique_ptr<Bus> bus_ = NetworkKit().open();          // meets them over UDP
 };
 
 TEST_F(Evolution, AnOlderWritersMessageHasEmptyNewFields) {
-  const Foreigner older(evolution_older_PstRequest_desc);
+  Foreigner older(evolution_older_PstRequest_desc);
   evolution_older_PstRequest sample{};
   sample.asset_id = const_cast<char*>("XT03-MV2");
   sample.header.message_id = const_cast<char*>("pst_request/1");
@@ -91,7 +93,7 @@ TEST_F(Evolution, AnOlderWritersMessageHasEmptyNewFields) {
 }
 
 TEST_F(Evolution, ANewerWritersAdditionsAreLeftOut) {
-  const Foreigner newer(evolution_newer_PstRequest_desc);
+  Foreigner newer(evolution_newer_PstRequest_desc);
   evolution_newer_PstRequest sample{};
   for (char** text : {&sample.header.pst_id, &sample.header.producer, &sample.header.writer_id, &sample.header.site})
     *text = const_cast<char*>("text");
@@ -128,6 +130,27 @@ TEST_F(Evolution, ANewerReaderGetsDefaultsForWhatIsNotThere) {
   EXPECT_STREQ(got->header.site, "");
   EXPECT_EQ(got->urgency, evolution_newer_URGENCY_LOW);
   EXPECT_EQ(got->limits._length, 0U);
+}
+
+TEST_F(Evolution, AMessageWithAnUnknownEnumeratorIsDroppedAloneAndNotTakenForAnother) {
+  Foreigner newer(evolution_newer_Advisory_desc, "sealwatch/advisory");
+  evolution_newer_Advisory sample{};
+  for (char** text : {&sample.advisory_id, &sample.header.message_id, &sample.header.pst_id, &sample.header.producer,
+                      &sample.header.writer_id, &sample.header.site})
+    *text = const_cast<char*>("text");
+  sample.asset_id = const_cast<char*>("unknown");
+  sample.state = evolution_newer_ADVISORY_STATE_POSTPONED;
+  newer.write(&sample);
+  sample.asset_id = const_cast<char*>("known");
+  sample.state = evolution_newer_ADVISORY_STATE_SUPERSEDED;
+  newer.write(&sample);
+  constexpr std::array kAdvisory = {Topic::advisory};
+  ASSERT_TRUE(bus_->subscribe(kAdvisory));
+  const auto items = bus_->receive(kPatience);
+  ASSERT_EQ(items.size(), 1U);
+  const auto& got = std::get<Advisory>(std::get<Message>(items.front()));
+  EXPECT_EQ(got.asset_id, "known");
+  EXPECT_EQ(got.state, AdvisoryState::superseded);
 }
 
 }  // namespace

@@ -23,9 +23,9 @@ namespace sealwatch::advisory_generation {
 /// What one test asks for by itself. A test that says nothing about the wear (left out of the forecast, history too
 /// short) has no wear level and does not vote.
 struct TestVerdict {
-  std::optional<WearLevel> wear;
-  std::optional<UtcTime> replace_by;  ///< whole days
-  bool urgent = false;                ///< takes force at once, without confirmation
+  std::optional<WearLevel> wear = {};
+  std::optional<UtcTime> replace_by = {};  ///< whole days
+  bool urgent = false;                     ///< takes force at once, without confirmation
   bool instruments_doubted = false;
   bool failed = false;  ///< the valve did not do its partial stroke
   friend bool operator==(const TestVerdict&, const TestVerdict&) = default;
@@ -34,7 +34,7 @@ struct TestVerdict {
 /// What is in force.
 struct InForce {
   WearLevel wear = WearLevel::none;
-  std::optional<UtcTime> replace_by;  ///< whole days
+  std::optional<UtcTime> replace_by = {};  ///< whole days
   bool instruments_doubted = false;
   bool failing = false;
   friend bool operator==(const InForce&, const InForce&) = default;

@@ -1,0 +1,229 @@
+// The advice layer by its contract: joins, deaths, superseding chains, acknowledgements, replacements, overdue tests.
+#include "services/advisory_generation/advisory_generation.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "tests/unit/layers/advisory_generation/fixtures.hpp"
+#include "tests/unit/layers/prognostic_assessment/layer_contract.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+using namespace sealwatch::test;
+using testing::Contains;
+using testing::HasSubstr;
+
+class AdvisoryGenerationTest : public testing::Test {
+ protected:
+  std::vector<Message> run(const std::vector<Message>& inputs, std::optional<std::size_t> death_after = {}) const {
+    return run_layer([this] { return AdvisoryGeneration::make(configuration_).value(); }, inputs, death_after);
+  }
+  std::vector<Advisory> advisories(const std::vector<Message>& inputs) const { return of_kind<Advisory>(run(inputs)); }
+
+  Configuration configuration_ = configuration();
+};
+
+Acknowledgement acknowledgement(const std::string& advisory_id, double month, const std::string& who = "A. Operator") {
+  Acknowledgement seen;
+  seen.asset_id = kAsset;
+  seen.advisory_id = advisory_id;
+  seen.acknowledged_by = who;
+  seen.remark = "work order 4711";
+  seen.header.message_id = "acknowledgement/" + advisory_id + "/" + std::to_string(month);
+  seen.header.event_time_known = true;
+  seen.header.event_time_ns = add_months(kInstalled, month).nanoseconds;
+  return seen;
+}
+
+MaintenanceEvent replacement(double month) {
+  MaintenanceEvent event;
+  event.asset_id = kAsset;
+  event.kind = "seal_replaced";
+  event.reported_by = "night shift";
+  event.header.event_time_known = true;
+  event.header.event_time_ns = add_months(kInstalled, month).nanoseconds;
+  event.header.message_id = "maintenance_event/" + kAsset + "/" + format_utc({event.header.event_time_ns});
+  return event;
+}
+
+StateReport overdue(double month) {
+  StateReport report;
+  report.asset_id = kAsset;
+  report.pst_overdue = true;
+  report.overdue_days = 10.0;
+  report.header.event_time_known = true;
+  report.header.event_time_ns = add_months(kInstalled, month).nanoseconds;
+  report.header.message_id = "state_report/" + kAsset + "/overdue/" + format_date({report.header.event_time_ns});
+  return report;
+}
+
+std::vector<Message> joined(std::vector<Message> inputs, const std::vector<Message>& more) {
+  inputs.insert(inputs.end(), more.begin(), more.end());
+  return inputs;
+}
+
+TEST_F(AdvisoryGenerationTest, AdvisoryLeadsDownToTheWaveform) {
+  const auto all = advisories(inputs_of({{.month = 24}}));
+  ASSERT_EQ(all.size(), 1u);
+  const Advisory& advisory = all[0];
+  EXPECT_EQ(advisory.header.message_id, "advisory/" + advisory.header.pst_id);
+  EXPECT_EQ(advisory.header.producer, "advisory_generation 0.1.0");
+  EXPECT_TRUE(advisory.header.replay && advisory.header.event_time_known);
+  for (const char* topic : {"remaining_life/", "leakage_estimate/", "health_report/", "state_report/", "test_window/"})
+    EXPECT_THAT(advisory.header.source_ids, Contains(topic + advisory.header.pst_id));
+  EXPECT_EQ(advisory.action, AdvisoryAction::none);
+  EXPECT_TRUE(advisory.request_for_work.empty());
+  EXPECT_THAT(advisory.reasons,
+              Contains(HasSubstr("forecast ols, 36 months: 90 months left (80 %: 85 months to 95 months)")));
+  EXPECT_THAT(advisory.reasons, Contains(HasSubstr("failure before summer 2019")));
+}
+
+TEST_F(AdvisoryGenerationTest, OrderOfTheJoinDoesNotMatter) {
+  const auto tests = life_until(60, 70, 100.0);
+  auto backwards = inputs_of(tests);
+  for (std::size_t i = 0; i < backwards.size(); i += 4)
+    std::reverse(backwards.begin() + static_cast<std::ptrdiff_t>(i),
+                 backwards.begin() + static_cast<std::ptrdiff_t>(i + 4));
+  EXPECT_EQ(run(backwards), run(inputs_of(tests)));
+}
+
+TEST_F(AdvisoryGenerationTest, DeathAnywhereChangesNothing) {
+  auto tests = life_until(60, 96, 100.0);
+  tests[5].used = false;
+  tests[8].verdict = PstVerdict::failed;
+  auto inputs = inputs_of(tests);
+  inputs.insert(inputs.begin() + 41, acknowledgement("recommendation/unknown", 70.2));
+  inputs.insert(inputs.begin() + 100, overdue(84.5));
+  inputs.insert(inputs.begin() + 120, replacement(88.5));
+  std::swap(inputs[21], inputs[26]);
+  const auto undisturbed = run(inputs);
+  for (std::size_t death = 0; death < inputs.size(); ++death) ASSERT_EQ(run(inputs, death), undisturbed) << death;
+}
+
+TEST_F(AdvisoryGenerationTest, SupersedingChainNamesEveryPredecessor) {
+  const auto all = advisories(inputs_of(life_until(30, 101, 100.0)));
+  std::string open;  // advisory_id in force
+  std::vector<AdvisoryAction> actions;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Advisory& advisory = all[i];
+    if (advisory.state == AdvisoryState::superseded) {
+      EXPECT_EQ(advisory.advisory_id, open);
+      ASSERT_LT(i + 1, all.size());
+      EXPECT_EQ(all[i + 1].supersedes_id, open);
+      EXPECT_EQ(advisory.header.message_id, all[i + 1].header.message_id + "/superseded");
+      EXPECT_EQ(all[i + 1].revision, 1);
+      continue;
+    }
+    if (advisory.advisory_id != open) actions.push_back(advisory.action);
+    open = advisory.advisory_id;
+  }
+  using A = AdvisoryAction;
+  EXPECT_EQ(actions, (std::vector<A>{A::none, A::plan_replacement, A::book_vessel, A::book_vessel, A::replace_now}));
+}
+
+TEST_F(AdvisoryGenerationTest, WorkOrderKeepsItsIdOverAllRevisions) {
+  const auto all = advisories(inputs_of(life_until(60, 101, 100.0)));
+  std::size_t orders = 0;
+  for (const Advisory& advisory : all)
+    for (const RequestForWork& work : advisory.request_for_work) {
+      ++orders;
+      EXPECT_EQ(work.work_id, "work/" + kAsset + "/first seal");
+      EXPECT_EQ(work.work_type, "replace actuator");
+      EXPECT_EQ(work.segment, "north/XT03");
+      EXPECT_TRUE(work.start_before_known);
+      EXPECT_THAT(work.solution_package, HasSubstr("spare actuator (model eha)"));
+    }
+  EXPECT_GT(orders, 30u);
+}
+
+TEST_F(AdvisoryGenerationTest, AcknowledgementStaysUntilTheRecommendationChanges) {
+  const auto before = inputs_of(life_until(60, 85, 100.0));
+  const Advisory current = advisories(before).back();
+  ASSERT_EQ(current.action, AdvisoryAction::book_vessel);
+  const auto seen = joined(before, {acknowledgement(current.advisory_id, 85.2)});
+  const Advisory answer = advisories(seen).back();
+  EXPECT_EQ(answer.state, AdvisoryState::acknowledged);
+  EXPECT_EQ(answer.acknowledged_by, "A. Operator");
+  EXPECT_EQ(answer.acknowledgement_remark, "work order 4711");
+  EXPECT_THAT(answer.header.message_id, HasSubstr(current.header.message_id + "/acknowledged/A. Operator/"));
+  const auto later = advisories(joined(seen, inputs_of(life_until(86, 101, 100.0))));
+  const auto next = std::find_if(later.begin(), later.end(), [](const auto& a) {
+    return a.header.event_time_ns > add_months(kInstalled, 85.5).nanoseconds;
+  });
+  EXPECT_EQ(next->state, AdvisoryState::acknowledged);
+  EXPECT_EQ(next->acknowledged_by, "A. Operator");
+  EXPECT_EQ(later.back().action, AdvisoryAction::replace_now);
+  EXPECT_EQ(later.back().state, AdvisoryState::active);
+}
+
+TEST_F(AdvisoryGenerationTest, AcknowledgingTwiceIsAcknowledgingOnce) {
+  const auto before = inputs_of(life_until(60, 85, 100.0));
+  const Advisory current = advisories(before).back();
+  const auto once = run(joined(before, {acknowledgement(current.advisory_id, 85.2)}));
+  EXPECT_EQ(
+      run(joined(before, {acknowledgement(current.advisory_id, 85.2), acknowledgement(current.advisory_id, 85.3)})),
+      once);
+}
+
+TEST_F(AdvisoryGenerationTest, UnknownAdvisoryIsNotedNotAcknowledged) {
+  const auto before = inputs_of(life_until(60, 62, 100.0));
+  const Advisory answer = advisories(joined(before, {acknowledgement("recommendation/other", 62.2)})).back();
+  EXPECT_EQ(answer.state, AdvisoryState::active);
+  EXPECT_THAT(answer.acknowledgement_remark, HasSubstr("'recommendation/other' by A. Operator not applied"));
+  EXPECT_TRUE(run({acknowledgement("anything", 1.0)}).empty());  // nothing known of the asset
+}
+
+TEST_F(AdvisoryGenerationTest, ReplacementClosesTheWorkAndStartsAnew) {
+  const auto before = inputs_of(life_until(60, 100, 100.0));
+  const auto all = advisories(joined(joined(before, {replacement(100.5)}),
+                                     inputs_of({{.month = 101, .forecast = ForecastState::insufficient_history}})));
+  const Advisory& fresh = all[all.size() - 2];
+  EXPECT_EQ(all[all.size() - 3].state, AdvisoryState::superseded);
+  EXPECT_EQ(fresh.action, AdvisoryAction::none);
+  EXPECT_THAT(fresh.recommendation, HasSubstr("seal_replaced on 2018-05"));
+  EXPECT_EQ(all.back().action, AdvisoryAction::none);
+  const auto next_seal =
+      advisories(joined(joined(before, {replacement(100.5)}), inputs_of(life_until(150, 160, 170.0))));
+  EXPECT_THAT(next_seal.back().request_for_work.at(0).work_id, HasSubstr("seal of 2018-05"));
+}
+
+TEST_F(AdvisoryGenerationTest, TestsFromBeforeTheLastOneOrTheReplacementChangeNothing) {
+  const auto before = joined(inputs_of(life_until(60, 90, 100.0)), {replacement(90.5)});
+  EXPECT_EQ(run(joined(before, inputs_of({{.month = 89.5, .rul_months = 0.5}}))), run(before));
+}
+
+TEST_F(AdvisoryGenerationTest, OverdueTestIsAskedForAndGoesWithTheTest) {
+  const auto before = inputs_of({{.month = 24}, {.month = 25}});
+  const auto all = advisories(joined(joined(before, {overdue(26.4)}), inputs_of({{.month = 26.6}})));
+  const auto called =
+      std::find_if(all.begin(), all.end(), [](const auto& a) { return a.action == AdvisoryAction::repeat_test; });
+  ASSERT_NE(called, all.end());
+  EXPECT_EQ(called->priority, AdvisoryPriority::medium);
+  EXPECT_THAT(called->recommendation, HasSubstr("overdue by 10 days"));
+  EXPECT_EQ(all.back().action, AdvisoryAction::none);
+}
+
+TEST_F(AdvisoryGenerationTest, OverdueTestDoesNotHideTheBooking) {
+  const auto all = advisories(joined(inputs_of(life_until(60, 85, 100.0)), {overdue(86.4)}));
+  EXPECT_EQ(all.back().action, AdvisoryAction::book_vessel);
+  EXPECT_FALSE(all.back().request_for_work.empty());
+  EXPECT_THAT(all.back().reasons.front(), HasSubstr("overdue by 10 days"));
+}
+
+TEST_F(AdvisoryGenerationTest, TestWithoutTimeOrAssetStillGetsAnAnswer) {
+  const auto no_time =
+      advisories(inputs_of({{.forecast = ForecastState::insufficient_history, .used = false, .time_known = false}}));
+  ASSERT_EQ(no_time.size(), 1u);
+  EXPECT_EQ(no_time[0].action, AdvisoryAction::none);
+  configuration_.assets.clear();
+  EXPECT_EQ(advisories(inputs_of({{.month = 24}})).size(), 1u);
+}
+
+TEST_F(AdvisoryGenerationTest, OptionsAreChecked) {
+  EXPECT_FALSE(AdvisoryGeneration::make(configuration_, {.largest_failure_probability = 0.9}));
+}
+
+}  // namespace
+}  // namespace sealwatch::advisory_generation

@@ -1,0 +1,135 @@
+// The decision table of docs/advisories.md, line by line: confirmed situations and what they ask for.
+#include <gmock/gmock.h>
+
+#include "services/advisory_generation/recommendation.hpp"
+#include "tests/unit/layers/advisory_generation/fixtures.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+using test::fault;
+using test::TestCase;
+using testing::HasSubstr;
+
+/// The recommendation once the same has been seen in three tests.
+Recommendation confirmed(const TestCase& one) {
+  const Configuration configuration = test::configuration();
+  const SiteConfig* site = &configuration.sites[0];
+  const Assessment assessment = assess(one.evidence(), site, {});
+  VerdictMemory memory;
+  for (int repeat = 0; repeat < 3; ++repeat) memory.judge(assessment.verdict, one.time(), {});
+  return recommend(one.evidence(), assessment, memory.in_force(), site);
+}
+
+struct Line {
+  const char* situation;
+  TestCase test;
+  AdvisoryPriority priority;
+  AdvisoryAction action;
+};
+
+void PrintTo(const Line& line, std::ostream* stream) { *stream << line.situation; }
+
+class DecisionTableTest : public testing::TestWithParam<Line> {};
+
+TEST_P(DecisionTableTest, PriorityAndAction) {
+  const Recommendation recommendation = confirmed(GetParam().test);
+  EXPECT_EQ(recommendation.priority, GetParam().priority) << recommendation.text;
+  EXPECT_EQ(recommendation.action, GetParam().action) << recommendation.text;
+  EXPECT_FALSE(recommendation.text.empty());
+}
+
+using P = AdvisoryPriority;
+using A = AdvisoryAction;
+const ProposedFault kSensor = fault(FaultKind::sensor, "sensor:flow", 0.8);
+const ProposedFault kSeal = fault(FaultKind::internal_leakage, "piston_seal", 0.7);
+const ProposedFault kVague = fault(FaultKind::sensor, "sensor:flow", 0.4);
+
+// Month 24 is 2012-01. With 12 months to book, the last campaign before the P10 end of life decides:
+// RUL 90: P10 at 85 months, 2019-01, campaign 2018-06: book by 2017-06, 65 months to go.
+// RUL 48: P10 at 43, 2015-07, campaign 2015-06, book by 2014-06: 29 months. RUL 36: campaign 2014-06: 17 months to go.
+// RUL 24: P10 at 19, 2013-07, campaign 2013-06: book by 2012-06, 5 months. RUL 14: P10 at 8.9, campaign 2012-06:
+// passed.
+INSTANTIATE_TEST_SUITE_P(
+    Table, DecisionTableTest,
+    testing::Values(
+        Line{"far end of life", {.rul_months = 90}, P::information, A::none},
+        Line{"beyond the planning horizon", {.rul_months = 48}, P::information, A::none},
+        Line{"within the planning horizon", {.rul_months = 36}, P::medium, A::plan_replacement},
+        Line{"booking due", {.rul_months = 24}, P::high, A::book_vessel},
+        Line{"booking date passed", {.rul_months = 14}, P::urgent, A::book_vessel},
+        Line{"P10 end of life before the next test", {.rul_months = 6}, P::urgent, A::replace_now},
+        Line{"past threshold", {.forecast = ForecastState::past_threshold, .rul_months = 0}, P::urgent, A::replace_now},
+        Line{"no significant trend", {.forecast = ForecastState::no_significant_trend}, P::information, A::none},
+        Line{"history too short", {.forecast = ForecastState::insufficient_history}, P::information, A::none},
+        Line{"test could not be used", {.used = false}, P::low, A::repeat_test},
+        Line{"test aborted", {.verdict = PstVerdict::aborted}, P::low, A::repeat_test},
+        Line{"test failed repeatedly", {.verdict = PstVerdict::failed}, P::urgent, A::replace_now},
+        Line{"test failed, sensor doubted",
+             {.verdict = PstVerdict::failed, .faults = {kSensor}},
+             P::high,
+             A::repeat_test},
+        Line{"sensor fault", {.faults = {kSensor}}, P::medium, A::inspect_instrumentation},
+        Line{"sensor fault is one of many", {.faults = {kVague}}, P::information, A::none},
+        Line{"alarm, cause in the actuator",
+             {.region = AlertRegion::alarm, .faults = {kSeal}},
+             P::medium,
+             A::plan_replacement},
+        Line{"alarm, cause unknown", {.region = AlertRegion::alarm}, P::information, A::none},
+        Line{"warning is no alarm", {.region = AlertRegion::warning, .faults = {kSeal}}, P::information, A::none},
+        Line{"booking outranks a sensor fault", {.rul_months = 24, .faults = {kSensor}}, P::high, A::book_vessel}));
+
+TEST(DecisionTable, SaysWhatBookByWhenAndWhy) {
+  const Recommendation r = confirmed({.rul_months = 24});
+  EXPECT_EQ(format_date(*r.work_before), "2013-06-01");
+  EXPECT_EQ(format_date(*r.latest_by), "2012-05-31");  // twelve mean months before
+  EXPECT_THAT(
+      r.text,
+      HasSubstr("Book a vessel by 2012-05-31 to replace the piston seal in campaign summer 2013 (2013-06-01)."));
+  EXPECT_THAT(r.text, HasSubstr("expected on 2013-12-31, with 80 % between 2013-07-28 and 2014-06-06"));
+}
+
+TEST(DecisionTable, CampaignKeepsTheFailureProbabilityDown) {
+  // End of life 2014-01 +- 4 months: summer 2013 is at 4 %, summer 2014 at 90 %.
+  const TestCase one{.rul_months = 24};
+  for (const FailureProbability& campaign : one.life().forecasts[0].failure_probability)
+    EXPECT_EQ(campaign.probability <= Options{}.largest_failure_probability,
+              campaign.before_ns <= confirmed(one).work_before->nanoseconds)
+        << campaign.label;
+}
+
+TEST(DecisionTable, WithoutKnownCampaignsTheEarlyEndOfLifeDecides) {
+  const TestCase one{.rul_months = 24};
+  Evidence evidence = one.evidence();
+  evidence.life.forecasts[0].failure_probability.clear();
+  const Assessment assessment = assess(evidence, nullptr, {});
+  EXPECT_EQ(*assessment.verdict.replace_by,
+            start_of_day(add_months(one.time(), one.life().forecasts[0].rul_p10_months)));
+  EXPECT_EQ(assessment.verdict.wear, WearLevel::plan);  // 19 months, 12 of them to book
+}
+
+TEST(DecisionTable, LastKnownCampaignLongBeforeTheEndIsNotTheLastOne) {
+  const TestCase one{.rul_months = 90};
+  Evidence evidence = one.evidence();
+  auto& campaigns = evidence.life.forecasts[0].failure_probability;
+  campaigns.erase(campaigns.begin() + 2, campaigns.end());  // nothing known after summer 2013
+  EXPECT_EQ(assess(evidence, nullptr, {}).verdict.wear, WearLevel::none);
+}
+
+TEST(DecisionTable, LessUrgentCallsStandInTheReasons) {
+  const Recommendation r = confirmed({.rul_months = 24, .faults = {kSensor}});
+  ASSERT_EQ(r.also.size(), 1u);
+  EXPECT_THAT(r.also[0], HasSubstr("also: Inspect the instrumentation: sensor of sensor:flow"));
+}
+
+TEST(DecisionTable, OptionsAreChecked) {
+  EXPECT_TRUE(Options{}.validate());
+  EXPECT_FALSE((Options{.largest_failure_probability = 0.0}).validate());
+  EXPECT_FALSE((Options{.booking_horizon_months = 20.0}).validate());
+  EXPECT_FALSE((Options{.confirming_tests = 4}).validate());
+  EXPECT_FALSE((Options{.easing_tests = 2}).validate());
+  EXPECT_FALSE((Options{.date_tolerance_share = 1.0}).validate());
+}
+
+}  // namespace
+}  // namespace sealwatch::advisory_generation

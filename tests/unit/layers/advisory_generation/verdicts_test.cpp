@@ -1,0 +1,95 @@
+// The memory of verdicts: k of n upwards, a row downwards, dates with a dead band, and its line of text.
+#include "services/advisory_generation/verdicts.hpp"
+
+#include <gtest/gtest.h>
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+const UtcTime kNow = parse_utc("2015-01-01").value();
+UtcTime day(const char* text) { return parse_utc(text).value(); }
+
+class VerdictMemoryTest : public testing::Test {
+ protected:
+  WearLevel wear(WearLevel level, bool urgent = false) {
+    return memory_.judge({.wear = level, .urgent = urgent}, kNow, {}).wear;
+  }
+  UtcTime date(const char* text) {
+    return *memory_.judge({.wear = WearLevel::plan, .replace_by = day(text)}, kNow, {}).replace_by;
+  }
+  VerdictMemory memory_;
+};
+
+TEST_F(VerdictMemoryTest, OneTestDoesNotEscalateTwoOfThreeDo) {
+  EXPECT_EQ(wear(WearLevel::none), WearLevel::none);
+  EXPECT_EQ(wear(WearLevel::book), WearLevel::none);
+  EXPECT_EQ(wear(WearLevel::none), WearLevel::none);
+  EXPECT_EQ(wear(WearLevel::plan), WearLevel::plan);  // book and plan of the last three: plan is what both reach
+  EXPECT_EQ(wear(WearLevel::book), WearLevel::plan);
+  EXPECT_EQ(wear(WearLevel::book), WearLevel::book);
+}
+
+TEST_F(VerdictMemoryTest, UrgentNeedsNoConfirmation) {
+  EXPECT_EQ(wear(WearLevel::none), WearLevel::none);
+  EXPECT_EQ(wear(WearLevel::replace, true), WearLevel::replace);
+}
+
+TEST_F(VerdictMemoryTest, EasesOnlyAfterFourTestsInARow) {
+  wear(WearLevel::book);
+  EXPECT_EQ(wear(WearLevel::book), WearLevel::book);
+  for (int test = 0; test < 3; ++test) EXPECT_EQ(wear(WearLevel::none), WearLevel::book);
+  EXPECT_EQ(wear(WearLevel::none), WearLevel::none);
+}
+
+TEST_F(VerdictMemoryTest, TestsThatSayNothingDoNotVote) {
+  wear(WearLevel::book);
+  wear(WearLevel::book);
+  for (int test = 0; test < 10; ++test) EXPECT_EQ(memory_.judge({}, kNow, {}).wear, WearLevel::book);
+}
+
+TEST_F(VerdictMemoryTest, DateMovesEarlierWhenConfirmedAndLaterAfterARow) {
+  EXPECT_EQ(date("2018-06-01"), day("2018-06-01"));
+  EXPECT_EQ(date("2017-06-01"), day("2018-06-01"));
+  EXPECT_EQ(date("2017-06-01"), day("2017-06-01"));
+  for (int test = 0; test < 3; ++test) EXPECT_EQ(date("2019-06-01"), day("2017-06-01"));
+  EXPECT_EQ(date("2019-06-01"), day("2019-06-01"));
+}
+
+TEST_F(VerdictMemoryTest, SmallChangesDoNotMoveTheDate) {
+  date("2018-06-01");  // 41 months to go: the dead band is 4.1 months
+  for (int test = 0; test < 3; ++test) EXPECT_EQ(date("2018-03-01"), day("2018-06-01"));
+  date("2018-01-01");
+  EXPECT_EQ(date("2018-01-01"), day("2018-01-01"));
+}
+
+TEST_F(VerdictMemoryTest, DoubtInInstrumentsIsConfirmedAndGivenUpAlike) {
+  const TestVerdict doubted{.instruments_doubted = true};
+  EXPECT_FALSE(memory_.judge(doubted, kNow, {}).instruments_doubted);
+  EXPECT_TRUE(memory_.judge(doubted, kNow, {}).instruments_doubted);
+  for (int test = 0; test < 3; ++test) EXPECT_TRUE(memory_.judge({}, kNow, {}).instruments_doubted);
+  EXPECT_FALSE(memory_.judge({}, kNow, {}).instruments_doubted);
+}
+
+TEST(VerdictWords, RoundTripOfEveryField) {
+  for (const bool doubted : {false, true})
+    for (const bool failed : {false, true})
+      for (const std::optional<WearLevel> wear : {std::optional<WearLevel>(), std::optional(WearLevel::book_at_once)})
+        for (const std::optional<UtcTime> date : {std::optional<UtcTime>(), std::optional(day("2017-06-01"))}) {
+          const TestVerdict verdict{.wear = wear, .replace_by = date, .instruments_doubted = doubted, .failed = failed};
+          const InForce in_force{
+              .wear = WearLevel::replace, .replace_by = date, .instruments_doubted = failed, .failing = doubted};
+          const auto record = from_words(in_words(verdict, in_force));
+          ASSERT_TRUE(record);
+          EXPECT_EQ(record->verdict, verdict);
+          EXPECT_EQ(record->in_force, in_force);
+        }
+}
+
+TEST(VerdictWords, OtherReasonsAreNoRecord) {
+  EXPECT_FALSE(from_words(""));
+  EXPECT_FALSE(from_words("health grade 0.7"));
+  EXPECT_FALSE(from_words("judged by itself this test says: ; in force: "));
+}
+
+}  // namespace
+}  // namespace sealwatch::advisory_generation

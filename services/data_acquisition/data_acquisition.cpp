@@ -61,6 +61,10 @@ DataAcquisition::DataAcquisition(std::vector<AssetConfig> assets, DataAcquisitio
 std::span<const Topic> DataAcquisition::inputs() const { return kInputs; }
 std::span<const Topic> DataAcquisition::outputs() const { return kOutputs; }
 
+bool DataAcquisition::is_closed(const RawSamples& first_block) const {
+  return finished_.contains(make_pst_id(first_block));
+}
+
 OpenTest DataAcquisition::open(const std::string& asset_id) const {
   for (const AssetConfig& asset : assets_) {
     if (asset.asset_id != asset_id) continue;

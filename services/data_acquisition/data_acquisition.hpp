@@ -30,6 +30,8 @@ class DataAcquisition final : public Layer {
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
   [[nodiscard]] Conclusion tick(UtcTime now) override;
+  /// Whether the test that begins with this block is closed.
+  [[nodiscard]] bool is_closed(const RawSamples& first_block) const;
 
  private:
   struct Running {

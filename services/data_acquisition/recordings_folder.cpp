@@ -1,0 +1,148 @@
+#include "services/data_acquisition/recordings_folder.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/model/plant_description.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/data_acquisition/recording_blocks.hpp"
+
+namespace sealwatch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFilesPerLook = 16;  // so that a full folder does not fill the memory
+constexpr const char* kSourceId = "recordings_folder";
+
+}  // namespace
+
+RecordingsFolder::RecordingsFolder(fs::path directory, std::vector<AssetConfig> assets, IsConcluded is_concluded,
+                                   Report report)
+    : directory_(std::move(directory)),
+      assets_(std::move(assets)),
+      is_concluded_(std::move(is_concluded)),
+      report_(std::move(report)) {
+  std::error_code error;
+  fs::create_directories(directory_, error);
+  if (error)
+    report_(Error{.file = directory_.string(),
+                  .place = "recordings_directory",
+                  .value = {},
+                  .rule = "could not be made: " + error.message(),
+                  .advice = "make it, or let the service write there"});
+}
+
+std::vector<Message> RecordingsFolder::look() {
+  put_away_concluded();
+  std::vector<Message> messages;
+  std::size_t taken = 0;
+  for (const fs::path& path : recordings()) {
+    if (taken == kMostFilesPerLook) break;
+    if (files_[path].taken || !is_settled(path)) continue;
+    take(path, messages);
+    ++taken;
+  }
+  return messages;
+}
+
+/// CSV and MAT files right in the folder, by name.
+std::vector<fs::path> RecordingsFolder::recordings() const {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string suffix = entry->path().extension().string();
+    std::error_code ignored;
+    if ((suffix == ".csv" || suffix == ".mat") && entry->is_regular_file(ignored)) paths.push_back(entry->path());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+void RecordingsFolder::put_away_concluded() {
+  for (auto file = files_.begin(); file != files_.end();) {
+    const bool concluded = file->second.taken && !file->second.stuck && is_concluded_(file->second.first_block);
+    const bool gone = concluded && put_away(file->first, "done");
+    file->second.stuck = file->second.stuck || (concluded && !gone);
+    file = gone ? files_.erase(file) : std::next(file);
+  }
+}
+
+bool RecordingsFolder::is_settled(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  const fs::file_time_type changed = fs::last_write_time(path, error);
+  if (error) return false;
+  File& file = files_[path];
+  const bool settled = file.size == size && file.changed == changed;
+  file.size = size;
+  file.changed = changed;
+  return settled;
+}
+
+void RecordingsFolder::take(const fs::path& path, std::vector<Message>& messages) {
+  Result<Recording> recording = read(path);
+  if (!recording) return reject(path, recording.error());
+  std::vector<RawSamples> blocks = blocks_of(*recording, kSamplesPerBlock, kSourceId, false);
+  if (blocks.empty())
+    return reject(path, Error{.file = path.string(), .place = {}, .value = {}, .rule = "has no samples", .advice = {}});
+  File& file = files_[path];
+  file.taken = true;
+  file.first_block = blocks.front();
+  file.first_block.samples = {};
+  for (RawSamples& block : blocks) messages.emplace_back(std::move(block));
+}
+
+Result<Recording> RecordingsFolder::read(const fs::path& path) const {
+  const Result<std::string> asset_id = recorded_asset_id(path.string());
+  if (!asset_id) return fail(asset_id.error());
+  const auto asset = std::find_if(assets_.begin(), assets_.end(),
+                                  [&](const AssetConfig& candidate) { return candidate.asset_id == *asset_id; });
+  if (asset == assets_.end()) {
+    std::vector<std::string> known;
+    for (const AssetConfig& candidate : assets_) known.push_back(candidate.asset_id);
+    return fail(Error{.file = path.string(),
+                      .place = "asset_id",
+                      .value = *asset_id,
+                      .rule = asset_id->empty() ? "names no asset" : "is not a configured asset",
+                      .advice = asset_id->empty() ? "say which in its sidecar" : suggest(*asset_id, known)});
+  }
+  const Result<const PlantDescription*> plant = find_plant(asset->model);
+  if (!plant) return fail(plant.error());
+  return read_recording(path.string(), **plant);
+}
+
+bool RecordingsFolder::put_away(const fs::path& path, const std::string& folder) {
+  const fs::path target = path.parent_path() / folder;
+  std::error_code error;
+  fs::create_directories(target, error);
+  fs::rename(path, target / path.filename(), error);
+  if (error) {
+    report_(Error{.file = path.string(),
+                  .place = {},
+                  .value = {},
+                  .rule = "could not be moved to " + target.string() + ": " + error.message(),
+                  .advice = "let the service write there"});
+    return false;
+  }
+  // The sidecar goes last: a recording that is left without it would be another recording.
+  fs::path sidecar = path;
+  sidecar.replace_extension(".yaml");
+  if (fs::exists(sidecar, error)) fs::rename(sidecar, target / sidecar.filename(), error);
+  return true;
+}
+
+void RecordingsFolder::reject(const fs::path& path, const Error& error) {
+  report_(error);
+  if (!put_away(path, "rejected")) {
+    files_[path].taken = true;
+    files_[path].stuck = true;
+    return;
+  }
+  files_.erase(path);
+  std::ofstream(path.parent_path() / "rejected" / (path.filename().string() + ".error.txt"))
+      << error.describe() << "\n";
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,58 @@
+// The folder where recordings are dropped (ServiceConfig::recordings_directory).
+//
+// A file is read when its size and time have not changed since the last look, so that a copy in progress is left alone.
+// When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
+// NAME.error.txt; its sidecar, which must be there before the recording, moves along. Until then it stays, and a
+// restart reads it again: nothing is lost, and what comes twice is taken once, by its message id.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/recording.hpp"
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/message/topics.hpp"
+
+namespace sealwatch {
+
+class RecordingsFolder {
+ public:
+  /// Whether the test that begins with this block is concluded, and that conclusion stored.
+  using IsConcluded = std::function<bool(const RawSamples&)>;
+  using Report = std::function<void(const Error&)>;
+  RecordingsFolder(std::filesystem::path directory, std::vector<AssetConfig> assets, IsConcluded is_concluded,
+                   Report report);
+
+  /// One look: puts away what is done, returns the blocks of what is new.
+  [[nodiscard]] std::vector<Message> look();
+
+ private:
+  struct File {
+    std::uintmax_t size = 0;
+    std::filesystem::file_time_type changed;
+    bool taken = false;
+    bool stuck = false;      ///< could not be moved away: reported once, then left alone
+    RawSamples first_block;  ///< without samples it would not be known again: content_hash is always set
+  };
+  [[nodiscard]] std::vector<std::filesystem::path> recordings() const;
+  void put_away_concluded();
+  [[nodiscard]] bool is_settled(const std::filesystem::path& path);
+  void take(const std::filesystem::path& path, std::vector<Message>& messages);
+  [[nodiscard]] Result<Recording> read(const std::filesystem::path& path) const;
+  /// Moves a recording, then its sidecar; false when it could not.
+  bool put_away(const std::filesystem::path& path, const std::string& folder);
+  void reject(const std::filesystem::path& path, const Error& error);
+
+  std::filesystem::path directory_;
+  std::vector<AssetConfig> assets_;
+  IsConcluded is_concluded_;
+  Report report_;
+  std::map<std::filesystem::path, File> files_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,14 @@
+// Daemon of layer 2.
+#include "services/common/runtime/daemon.hpp"
+#include "services/common/transport/dds_bus.hpp"
+#include "services/data_manipulation/data_manipulation.hpp"
+
+int main(int argc, char** argv) {
+  using namespace sealwatch;
+  return run_daemon(
+      argc, argv,
+      {.service = "data_manipulation",
+       .make_layer = [](const Configuration& configuration,
+                        const Clock&) { return std::make_unique<DataManipulation>(configuration.assets); },
+       .make_bus = make_dds_bus});
+}

@@ -21,7 +21,7 @@ namespace sealwatch::advisory_generation {
 
 class AdvisoryGeneration final : public Layer {
  public:
-  /// Keeps a reference to `configuration`. An Error for options that make no sense.
+  /// An Error for options that make no sense.
   [[nodiscard]] static Result<std::unique_ptr<AdvisoryGeneration>> make(const Configuration& configuration,
                                                                         const Options& options = {});
 
@@ -63,7 +63,7 @@ class AdvisoryGeneration final : public Layer {
   [[nodiscard]] const SiteConfig* site_of(const std::string& asset_id) const;
   [[nodiscard]] RequestForWork work_order(const Advisory& advisory, const Recommendation& recommendation) const;
 
-  const Configuration& configuration_;
+  Configuration configuration_;
   Options options_;
   std::map<std::string, Pending> pending_;  ///< by pst_id
   std::map<std::string, Asset> assets_;     ///< by asset_id

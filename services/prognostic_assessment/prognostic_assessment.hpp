@@ -30,7 +30,7 @@ struct Options {
 
 class PrognosticAssessment final : public Layer {
  public:
-  /// Keeps references to `configuration` and `estimator`. An Error for options that make no sense.
+  /// Keeps a reference to `estimator`. An Error for options that make no sense.
   [[nodiscard]] static Result<std::unique_ptr<PrognosticAssessment>> make(const Configuration& configuration,
                                                                           const Estimator& estimator,
                                                                           const Options& options = {});
@@ -62,7 +62,7 @@ class PrognosticAssessment final : public Layer {
   [[nodiscard]] std::vector<forecast::FailureHorizon> campaigns(const AssetConfig& asset) const;
   [[nodiscard]] std::vector<Forecast> no_forecast(const std::string& explanation) const;
 
-  const Configuration& configuration_;
+  Configuration configuration_;
   const Estimator& estimator_;
   Options options_;
   forecast::ForecastPanel panel_;

@@ -1,0 +1,12 @@
+// Daemon of layer 6.
+#include "services/advisory_generation/advisory_generation.hpp"
+#include "services/common/runtime/daemon.hpp"
+#include "services/common/transport/dds_bus.hpp"
+
+int main(int argc, char** argv) {
+  using namespace sealwatch;
+  const auto make_layer = [](const Configuration& configuration, const Clock&) -> std::unique_ptr<Layer> {
+    return advisory_generation::AdvisoryGeneration::make(configuration).value();
+  };
+  return run_daemon(argc, argv, {.service = "advisory_generation", .make_layer = make_layer, .make_bus = make_dds_bus});
+}

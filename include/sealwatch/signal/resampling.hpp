@@ -1,7 +1,8 @@
 // From sampling times as they came (jitter, absent rows) to a uniform grid.
 //
-// The grid starts at the first sample. Its interval is the mean interval with absent rows counted: each recorded
-// interval counts as round(interval / median interval) of them, at least one.
+// The grid starts at the first sample. Its interval is the mean interval with absent rows counted: a clock that follows
+// the samples slowly says how many usual intervals lie between one sample and the next, at least one. Jitter of up to
+// half an interval is no missing row.
 #pragma once
 
 #include <cstddef>

@@ -46,6 +46,7 @@ class FeatureList {
   [[nodiscard]] std::optional<Estimate> mean_over(MotionKind kind, const std::vector<double>* values) const;
   [[nodiscard]] std::optional<Estimate> speed(MotionKind kind) const;
   [[nodiscard]] std::optional<Estimate> stroke_time(MotionKind kind) const;
+  [[nodiscard]] double standstill_position(const MotionPhase& phase) const;
   [[nodiscard]] std::optional<Estimate> hold_decay() const;
   [[nodiscard]] std::optional<Estimate> breakaway_pressure() const;
   [[nodiscard]] std::optional<Estimate> efficiency(MotionKind kind) const;
@@ -129,31 +130,39 @@ std::optional<double> crossing_s(const TestRecord& test, Range range, double lev
   return std::nullopt;
 }
 
-/// From 5 % to 95 % of the way from the level before to the level after the stroke; both must have been recorded.
+/// From 5 % to 95 % of the way between the standstills before and after the stroke; both must have been recorded.
 std::optional<Estimate> FeatureList::stroke_time(MotionKind kind) const {
   const std::vector<MotionPhase>& phases = test_.phases();
-  const auto stroke =
-      std::find_if(phases.begin(), phases.end(), [kind](const MotionPhase& p) { return p.kind == kind; });
+  auto stroke = std::find_if(phases.begin(), phases.end(), [kind](const MotionPhase& p) { return p.kind == kind; });
   if (stroke == phases.end() || std::next(stroke) == phases.end()) return std::nullopt;  // cut before it ended
-  const bool breakaway = stroke != phases.begin() && std::prev(stroke)->kind == MotionKind::breakaway;
-  Range range = test_.range(*stroke);
-  if (breakaway) range.begin = test_.range(*std::prev(stroke)).begin;
-  const std::vector<double>& x = test_.position();
-  const double from = x[range.begin];
-  const double to = x[range.end - 1];
+  const MotionPhase& after = *std::next(stroke);
+  if (stroke != phases.begin() && std::prev(stroke)->kind == MotionKind::breakaway) --stroke;
+  if (stroke == phases.begin()) return std::nullopt;  // began before the recording
+  const MotionPhase& before = *std::prev(stroke);
+  const std::optional<Estimate> run = speed(kind);
+  if (!run || run->value <= 0.0) return std::nullopt;
+  const double from = standstill_position(before);
+  const double to = standstill_position(after);
   const double direction = to >= from ? 1.0 : -1.0;
+  const Range range{test_.range(before).begin, test_.range(after).end};
   const auto begin = crossing_s(test_, range, from + kStrokeShare * (to - from), direction);
   const auto end = crossing_s(test_, range, to - kStrokeShare * (to - from), direction);
-  const std::optional<Estimate> run = speed(kind);
-  if (!begin || !end || !run || run->value <= 0.0) return std::nullopt;
+  if (!begin || !end) return std::nullopt;
   return Estimate{*end - *begin, std::sqrt(2.0) * test_.smooth_noise_std("position") / run->value};
+}
+
+/// Where the piston stands: the mean of the settled part, the last value where that is too short.
+double FeatureList::standstill_position(const MotionPhase& phase) const {
+  const std::optional<Range> settled = test_.settled(phase);
+  return settled ? mean(part(test_.position(), *settled)).value : test_.position()[test_.range(phase).end - 1];
 }
 
 void FeatureList::add_motion() {
   const MotionPhase* out = first(MotionKind::out);
   if (!out) return;
   const std::vector<double>& x = test_.position();
-  const double start = x[test_.range(*out).begin > 0 ? test_.range(test_.phases().front()).begin : 0];
+  const MotionPhase& before = test_.phases().front();
+  const double start = before.kind == MotionKind::rest ? standstill_position(before) : x.front();
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
   const double noise = test_.smooth_noise_std("position");
   add("travel", Estimate{std::max(*most - start, start - *least), std::sqrt(2.0) * noise});

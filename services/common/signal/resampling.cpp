@@ -13,6 +13,8 @@ namespace {
 constexpr double kOnGrid = 1e-3;
 // Four samples further apart than this many intervals on average are no basis for a cubic.
 constexpr double kLargestCubicSpan = 4.5;
+// Share of a sample's deviation by which the sampling clock is corrected.
+constexpr double kClockGain = 0.1;
 
 struct Points {
   std::vector<double> time_s;
@@ -27,6 +29,35 @@ Points finite_points(std::span<const double> times_s, std::span<const double> va
     points.value.push_back(values[i]);
   }
   return points;
+}
+
+/// Usual interval: the mean of those that are not longer than one and a half of the median.
+double usual_interval(std::span<const double> times_s) {
+  std::vector<double> intervals(times_s.size() - 1);
+  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = times_s[i + 1] - times_s[i];
+  const double limit = 1.5 * median(intervals);
+  double sum = 0.0;
+  double count = 0.0;
+  for (const double interval : intervals) {
+    if (interval > limit) continue;
+    sum += interval;
+    count += 1.0;
+  }
+  return sum / count;
+}
+
+/// Grid intervals from each sample to the next. They are counted from a clock that follows the samples slowly, not from
+/// the last sample, whose own jitter would add to the next one's.
+std::vector<double> count_steps(std::span<const double> times_s) {
+  const double usual = usual_interval(times_s);
+  std::vector<double> steps(times_s.size() - 1);
+  double clock_s = times_s.front();
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    steps[i] = std::max(1.0, std::round((times_s[i + 1] - clock_s) / usual));
+    clock_s += steps[i] * usual;
+    clock_s += kClockGain * (times_s[i + 1] - clock_s);
+  }
+  return steps;
 }
 
 /// Lagrange polynomial through points first..first+3.
@@ -54,20 +85,18 @@ double between(const Points& points, std::size_t before, double time_s, double i
 
 SamplingGrid find_grid(std::span<const double> times_s) {
   assert(times_s.size() >= 2);
-  std::vector<double> intervals(times_s.size() - 1);
-  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i] = times_s[i + 1] - times_s[i];
-  const double typical = median(intervals);
-  double steps = 0.0;
-  for (const double interval : intervals) steps += std::max(1.0, std::round(interval / typical));
-  SamplingGrid grid{.begin_s = times_s.front(), .interval_s = (times_s.back() - times_s.front()) / steps};
-  grid.count = static_cast<std::size_t>(steps) + 1;
+  const std::vector<double> steps = count_steps(times_s);
+  double count = 0.0;
+  for (const double step : steps) count += step;
+  SamplingGrid grid{.begin_s = times_s.front(), .interval_s = (times_s.back() - times_s.front()) / count};
+  grid.count = static_cast<std::size_t>(count) + 1;
   grid.missing_count = grid.count - times_s.size();
   double square = 0.0;
-  for (const double interval : intervals) {
-    const double excess = interval - std::max(1.0, std::round(interval / typical)) * grid.interval_s;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const double excess = times_s[i + 1] - times_s[i] - steps[i] * grid.interval_s;
     square += excess * excess;
   }
-  grid.jitter_std_s = std::sqrt(square / static_cast<double>(intervals.size()));
+  grid.jitter_std_s = std::sqrt(square / static_cast<double>(steps.size()));
   return grid;
 }
 

@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "sealwatch/signal/statistics.hpp"
 
@@ -19,11 +18,21 @@ constexpr double kSettling_s = 0.5;          // after a stroke
 constexpr double kBefore_s = 0.2;            // before the next stroke: effort and filter reach back
 constexpr double kShortest_s = 0.3;          // a shorter range says nothing
 constexpr double kSteady = 0.95;             // share of the stroke's median speed
-constexpr double kLeastSpeed_std = 8.0;      // slower than this many noise deviations is no motion
+constexpr double kLeastSpeed_std = 5.0;      // slower than this many noise deviations is no motion
 constexpr double kLeastTravelShare = 0.005;  // of the cylinder's whole stroke
 constexpr double kLeastTravel_std = 20.0;    // noise deviations of position
 
 double cutoff_Hz(double interval_s) { return std::min(kCutoff_Hz, kCutoffShare / interval_s); }
+
+/// Standard deviation of the derivative of smoothed white noise of standard deviation 1.
+double derivative_noise_gain(const LowPass& filter, double interval_s) {
+  const std::size_t half = filter.settling_samples();
+  std::vector<double> impulse(2 * half + 1, 0.0);
+  impulse[half] = 1.0;
+  double square = 0.0;
+  for (const double value : derivative(filter.apply_zero_phase(impulse), interval_s)) square += value * value;
+  return std::sqrt(square);
+}
 
 /// The phase's direction of motion does not matter here: speed is what counts.
 std::vector<double> speeds(std::span<const double> velocity, Range range) {
@@ -73,8 +82,7 @@ void TestRecord::find_motion() {
   if (const std::vector<double>* position = smooth("position")) {
     position_ = *position;
     velocity_ = derivative(position_, interval_s_);
-    // The derivative of a signal limited to f_c has at most 2 pi f_c times its noise.
-    velocity_noise_std_ = 2.0 * std::numbers::pi * cutoff_Hz(interval_s_) * smooth_noise_std("position");
+    velocity_noise_std_ = samples_.find("position")->noise_std * derivative_noise_gain(filter_, interval_s_);
   } else if (const std::vector<double>* velocity = smooth("velocity")) {
     velocity_ = *velocity;
     position_ = integral(velocity_, interval_s_);

@@ -13,28 +13,29 @@
 namespace sealwatch {
 namespace {
 
-bool fits_well(const PemOptimum& optimum, const ActuatorFitOptions& options) {
-  if (!optimum.converged) return false;
-  double squares = 0.0, count = 0.0;
-  for (const Linearisation& part : optimum.at_optimum) {
-    squares += part.residual.squaredNorm();
-    count += static_cast<double>(part.residual.size());
-  }
-  return std::sqrt(squares / count) <= options.admissibility.largest_noise_normalised_rms;
-}
-
 bool better(const PemOptimum& a, const PemOptimum& b) {
   return a.converged != b.converged ? a.converged : a.cost < b.cost;
 }
 
-// From the asset's values; from others only where that ended badly.
+SimulationOptions simulation_options(std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
+  constexpr double kFewestSteps = 10000.0;  // short recordings start from rest at high resolution
+  std::size_t samples = 0;
+  for (const TimeSeries& recorded : recordings) samples = std::max(samples, recorded.time_s.size());
+  SimulationOptions simulation;
+  simulation.relative_tolerance = options.relative_tolerance;
+  simulation.maximum_steps =
+      static_cast<std::size_t>(kFewestSteps + options.steps_per_sample * static_cast<double>(samples));
+  return simulation;
+}
+
+// From the asset's values; from others only where that does not converge.
 Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const ActuatorFitOptions& options) {
   Result<PemOptimum> best = search(problem, start_point(problem, 1.0), options);
-  if (problem.shared.empty() || (best && fits_well(*best, options))) return best;
+  if (problem.shared.empty() || (best && best->converged)) return best;
   for (const double factor : options.restart_factors) {
     Result<PemOptimum> other = search(problem, start_point(problem, factor), options);
     if (other && (!best || better(*other, *best))) best = std::move(other);
-    if (best && fits_well(*best, options)) break;
+    if (best && best->converged) break;
   }
   return best;
 }
@@ -47,6 +48,7 @@ Status ActuatorFitOptions::validate() const {
   if (!(cost_tolerance > 0.0)) return fail("cost_tolerance must be positive, is " + in_words(cost_tolerance));
   if (!(relative_tolerance > 0.0 && relative_tolerance <= 1e-3))
     return fail("relative_tolerance must be positive and at most 1e-3, is " + in_words(relative_tolerance));
+  if (!(steps_per_sample > 0.0)) return fail("steps_per_sample must be positive, is " + in_words(steps_per_sample));
   for (const double factor : restart_factors)
     if (!(factor > 0.0)) return fail("restart_factors must be positive, one is " + in_words(factor));
   return admissibility.validate();
@@ -60,7 +62,7 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   if (const Status valid = options.validate(); !valid) return failed(valid.error());
   Result<PemProblem> problem = make_pem_problem(asset, recordings, options.estimate_shared);
   if (!problem) return failed(problem.error());
-  problem->simulation_options.relative_tolerance = options.relative_tolerance;
+  problem->simulation_options = simulation_options(recordings, options);
   Result<PemOptimum> optimum = search_from_several_starts(*problem, options);
   if (optimum && add_interpolation_error(*problem, *optimum, asset, recordings)) {
     const int iterations = optimum->iterations;

@@ -1,0 +1,95 @@
+#include "services/data_acquisition/recordings_folder.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <set>
+
+#include "services/common/recording/recording_file.hpp"
+#include "services/data_acquisition/data_acquisition.hpp"
+#include "tests/unit/signal/synthetic_pst.hpp"
+
+namespace sealwatch {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RecordingsFolderTest : public testing::Test {
+ protected:
+  RecordingsFolderTest() : directory_(fs::path(testing::TempDir()) / "sealwatch_recordings_folder") {
+    fs::remove_all(directory_);
+    AssetConfig asset;
+    asset.asset_id = "XT03-MV2";
+    assets_ = {asset};
+  }
+  ~RecordingsFolderTest() override { fs::remove_all(directory_); }
+
+  void drop(const std::string& name, const std::string& asset_id) {
+    Recording recording;
+    recording.recording_id = name;
+    recording.asset_id = asset_id;
+    recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = 6.0}.record();
+    ASSERT_TRUE(write_recording_csv(recording, (directory_ / (name + ".csv")).string()));
+  }
+  RecordingsFolder folder(DataAcquisition& layer) {
+    return {directory_, assets_, [&layer](const RawSamples& first) { return layer.is_closed(first); },
+            [this](const Error& error) { errors_.push_back(error.describe()); }};
+  }
+  /// Names in the folder and, with a slash, below it.
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(directory_))
+      if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), directory_).string());
+    return names;
+  }
+
+  fs::path directory_;
+  std::vector<AssetConfig> assets_;
+  std::vector<std::string> errors_;
+};
+
+TEST_F(RecordingsFolderTest, TakesARecordingAndPutsItAwayWhenItsTestIsConcluded) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  drop("april", "XT03-MV2");
+  EXPECT_TRUE(watched.look().empty()) << "it might still be growing";
+  const std::vector<Message> blocks = watched.look();
+  ASSERT_EQ(blocks.size(), 2U);
+  EXPECT_FALSE(header_of(blocks[0]).replay);
+  EXPECT_TRUE(watched.look().empty()) << "taken once";
+  EXPECT_THAT(files(), testing::ElementsAre("april.csv", "april.yaml")) << "not concluded yet";
+  for (const Message& block : blocks) (void)layer.receive(block);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(files(), testing::ElementsAre("done/april.csv", "done/april.yaml"));
+  EXPECT_THAT(errors_, testing::IsEmpty());
+}
+
+TEST_F(RecordingsFolderTest, ARestartReadsWhatWasNotConcludedAgainWithTheSameIds) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder before = folder(layer);
+  drop("april", "XT03-MV2");
+  (void)before.look();
+  const std::vector<Message> first = before.look();
+  RecordingsFolder after = folder(layer);
+  (void)after.look();
+  const std::vector<Message> again = after.look();
+  EXPECT_EQ(again, first);
+}
+
+TEST_F(RecordingsFolderTest, RejectsWhatCannotBeReadWithTheReason) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  drop("stranger", "XT09-MV9");
+  std::ofstream(directory_ / "broken.csv") << "time[s],flow[m3/s]\n0,abc\n";
+  std::ofstream(directory_ / "broken.yaml") << "asset_id: XT03-MV2\n";
+  (void)watched.look();
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(files(), testing::IsSupersetOf({"rejected/broken.csv", "rejected/broken.csv.error.txt",
+                                              "rejected/stranger.csv", "rejected/stranger.csv.error.txt"}));
+  ASSERT_EQ(errors_.size(), 2U);
+  EXPECT_THAT(errors_[0], testing::HasSubstr("abc"));
+  EXPECT_THAT(errors_[1], testing::HasSubstr("XT09-MV9"));
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -161,8 +161,8 @@ void FeatureList::add_motion() {
   const MotionPhase* out = first(MotionKind::out);
   if (!out) return;
   const std::vector<double>& x = test_.position();
-  const MotionPhase& before = test_.phases().front();
-  const double start = before.kind == MotionKind::rest ? standstill_position(before) : x.front();
+  const MotionPhase& front = test_.phases().front();
+  const double start = front.kind == MotionKind::rest ? standstill_position(front) : x.front();
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
   const double noise = test_.smooth_noise_std("position");
   add("travel", Estimate{std::max(*most - start, start - *least), std::sqrt(2.0) * noise});

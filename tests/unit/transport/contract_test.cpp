@@ -43,11 +43,10 @@ Message advisory(const std::string& asset, std::uint64_t number, const std::stri
 
 std::uint64_t number_of(const BusItem& item) { return header_of(std::get<Message>(item)).stream_sequence; }
 
-template <class Kit>
-class BusContract : public testing::Test {
+class BusContract : public testing::TestWithParam<KitMaker> {
  protected:
   [[nodiscard]] std::unique_ptr<Bus> open() {
-    auto bus = kit_.open();
+    auto bus = kit_->open();
     EXPECT_TRUE(bus);
     return bus;
   }
@@ -87,28 +86,32 @@ class BusContract : public testing::Test {
     return result;
   }
 
-  Kit kit_;
+  std::unique_ptr<Kit> kit_ = GetParam()();
 };
 
-using Kits = testing::Types<InMemoryKit, SameDomainKit, NetworkKit>;
-TYPED_TEST_SUITE(BusContract, Kits);
+INSTANTIATE_TEST_SUITE_P(, BusContract, testing::Values(in_memory_kit, same_domain_kit, network_kit),
+                         [](const auto& kit) {
+                           return kit.param == in_memory_kit     ? "InMemory"
+                                  : kit.param == same_domain_kit ? "SameDomain"
+                                                                 : "Network";
+                         });
 
-TYPED_TEST(BusContract, LosesNothingOfABurstAndKeepsItsOrder) {
-  auto subscriber = this->open_subscribed(kAdvisory);
-  auto publisher = this->open();
-  this->connect(*publisher, *subscriber);
+TEST_P(BusContract, LosesNothingOfABurstAndKeepsItsOrder) {
+  auto subscriber = open_subscribed(kAdvisory);
+  auto publisher = open();
+  connect(*publisher, *subscriber);
   constexpr std::size_t kBurst = 10'000;
   std::thread burst([&] {
     for (std::size_t k = 1; k <= kBurst; ++k) ASSERT_TRUE(publisher->publish(advisory(kAssets[k % kAssets.size()], k)));
   });
-  const auto items = this->collect(*subscriber, kBurst);
+  const auto items = collect(*subscriber, kBurst);
   burst.join();
-  EXPECT_EQ(this->numbers(items), this->count_from_1(kBurst));
+  EXPECT_EQ(numbers(items), count_from_1(kBurst));
 }
 
-TYPED_TEST(BusContract, CarriesLargeBlocksUnchanged) {
-  auto subscriber = this->open_subscribed(kRawSamples);
-  auto publisher = this->open();
+TEST_P(BusContract, CarriesLargeBlocksUnchanged) {
+  auto subscriber = open_subscribed(kRawSamples);
+  auto publisher = open();
   auto block = of_asset<RawSamples>("XT03-MV2");
   block.samples.time_s.resize(6200);
   std::iota(block.samples.time_s.begin(), block.samples.time_s.end(), 0.0);
@@ -121,87 +124,87 @@ TYPED_TEST(BusContract, CarriesLargeBlocksUnchanged) {
       ASSERT_TRUE(publisher->publish(Message(block)));
     }
   });
-  const auto items = this->collect(*subscriber, 1);
+  const auto items = collect(*subscriber, 1);
   sender.join();
   ASSERT_FALSE(items.empty());
   EXPECT_EQ(std::get<RawSamples>(std::get<Message>(items.front())).samples, block.samples);
 }
 
-TYPED_TEST(BusContract, GivesALateSubscriberTheLastMessageOfEveryAssetOfEveryPublisher) {
-  auto first = this->open();
-  auto second = this->open();
+TEST_P(BusContract, GivesALateSubscriberTheLastMessageOfEveryAssetOfEveryPublisher) {
+  auto first = open();
+  auto second = open();
   for (std::uint64_t k = 1; k <= 5; ++k) {
     ASSERT_TRUE(first->publish(advisory("a", k, "first")));
     ASSERT_TRUE(first->publish(advisory("b", 10 + k, "first")));
     ASSERT_TRUE(second->publish(advisory("a", 20 + k, "second")));
   }
-  auto late = this->open_subscribed(kAdvisory);
-  auto got = this->numbers(this->collect(*late, 3));
+  auto late = open_subscribed(kAdvisory);
+  auto got = numbers(collect(*late, 3));
   std::ranges::sort(got);
   EXPECT_EQ(got, (std::vector<std::uint64_t>{5, 15, 25}));
   EXPECT_TRUE(late->receive(kQuiet).empty());
 }
 
-TYPED_TEST(BusContract, KeepsTheOrderOfEachOfTwoPublishers) {
-  auto subscriber = this->open_subscribed(kAdvisory);
-  auto first = this->open();
-  auto second = this->open();
-  this->connect(*first, *subscriber);
-  this->connect(*second, *subscriber);
+TEST_P(BusContract, KeepsTheOrderOfEachOfTwoPublishers) {
+  auto subscriber = open_subscribed(kAdvisory);
+  auto first = open();
+  auto second = open();
+  connect(*first, *subscriber);
+  connect(*second, *subscriber);
   constexpr std::size_t kEach = 500;
   const auto send = [](Bus& bus, const std::string& writer) {
     for (std::uint64_t k = 1; k <= kEach; ++k) ASSERT_TRUE(bus.publish(advisory("a", k, writer)));
   };
   std::thread sender([&] { send(*first, "first"); });
   send(*second, "second");
-  const auto items = this->collect(*subscriber, 2 * kEach);
+  const auto items = collect(*subscriber, 2 * kEach);
   sender.join();
   std::map<std::string, std::vector<std::uint64_t>> by_writer;
   for (const BusItem& item : items) by_writer[header_of(std::get<Message>(item)).writer_id].push_back(number_of(item));
-  EXPECT_EQ(by_writer["first"], this->count_from_1(kEach));
-  EXPECT_EQ(by_writer["second"], this->count_from_1(kEach));
+  EXPECT_EQ(by_writer["first"], count_from_1(kEach));
+  EXPECT_EQ(by_writer["second"], count_from_1(kEach));
 }
 
-TYPED_TEST(BusContract, DeliversWhatWasPublishedJustBeforeThePublisherClosed) {
-  auto subscriber = this->open_subscribed(kAdvisory);
-  auto publisher = this->open();
-  this->connect(*publisher, *subscriber);
+TEST_P(BusContract, DeliversWhatWasPublishedJustBeforeThePublisherClosed) {
+  auto subscriber = open_subscribed(kAdvisory);
+  auto publisher = open();
+  connect(*publisher, *subscriber);
   constexpr std::size_t kCount = 300;
   for (std::uint64_t k = 1; k <= kCount; ++k) ASSERT_TRUE(publisher->publish(advisory("a", k)));
   publisher.reset();
-  EXPECT_EQ(this->numbers(this->collect(*subscriber, kCount)), this->count_from_1(kCount));
+  EXPECT_EQ(numbers(collect(*subscriber, kCount)), count_from_1(kCount));
   EXPECT_TRUE(subscriber->receive(kQuiet).empty()) << "the end of a publisher is not a message";
 }
 
-TYPED_TEST(BusContract, HearsARestartedPublisher) {
-  auto subscriber = this->open_subscribed(kAdvisory);
+TEST_P(BusContract, HearsARestartedPublisher) {
+  auto subscriber = open_subscribed(kAdvisory);
   for (std::uint64_t life = 1; life <= 3; ++life) {
-    auto publisher = this->open();
+    auto publisher = open();
     ASSERT_TRUE(publisher->publish(advisory("a", life)));
-    EXPECT_EQ(this->numbers(this->collect(*subscriber, 1)), std::vector<std::uint64_t>{life});
+    EXPECT_EQ(numbers(collect(*subscriber, 1)), std::vector<std::uint64_t>{life});
   }
 }
 
-TYPED_TEST(BusContract, GivesOnlySubscribedTopics) {
-  auto subscriber = this->open_subscribed(kAdvisory);
-  auto publisher = this->open();
-  this->connect(*publisher, *subscriber);
+TEST_P(BusContract, GivesOnlySubscribedTopics) {
+  auto subscriber = open_subscribed(kAdvisory);
+  auto publisher = open();
+  connect(*publisher, *subscriber);
   ASSERT_TRUE(publisher->publish(Message(of_asset<PstRequest>("a"))));
   ASSERT_TRUE(publisher->publish(ServiceStatus{}));
   ASSERT_TRUE(publisher->publish(advisory("a", 1)));
-  EXPECT_EQ(this->numbers(this->collect(*subscriber, 1)), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(numbers(collect(*subscriber, 1)), std::vector<std::uint64_t>{1});
   EXPECT_TRUE(subscriber->receive(kQuiet).empty());
 }
 
-TYPED_TEST(BusContract, CarriesServiceTopics) {
-  auto subscriber = this->open();
+TEST_P(BusContract, CarriesServiceTopics) {
+  auto subscriber = open();
   ASSERT_TRUE(subscriber->subscribe_service_topics());
-  auto publisher = this->open();
+  auto publisher = open();
   ServiceStatus status;
   status.service = "state_detection";
   status.written = {{"state_report", "w", 7}};
   ASSERT_TRUE(publisher->publish(status));
-  auto items = this->collect(*subscriber, 1);
+  auto items = collect(*subscriber, 1);
   ASSERT_EQ(items.size(), 1U);
   EXPECT_EQ(std::get<ServiceStatus>(items.front()), status);
   const ResendRequest request{"w", "advisory", 3, 9, "state_detection"};
@@ -212,23 +215,23 @@ TYPED_TEST(BusContract, CarriesServiceTopics) {
   EXPECT_EQ(std::get<ResendRequest>(items.front()), request);
 }
 
-TYPED_TEST(BusContract, TakesAtMostAsManyAsAskedFor) {
-  auto subscriber = this->open_subscribed(kAdvisory);
-  auto publisher = this->open();
-  this->connect(*publisher, *subscriber);
+TEST_P(BusContract, TakesAtMostAsManyAsAskedFor) {
+  auto subscriber = open_subscribed(kAdvisory);
+  auto publisher = open();
+  connect(*publisher, *subscriber);
   for (std::uint64_t k = 1; k <= 100; ++k) ASSERT_TRUE(publisher->publish(advisory("a", k)));
   std::vector<std::uint64_t> got;
   const auto deadline = Clock::now() + kPatience;
   for (std::size_t most = 1; got.size() < 100 && Clock::now() < deadline; most = most % 10 + 3) {
-    const auto numbers = this->numbers(subscriber->receive(milliseconds(100), most));
-    EXPECT_LE(numbers.size(), most);
-    got.insert(got.end(), numbers.begin(), numbers.end());
+    const auto taken = numbers(subscriber->receive(milliseconds(100), most));
+    EXPECT_LE(taken.size(), most);
+    got.insert(got.end(), taken.begin(), taken.end());
   }
-  EXPECT_EQ(got, this->count_from_1(100));
+  EXPECT_EQ(got, count_from_1(100));
 }
 
-TYPED_TEST(BusContract, WakesAReceiveThatWaits) {
-  auto bus = this->open_subscribed(kAdvisory);
+TEST_P(BusContract, WakesAReceiveThatWaits) {
+  auto bus = open_subscribed(kAdvisory);
   const auto start = Clock::now();
   std::thread waker([&] {
     std::this_thread::sleep_for(milliseconds(50));
@@ -239,16 +242,16 @@ TYPED_TEST(BusContract, WakesAReceiveThatWaits) {
   EXPECT_LT(Clock::now() - start, kPatience / 2);
 }
 
-TYPED_TEST(BusContract, RemembersAWakeThatCameBeforeTheReceive) {
-  auto bus = this->open_subscribed(kAdvisory);
+TEST_P(BusContract, RemembersAWakeThatCameBeforeTheReceive) {
+  auto bus = open_subscribed(kAdvisory);
   bus->wake();
   const auto start = Clock::now();
   EXPECT_TRUE(bus->receive(kPatience).empty());
   EXPECT_LT(Clock::now() - start, kPatience / 2);
 }
 
-TYPED_TEST(BusContract, WaitsNoLongerThanTold) {
-  auto bus = this->open_subscribed(kAdvisory);
+TEST_P(BusContract, WaitsNoLongerThanTold) {
+  auto bus = open_subscribed(kAdvisory);
   const auto start = Clock::now();
   EXPECT_TRUE(bus->receive(milliseconds(60)).empty());
   EXPECT_GE(Clock::now() - start, milliseconds(60));

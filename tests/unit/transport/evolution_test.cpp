@@ -73,8 +73,8 @@ class Evolution : public testing::Test {
     EXPECT_EQ(items.size(), 1U);
     return items.empty() ? PstRequest{} : std::get<PstRequest>(std::get<Message>(items.front()));
   }
-  std::unique_ptr<Bus> domain_0_ = SameDomainKit().open();  // sets the domain up for foreigners
-  std::unique_ptr<Bus> bus_ = NetworkKit().open();          // meets them over UDP
+  std::unique_ptr<Bus> domain_0_ = same_domain_kit()->open();  // sets the domain up for foreigners
+  std::unique_ptr<Bus> bus_ = network_kit()->open();           // meets them over UDP
 };
 
 TEST_F(Evolution, AnOlderWritersMessageHasEmptyNewFields) {

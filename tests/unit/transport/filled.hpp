@@ -22,7 +22,7 @@ class Filler {
   }
 
   template <class T>
-  void fill(std::string_view name, T& value) {
+  [[gnu::noinline]] void fill(std::string_view name, T& value) {
     ++count_;
     if constexpr (std::is_same_v<T, bool>)
       value = !value;  // the opposite of the default

@@ -57,9 +57,9 @@ class RoundTrip : public testing::Test {
   }
 
  private:
-  NetworkKit kit_;
-  std::unique_ptr<Bus> publisher_ = kit_.open();
-  std::unique_ptr<Bus> subscriber_ = kit_.open();
+  std::unique_ptr<Kit> kit_ = network_kit();
+  std::unique_ptr<Bus> publisher_ = kit_->open();
+  std::unique_ptr<Bus> subscriber_ = kit_->open();
 };
 
 using AllTypes = testing::Types<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,

@@ -115,9 +115,10 @@ class Process {
     ASSERT_TRUE(started) << started.error().describe();
   }
   void step() {
-    const Status stepped = runner_.step(std::chrono::milliseconds(1));
+    const Status stepped = try_step();
     ASSERT_TRUE(stepped) << stepped.error().describe();
   }
+  Status try_step() { return runner_.step(std::chrono::milliseconds(1)); }
   [[nodiscard]] Journal& journal() { return journal_; }
   [[nodiscard]] int steps() const { return fate_.steps(); }
   [[nodiscard]] std::vector<Message> outputs() {

@@ -61,7 +61,7 @@ Outcome run(Victim victim, int fatal_step) {
            downstream->journal().open_inputs() == 0;
   };
   result.finished = step_until(done, step);
-  for (int extra = 0; extra < 3; ++extra) step();
+  for (int extra = 0; extra < 3 || !upstream || !downstream; ++extra) step();
   result.upstream = upstream->outputs();
   result.downstream = downstream->outputs();
   return result;

@@ -40,7 +40,11 @@ class Place {
   [[nodiscard]] static std::string why_not() {
     return "set SEALWATCH_TEST_POSTGRESQL to a connection string to test on PostgreSQL";
   }
-  [[nodiscard]] std::filesystem::path directory() const { return std::filesystem::temp_directory_path() / name_; }
+  /// In memory where that is possible: these tests are about what is written, not about the disk.
+  [[nodiscard]] std::filesystem::path directory() const {
+    const std::filesystem::path memory = "/dev/shm";
+    return (::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path()) / name_;
+  }
   [[nodiscard]] std::string connection() const {
     if (backend_ == "sqlite3") return "sqlite3://" + (directory() / "journal.db").string();
     return "postgresql://" + server() + " options='-c search_path=" + name_ + "'";

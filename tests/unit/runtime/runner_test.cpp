@@ -1,0 +1,318 @@
+// The runner's side of the contracts of port/layer.hpp and message/service.hpp, one by one.
+#include "services/common/runtime/layer_runner.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "tests/unit/runtime/harness.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::ElementsAre;
+using ::testing::Gt;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+std::unique_ptr<Layer> cutting() { return std::make_unique<CuttingLayer>(); }
+std::unique_ptr<Layer> joining() { return std::make_unique<JoiningLayer>(); }
+
+/// What an outsider sees on the bus.
+class Listener {
+ public:
+  explicit Listener(std::shared_ptr<InMemoryNetwork> network) : bus_(std::move(network)) {
+    constexpr std::array kTopics = {Topic::test_features, Topic::state_report, Topic::health_report};
+    EXPECT_TRUE(bus_.subscribe(kTopics));
+    EXPECT_TRUE(bus_.subscribe_service_topics());
+  }
+  void listen(milliseconds timeout = milliseconds(0)) {
+    for (BusItem& item : bus_.receive(timeout, 10'000)) {
+      if (auto* message = std::get_if<Message>(&item)) messages.push_back(std::move(*message));
+      if (auto* status = std::get_if<ServiceStatus>(&item)) statuses.push_back(std::move(*status));
+      if (auto* request = std::get_if<ResendRequest>(&item)) requests.push_back(std::move(*request));
+    }
+  }
+  std::vector<std::uint64_t> sequences(Topic topic) {
+    listen();
+    std::vector<std::uint64_t> found;
+    for (const Message& message : messages)
+      if (topic_of(message) == topic) found.push_back(header_of(message).stream_sequence);
+    return found;
+  }
+  Bus& bus() { return bus_; }
+  std::vector<Message> messages;
+  std::vector<ServiceStatus> statuses;
+  std::vector<ResendRequest> requests;
+
+ private:
+  InMemoryBus bus_;
+};
+
+class RunnerTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<Process> cutter(RunnerOptions options = fast_options()) {
+    auto process = std::make_unique<Process>(network_, cutting, place_.connection(), Fate(), std::move(options));
+    process->start();
+    return process;
+  }
+  std::unique_ptr<Process> joiner(RunnerOptions options = fast_options()) {
+    auto process = std::make_unique<Process>(network_, joining, place_.connection(), Fate(), std::move(options));
+    process->start();
+    return process;
+  }
+  static void step(Process& process, int times) {
+    for (int k = 0; k < times; ++k) process.step();
+  }
+  void send(const Message& message) { EXPECT_TRUE(sender_.publish(message)); }
+  static Message features(const std::string& pst, std::uint64_t sequence, bool replay = false,
+                          const std::string& writer = "upstream") {
+    TestFeatures message;
+    message.asset_id = "A";
+    message.header = header("test_features/" + pst, pst);
+    message.header.writer_id = writer;
+    message.header.stream_sequence = sequence;
+    message.header.replay = replay;
+    return message;
+  }
+  /// A block as a foreign process sends it: no id, no stream.
+  static Message foreign_block(double value, BlockBoundary boundary = BlockBoundary::inside) {
+    RawSamples block;
+    block.asset_id = "A";
+    block.recording_id = "R";
+    block.boundary = boundary;
+    block.samples.time_s = {value};
+    return block;
+  }
+  static std::uint64_t inputs_open(Process& process) { return process.journal().open_inputs(); }
+
+  Place place_;
+  std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
+  Listener listener_{network_};
+  InMemoryBus sender_{network_};
+};
+
+TEST_F(RunnerTest, PublishesWhatWasCommittedWithStamps) {
+  auto process = cutter();
+  Feeder feeder(network_, blocks_of_tests(2, {"A"}));
+  feeder.send(4);
+  step(*process, 3);
+  EXPECT_THAT(listener_.sequences(Topic::test_features), ElementsAre(1, 2));
+  for (const Message& message : listener_.messages) {
+    EXPECT_EQ(header_of(message).writer_id, process->journal().writer_id());
+    EXPECT_EQ(header_of(message).publishing_time_ns, process->clock().now().nanoseconds);
+  }
+  EXPECT_THAT(process->outputs(), SizeIs(4));
+}
+
+TEST_F(RunnerTest, PublishesTheLastStateOfEveryAssetAgainAtTheStart) {
+  {
+    auto process = cutter();
+    Feeder feeder(network_, blocks_of_tests(3, {"A", "B"}));
+    feeder.send(100);
+    step(*process, 3);
+  }
+  Listener late(network_);
+  EXPECT_THAT(late.sequences(Topic::test_features), IsEmpty()) << "its history went with the writer";
+  auto process = cutter();
+  EXPECT_THAT(late.sequences(Topic::test_features), ElementsAre(5, 6));
+  EXPECT_THAT(late.sequences(Topic::state_report), ElementsAre(5, 6));
+}
+
+TEST_F(RunnerTest, SendsAgainWhatIsAskedForAndEndsWithTheLatest) {
+  auto process = cutter();
+  Feeder feeder(network_, blocks_of_tests(5, {"A"}));
+  feeder.send(100);
+  step(*process, 3);
+  listener_.listen();
+  listener_.messages.clear();
+  const std::string writer = process->journal().writer_id();
+  EXPECT_TRUE(listener_.bus().publish(ResendRequest{writer, "test_features", 0, 2, "listener"}));
+  EXPECT_TRUE(listener_.bus().publish(ResendRequest{"somebody else", "test_features", 1, 4, "listener"}));
+  EXPECT_TRUE(listener_.bus().publish(ResendRequest{writer, "advisory", 1, 4, "listener"}));
+  EXPECT_TRUE(listener_.bus().publish(ResendRequest{writer, "no_topic", 1, 4, "listener"}));
+  step(*process, 3);
+  EXPECT_THAT(listener_.sequences(Topic::test_features), ElementsAre(1, 2, 5))
+      << "a late subscriber must find the latest as the last one published";
+  EXPECT_THAT(listener_.sequences(Topic::state_report), IsEmpty());
+  EXPECT_TRUE(listener_.bus().publish(ResendRequest{writer, "test_features", 5, 900, "listener"}));
+  step(*process, 3);
+  EXPECT_THAT(listener_.sequences(Topic::test_features), ElementsAre(1, 2, 5, 5)) << "no more than there is";
+}
+
+TEST_F(RunnerTest, ServesALongRequestInPiecesWhileItGoesOnReceiving) {
+  auto process = cutter();
+  Feeder feeder(network_, blocks_of_tests(100, {"A"}));
+  feeder.send(200);
+  step(*process, 10);
+  listener_.listen();
+  listener_.messages.clear();
+  EXPECT_TRUE(listener_.bus().publish(ResendRequest{process->journal().writer_id(), "test_features", 1, 100, "l"}));
+  step(*process, 1);
+  EXPECT_THAT(listener_.sequences(Topic::test_features), SizeIs(64));
+  step(*process, 1);
+  EXPECT_THAT(listener_.sequences(Topic::test_features), SizeIs(100));
+}
+
+TEST_F(RunnerTest, AGapIsFilledBeforeAnythingBeyondItIsConcluded) {
+  auto process = joiner();
+  send(features("p3", 3));
+  step(*process, 2);
+  EXPECT_EQ(inputs_open(*process), 0U) << "held back";
+  ASSERT_TRUE(step_until([&] { return listener_.listen(), !listener_.requests.empty(); }, [&] { process->step(); }));
+  EXPECT_EQ(listener_.requests[0].first_sequence, 1U);
+  EXPECT_EQ(listener_.requests[0].last_sequence, 2U);
+  EXPECT_EQ(listener_.requests[0].writer_id, "upstream");
+  EXPECT_EQ(listener_.requests[0].topic, "test_features");
+  send(features("p1", 1));
+  send(features("p2", 2));
+  step(*process, 2);
+  std::vector<std::string> order;
+  EXPECT_TRUE(process->journal().for_each_open_input(
+      [&](const Message& m) { return order.push_back(header_of(m).pst_id), Status(); }));
+  EXPECT_THAT(order, ElementsAre("p1", "p2", "p3"));
+}
+
+TEST_F(RunnerTest, AMessageThatComesFromTwoWritersIsTakenOnce) {
+  auto process = joiner();
+  send(features("p1", 1, false, "writer before its journal was lost"));
+  send(features("p1", 1, false, "writer after"));
+  send(features("p2", 2, false, "writer after"));
+  step(*process, 2);
+  EXPECT_EQ(inputs_open(*process), 2U);
+  const auto positions = process->journal().positions().value();
+  EXPECT_THAT(positions, ::testing::Contains(StreamPosition{"test_features", "writer after", 2}));
+}
+
+TEST_F(RunnerTest, AForeignSendersMessagesGetIdsAndTheLastOneMayComeAgain) {
+  {
+    auto process = cutter();
+    send(foreign_block(1.0));
+    send(foreign_block(2.0));
+    send(foreign_block(2.0));
+    step(*process, 2);
+    EXPECT_EQ(inputs_open(*process), 2U) << "the second of two equal messages is a repetition";
+  }
+  auto process = cutter();  // the network gives it the sender's last message again
+  step(*process, 2);
+  EXPECT_EQ(inputs_open(*process), 2U);
+  send(foreign_block(1.0));
+  step(*process, 2);
+  EXPECT_EQ(inputs_open(*process), 3U) << "the same content later, after something else, is news";
+  std::vector<std::string> ids;
+  EXPECT_TRUE(process->journal().for_each_open_input(
+      [&](const Message& m) { return ids.push_back(header_of(m).message_id), Status(); }));
+  EXPECT_THAT(ids[0], ::testing::MatchesRegex("raw_samples/A/[0-9a-f]{16}"));
+  EXPECT_EQ(ids[2], ids[0] + "#2");
+}
+
+TEST_F(RunnerTest, TimePassesInLiveOperationAlone) {
+  JoiningLayer* layer = nullptr;
+  const auto observed = [&layer] {
+    auto made = std::make_unique<JoiningLayer>();
+    layer = made.get();
+    return made;
+  };
+  InMemoryBus bus(network_);
+  InMemoryBus heartbeat_bus(network_);
+  TestClock clock;
+  for (const bool replay : {true, false}) {
+    const Place place;
+    auto journal = Journal::open(place.connection(), "health_assessment");
+    const auto made = observed();
+    LayerRunner runner(*made, bus, heartbeat_bus, *journal, clock, fast_options());
+    ASSERT_TRUE(runner.start());
+    send(features("p1", 1, replay, replay ? "a" : "b"));
+    EXPECT_TRUE(runner.step(milliseconds(1)));
+    std::this_thread::sleep_for(milliseconds(1050));
+    EXPECT_TRUE(runner.step(milliseconds(1)));
+    if (replay)
+      EXPECT_THAT(layer->ticks, IsEmpty());
+    else
+      EXPECT_THAT(layer->ticks, ::testing::Each(clock.now()));
+    EXPECT_EQ(layer->ticks.empty(), replay);
+  }
+}
+
+TEST_F(RunnerTest, TakesLocalInputsOnce) {
+  RunnerOptions options = fast_options();
+  int asked = 0;
+  options.local_inputs = [&asked] {
+    ++asked;
+    std::vector<Message> found;
+    for (const RawSamples& block : blocks_of_tests(1, {"A"})) found.emplace_back(block);
+    return found;
+  };
+  auto process = cutter(options);
+  step(*process, 3);
+  std::this_thread::sleep_for(milliseconds(1050));
+  step(*process, 3);
+  EXPECT_EQ(asked, 2);
+  EXPECT_THAT(process->outputs(), SizeIs(2));
+}
+
+/// Computes for a while.
+class SlowLayer final : public JoiningLayer {
+ public:
+  Conclusion receive(const Message& input) override {
+    std::this_thread::sleep_for(milliseconds(200));
+    return JoiningLayer::receive(input);
+  }
+};
+
+TEST_F(RunnerTest, BeatsWhileTheLayerComputesAndClaimsNothingThatIsNotCommitted) {
+  Process process(
+      network_, [] { return std::make_unique<SlowLayer>(); }, place_.connection());
+  process.start();
+  send(features("p1", 1));
+  std::this_thread::sleep_for(milliseconds(30));
+  listener_.listen();
+  listener_.statuses.clear();
+  process.step();
+  listener_.listen();
+  EXPECT_THAT(listener_.statuses, SizeIs(Gt(10U))) << "a beat every 5 ms, over 200 ms";
+  for (const ServiceStatus& status : listener_.statuses)
+    for (const StreamPosition& position : status.received) EXPECT_EQ(position.sequence, 0U);
+  listener_.statuses.clear();
+  ASSERT_TRUE(step_until([&] { return !listener_.statuses.empty(); }, [&] { listener_.listen(milliseconds(5)); }));
+  EXPECT_THAT(listener_.statuses.back().received, ElementsAre(StreamPosition{"test_features", "upstream", 1}));
+  EXPECT_EQ(listener_.statuses.back().pending_inputs, 1U);
+}
+
+TEST_F(RunnerTest, SaysHowFarItsStreamsGoAndThatItStops) {
+  {
+    auto process = cutter();
+    Feeder feeder(network_, blocks_of_tests(2, {"A"}));
+    feeder.send(4);
+    step(*process, 3);
+    ASSERT_TRUE(step_until([&] { return !listener_.statuses.empty() && listener_.statuses.back().written.size() == 2; },
+                           [&] { listener_.listen(milliseconds(5)); }));
+    const std::string writer = process->journal().writer_id();
+    EXPECT_THAT(listener_.statuses.back().written,
+                ElementsAre(StreamPosition{"test_features", writer, 2}, StreamPosition{"state_report", writer, 2}));
+    EXPECT_EQ(listener_.statuses.back().state, "running");
+  }
+  listener_.listen();
+  EXPECT_EQ(listener_.statuses.back().state, "stopping");
+}
+
+TEST_F(RunnerTest, AJournalThatCannotBeWrittenStopsItBeforeAnythingIsPublished) {
+  const std::string patient = "sqlite3://timeout=1 dbname=" + (place_.directory() / "journal.db").string();
+  Process process(network_, cutting, patient);
+  process.start();
+  soci::session other(place_.connection());
+  other << "BEGIN IMMEDIATE";
+  Feeder feeder(network_, blocks_of_tests(1, {"A"}));
+  feeder.send(2);
+  const Status stepped = process.try_step();
+  ASSERT_FALSE(stepped);
+  EXPECT_THAT(stepped.error().describe(), HasSubstr("locked"));
+  other << "ROLLBACK";
+  EXPECT_THAT(listener_.sequences(Topic::test_features), IsEmpty());
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kIterations = 8;
 constexpr int kHalvings = 4;
-constexpr double kSettled = 1e-4;  // relative decrease of the cost that is not worth another iteration
+constexpr double kSettled = 1e-3;  // relative decrease of the cost that is not worth another iteration
 
 double noise_std(const PlantSimulation& simulation, const AssetConfig& asset, const std::string& channel) {
   const auto sensor = asset.sensors.find(channel);

@@ -75,8 +75,8 @@ class PlantSimulationOf<Model>::Run {
     Vector state;
     std::copy(values.initial_state.begin(), values.initial_state.end(), state.begin());
     const double begin = simulation_.input_.times().front();
-    QuasiSteadyState<System> rest(system_, fast, scale_);
-    if (!rest.solve(begin, state) || !rest.differentiate(begin, state, point_.data(), stride)) return false;
+    QuasiSteadyState<System> rest(system_, begin, fast, scale_);
+    if (!rest.solve(state) || !rest.differentiate(state, point_.data(), stride)) return false;
     for (int k = 0; k < kStates; ++k) point_[k * stride] = state[k];
     return true;
   }

@@ -1,15 +1,16 @@
 // The quasi-steady initial state: fast states for which dy/dt = 0 while the other states are held, and its
 // sensitivities.
 //
-// Newton's iteration made robust by pseudo-time (implicit Euler whose step grows):
-//   (I/h - J_FF) d = f_F;        sensitivities:  -J_FF S_F = J_FH S_H + df_F/dp      (F fast, H held)
+// The fast states relax from their guess in pseudo-time, integrated coarsely (so that they end in the rest that the
+// real transient would reach), then Newton's iteration finishes:  -J_FF d = f_F. Sensitivities (F fast, H held):  -J_FF
+// S_F = J_FH S_H + df_F/dp
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "sealwatch/ode/lu.hpp"
+#include "sealwatch/ode/bdf.hpp"
 
 namespace sealwatch {
 
@@ -19,46 +20,29 @@ class QuasiSteadyState {
   static constexpr int kStates = System::kStates;
   using Mask = std::array<bool, kStates>;
   using Vector = std::array<double, kStates>;
+  using Matrix = typename LuFactorisation<kStates>::Matrix;
 
-  QuasiSteadyState(const System& system, const Mask& fast, const Vector& scale)
-      : system_(system), fast_(fast), scale_(scale) {}
+  /// `scale`: size of each state's allowed error.
+  QuasiSteadyState(const System& system, double time, const Mask& fast, const Vector& scale)
+      : frozen_{system, time, fast}, scale_(scale) {}
 
   /// Moves the fast states to rest; false when they do not come to rest.
-  [[nodiscard]] bool solve(double time, Vector& state) {
-    double pseudo_step = 1e-4;
-    for (int iteration = 0; iteration < 300; ++iteration) {
-      Vector change;
-      if (!correction(time, state, 1.0 / pseudo_step, change)) return false;
-      double largest = 0.0;
-      for (int k = 0; k < kStates; ++k) {
-        state[k] += change[k];
-        largest = std::max(largest, std::abs(change[k]) / scale_[k]);
-      }
-      if (!std::isfinite(largest)) return false;
-      if (pseudo_step > 1e9 && largest < 1e-3) return true;
-      // Far from rest the step only grows slowly, so that the path stays that of the real transient.
-      pseudo_step *= largest < 1e4 ? 4.0 : 1.3;
-    }
-    return false;
-  }
+  [[nodiscard]] bool solve(Vector& state) { return relax(state) && finish(state); }
 
   /// Completes the fast rows of [y | S], whose held rows are seeded.
-  [[nodiscard]] bool differentiate(double time, const Vector& state, double* values, std::size_t stride) {
+  [[nodiscard]] bool differentiate(const Vector& state, double* values, std::size_t stride) {
     Vector f;
-    typename LuFactorisation<kStates>::Matrix jacobian;
-    system_.linearise(time, state.data(), f.data(), jacobian);
+    Matrix jacobian;
+    frozen_.system.linearise(frozen_.time, state.data(), f.data(), jacobian);
     std::vector<double> right(kStates * stride, 0.0);
-    system_.add_parameter_derivatives(time, state.data(), 1.0, right.data(), stride);
+    frozen_.system.add_parameter_derivatives(frozen_.time, state.data(), 1.0, right.data(), stride);
     for (int row = 0; row < kStates; ++row)
       for (std::size_t k = 1; k < stride; ++k) {
-        double& entry = right[row * stride + k];
-        if (!fast_[row])
-          entry = values[row * stride + k];
-        else
-          for (int held = 0; held < kStates; ++held)
-            if (!fast_[held]) entry += jacobian[row][held] * values[held * stride + k];
+        if (!frozen_.fast[row]) right[row * stride + k] = values[row * stride + k];
+        for (int held = 0; frozen_.fast[row] && held < kStates; ++held)
+          if (!frozen_.fast[held]) right[row * stride + k] += jacobian[row][held] * values[held * stride + k];
       }
-    if (!lu_.factorise(reduced(jacobian, 0.0))) return false;
+    if (!lu_.factorise(reduced(jacobian))) return false;
     lu_.solve(right.data(), static_cast<int>(stride), stride);
     for (int row = 0; row < kStates; ++row)
       for (std::size_t k = 1; k < stride; ++k) values[row * stride + k] = right[row * stride + k];
@@ -66,30 +50,69 @@ class QuasiSteadyState {
   }
 
  private:
-  // shift I - J on the fast states, I on the held ones.
-  [[nodiscard]] typename LuFactorisation<kStates>::Matrix reduced(
-      const typename LuFactorisation<kStates>::Matrix& jacobian, double shift) const {
-    typename LuFactorisation<kStates>::Matrix matrix{};
+  /// The system at a fixed time whose held states do not move.
+  struct Frozen {
+    static constexpr int kStates = System::kStates;
+    const System& system;
+    double time;
+    Mask fast;
+    void evaluate(double, const double* y, double* f) const {
+      system.evaluate(time, y, f);
+      for (int row = 0; row < kStates; ++row)
+        if (!fast[row]) f[row] = 0.0;
+    }
+    void linearise(double, const double* y, double* f, Matrix& jacobian) const {
+      system.linearise(time, y, f, jacobian);
+      for (int row = 0; row < kStates; ++row)
+        if (!fast[row]) f[row] = 0.0, jacobian[row].fill(0.0);
+    }
+    void add_parameter_derivatives(double, const double*, double, double*, std::size_t) const {}
+  };
+
+  [[nodiscard]] bool relax(Vector& state) const {
+    constexpr double kPseudoTime_s = 100.0;  // many times the slowest leakage of a closed volume
+    constexpr double kCoarser = 300.0;
+    Vector scale = scale_;
+    for (double& value : scale) value *= kCoarser;
+    Bdf<Frozen> bdf(frozen_, 0, scale, {.maximum_steps = 5000});
+    if (!bdf.start(0.0, state.data())) return false;
+    while (bdf.time() < kPseudoTime_s)
+      if (!bdf.step()) return false;
+    for (int k = 0; k < kStates; ++k) state[k] = bdf.values()[k];
+    return true;
+  }
+
+  [[nodiscard]] bool finish(Vector& state) {
+    constexpr int kIterations = 30;
+    constexpr double kConverged = 1e-3;
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      Vector change;
+      Matrix jacobian;
+      frozen_.linearise(0.0, state.data(), change.data(), jacobian);
+      if (!lu_.factorise(reduced(jacobian))) return false;
+      lu_.solve(change.data(), 1, 1);
+      double largest = 0.0;
+      for (int k = 0; k < kStates; ++k) {
+        state[k] += change[k];
+        largest = std::max(largest, std::abs(change[k]) / scale_[k]);
+      }
+      if (largest < kConverged) return true;
+    }
+    return false;
+  }
+
+  // -J on the fast states, I on the held ones.
+  [[nodiscard]] Matrix reduced(const Matrix& jacobian) const {
+    Matrix matrix{};
     for (int row = 0; row < kStates; ++row) {
       for (int column = 0; column < kStates; ++column)
-        if (fast_[row] && fast_[column]) matrix[row][column] = -jacobian[row][column];
-      matrix[row][row] = fast_[row] ? matrix[row][row] + shift : 1.0;
+        if (frozen_.fast[row] && frozen_.fast[column]) matrix[row][column] = -jacobian[row][column];
+      if (!frozen_.fast[row]) matrix[row][row] = 1.0;
     }
     return matrix;
   }
 
-  [[nodiscard]] bool correction(double time, const Vector& state, double shift, Vector& change) {
-    Vector f;
-    typename LuFactorisation<kStates>::Matrix jacobian;
-    system_.linearise(time, state.data(), f.data(), jacobian);
-    if (!lu_.factorise(reduced(jacobian, shift))) return false;
-    for (int k = 0; k < kStates; ++k) change[k] = fast_[k] ? f[k] : 0.0;
-    lu_.solve(change.data(), 1, 1);
-    return true;
-  }
-
-  const System& system_;
-  Mask fast_;
+  Frozen frozen_;
   Vector scale_;
   LuFactorisation<kStates> lu_;
 };

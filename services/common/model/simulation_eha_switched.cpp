@@ -14,8 +14,8 @@ struct EhaSwitchedModel {
   // The bench waits at rest with its motor off: only the motor and the supply line find their own state.
   static constexpr std::array<bool, EhaSwitched::kStates> kQuasiSteady = {true,  true,  false, true, false,
                                                                           false, false, false, false};
-  static constexpr std::array<double, EhaSwitched::kStates> kScale = {1e-4,  1e-3,  1e-4, 100.0, 100.0,
-                                                                      100.0, 100.0, 1e-6, 1e-8};
+  static constexpr std::array<double, EhaSwitched::kStates> kScale = {1e-3,  1e-2,  1e-4, 500.0, 500.0,
+                                                                      500.0, 500.0, 1e-5, 1e-7};
   // Trapped oil and the light piston oscillate almost undamped; higher orders are not stable there.
   static constexpr int kMaximumOrder = 2;
   static constexpr std::array<ModelInput, 2> kInputs = {{{"motor_duty", false}, {"valve_state", true}}};

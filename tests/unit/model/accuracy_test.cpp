@@ -136,11 +136,8 @@ void compare(double load_factor) {
   std::copy(settled.back().begin(), settled.back().begin() + Eha::kStates, rest.begin());
   const auto exact = solve_with_cvode(oracle, rest, pst.time_s);
   values.initial_state.assign(rest.begin(), rest.end());
-  SimulationOptions options;
-  if (getenv("RTOL")) options.relative_tolerance = atof(getenv("RTOL"));
-  const auto outputs = (*simulation)->run(values, all, options);
+  const auto outputs = (*simulation)->run(values, all);
   ASSERT_TRUE(outputs) << outputs.error().describe();
-  std::printf("steps %zu linearisations %zu\n", outputs->steps, outputs->linearisations);
   for (int k = 0; k < kSensors; ++k) {
     const std::string& channel = (*simulation)->channels()[k];
     const double sigma = asset.sensors.at(channel).noise_std;

@@ -1,1 +1,170 @@
+// What a simulation makes of a recording: quasi-steady start, held and coarse inputs, sensors' filters, errors, and the
+// port Simulator, which estimates the load and the initial state.
+#include "sealwatch/model/simulation.hpp"
+
 #include <gtest/gtest.h>
+
+#include <random>
+
+#include "services/common/model/model_simulator.hpp"
+#include "services/common/model/sensor_filter.hpp"
+#include "tests/unit/model/standard_pst.hpp"
+
+namespace sealwatch {
+namespace {
+
+std::unique_ptr<PlantSimulation> simulation_of(const AssetConfig& asset, const TimeSeries& recorded) {
+  auto simulation = PlantSimulation::create(asset, recorded);
+  EXPECT_TRUE(simulation) << simulation.error().describe();
+  return std::move(*simulation);
+}
+
+SimulatedOutputs run(const PlantSimulation& simulation, const ModelValues& values) {
+  auto outputs = simulation.run(values, {});
+  EXPECT_TRUE(outputs) << outputs.error().describe();
+  return std::move(*outputs);
+}
+
+Eigen::Index column(const PlantSimulation& simulation, const std::string& channel) {
+  const auto names = simulation.channels();
+  return std::find(names.begin(), names.end(), channel) - names.begin();
+}
+
+TEST(Simulation, StartsAtRestAndFollowsThePst) {
+  const AssetConfig asset = nominal_asset("eha");
+  const auto simulation = simulation_of(asset, standard_pst(asset));
+  ModelValues values = simulation->start();
+  values.load_factor = 0.0;
+  const auto outputs = run(*simulation, values);
+  const auto channel = [&](const char* name) { return outputs.values.col(column(*simulation, name)); };
+  EXPECT_NEAR(channel("position")(0), 0.060, 1e-12);
+  EXPECT_NEAR(channel("position").minCoeff(), 0.044, 1.5e-3) << "16 mm, driven open loop";
+  EXPECT_NEAR(channel("velocity")(7 * 200), -1.33e-3, 1.5e-4);
+  EXPECT_NEAR(channel("motor_current")(0), channel("motor_current")(100), 0.05) << "no transient before the test";
+  const double dp = channel("pressure_a")(100) - channel("pressure_b")(100);
+  EXPECT_NEAR(dp * asset.parameter("A_C"), asset.parameter("phi"), 0.01 * asset.parameter("phi"));
+}
+
+TEST(Simulation, TakesTheInputAsHeldWhenTheRecordingSaysSo) {
+  const AssetConfig asset = nominal_asset("eha");
+  TimeSeries linear = standard_pst(asset, 200.0, 3.0), held = linear, shifted = linear;
+  held.input_hold = true;
+  // A held input lags the linear one by half a sample: the piston moves later by just that.
+  auto& u = shifted.channels.front().values;
+  for (std::size_t k = u.size() - 1; k > 0; --k) u[k] = 0.5 * (u[k] + u[k - 1]);
+  const auto position_of = [&](const TimeSeries& samples) {
+    const auto simulation = simulation_of(asset, samples);
+    const auto outputs = run(*simulation, simulation->start());
+    return Eigen::VectorXd(outputs.values.col(column(*simulation, "position")));
+  };
+  const Eigen::VectorXd at_linear = position_of(linear), at_held = position_of(held), at_shifted = position_of(shifted);
+  constexpr double kResolved_m = 2e-7;  // the held input's saw-tooth moves the piston by less
+  EXPECT_GT((at_held - at_linear).cwiseAbs().maxCoeff(), 5.0 * kResolved_m);
+  EXPECT_LT((at_held - at_shifted).cwiseAbs().maxCoeff(), kResolved_m);
+}
+
+TEST(Simulation, DoesNotDependOnTheRecordingsRateOrGaps) {
+  const AssetConfig asset = nominal_asset("eha");
+  const TimeSeries fine = standard_pst(asset, 200.0, 20.0);
+  TimeSeries gappy = fine;
+  for (Series& series : gappy.channels) series.values.clear();
+  gappy.time_s.clear();
+  std::vector<std::size_t> kept;
+  for (std::size_t row = 0; row < fine.time_s.size(); ++row) {
+    const double t = fine.time_s[row];
+    if (row % 4 != 0 && !(t > 0.8 && t < 1.4)) continue;  // 50 Hz, but for the corner that a coarse input cannot show
+    if (t > 5.0 && t < 5.5 && row % 20 != 0) continue;
+    kept.push_back(row);
+    gappy.time_s.push_back(t);
+    for (std::size_t c = 0; c < fine.channels.size(); ++c)
+      gappy.channels[c].values.push_back(fine.channels[c].values[row]);
+  }
+  const auto one = simulation_of(asset, fine), other = simulation_of(asset, gappy);
+  const auto a = run(*one, one->start());
+  ModelValues values = one->start();
+  const auto b = run(*other, values);
+  for (const char* name : {"pressure_a", "position", "velocity", "flow"}) {
+    const double sigma = asset.sensors.at(name).noise_std;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      const double time = gappy.time_s[k];
+      if (time > 12.9) break;
+      EXPECT_NEAR(a.values(static_cast<Eigen::Index>(kept[k]), column(*one, name)),
+                  b.values(static_cast<Eigen::Index>(k), column(*other, name)), 0.3 * sigma)
+          << name << " at " << time;
+    }
+  }
+}
+
+TEST(SensorFilter, IsExactForARampAndPassesDirectlyWithoutALag) {
+  constexpr double tau = 0.05, h = 0.02;
+  SensorFilter filter(tau, 1), direct(0.0, 1);
+  for (int k = 0; k <= 20; ++k) {
+    const double t = k * h, ramp = 3.0 * t;
+    filter.advance(h, &ramp);
+    direct.advance(h, &ramp);
+    EXPECT_NEAR(filter.output()[0], 3.0 * (t - tau * (1.0 - std::exp(-t / tau))), 1e-14);
+    EXPECT_EQ(direct.output()[0], ramp);
+  }
+}
+
+TEST(Simulation, NamesWhatIsMissingOrMisspelt) {
+  AssetConfig asset = nominal_asset("eha");
+  TimeSeries samples = standard_pst(asset, 50.0, 1.0);
+  const auto simulation = simulation_of(asset, samples);
+  const auto wrong = simulation->find("initial:p_a");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().describe().find("initial:p_A"), std::string::npos) << wrong.error().describe();
+  samples.channels.front().name = "something";
+  const auto without_input = PlantSimulation::create(asset, samples);
+  ASSERT_FALSE(without_input);
+  EXPECT_NE(without_input.error().describe().find("motor_voltage"), std::string::npos);
+  asset.model = "eha_swiched";
+  const auto misspelt = PlantSimulation::create(asset, samples);
+  ASSERT_FALSE(misspelt);
+  EXPECT_NE(misspelt.error().describe().find("eha_switched"), std::string::npos);
+}
+
+TEST(Simulation, ReportsFailureInsteadOfNonsense) {
+  const AssetConfig asset = nominal_asset("eha");
+  const auto simulation = simulation_of(asset, standard_pst(asset, 50.0, 2.0));
+  ModelValues values = simulation->start();
+  simulation->find("beta")->in(values) = std::nan("");
+  EXPECT_FALSE(simulation->run(values, {}));
+}
+
+TEST(ModelSimulator, EstimatesTheLoadAndTheInitialStateOnly) {
+  const AssetConfig asset = nominal_asset("eha");
+  TimeSeries recorded = standard_pst(asset, 100.0);
+  const auto truth = simulation_of(asset, recorded);
+  ModelValues values = truth->start();
+  values.load_factor = 0.12;
+  values.initial_state[5] = 1.16e7;
+  const auto outputs = run(*truth, values);
+  std::mt19937 random(11);
+  for (std::size_t c = 0; c < truth->channels().size(); ++c) {
+    std::normal_distribution<double> noise(0.0, asset.sensors.at(truth->channels()[c]).noise_std);
+    for (Series& series : recorded.channels)
+      if (series.name == truth->channels()[c])
+        for (std::size_t row = 0; row < series.values.size(); ++row)
+          series.values[row] =
+              outputs.values(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c)) + noise(random);
+  }
+  const auto fitted = fit_operating_point(*simulation_of(asset, recorded), asset);
+  ASSERT_TRUE(fitted) << fitted.error().describe();
+  EXPECT_NEAR(fitted->load_factor, 0.12, 1e-4);
+  EXPECT_EQ(fitted->parameters, values.parameters);
+  const auto predicted = ModelSimulator().simulate(asset, recorded);
+  ASSERT_TRUE(predicted) << predicted.error().describe();
+  ASSERT_EQ(predicted->channels.size(), truth->channels().size());
+  constexpr double kNoiseFloor = 0.06;  // the noise's own scatter over 3100 samples is 0.013, four estimates on top
+  for (const Series& channel : predicted->channels) {
+    double sum = 0.0;
+    for (std::size_t row = 0; row < channel.values.size(); ++row)
+      sum += std::pow(recorded.find(channel.name)->values[row] - channel.values[row], 2);
+    const double rms = std::sqrt(sum / static_cast<double>(channel.values.size()));
+    EXPECT_NEAR(rms / asset.sensors.at(channel.name).noise_std, 1.0, kNoiseFloor) << channel.name;
+  }
+}
+
+}  // namespace
+}  // namespace sealwatch

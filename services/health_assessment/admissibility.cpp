@@ -51,11 +51,18 @@ std::string quality_text(const RegionJudgement& judgement) {
   return text;
 }
 
-bool concerns_quality(std::string_view quantity) {
-  return quantity == "fluid_temperature_deviation" || quantity == "drive_saturation" || quantity == "missing_share";
+bool is_poor(const RegionJudgement& judgement) {
+  const std::string& quantity = judgement.quantity;
+  const bool of_recording =
+      quantity == "fluid_temperature_deviation" || quantity == "drive_saturation" || quantity == "missing_share";
+  return of_recording && judgement.raw_region >= AlertRegion::warning;
 }
 
 }  // namespace
+
+bool is_poor_recording(const StateReport& report) {
+  return std::any_of(report.judgements.begin(), report.judgements.end(), is_poor);
+}
 
 std::vector<std::string> inadmissible_reasons(const StateReport& report, const TestFeatures& features) {
   if (report.verdict == PstVerdict::aborted || report.verdict == PstVerdict::not_judged) {
@@ -67,8 +74,7 @@ std::vector<std::string> inadmissible_reasons(const StateReport& report, const T
                                     [](const Phase& phase) { return phase.kind == PhaseKind::hold; });
   if (!has_hold) reasons.push_back("no hold was found, and the holds control the leakage resistance");
   for (const RegionJudgement& judgement : report.judgements)
-    if (concerns_quality(judgement.quantity) && judgement.raw_region >= AlertRegion::warning)
-      reasons.push_back(quality_text(judgement));
+    if (is_poor(judgement)) reasons.push_back(quality_text(judgement));
   if (!cylinder_circuit_possible(features) && !whole_actuator_possible(features))
     reasons.push_back(missing_channels(features));
   return reasons;

@@ -20,4 +20,8 @@ namespace sealwatch {
 /// Empty when admissible.
 [[nodiscard]] std::vector<std::string> inadmissible_reasons(const StateReport& report, const TestFeatures& features);
 
+/// Whether the recording of a judged test is too poor to say anything about the actuator: saturated, off temperature,
+/// too many samples missing.
+[[nodiscard]] bool is_poor_recording(const StateReport& report);
+
 }  // namespace sealwatch

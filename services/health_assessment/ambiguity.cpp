@@ -1,6 +1,7 @@
 #include "services/health_assessment/ambiguity.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -13,10 +14,13 @@ namespace {
 
 constexpr double kKappa = 3.0;
 constexpr double kLogPriorLeakage = -4.5;
+constexpr double kLogPriorLoad = -5.0;
 constexpr double kLogPriorOther = -6.0;
 constexpr double kLeastLikelihood = 0.02;
 /// Two faults whose signatures are nearly one are not tried as a pair: their difference would only fit noise.
 constexpr double kLargestCosine = 0.95;
+
+using Key = std::pair<FaultKind, std::string>;  // kind and element
 
 /// One fault, or two at once.
 struct Hypothesis {
@@ -45,6 +49,17 @@ class Matcher {
     return hypotheses;
   }
 
+  /// The signature of that fault which explains most on its own.
+  [[nodiscard]] const Signature& best_of(const Key& key) const {
+    std::optional<Hypothesis> best;
+    for (std::size_t h = 0; h < signatures_.size(); ++h) {
+      if (key_of(h) != key) continue;
+      if (const Hypothesis one = single(h); !best || one.score > best->score) best = one;
+    }
+    assert(best);
+    return signatures_[best->first];
+  }
+
  private:
   using Vector = std::vector<double>;
 
@@ -65,8 +80,11 @@ class Matcher {
     for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
     return sum;
   }
+  [[nodiscard]] Key key_of(std::size_t h) const { return {signatures_[h].kind, signatures_[h].element}; }
   [[nodiscard]] double log_prior(std::size_t h) const {
-    return signatures_[h].kind == FaultKind::internal_leakage ? kLogPriorLeakage : kLogPriorOther;
+    const FaultKind kind = signatures_[h].kind;
+    if (kind == FaultKind::internal_leakage) return kLogPriorLeakage;
+    return kind == FaultKind::load ? kLogPriorLoad : kLogPriorOther;
   }
   [[nodiscard]] double bonus(std::size_t h) const {
     const auto remark = remarks_.find(signatures_[h].element);
@@ -84,7 +102,7 @@ class Matcher {
 
   /// Least squares of z on two unit signatures; nothing where one of them has the wrong sign or they are nearly one.
   [[nodiscard]] std::optional<Hypothesis> pair(std::size_t h, std::size_t k) const {
-    if (signatures_[h].element == signatures_[k].element) return std::nullopt;
+    if (key_of(h) == key_of(k)) return std::nullopt;
     const double cosine = dot(scaled_[h], scaled_[k]);
     if (std::abs(cosine) > kLargestCosine) return std::nullopt;
     const double projection_h = dot(z_, scaled_[h]);
@@ -106,9 +124,7 @@ class Matcher {
   std::vector<Vector> scaled_;
 };
 
-using Key = std::pair<FaultKind, std::string>;
-
-/// Likelihood of each fault and, under an empty element, of no fault.
+/// Likelihood of each fault, and of none.
 std::map<Key, double> likelihoods_of(const std::vector<Signature>& signatures,
                                      const std::vector<Hypothesis>& hypotheses, double& no_fault) {
   double largest = 0.0;  // score of no fault
@@ -138,14 +154,16 @@ std::map<Key, double> likelihoods_of(const std::vector<Signature>& signatures,
 AmbiguityGroup find_ambiguity_group(const std::vector<Deviation>& deviations, const std::vector<Signature>& signatures,
                                     const std::map<std::string, SensorRemark>& remarks) {
   AmbiguityGroup group;
-  const std::vector<Hypothesis> hypotheses = Matcher(deviations, signatures, remarks).all();
-  for (const auto& [key, likelihood] : likelihoods_of(signatures, hypotheses, group.no_fault_likelihood)) {
+  const Matcher matcher(deviations, signatures, remarks);
+  std::vector<Proposal> proposals;
+  for (const auto& [key, likelihood] : likelihoods_of(signatures, matcher.all(), group.no_fault_likelihood)) {
     const FailureCode code = failure_code(key.first);
-    group.faults.push_back({key.first, key.second, likelihood, code.mode, code.mechanism, {}});
+    proposals.push_back({{key.first, key.second, likelihood, code.mode, code.mechanism, {}}, matcher.best_of(key)});
   }
-  std::stable_sort(group.faults.begin(), group.faults.end(),
-                   [](const ProposedFault& a, const ProposedFault& b) { return a.likelihood > b.likelihood; });
-  add_evidence(group.faults, deviations, signatures, remarks);
+  std::stable_sort(proposals.begin(), proposals.end(),
+                   [](const Proposal& a, const Proposal& b) { return a.fault.likelihood > b.fault.likelihood; });
+  add_evidence(proposals, deviations, remarks);
+  for (Proposal& proposal : proposals) group.faults.push_back(std::move(proposal.fault));
   return group;
 }
 

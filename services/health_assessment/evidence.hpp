@@ -9,9 +9,15 @@
 
 namespace sealwatch {
 
-/// Adds to each fault which deviations it explains, which it contradicts, and what separates it from the most likely
-/// one. `faults` are sorted, most likely first.
-void add_evidence(std::vector<ProposedFault>& faults, const std::vector<Deviation>& deviations,
-                  const std::vector<Signature>& signatures, const std::map<std::string, SensorRemark>& remarks);
+/// A proposed fault and the one of its signatures that explains most.
+struct Proposal {
+  ProposedFault fault;
+  Signature signature;
+};
+
+/// Adds to each fault which deviations it would explain and what separates it from the most likely one. `proposals` are
+/// sorted, most likely first.
+void add_evidence(std::vector<Proposal>& proposals, const std::vector<Deviation>& deviations,
+                  const std::map<std::string, SensorRemark>& remarks);
 
 }  // namespace sealwatch

@@ -14,14 +14,14 @@ constexpr std::array<std::string_view, 7> kFunctional = {"friction_pressure", "b
 constexpr double kAlarmWidths = 3.0;
 constexpr double kGradePerRegion = 0.25;
 
-double seal_grade(const AssetConfig& asset, const std::vector<Deviation>& deviations) {
+double seal_grade(const AssetConfig& asset, const std::vector<Deviation>& deviations, double last_grade) {
   const Deviation* leakage = find_deviation(deviations, "leakage_resistance");
   if (leakage != nullptr && asset.seal) {
     const double theta = asset.seal->condition(leakage->judgement.value);
     return std::clamp((theta - asset.seal->threshold) / (1.0 - asset.seal->threshold), 0.0, 1.0);
   }
-  if (leakage == nullptr) leakage = find_deviation(deviations, "hold_decay_rate");
-  if (leakage == nullptr) return 1.0;
+  if (leakage == nullptr && !asset.seal) leakage = find_deviation(deviations, "hold_decay_rate");
+  if (leakage == nullptr) return last_grade;
   const bool is_resistance = leakage->judgement.quantity == "leakage_resistance";
   const double worse = is_resistance ? -leakage->value : leakage->value;
   return std::clamp(1.0 - worse / kAlarmWidths, 0.0, 1.0);
@@ -37,9 +37,10 @@ double functional_grade(const StateReport& report) {
 
 }  // namespace
 
-double health_grade(const AssetConfig& asset, const StateReport& report, const std::vector<Deviation>& deviations) {
+double health_grade(const AssetConfig& asset, const StateReport& report, const std::vector<Deviation>& deviations,
+                    double last_grade) {
   if (report.verdict == PstVerdict::failed) return 0.0;
-  return std::min(seal_grade(asset, deviations), functional_grade(report));
+  return std::min(seal_grade(asset, deviations, last_grade), functional_grade(report));
 }
 
 }  // namespace sealwatch

@@ -1,7 +1,8 @@
 // Health grade of the actuator: 1 as new, 0 failed.
 //
 //   seal      g_s = (theta - theta_max) / (1 - theta_max), theta from leakage_resistance (SealSetting), within [0, 1];
-//             without seal resistances 1 - d/3, d the advisory widths by which the leakage (or the hold's decay) is off
+//             without seal resistances 1 - d/3, d the advisory widths by which the leakage (or the hold's decay) is
+//             off; where this test could not measure the leakage, the last grade
 //   rest      g_r = 1, 0.75, 0.5, 0.25 for the worst region normal .. alarm of friction, breakaway, current, pump,
 //   shaft,
 //             drive and closing time
@@ -20,6 +21,6 @@
 namespace sealwatch {
 
 [[nodiscard]] double health_grade(const AssetConfig& asset, const StateReport& report,
-                                  const std::vector<Deviation>& deviations);
+                                  const std::vector<Deviation>& deviations, double last_grade);
 
 }  // namespace sealwatch

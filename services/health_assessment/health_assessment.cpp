@@ -49,7 +49,7 @@ void carry_over(const std::optional<HealthReport>& last, HealthReport& report) {
   report.no_fault_likelihood = last->no_fault_likelihood;
   report.ambiguity_group = last->ambiguity_group;
   for (ProposedFault& fault : report.ambiguity_group)
-    fault.evidence = {"carried over from " + last->header.message_id + ": this test was not judged"};
+    fault.evidence = {"carried over from " + last->header.message_id + ": this test does not tell"};
 }
 
 }  // namespace
@@ -109,11 +109,13 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
   report.inadmissible_reasons = inadmissible_reasons(state_report, features);
   report.admissible_for_prognosis = report.inadmissible_reasons.empty();
   const auto asset = assets_.find(state_report.asset_id);
-  if (state_report.judgements.empty() || asset == assets_.end()) {
+  if (state_report.judgements.empty() || is_poor_recording(state_report) || asset == assets_.end()) {
     carry_over(state.last, report);
+    if (state_report.verdict == PstVerdict::failed) report.health_grade = 0.0;
   } else {
     const std::vector<Deviation> deviations = deviations_of(state_report);
-    report.health_grade = health_grade(asset->second, state_report, deviations);
+    const double last_grade = state.last ? state.last->health_grade : 1.0;
+    report.health_grade = health_grade(asset->second, state_report, deviations, last_grade);
     const SensorRemarks remarks = sensor_remarks(state_report, features);
     const std::vector<Signature> signatures =
         fault_signatures(asset->second, deviations, recorded_channels(features), suspects_of(remarks));

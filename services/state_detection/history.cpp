@@ -4,6 +4,22 @@
 
 namespace sealwatch {
 
+namespace {
+
+/// Off temperature, saturated or with many samples missing: this test alone is in the warning region of one of them.
+bool is_poor_recording(const std::vector<RegionJudgement>& judgements) {
+  return std::any_of(judgements.begin(), judgements.end(), [](const RegionJudgement& j) {
+    return concerns_recording(j.quantity) &&
+           region_of(j.value, {j.advisory_limit, j.warning_limit, j.alarm_limit}) >= AlertRegion::warning;
+  });
+}
+
+}  // namespace
+
+bool concerns_recording(std::string_view quantity) {
+  return quantity == "fluid_temperature_deviation" || quantity == "drive_saturation" || quantity == "missing_share";
+}
+
 AssetHistory::AssetHistory(const RegionOptions& region, const BaselineOptions& baseline)
     : region_options_(region), baseline_options_(baseline), baseline_(baseline) {}
 
@@ -13,9 +29,16 @@ void AssetHistory::restart() {
   known_channels_.clear();
 }
 
-void AssetHistory::judge(RegionJudgement& judgement) {
-  const std::string key = judgement.quantity + "/" + std::string(name_of(judgement.reference));
-  filters_.try_emplace(key, region_options_).first->second.update(judgement);
+void AssetHistory::judge(std::vector<RegionJudgement>& judgements) {
+  const bool poor = is_poor_recording(judgements);
+  for (RegionJudgement& judgement : judgements) {
+    const std::string key = judgement.quantity + "/" + std::string(name_of(judgement.reference));
+    RegionFilter& filter = filters_.try_emplace(key, region_options_).first->second;
+    if (poor && !concerns_recording(judgement.quantity))
+      filter.look(judgement);
+    else
+      filter.update(judgement);
+  }
 }
 
 void AssetHistory::learn(const StateReport& report) {
@@ -27,11 +50,11 @@ void AssetHistory::learn(const StateReport& report) {
   if (!is_judged(report.verdict)) return;
   last_judged_id = report.header.message_id;
   if (report.header.event_time_known) schedule.tested(UtcTime{report.header.event_time_ns});
+  const bool teaches = report.verdict == PstVerdict::passed && !is_poor_recording(report.judgements);
   for (const RegionJudgement& judgement : report.judgements) {
     if (judgement.quantity.starts_with(kChannelQuantity))
       known_channels_.insert(judgement.quantity.substr(kChannelQuantity.size()));
-    else if (judgement.reference == Reference::own_baseline && judgement.raw_region == AlertRegion::normal &&
-             report.verdict == PstVerdict::passed)
+    else if (judgement.reference == Reference::own_baseline && judgement.raw_region == AlertRegion::normal && teaches)
       baseline_.learn(judgement.quantity, judgement.value);
   }
 }

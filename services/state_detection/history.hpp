@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "sealwatch/message/state_detection.hpp"
 #include "services/state_detection/baseline.hpp"
@@ -19,8 +21,9 @@ class AssetHistory {
 
   /// The actuator is a new one: baseline, regions and known channels start anew.
   void restart();
-  /// Takes one judgement into its quantity's filter and fills in its regions.
-  void judge(RegionJudgement& judgement);
+  /// Takes one test's judgements into their quantities' filters and fills in their regions. A poor recording is looked
+  /// at but moves no filter: warm oil leaks more, and that is no wear.
+  void judge(std::vector<RegionJudgement>& judgements);
   /// Takes a finished report whose judgements went through judge() already.
   void learn(const StateReport& report);
 
@@ -41,6 +44,9 @@ class AssetHistory {
   std::map<std::string, RegionFilter> filters_;  // by quantity and reference
   std::set<std::string> known_channels_;         // OK in some judged test
 };
+
+/// Whether a quantity speaks of the recording and not of the actuator.
+[[nodiscard]] bool concerns_recording(std::string_view quantity);
 
 /// Quantity of the judgement that says whether a channel was lost: "channel." + channel.
 inline constexpr std::string_view kChannelQuantity = "channel.";

@@ -44,6 +44,13 @@ void RegionFilter::update(RegionJudgement& judgement) {
   judgement.tests_in_raw_region = tests_in_raw_region_;
 }
 
+void RegionFilter::look(RegionJudgement& judgement) const {
+  judgement.raw_region =
+      region_of(judgement.value, {judgement.advisory_limit, judgement.warning_limit, judgement.alarm_limit});
+  judgement.region = region_;
+  judgement.tests_in_raw_region = 0;
+}
+
 void RegionFilter::follow() {
   const auto last = [this](int count) {
     const auto size = static_cast<std::size_t>(count);

@@ -33,6 +33,8 @@ class RegionFilter {
   explicit RegionFilter(const RegionOptions& options) : options_(options) {}
   /// Takes a test's value and limits from `judgement` and fills in raw_region, region and tests_in_raw_region.
   void update(RegionJudgement& judgement);
+  /// Fills in the regions without taking the test into account: its raw region, and the region as it was.
+  void look(RegionJudgement& judgement) const;
   [[nodiscard]] AlertRegion region() const { return region_; }
 
  private:

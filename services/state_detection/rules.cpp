@@ -17,9 +17,10 @@ constexpr double kClosingTolerance = 1.05;
 constexpr double kLeftAdvisory = 0.25;
 constexpr double kLeftWarning = 0.125;
 
-/// Relative residual of the nominal model [%]: 100 means that the model explains nothing of what the channel did. A
-/// datasheet's model of a healthy actuator leaves up to about 20 %.
-constexpr AlertLimits kNominalResidual_percent{40.0, 70.0, 100.0};
+/// Relative residual of the nominal model [%]: 100 means that the model explains nothing of what the channel did. That
+/// the datasheet does not describe the actuator is worth an advisory and no more: it endangers nothing by itself.
+/// Beyond that the simulation is absurd, and somebody should look at the asset's file.
+constexpr AlertLimits kNominalResidual_percent{50.0, 300.0, 1000.0};
 
 /// Oil at the seabed is at 4 degC; its viscosity, and with it every laminar leakage, changes by about 5 % per kelvin.
 constexpr AlertLimits kTemperatureDeviation_K{3.0, 6.0, 12.0};
@@ -37,7 +38,7 @@ struct NamedRule {
 constexpr std::array kRules = {
     NamedRule{"friction_pressure", {0.15, 3e4, Side::both}},    // three times a pressure sensor's noise
     NamedRule{"breakaway_pressure", {0.30, 2e5, Side::above}},  // one moment, not a mean; less is no fault
-    NamedRule{"load_pressure", {0.40, 0.0, Side::both}},        // the load factor differs by +-20 % between tests
+    NamedRule{"load_pressure", {0.40, 5e5, Side::both}},        // the load factor differs by +-20 % between tests
     NamedRule{"load_free_current", {0.30, 0.0, Side::above}},
     NamedRule{"leakage_resistance", {0.30, 0.0, Side::both}},
     NamedRule{"hold_decay_rate", {0.30, 0.02, Side::above}},  // 2 %/s: temperature and controller move pressures too

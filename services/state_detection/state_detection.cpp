@@ -81,7 +81,8 @@ void StateDetection::restore(const Message& own_output) {
   if (report == nullptr) return;
   AssetHistory& history = state_of(report->asset_id).history;
   if (is_first_after_replacement(*report)) history.restart();
-  for (RegionJudgement judgement : report->judgements) history.judge(judgement);
+  std::vector<RegionJudgement> judgements = report->judgements;
+  history.judge(judgements);
   history.learn(*report);
 }
 
@@ -162,7 +163,7 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
     report.judgements.push_back(std::move(judgement));
   for (RegionJudgement& judgement : judge_channels(features.channel_status, history.known_channels()))
     report.judgements.push_back(std::move(judgement));
-  for (RegionJudgement& judgement : report.judgements) history.judge(judgement);
+  history.judge(report.judgements);
 }
 
 void StateDetection::add_residuals(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,

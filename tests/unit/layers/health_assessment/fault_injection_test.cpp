@@ -122,7 +122,8 @@ TEST(FaultChain, NineYearsOfLeakageAreLeakageAndNothingElse) {
     EXPECT_LE(report.health_grade, last_grade);
     last_grade = report.health_grade;
     for (const ProposedFault& fault : report.ambiguity_group)
-      EXPECT_TRUE(fault.kind == FaultKind::internal_leakage || fault.likelihood < 0.2) << fault.element << " test " << k;
+      EXPECT_TRUE(fault.kind == FaultKind::internal_leakage || fault.likelihood < 0.2)
+          << fault.element << " test " << k;
     if (condition.theta < 0.67) {
       EXPECT_GT(report.ambiguity_group.front().likelihood, 0.8) << "test " << k;
     } else if (condition.theta > 0.74) {

@@ -17,7 +17,7 @@ StateReport with_seal_at(double theta) {
   return report;
 }
 
-double grade(const StateReport& report) { return health_grade(synthetic::asset(), report, deviations_of(report)); }
+double grade(const StateReport& report) { return health_grade(synthetic::asset(), report, deviations_of(report), 1.0); }
 
 TEST(Grade, FollowsTheSealFromAsNewToTheThreshold) {
   EXPECT_NEAR(grade(with_seal_at(1.0)), 1.0, 1e-12);
@@ -41,6 +41,12 @@ TEST(Grade, SensorsAndLoadDoNotLowerIt) {
   EXPECT_NEAR(grade(report), 0.875, 1e-12);
 }
 
+TEST(Grade, WhereTheLeakageIsNotMeasuredTheLastGradeStays) {
+  StateReport report;
+  report.verdict = PstVerdict::passed;
+  EXPECT_EQ(health_grade(synthetic::asset(), report, {}, 0.4), 0.4);
+}
+
 TEST(Grade, AFailedTestIsZero) {
   StateReport report = with_seal_at(0.95);
   report.verdict = PstVerdict::failed;
@@ -54,7 +60,7 @@ TEST(Grade, WithoutSealResistancesTheDeviationCounts) {
   report.verdict = PstVerdict::passed;
   report.judgements = {{"leakage_resistance", Reference::own_baseline, "Pa s/m3", 5.5e12, 7e12, 4e12, 1e12,
                         AlertRegion::advisory, AlertRegion::normal, 1}};
-  EXPECT_NEAR(health_grade(asset, report, deviations_of(report)), 0.5, 1e-12);  // one and a half of three widths
+  EXPECT_NEAR(health_grade(asset, report, deviations_of(report), 1.0), 0.5, 1e-12);  // one and a half of three widths
 }
 
 std::vector<GradeAt> line(double slope_per_year, double wiggle, int count) {

@@ -7,6 +7,7 @@
 
 #include "sealwatch/signal/alignment.hpp"
 #include "sealwatch/signal/filters.hpp"
+#include "sealwatch/signal/statistics.hpp"
 
 namespace sealwatch {
 namespace {
@@ -40,11 +41,12 @@ class AlignmentCheck {
 
  private:
   void compare_motion();
+  [[nodiscard]] std::vector<double> speed_by_flow(const std::vector<double>& speed, double mean_position_m) const;
   void judge_signs();
   void judge_offsets();
   void compare_pressures();
-  [[nodiscard]] std::optional<signal::OffsetEstimate> compare(std::vector<double> reference, double reference_lag_s,
-                                                              const Series& channel) const;
+  [[nodiscard]] std::optional<signal::OffsetEstimate> compare(const std::vector<double>& reference,
+                                                              double reference_lag_s, const Series& channel) const;
   [[nodiscard]] bool offset_noticed(double offset_s, double std_s) const;
   void note_sign(const std::string& channel, bool correct, const std::string& why);
   void note_offset(const std::string& channel, double offset_s, double std_s, bool correct, const std::string& why);
@@ -89,22 +91,39 @@ void AlignmentCheck::note_offset(const std::string& channel, double offset_s, do
 }
 
 /// Both sides get each other's sensor lag, so that what is left is no sensor's doing.
-std::optional<signal::OffsetEstimate> AlignmentCheck::compare(std::vector<double> reference, double reference_lag_s,
-                                                              const Series& channel) const {
+std::optional<signal::OffsetEstimate> AlignmentCheck::compare(const std::vector<double>& reference,
+                                                              double reference_lag_s, const Series& channel) const {
   const std::vector<double> smooth = filter_.apply_zero_phase(channel.values);
   return signal::estimate_offset(signal::first_order_lag(reference, asset_.time_constant_s(channel.name), interval_s_),
                                  signal::first_order_lag(smooth, reference_lag_s, interval_s_), interval_s_,
                                  options_.largest_offset_s);
 }
 
+/// Speed of the piston that the flow would show: dx/dt + V_A / (beta A_A) dp_A/dt. Compression makes the flow lead.
+std::vector<double> AlignmentCheck::speed_by_flow(const std::vector<double>& speed, double mean_position_m) const {
+  const signal::Cylinder cylinder = asset_.cylinder();
+  const Series* pressure = samples_.find("pressure_a");
+  const double share = pressure ? 1.0 : 0.5;  // the chambers share a change of their difference
+  if (!pressure) pressure = samples_.find("pressure_differential");
+  if (!pressure || !cylinder.area_a_m2 || !cylinder.bulk_modulus_Pa) return speed;
+  const double volume_m3 = cylinder.dead_volume_m3.value_or(0.0) + *cylinder.area_a_m2 * mean_position_m;
+  const double capacity_m_Pa = share * volume_m3 / (*cylinder.bulk_modulus_Pa * *cylinder.area_a_m2);
+  const std::vector<double> rate = signal::derivative(filter_.apply_zero_phase(pressure->values), interval_s_);
+  std::vector<double> result = speed;
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] += capacity_m_Pa * rate[i];
+  return result;
+}
+
 void AlignmentCheck::compare_motion() {
   const Series* position = samples_.find("position");
   if (!position) return;
   const std::vector<double> speed = signal::derivative(filter_.apply_zero_phase(position->values), interval_s_);
+  const std::vector<double> by_flow = speed_by_flow(speed, signal::mean(position->values).value);
   for (const char* name : {"velocity", "flow", "shaft_speed", "motor_voltage", "motor_duty"}) {
     const Series* channel = samples_.find(name);
     if (!channel) continue;
-    const auto estimate = compare(speed, asset_.time_constant_s("position"), *channel);
+    const std::vector<double>& reference = channel->name == "flow" ? by_flow : speed;
+    const auto estimate = compare(reference, asset_.time_constant_s("position"), *channel);
     if (!estimate || std::abs(estimate->correlation) < options_.least_sign_correlation) continue;
     const bool timed = channel->name == "velocity" || channel->name == "flow";
     comparisons_.push_back({name, *estimate, timed});

@@ -1,6 +1,6 @@
 // Do the channels of a test agree in time and in sign?
 //
-// dx/dt, velocity and flow show the same motion (flow = A_A v but for leakage and compression); shaft speed, motor
+// dx/dt, velocity and flow show the same motion (flow = A_A v + V_A/beta dp_A/dt but for leakage); shaft speed, motor
 // voltage and duty at least its sign. Each is held against dx/dt, both smoothed without phase and each delayed by the
 // other's sensor time constant, so that what the sensors explain is no offset. A channel that disagrees with the
 // majority of the others is named and corrected; where there is no majority (two channels), both are named as "which

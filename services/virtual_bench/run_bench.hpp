@@ -1,0 +1,16 @@
+// Command line and loop of the virtual bench's process.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "sealwatch/config/configuration.hpp"
+#include "sealwatch/port/bus.hpp"
+
+namespace sealwatch::bench {
+
+/// Exit status as a daemon's: 0 stopped by SIGTERM or SIGINT, 2 bad usage or configuration, 3 internal failure.
+[[nodiscard]] int run_bench(int argc, const char* const* argv,
+                            const std::function<Result<std::unique_ptr<Bus>>(const Configuration&)>& make_bus);
+
+}  // namespace sealwatch::bench

@@ -6,7 +6,8 @@
 namespace sealwatch {
 namespace {
 
-constexpr int kIterations = 8;
+constexpr int kStages = 2;  // weights from the start's misfit, then from the first stage's
+constexpr int kIterations = 6;
 constexpr int kHalvings = 4;
 constexpr double kSettled = 1e-3;  // relative decrease of the cost that is not worth another iteration
 
@@ -17,27 +18,37 @@ double noise_std(const PlantSimulation& simulation, const AssetConfig& asset, co
   return nominal > 0.0 ? nominal : 1.0;
 }
 
-/// The fit's normal equations at one point. Each channel is weighted by its noise and its mean square misfit together,
-/// so that a channel which the model cannot follow does not bend all others: cost = sum_c n ln(noise_c^2 + mean r_c^2).
+/// Variance with which each channel is weighted: its noise and its mean square misfit at the last stage together, so
+/// that a channel which the model cannot follow does not bend all others.
+Eigen::VectorXd variances(const PlantSimulation& simulation, const AssetConfig& asset,
+                          const SimulatedOutputs& outputs) {
+  Eigen::VectorXd variance(outputs.values.cols());
+  for (Eigen::Index c = 0; c < variance.size(); ++c) {
+    const double noise = noise_std(simulation, asset, simulation.channels()[static_cast<std::size_t>(c)]);
+    variance[c] = noise * noise + (simulation.recorded().col(c) - outputs.values.col(c)).squaredNorm() /
+                                      static_cast<double>(outputs.values.rows());
+  }
+  return variance;
+}
+
+/// The fit's normal equations at one point.
 struct LinearisedFit {
   double cost = 0.0;
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
 };
 
-LinearisedFit linearise(const PlantSimulation& simulation, const AssetConfig& asset, const SimulatedOutputs& outputs) {
+LinearisedFit linearise(const PlantSimulation& simulation, const Eigen::VectorXd& variance,
+                        const SimulatedOutputs& outputs) {
   const Eigen::Index channels = outputs.values.cols(), free = outputs.sensitivities.cols();
   LinearisedFit fit{0.0, Eigen::MatrixXd::Zero(free, free), Eigen::VectorXd::Zero(free)};
   for (Eigen::Index c = 0; c < channels; ++c) {
-    const double noise = noise_std(simulation, asset, simulation.channels()[static_cast<std::size_t>(c)]);
     const Eigen::VectorXd residual = simulation.recorded().col(c) - outputs.values.col(c);
-    const auto samples = static_cast<double>(residual.size());
-    const double variance = noise * noise + residual.squaredNorm() / samples;
     const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> slopes(
         outputs.sensitivities.data() + c * free, residual.size(), free, Eigen::OuterStride<>(channels * free));
-    fit.cost += samples * std::log(variance / (noise * noise));
-    fit.hessian += slopes.transpose() * slopes / variance;
-    fit.gradient += slopes.transpose() * residual / variance;
+    fit.cost += residual.squaredNorm() / variance[c];
+    fit.hessian += slopes.transpose() * slopes / variance[c];
+    fit.gradient += slopes.transpose() * residual / variance[c];
   }
   return fit;
 }
@@ -64,30 +75,38 @@ std::vector<FreeQuantity> operating_point(const PlantSimulation& simulation) {
   return free;
 }
 
+/// One stage of Gauss-Newton's method with fixed weights: improves values and their outputs.
+void improve(const PlantSimulation& simulation, const Eigen::VectorXd& variance, std::span<const FreeQuantity> free,
+             const SimulationOptions& options, ModelValues& values, SimulatedOutputs& outputs) {
+  LinearisedFit fit = linearise(simulation, variance, outputs);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::VectorXd step = newton_step(fit);
+    const double cost = fit.cost;
+    for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
+      const ModelValues candidate = moved(values, free, step);
+      auto next = simulation.run(candidate, free, options);
+      if (!next) continue;
+      LinearisedFit next_fit = linearise(simulation, variance, *next);
+      if (!(next_fit.cost < cost)) continue;
+      values = candidate;
+      outputs = std::move(*next);
+      fit = std::move(next_fit);
+      break;
+    }
+    if (fit.cost > (1.0 - kSettled) * cost) break;
+  }
+}
+
 }  // namespace
 
 Result<ModelValues> fit_operating_point(const PlantSimulation& simulation, const AssetConfig& asset,
                                         const SimulationOptions& options) {
   const std::vector<FreeQuantity> free = operating_point(simulation);
   ModelValues values = simulation.start();
-  const auto first = simulation.run(values, free, options);
-  if (!first) return fail(first.error());
-  LinearisedFit fit = linearise(simulation, asset, *first);
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Eigen::VectorXd step = newton_step(fit);
-    const double cost = fit.cost;
-    for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
-      const ModelValues candidate = moved(values, free, step);
-      const auto outputs = simulation.run(candidate, free, options);
-      if (!outputs) continue;
-      LinearisedFit next = linearise(simulation, asset, *outputs);
-      if (!(next.cost < fit.cost)) continue;
-      values = candidate;
-      fit = std::move(next);
-      break;
-    }
-    if (fit.cost > (1.0 - kSettled) * cost) break;
-  }
+  auto outputs = simulation.run(values, free, options);
+  if (!outputs) return fail(outputs.error());
+  for (int stage = 0; stage < kStages; ++stage)
+    improve(simulation, variances(simulation, asset, *outputs), free, options, values, *outputs);
   return values;
 }
 

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# From a fresh Debian 12 machine to a forecast: installs packages, builds, starts the six services, plays nine years of monthly
+# partial stroke tests of one actuator through them over DDS, and shows the forecast with its reasons.
+#   deploy/demo.sh               with a life recorded by sealwatch's own virtual bench
+#   deploy/demo.sh --data DIR    with the recordings (*.csv) in DIR
+# Needs root or sudo for the packages, nothing else. Everything it makes is in build/ and demo/ of this checkout. Run it again as
+# often as you like.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+usage() { sed -n '2,7s/^# \{0,1\}//p' "$0"; exit "$1"; }
+data=
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --data) [ $# -ge 2 ] || usage 2; data=$2; shift 2 ;;
+    -h | --help) usage 0 ;;
+    *) usage 2 >&2 ;;
+  esac
+done
+if [ -n "$data" ] && ! compgen -G "$data/*.csv" >/dev/null; then
+  echo "$0: no *.csv in '$data'; give the folder that holds the recordings" >&2
+  exit 2
+fi
+
+deploy/install_packages.sh build
+deploy/build.sh release -DSEALWATCH_TESTS=OFF
+sealwatch=build/release/bin/sealwatch
+
+# A discovery tag of its own keeps the demo apart from any other sealwatch on this machine.
+export CYCLONEDDS_URI='<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General><Discovery><LeaseDuration>2s</LeaseDuration><Tag>sealwatch-demo</Tag></Discovery></Domain></CycloneDDS>'
+rm -rf demo/state demo/results
+mkdir -p demo
+
+if [ -z "$data" ]; then
+  data=demo/recordings
+  if [ ! -f demo/recordings/.complete ]; then
+    echo "== bench: recording nine years of monthly tests of one ageing actuator"
+    rm -rf demo/recordings
+    "$sealwatch" simulate --asset config/assets/xt03-mv2.yaml --ageing --months 108 --missing 0.02 --cut 0.01 --rate 50 --seed 11 --out demo/recordings
+    touch demo/recordings/.complete
+  fi
+fi
+
+echo "== replay: $(ls "$data"/*.csv | wc -l) tests through six services over DDS, as fast as they go"
+"$sealwatch" replay --config config --with-services --state demo/state --results demo/results "$data"/*.csv
+
+cat <<'TXT'
+
+Look further:
+  build/release/bin/sealwatch up --config config --state demo/state    the services again, with what they remember
+  build/release/bin/sealwatch status                                   this screen, any time (in another terminal)
+  build/release/bin/sealwatch watch                                    every message, live
+  demo/results/*.jsonl                                                 all conclusions, a JSON line each
+  demo/state/log/                                                      what each service did, by PST id
+  docs/tutorial.md                                                     the same step by step, and what the figures mean
+TXT

@@ -1,0 +1,117 @@
+// The subcommands of `sealwatch`, each with its options. Every run_* returns the exit status of INTERFACES section 3:
+// 0 ok, 1 the command ran and the answer is "no", 2 bad usage or input, 3 internal failure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sealwatch::cli {
+
+inline constexpr int kOk = 0;
+inline constexpr int kAnswerIsNo = 1;
+inline constexpr int kBadInput = 2;
+inline constexpr int kInternalFailure = 3;
+
+struct SimulateOptions {
+  std::string asset_file;
+  std::string directory;
+  std::string start = "2009-03-17T10:00:00Z";
+  std::uint64_t seed = 1;
+  int months = 1;
+  double sample_rate_Hz = 200.0;
+  double condition = 1.0;      ///< theta at the first test
+  bool ageing = false;         ///< a whole life: the seal ages from month to month
+  double missing_share = 0.0;  ///< of the months: no test
+  double cut_share = 0.0;      ///< of the tests: cut short
+};
+int run_simulate(const SimulateOptions& options);
+
+struct FitOptions {
+  std::string asset_file;
+  std::vector<std::string> recordings;
+  std::string model;  ///< "" the best that the channels allow
+  bool json = false;
+};
+int run_fit(const FitOptions& options);
+
+struct ForecastOptions {
+  std::string history_file;
+  std::string asset_file;
+  std::vector<std::string> before;  ///< dates to give the probability of failure for
+  double threshold = 0.60;
+  bool threshold_given = false;
+  bool json = false;
+};
+int run_forecast(const ForecastOptions& options);
+
+struct ReplayOptions {
+  std::string config;
+  std::vector<std::string> recordings;
+  std::string state_directory;  ///< of the services started with_services; "": the configuration's
+  std::string asset_file;       ///< whose recordings are meant where they do not say
+  std::string speed = "max";
+  std::string results_directory;  ///< write each message as one JSON line per topic
+  bool offline = false;
+  bool with_services = false;  ///< start the six services for the time of the replay
+  bool json = false;
+  bool quiet = false;
+};
+int run_replay(const ReplayOptions& options);
+
+struct WatchOptions {
+  std::string config;
+  std::vector<std::string> topics;
+  std::string asset_id;
+  double seconds = 0.0;  ///< 0: until interrupted
+  bool json = false;
+};
+int run_watch(const WatchOptions& options);
+
+struct UpOptions {
+  std::string config;
+  std::string state_directory;  ///< "": the configuration's
+};
+int run_up(const UpOptions& options);
+
+struct StatusOptions {
+  std::string config;
+  double seconds = 2.5;
+  bool json = false;
+};
+int run_status(const StatusOptions& options);
+
+struct AcknowledgeOptions {
+  std::string config;
+  std::string asset_id;
+  std::string advisory_id;
+  std::string by;
+  std::string remark;
+};
+int run_acknowledge(const AcknowledgeOptions& options);
+
+struct ReplacedOptions {
+  std::string config;
+  std::string asset_id;
+  std::string at;
+  std::string what = "actuator";
+  std::string by;
+  std::string remark;
+};
+int run_replaced(const ReplacedOptions& options);
+
+struct ConfigCheckOptions {
+  std::string config;
+  bool json = false;
+};
+int run_config_check(const ConfigCheckOptions& options);
+
+/// Prints the shell's completion script, made from the program's own options.
+struct CompletionOptions {
+  std::string shell = "bash";
+};
+
+/// Configuration used where none is given: $SEALWATCH_CONFIG, /etc/sealwatch, ./config.
+[[nodiscard]] std::string default_config();
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,218 @@
+// `sealwatch fit`: gray-box prediction-error minimisation of recorded tests (INTERFACES section 6).
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/estimation/actuator_fit.hpp"
+#include "sealwatch/estimation/cylinder_circuit.hpp"
+#include "sealwatch/model/plant_description.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/common/runtime/in_process_pipeline.hpp"
+#include "services/data_acquisition/data_acquisition.hpp"
+#include "services/data_acquisition/recording_blocks.hpp"
+#include "services/data_manipulation/data_manipulation.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kCylinderCircuit = "cylinder_circuit";
+
+/// A fit of one or several recordings, whichever model it was made with.
+struct FitResult {
+  FitReport report;
+  std::vector<EstimatedParameter> loads;
+};
+
+std::optional<std::vector<Recording>> read_all(const FitOptions& options, const AssetConfig& asset,
+                                               const PlantDescription& plant) {
+  std::vector<Recording> recordings;
+  for (const std::string& file : options.recordings) {
+    Result<Recording> recording = read_recording(file, plant);
+    if (!recording) {
+      complain(recording.error());
+      return std::nullopt;
+    }
+    if (!recording->asset_id.empty() && recording->asset_id != asset.asset_id) {
+      complain(Error{.file = file,
+                     .place = "asset_id",
+                     .value = recording->asset_id,
+                     .rule = "is not the asset " + asset.asset_id,
+                     .advice = "one fit is about one asset"});
+      return std::nullopt;
+    }
+    recordings.push_back(std::move(*recording));
+  }
+  return recordings;
+}
+
+bool inputs_recorded(const PlantDescription& plant, const std::vector<Recording>& recordings) {
+  return std::all_of(recordings.begin(), recordings.end(), [&plant](const Recording& recording) {
+    return std::all_of(plant.channels.begin(), plant.channels.end(), [&recording](const ChannelDescription& channel) {
+      return !channel.input || recording.samples.has(channel.name);
+    });
+  });
+}
+
+FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings) {
+  std::vector<TimeSeries> samples;
+  for (const Recording& recording : recordings) samples.push_back(recording.samples);
+  JointFit joint = fit_actuator(asset, samples);
+  FitResult result{.report = std::move(joint.report), .loads = {}};
+  for (const RecordingFit& recording : joint.recordings) result.loads.push_back(recording.load);
+  return result;
+}
+
+/// The cylinder circuit wants the test as the services see it: cut, aligned, with its phases.
+FitReport fit_cylinder(const AssetConfig& asset, const Recording& recording) {
+  std::vector<std::unique_ptr<Layer>> layers;
+  layers.push_back(std::make_unique<DataAcquisition>(std::vector<AssetConfig>{asset}));
+  layers.push_back(std::make_unique<DataManipulation>(std::vector<AssetConfig>{asset}));
+  TestWindow window;
+  InProcessPipeline pipeline(std::move(layers), [&window](const Message& message) {
+    if (const auto* concluded = std::get_if<TestWindow>(&message)) window = *concluded;
+  });
+  for (RawSamples& block : blocks_of(recording)) pipeline.push(Message(std::move(block)));
+  return fit_cylinder_circuit(asset, window.samples, window.phases);
+}
+
+/// Fits that share no recording, as one: parameters weighted by 1/std_error^2, channels by their mean square.
+FitReport pooled(std::vector<FitReport> fits) {
+  FitReport whole = fits.front();
+  if (fits.size() == 1) return whole;
+  whole.covariance.clear();
+  whole.termination = "weighted mean of " + std::to_string(fits.size()) + " fits; the first: " + whole.termination;
+  for (EstimatedParameter& parameter : whole.parameters) {
+    double weights = 0.0;
+    double sum = 0.0;
+    for (const FitReport& fit : fits)
+      for (const EstimatedParameter& other : fit.parameters) {
+        if (other.name != parameter.name || !(other.std_error > 0.0) || !std::isfinite(other.std_error)) continue;
+        const double weight = 1.0 / (other.std_error * other.std_error);
+        weights += weight;
+        sum += weight * other.value;
+      }
+    if (weights <= 0.0) continue;
+    parameter.value = sum / weights;
+    parameter.std_error = std::sqrt(1.0 / weights);
+  }
+  for (ChannelFit& channel : whole.channels) {
+    double squares = 0.0;
+    for (const FitReport& fit : fits)
+      for (const ChannelFit& other : fit.channels)
+        if (other.channel == channel.channel) squares += other.noise_normalised_rms * other.noise_normalised_rms;
+    channel.noise_normalised_rms = std::sqrt(squares / static_cast<double>(fits.size()));
+  }
+  for (std::size_t k = 1; k < fits.size(); ++k) {
+    whole.converged = whole.converged && fits[k].converged;
+    whole.admissible = whole.admissible && fits[k].admissible;
+    whole.reasons.insert(whole.reasons.end(), fits[k].reasons.begin(), fits[k].reasons.end());
+  }
+  return whole;
+}
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json parameter_json(const EstimatedParameter& parameter) {
+  return {{"name", parameter.name},
+          {"value", number_or_null(parameter.value)},
+          {"std_error", number_or_null(parameter.std_error)},
+          {"unit", parameter.unit},
+          {"at_bound", parameter.at_bound},
+          {"free", parameter.free},
+          {"min", number_or_null(parameter.min)},
+          {"max", number_or_null(parameter.max)}};
+}
+
+void print_json(const AssetConfig& asset, const FitOptions& options, const FitResult& fit) {
+  Json json = {{"schema", "sealwatch.fit/1"},      {"asset_id", asset.asset_id},  {"model", fit.report.model},
+               {"recordings", options.recordings}, {"parameters", Json::array()}, {"loads", Json::array()},
+               {"channels", Json::object()}};
+  for (const EstimatedParameter& parameter : fit.report.parameters)
+    json["parameters"].push_back(parameter_json(parameter));
+  for (std::size_t k = 0; k < fit.loads.size(); ++k) {
+    Json load = parameter_json(fit.loads[k]);
+    load["recording"] = options.recordings[k];
+    json["loads"].push_back(load);
+  }
+  for (const ChannelFit& channel : fit.report.channels)
+    json["channels"][channel.channel] = {{"noise_normalised_rms", number_or_null(channel.noise_normalised_rms)},
+                                         {"nrmse_percent", number_or_null(channel.nrmse_percent)},
+                                         {"whiteness_p", number_or_null(channel.whiteness_p)},
+                                         {"independence_p", number_or_null(channel.independence_p)}};
+  json["termination"] = fit.report.termination;
+  json["converged"] = fit.report.converged;
+  json["admissible"] = fit.report.admissible;
+  json["reasons"] = fit.report.reasons;
+  std::printf("%s\n", json.dump(1).c_str());
+}
+
+void print_parameter(const EstimatedParameter& parameter) {
+  const std::string error = std::isfinite(parameter.std_error) ? number(parameter.std_error, 2) : "not identifiable";
+  std::printf("  %-18s %14s  +- %-16s %-12s%s\n", parameter.name.c_str(), number(parameter.value, 5).c_str(),
+              error.c_str(), parameter.unit.c_str(),
+              parameter.at_bound ? "  at its bound"
+              : parameter.free   ? ""
+                                 : "  (fixed)");
+}
+
+void print_text(const AssetConfig& asset, const FitOptions& options, const FitResult& fit) {
+  std::printf("%s, model %s, %zu recording%s: %s\n", asset.asset_id.c_str(), fit.report.model.c_str(),
+              options.recordings.size(), options.recordings.size() == 1 ? "" : "s",
+              fit.report.admissible ? "admissible" : "NOT admissible");
+  for (const std::string& reason : fit.report.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
+  std::printf("\n  %-18s %14s     %-16s %s\n", "parameter", "value", "std. error", "unit");
+  for (const EstimatedParameter& parameter : fit.report.parameters)
+    if (parameter.free) print_parameter(parameter);
+  for (const EstimatedParameter& load : fit.loads)
+    if (fit.loads.size() > 1) print_parameter(load);
+  std::printf("\n  %-22s %10s %10s %12s %14s\n", "channel", "rms/noise", "NRMSE %", "whiteness p", "independence p");
+  for (const ChannelFit& channel : fit.report.channels)
+    std::printf("  %-22s %10.3f %10.2f %12.3g %14.3g\n", channel.channel.c_str(), channel.noise_normalised_rms,
+                channel.nrmse_percent, channel.whiteness_p, channel.independence_p);
+  std::printf("\n  %s\n", wrapped(fit.report.termination, 110, 2).c_str());
+}
+
+std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConfig& asset,
+                                      const PlantDescription& plant, const std::vector<Recording>& recordings) {
+  const std::vector<std::string> known = {asset.model, kCylinderCircuit};
+  if (!options.model.empty() && std::find(known.begin(), known.end(), options.model) == known.end()) {
+    complain(Error{.file = {},
+                   .place = "--model",
+                   .value = options.model,
+                   .rule = "is not a model of this asset",
+                   .advice = suggest(options.model, known)});
+    return std::nullopt;
+  }
+  const bool cylinder = options.model.empty() ? !inputs_recorded(plant, recordings) : options.model == kCylinderCircuit;
+  if (!cylinder) return fit_whole(asset, recordings);
+  std::vector<FitReport> fits;
+  for (const Recording& recording : recordings) fits.push_back(fit_cylinder(asset, recording));
+  return FitResult{.report = pooled(std::move(fits)), .loads = {}};
+}
+
+}  // namespace
+
+int run_fit(const FitOptions& options) {
+  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  if (!asset) return kBadInput;
+  const Result<const PlantDescription*> plant = find_plant(asset->model);
+  if (!plant) {
+    complain(plant.error());
+    return kBadInput;
+  }
+  const auto recordings = read_all(options, *asset, **plant);
+  if (!recordings) return kBadInput;
+  const std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
+  if (!fit) return kBadInput;
+  options.json ? print_json(*asset, options, *fit) : print_text(*asset, options, *fit);
+  return fit->report.admissible ? kOk : kAnswerIsNo;
+}
+
+}  // namespace sealwatch::cli

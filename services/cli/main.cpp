@@ -1,0 +1,231 @@
+// `sealwatch`: one program with subcommands for engineers and operators. Arguments only; each command is in its own
+// file.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <map>
+
+#include "services/cli/commands.hpp"
+#include "services/cli/completion.hpp"
+#include "services/cli/manual.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+constexpr const char* kExitStatus =
+    "Exit status: 0 ok; 1 it ran and the answer is \"no\"; 2 bad usage or input; 3 internal failure.";
+
+/// The command line: its options, and what to run when it has been parsed.
+class CommandLine {
+ public:
+  CommandLine() : app_("sealwatch: condition monitoring of electro-hydrostatic subsea valve actuators", "sealwatch") {
+    app_.set_version_flag("--version", std::string("sealwatch ") + SEALWATCH_VERSION);
+    app_.require_subcommand(1);
+    app_.footer(std::string("First steps: sealwatch replay --with-services RECORDING.csv...\n") + kExitStatus);
+    add_recordings();
+    add_estimation();
+    add_live();
+    add_operator();
+    add_configuration();
+  }
+
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app_.exit(error) == 0 ? kOk : kBadInput;
+    }
+    return chosen_();
+  }
+
+ private:
+  CLI::App* command(const std::string& name, const std::string& meaning, const std::string& example,
+                    std::function<int()> run) {
+    CLI::App* subcommand = app_.add_subcommand(name, meaning);
+    subcommand->footer("Example:\n  " + example + "\n" + kExitStatus);
+    subcommand->callback([this, run = std::move(run)] { chosen_ = run; });
+    return subcommand;
+  }
+
+  static void add_config(CLI::App* subcommand, std::string& config) {
+    config = default_config();
+    subcommand->add_option("--config", config, "configuration file or directory ($SEALWATCH_CONFIG)")
+        ->capture_default_str();
+  }
+
+  void add_recordings() {
+    CLI::App* simulate =
+        command("simulate", "record partial stroke tests of the virtual bench",
+                "sealwatch simulate --asset config/assets/xt03-mv2.yaml --ageing --months 108 --out recordings",
+                [this] { return run_simulate(simulate_); });
+    simulate->add_option("--asset", simulate_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    simulate->add_option("--out", simulate_.directory, "directory for the recordings (made if absent)")->required();
+    simulate->add_option("--months", simulate_.months, "number of monthly tests")
+        ->check(CLI::Range(1, 600))
+        ->capture_default_str();
+    simulate->add_option("--start", simulate_.start, "UTC time of installation; the first test is a month later")
+        ->capture_default_str();
+    simulate->add_option("--seed", simulate_.seed, "same seed, same recordings")->capture_default_str();
+    simulate->add_option("--rate", simulate_.sample_rate_Hz, "samples a second")
+        ->check(CLI::Range(10.0, 5000.0))
+        ->capture_default_str();
+    simulate->add_option("--condition", simulate_.condition, "seal condition theta at the first test")
+        ->check(CLI::Range(0.05, 1.2))
+        ->capture_default_str();
+    simulate->add_flag("--ageing", simulate_.ageing,
+                       "let the seal age from month to month until it fails or the months are over");
+    simulate->add_option("--missing", simulate_.missing_share, "share of the months that are never tested")
+        ->check(CLI::Range(0.0, 0.9))
+        ->capture_default_str();
+    simulate->add_option("--cut", simulate_.cut_share, "share of the tests that are cut short")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+  }
+
+  void add_estimation() {
+    CLI::App* fit = command("fit", "estimate the actuator's parameters from recorded tests (gray-box PEM)",
+                            "sealwatch fit --asset config/assets/xt03-mv2.yaml 2016-03.csv --json",
+                            [this] { return run_fit(fit_); });
+    fit->add_option("--asset", fit_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    fit->add_option("recordings", fit_.recordings, "recordings, fitted jointly (CSV or MAT)")->required();
+    fit->add_option("--model", fit_.model,
+                    "cylinder_circuit, or the asset's whole model (default: the best the channels allow)");
+    fit->add_flag("--json", fit_.json, "machine-readable result (schema sealwatch.fit/1)");
+
+    CLI::App* forecast = command("forecast", "remaining useful life from a history of estimates",
+                                 "sealwatch forecast --history history.csv --before 2019-06-01 --json",
+                                 [this] { return run_forecast(forecast_); });
+    forecast
+        ->add_option("--history", forecast_.history_file,
+                     "CSV: time[iso8601],theta[1],theta_std[1] (or R_CL[Pa s/m3] with --asset)")
+        ->required();
+    forecast->add_option("--asset", forecast_.asset_file, "asset file: seal resistances and threshold")
+        ->check(CLI::ExistingFile);
+    forecast->add_option("--before", forecast_.before, "dates to give the probability of failure for");
+    forecast->add_option("--threshold", forecast_.threshold, "seal condition at which it has failed")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str()
+        ->each([this](const std::string&) { forecast_.threshold_given = true; });
+    forecast->add_flag("--json", forecast_.json, "machine-readable result (schema sealwatch.forecast/1)");
+  }
+
+  void add_live() {
+    CLI::App* replay =
+        command("replay", "play recorded tests through the six services, or --offline in process",
+                "sealwatch replay --with-services recordings/*.csv", [this] { return run_replay(replay_); });
+    add_config(replay, replay_.config);
+    replay->add_option("recordings", replay_.recordings, "recordings in the order of the tests (CSV or MAT)")
+        ->required();
+    replay
+        ->add_option("--speed", replay_.speed,
+                     "1 (as recorded) to 1000, or max; the time between tests is always skipped")
+        ->capture_default_str();
+    replay->add_option("--asset", replay_.asset_file, "asset that recordings without asset_id belong to, by file")
+        ->check(CLI::ExistingFile);
+    replay->add_option("--results", replay_.results_directory,
+                       "write every message there, a JSON line each, a file a topic");
+    replay->add_flag("--offline", replay_.offline, "without DDS and services: the same layers in this process");
+    replay->add_flag("--with-services", replay_.with_services, "start the six services for the time of the replay");
+    replay->add_option("--state", replay_.state_directory,
+                       "state directory of those services instead of the configuration's");
+    replay->add_flag("--json", replay_.json, "advisories and the last forecasts as JSON lines on standard output");
+    replay->add_flag("--quiet", replay_.quiet, "only the final screen");
+
+    CLI::App* watch = command("watch", "show any topic, live", "sealwatch watch advisory remaining_life",
+                              [this] { return run_watch(watch_); });
+    add_config(watch, watch_.config);
+    watch->add_option("topics", watch_.topics, "topics by name, service_status among them (default: all but samples)");
+    watch->add_option("--asset", watch_.asset_id, "only this asset");
+    watch->add_option("--seconds", watch_.seconds, "stop after this time (default: until interrupted)");
+    watch->add_flag("--json", watch_.json, "one JSON object a line");
+
+    CLI::App* up = command("up", "start the six services here and keep them running", "sealwatch up --config config",
+                           [this] { return run_up(up_); });
+    add_config(up, up_.config);
+    up->add_option("--state", up_.state_directory, "state directory instead of the configuration's");
+
+    CLI::App* status = command("status", "what the services are doing and the last word on every asset",
+                               "sealwatch status", [this] { return run_status(status_); });
+    add_config(status, status_.config);
+    status->add_option("--seconds", status_.seconds, "how long to listen")
+        ->check(CLI::Range(0.5, 60.0))
+        ->capture_default_str();
+    status->add_flag("--json", status_.json, "machine-readable result (schema sealwatch.status/1)");
+  }
+
+  void add_operator() {
+    CLI::App* acknowledge = command("acknowledge", "tell the system that an advisory has been seen",
+                                    "sealwatch acknowledge XT03-MV2 ADVISORY_ID --by 'J. Silva'",
+                                    [this] { return run_acknowledge(acknowledge_); });
+    add_config(acknowledge, acknowledge_.config);
+    acknowledge->add_option("asset", acknowledge_.asset_id, "asset id")->required();
+    acknowledge->add_option("advisory", acknowledge_.advisory_id, "advisory id as `watch advisory --json` shows it")
+        ->required();
+    acknowledge->add_option("--by", acknowledge_.by, "who")->required();
+    acknowledge->add_option("--remark", acknowledge_.remark, "free text");
+
+    CLI::App* replaced = command(
+        "replaced", "tell the system that an actuator or its seal was replaced: histories start anew",
+        "sealwatch replaced XT03-MV2 --at 2018-05-02 --by 'J. Silva'", [this] { return run_replaced(replaced_); });
+    add_config(replaced, replaced_.config);
+    replaced->add_option("asset", replaced_.asset_id, "asset id")->required();
+    replaced->add_option("--at", replaced_.at, "UTC time of the replacement")->required();
+    replaced->add_option("--what", replaced_.what, "actuator or seal")
+        ->check(CLI::IsMember({"actuator", "seal"}))
+        ->capture_default_str();
+    replaced->add_option("--by", replaced_.by, "who")->required();
+    replaced->add_option("--remark", replaced_.remark, "free text");
+  }
+
+  void add_configuration() {
+    CLI::App* config = app_.add_subcommand("config", "look at the configuration");
+    config->require_subcommand(1);
+    CLI::App* check =
+        config->add_subcommand("check", "validate the whole configuration and list every fault with file and line");
+    check->footer(std::string("Example:\n  sealwatch config check --config /etc/sealwatch\n") + kExitStatus);
+    check->callback([this] { chosen_ = [this] { return run_config_check(config_check_); }; });
+    add_config(check, config_check_.config);
+    check->add_flag("--json", config_check_.json, "machine-readable result");
+
+    CLI::App* completion = command("completion", "print a completion script for bash or zsh",
+                                   "source <(sealwatch completion bash)", [this] {
+                                     std::cout << completion_script(app_, completion_.shell);
+                                     return kOk;
+                                   });
+    completion->add_option("shell", completion_.shell, "bash or zsh")
+        ->check(CLI::IsMember({"bash", "zsh"}))
+        ->capture_default_str();
+
+    command("manual", "print this program's manual page", "sealwatch manual | man -l -", [this] {
+      std::cout << manual_page(app_, SEALWATCH_VERSION);
+      return kOk;
+    });
+  }
+
+  CLI::App app_;
+  std::function<int()> chosen_ = [] { return kBadInput; };
+  SimulateOptions simulate_;
+  FitOptions fit_;
+  ForecastOptions forecast_;
+  ReplayOptions replay_;
+  WatchOptions watch_;
+  UpOptions up_;
+  StatusOptions status_;
+  AcknowledgeOptions acknowledge_;
+  ReplacedOptions replaced_;
+  ConfigCheckOptions config_check_;
+  CompletionOptions completion_;
+};
+
+}  // namespace
+}  // namespace sealwatch::cli
+
+int main(int argc, char** argv) {
+  try {
+    return sealwatch::cli::CommandLine().run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "sealwatch: internal failure: " << error.what() << "\n";
+    return sealwatch::cli::kInternalFailure;
+  }
+}

@@ -1,0 +1,169 @@
+// `sealwatch replay`: recorded tests through the live services, or the same layers in this process.
+#include <chrono>
+#include <cstdio>
+#include <optional>
+
+#include "services/cli/commands.hpp"
+#include "services/cli/layers.hpp"
+#include "services/cli/replay_feeder.hpp"
+#include "services/cli/replay_log.hpp"
+#include "services/cli/replay_source.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/supervisor.hpp"
+#include "services/common/runtime/in_process_pipeline.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using std::chrono::steady_clock;
+
+/// How many tests data acquisition may lie behind: enough to keep all services busy, few enough to keep memory small.
+constexpr std::size_t kTestsAhead = 6;
+/// Without any sign of progress for this long, the replay gives up and says what it waits for.
+constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kPatienceForServices{15};
+
+/// Recorded seconds per second; 0 for "max".
+std::optional<double> speed_of(const std::string& text) {
+  if (text == "max") return 0.0;
+  char* end = nullptr;
+  const double speed = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() && *end == '\0' && speed >= 1.0 && speed <= 1000.0) return speed;
+  complain(Error{
+      .file = {}, .place = "--speed", .value = text, .rule = "must be a number from 1 to 1000, or max", .advice = {}});
+  return std::nullopt;
+}
+
+int replay_offline(LayerSet layers, ReplaySource& source, ReplayLog& log) {
+  InProcessPipeline pipeline(layers.release(), [&log](const Message& message) { log.take(message); });
+  for (std::vector<RawSamples> blocks = source.next(); !blocks.empty() && !interrupted(); blocks = source.next())
+    for (RawSamples& block : blocks) pipeline.push(Message(std::move(block)));
+  return interrupted() ? kAnswerIsNo : kOk;
+}
+
+/// One replay over the bus.
+class LiveReplay {
+ public:
+  LiveReplay(Session& session, const LayerSet& layers, ReplaySource& source, ReplayLog& log, double speed)
+      : session_(session),
+        log_(log),
+        feeder_(
+            unique_name("replay"), [&source] { return source.next(); }, kTestsAhead, speed),
+        quiescence_(layers.inputs_by_layer()) {}
+
+  int run(Supervisor* supervisor) {
+    if (const Status joined = join(); !joined) return give_up(joined.error());
+    if (!wait_for_services(supervisor)) return kAnswerIsNo;
+    last_progress_ = steady_clock::now();
+    while (!interrupted() && !(feeder_.done() && quiescence_.reached(feeder_.writer_id(), feeder_.last_sequence()))) {
+      if (const Status fed = feeder_.feed(*session_.bus, steady_clock::now()); !fed) return give_up(fed.error());
+      for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(20)))
+        if (const Status taken = take(item); !taken) return give_up(taken.error());
+      tend(supervisor);
+      if (steady_clock::now() - last_progress_ > kPatience) return stalled();
+    }
+    return interrupted() ? kAnswerIsNo : kOk;
+  }
+
+ private:
+  Status join() {
+    if (const Status joined = session_.bus->subscribe(ReplayLog::topics()); !joined) return joined;
+    return session_.bus->subscribe_service_topics();
+  }
+
+  bool wait_for_services(Supervisor* supervisor) {
+    const auto end = steady_clock::now() + kPatienceForServices;
+    while (!interrupted() && steady_clock::now() < end) {
+      for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(100)))
+        if (const auto* status = std::get_if<ServiceStatus>(&item)) quiescence_.take(*status);
+      tend(supervisor);
+      if (quiescence_.missing().empty()) return true;
+    }
+    std::string missing;
+    for (const std::string& service : quiescence_.missing()) missing += (missing.empty() ? "" : ", ") + service;
+    complain(Error{
+        .file = {},
+        .place = {},
+        .value = {},
+        .rule = "no heartbeat from " + missing + " in DDS domain " + std::to_string(session_.configuration.domain),
+        .advice = "start the services with `sealwatch up`, or replay --with-services, or replay --offline"});
+    return false;
+  }
+
+  Status take(const BusItem& item) {
+    if (const auto* message = std::get_if<Message>(&item)) {
+      log_.take(*message);
+      last_progress_ = steady_clock::now();
+    } else if (const auto* status = std::get_if<ServiceStatus>(&item)) {
+      feeder_.take(*status);
+      quiescence_.take(*status);
+    } else {
+      return feeder_.take(std::get<ResendRequest>(item), *session_.bus);
+    }
+    return {};
+  }
+
+  void tend(Supervisor* supervisor) {
+    if (supervisor == nullptr) return;
+    for (const std::string& event : supervisor->tend()) log_.remark(event);
+  }
+
+  int give_up(const Error& error) {
+    complain(error);
+    return kInternalFailure;
+  }
+
+  int stalled() {
+    complain(Error{.file = {},
+                   .place = {},
+                   .value = {},
+                   .rule = "nothing has come for 60 s; " + quiescence_.explain(),
+                   .advice = "see the services' logs, and `sealwatch status`"});
+    return kInternalFailure;
+  }
+
+  Session& session_;
+  ReplayLog& log_;
+  ReplayFeeder feeder_;
+  Quiescence quiescence_;
+  steady_clock::time_point last_progress_;
+};
+
+/// Replays through the services that run in this domain, started here if the user asked for it.
+int replay_live(const ReplayOptions& options, const LayerSet& layers, ReplaySource& source, ReplayLog& log,
+                double speed) {
+  std::optional<Supervisor> supervisor;
+  if (options.with_services) {
+    supervisor.emplace(service_programs(options.config, options.state_directory));
+    if (const Status started = supervisor->start(); !started) {
+      complain(started.error());
+      return kInternalFailure;
+    }
+  }
+  std::optional<Session> session = open_session(options.config);
+  return session ? LiveReplay(*session, layers, source, log, speed).run(supervisor ? &*supervisor : nullptr)
+                 : kBadInput;
+}
+
+}  // namespace
+
+int run_replay(const ReplayOptions& options) {
+  const std::optional<double> speed = speed_of(options.speed);
+  const std::optional<Configuration> configuration = load_or_explain(options.config);
+  if (!speed || !configuration) return kBadInput;
+  std::optional<ReplaySource> source = ReplaySource::open(options, *configuration);
+  if (!source) return kBadInput;
+  Result<LayerSet> layers = LayerSet::make(*configuration);
+  if (!layers) {
+    complain(layers.error());
+    return kInternalFailure;
+  }
+  ReplayLog log(options, source->tests());
+  catch_interrupts();
+  const int result = options.offline ? replay_offline(std::move(*layers), *source, log)
+                                     : replay_live(options, *layers, *source, log, *speed);
+  log.finish();
+  return source->failures() > 0 && result == kOk ? kBadInput : result;
+}
+
+}  // namespace sealwatch::cli

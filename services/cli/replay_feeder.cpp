@@ -1,0 +1,104 @@
+#include "services/cli/replay_feeder.hpp"
+
+#include <algorithm>
+
+namespace sealwatch::cli {
+namespace {
+
+std::uint64_t received_up_to(const ServiceStatus& status, const std::string& topic, const std::string& writer_id) {
+  for (const StreamPosition& position : status.received)
+    if (position.topic == topic && position.writer_id == writer_id) return position.sequence;
+  return 0;
+}
+
+}  // namespace
+
+ReplayFeeder::ReplayFeeder(std::string writer_id, std::function<std::vector<RawSamples>()> next_test,
+                           std::size_t tests_ahead, double speed)
+    : writer_id_(std::move(writer_id)), next_test_(std::move(next_test)), tests_ahead_(tests_ahead), speed_(speed) {}
+
+std::size_t ReplayFeeder::tests_waiting() const {
+  return static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), [](const RawSamples& block) {
+    return block.boundary == BlockBoundary::end || block.boundary == BlockBoundary::whole;
+  }));
+}
+
+bool ReplayFeeder::due(std::chrono::steady_clock::time_point now) const {
+  if (speed_ <= 0.0 || unsent_.front().samples.time_s.empty()) return true;
+  return std::chrono::duration<double>(now - test_started_).count() >= unsent_.front().samples.time_s.back() / speed_;
+}
+
+Status ReplayFeeder::feed(Bus& bus, std::chrono::steady_clock::time_point now) {
+  while (true) {
+    if (unsent_.empty()) {
+      if (exhausted_ || tests_waiting() >= tests_ahead_) return {};
+      for (RawSamples& block : next_test_()) unsent_.push_back(std::move(block));
+      exhausted_ = unsent_.empty();
+      if (exhausted_) return {};
+      ++tests_sent_;
+      test_started_ = now;
+    }
+    if (!due(now)) return {};
+    unsent_.front().header.writer_id = writer_id_;
+    unsent_.front().header.stream_sequence = last_sequence_ + 1;
+    if (const Status published = bus.publish(Message(unsent_.front())); !published) return published;
+    ++last_sequence_;
+    waiting_.push_back(std::move(unsent_.front()));
+    unsent_.pop_front();
+  }
+}
+
+void ReplayFeeder::take(const ServiceStatus& status) {
+  if (status.service != "data_acquisition") return;
+  const std::uint64_t journaled = received_up_to(status, "raw_samples", writer_id_);
+  while (!waiting_.empty() && waiting_.front().header.stream_sequence <= journaled) waiting_.pop_front();
+}
+
+Status ReplayFeeder::take(const ResendRequest& request, Bus& bus) {
+  if (request.writer_id != writer_id_ || request.topic != "raw_samples") return {};
+  for (const RawSamples& block : waiting_) {
+    const std::uint64_t sequence = block.header.stream_sequence;
+    if (sequence < request.first_sequence || sequence > request.last_sequence) continue;
+    if (const Status published = bus.publish(Message(block)); !published) return published;
+  }
+  return {};
+}
+
+std::vector<std::string> Quiescence::missing() const {
+  std::vector<std::string> services;
+  for (const auto& [service, topics] : inputs_of_)
+    if (!last_.contains(service)) services.push_back(service);
+  return services;
+}
+
+std::string Quiescence::explain() const {
+  std::string text;
+  for (const auto& [service, status] : last_)
+    if (status.pending_inputs != 0)
+      text +=
+          (text.empty() ? "" : ", ") + service + " has " + std::to_string(status.pending_inputs) + " inputs waiting";
+  return text.empty() ? "no service has inputs waiting" : text;
+}
+
+void Quiescence::take(const ServiceStatus& status) {
+  waiting_at_first_.try_emplace(status.service, status.pending_inputs);
+  last_[status.service] = status;
+}
+
+bool Quiescence::reached(const std::string& source_writer, std::uint64_t source_sequence) const {
+  for (const auto& [service, topics] : inputs_of_) {
+    const auto reader = last_.find(service);
+    if (reader == last_.end() || reader->second.pending_inputs > waiting_at_first_.at(service)) return false;
+    for (const std::string& topic : topics) {
+      if (topic == "raw_samples" && received_up_to(reader->second, topic, source_writer) < source_sequence)
+        return false;
+      for (const auto& [other, writer] : last_)
+        for (const StreamPosition& written : writer.written)
+          if (written.topic == topic && received_up_to(reader->second, topic, written.writer_id) < written.sequence)
+            return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,76 @@
+// Feeds recorded tests to data acquisition as raw_samples, a few tests ahead of what it has safely journaled, and sends
+// again what it asks for: a data acquisition killed at any moment loses nothing.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/topics.hpp"
+#include "sealwatch/port/bus.hpp"
+
+namespace sealwatch::cli {
+
+class ReplayFeeder {
+ public:
+  /// `next_test` gives the blocks of the next test, none when there are no more. `speed` is recorded seconds per
+  /// second; 0: as fast as data acquisition journals, at most `tests_ahead` tests before it.
+  ReplayFeeder(std::string writer_id, std::function<std::vector<RawSamples>()> next_test, std::size_t tests_ahead,
+               double speed);
+
+  /// Publishes what may be published at `now`.
+  [[nodiscard]] Status feed(Bus& bus, std::chrono::steady_clock::time_point now);
+  /// Learns from data acquisition's heartbeat how far it has come.
+  void take(const ServiceStatus& status);
+  /// Sends again what data acquisition misses.
+  [[nodiscard]] Status take(const ResendRequest& request, Bus& bus);
+
+  /// Nothing left to send and all of it journaled by data acquisition.
+  [[nodiscard]] bool done() const { return exhausted_ && unsent_.empty() && waiting_.empty(); }
+  [[nodiscard]] std::uint64_t last_sequence() const { return last_sequence_; }
+  [[nodiscard]] const std::string& writer_id() const { return writer_id_; }
+  [[nodiscard]] std::size_t tests_sent() const { return tests_sent_; }
+
+ private:
+  [[nodiscard]] std::size_t tests_waiting() const;
+  /// Whether the first unsent block is due: its last sample has been "recorded" by now.
+  [[nodiscard]] bool due(std::chrono::steady_clock::time_point now) const;
+
+  std::string writer_id_;
+  std::function<std::vector<RawSamples>()> next_test_;
+  std::size_t tests_ahead_;
+  double speed_;
+  std::deque<RawSamples> unsent_;  ///< of the test being sent
+  std::chrono::steady_clock::time_point test_started_;
+  std::deque<RawSamples> waiting_;  ///< sent, not yet known to be journaled; first has the lowest sequence
+  std::uint64_t last_sequence_ = 0;
+  std::size_t tests_sent_ = 0;
+  bool exhausted_ = false;
+};
+
+/// Whether every service has taken in all that its upstream services wrote, judged by their last heartbeats.
+class Quiescence {
+ public:
+  /// `inputs_of` tells which topics a service reads.
+  explicit Quiescence(std::map<std::string, std::vector<std::string>> inputs_of) : inputs_of_(std::move(inputs_of)) {}
+  void take(const ServiceStatus& status);
+  /// All expected services have been heard, none has more inputs waiting than when it was first heard (a layer may keep
+  /// an input of long ago), and each has received every stream of its input
+  /// topics to its end, that of `source` up to `sequence` included.
+  [[nodiscard]] bool reached(const std::string& source_writer, std::uint64_t source_sequence) const;
+  /// Expected services that have not been heard.
+  [[nodiscard]] std::vector<std::string> missing() const;
+  /// What is still under way, in words.
+  [[nodiscard]] std::string explain() const;
+
+ private:
+  std::map<std::string, std::vector<std::string>> inputs_of_;
+  std::map<std::string, ServiceStatus> last_;
+  std::map<std::string, std::uint64_t> waiting_at_first_;
+};
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,82 @@
+#include "services/cli/replay_log.hpp"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+
+#include "services/common/message/json.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+constexpr std::array kTopics = {Topic::test_features,    Topic::state_report,   Topic::health_report,
+                                Topic::leakage_estimate, Topic::remaining_life, Topic::pst_request,
+                                Topic::advisory};
+
+}  // namespace
+
+ReplayLog::ReplayLog(const ReplayOptions& options, std::size_t tests) : options_(options), progress_("replay", tests) {
+  if (!options_.results_directory.empty()) std::filesystem::create_directories(options_.results_directory);
+}
+
+std::span<const Topic> ReplayLog::topics() { return kTopics; }
+
+void ReplayLog::take(const Message& message) {
+  bool wanted = false;
+  for (const Topic topic : kTopics) wanted = wanted || topic == topic_of(message);
+  if (!wanted) return;
+  write(message);
+  assets_[asset_of(message)].take(message);
+  if (const auto* advisory = std::get_if<Advisory>(&message)) show_advisory(*advisory, message);
+}
+
+void ReplayLog::show_advisory(const Advisory& advisory, const Message& message) {
+  if (!advisory.header.pst_id.empty()) concluded_.insert(advisory.header.pst_id);
+  // A test that changes nothing repeats the advisory: shown once, unless its state changes.
+  const std::string now = advisory.advisory_id + std::string(name_of(advisory.state));
+  std::string& before = last_advisory_[advisory.asset_id];
+  if (before != now && advisory.state != AdvisoryState::superseded) {
+    before = now;
+    progress_.clear();
+    if (options_.json) std::printf("{\"topic\":\"advisory\",\"message\":%s}\n", to_json(message).c_str());
+    if (!options_.json && !options_.quiet) std::printf("%s\n", wrapped(one_line(message), 120, 12).c_str());
+    std::fflush(stdout);
+  }
+  progress_.show(concluded_.size(),
+                 advisory.header.event_time_known ? date(advisory.header.event_time_ns) : advisory.header.pst_id);
+}
+
+void ReplayLog::remark(const std::string& text) {
+  progress_.clear();
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void ReplayLog::write(const Message& message) {
+  if (options_.results_directory.empty()) return;
+  const Topic topic = topic_of(message);
+  std::unique_ptr<std::ofstream>& file = results_[topic];
+  if (!file)
+    file = std::make_unique<std::ofstream>(std::filesystem::path(options_.results_directory) /
+                                           (std::string(name_of(topic)) + ".jsonl"));
+  // Publishing time and stream stamps differ from run to run; everything else does not.
+  Message plain = message;
+  Header& header = header_of(plain);
+  header.publishing_time_ns = 0;
+  header.writer_id.clear();
+  header.stream_sequence = 0;
+  *file << to_json(plain) << "\n";
+}
+
+void ReplayLog::finish() {
+  progress_.finish();
+  for (auto& [topic, file] : results_) file->flush();
+  for (const auto& [asset, view] : assets_) {
+    if (options_.json)
+      std::printf("%s\n", view.json().c_str());
+    else
+      std::printf("\n%s", view.screen().c_str());
+  }
+  if (assets_.empty()) std::printf("no test has been concluded\n");
+}
+
+}  // namespace sealwatch::cli

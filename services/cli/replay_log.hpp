@@ -1,0 +1,41 @@
+// What a replay shows while it runs and at its end, and the files of results it can write.
+#pragma once
+
+#include <fstream>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+
+#include "sealwatch/message/topics.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/summary.hpp"
+#include "services/cli/terminal.hpp"
+
+namespace sealwatch::cli {
+
+class ReplayLog {
+ public:
+  ReplayLog(const ReplayOptions& options, std::size_t tests);
+  /// The topics it wants to see.
+  [[nodiscard]] static std::span<const Topic> topics();
+  void take(const Message& message);
+  /// Something that happened besides, like a service that was started again.
+  void remark(const std::string& text);
+  /// The final screen: each asset's forecast, interval, reasons, and where to look further.
+  void finish();
+
+ private:
+  void show_advisory(const Advisory& advisory, const Message& message);
+  void write(const Message& message);
+
+  ReplayOptions options_;
+  Progress progress_;
+  std::set<std::string> concluded_;                   ///< PST ids that reached the last layer
+  std::map<std::string, std::string> last_advisory_;  ///< advisory id and state shown last, by asset
+  std::map<std::string, AssetView> assets_;
+  std::map<Topic, std::unique_ptr<std::ofstream>> results_;
+};
+
+}  // namespace sealwatch::cli

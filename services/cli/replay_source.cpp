@@ -1,0 +1,62 @@
+#include "services/cli/replay_source.hpp"
+
+#include <filesystem>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/model/plant_description.hpp"
+#include "services/cli/session.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "services/data_acquisition/recording_blocks.hpp"
+
+namespace sealwatch::cli {
+std::optional<ReplaySource> ReplaySource::open(const ReplayOptions& options, const Configuration& configuration) {
+  ReplaySource source;
+  source.configuration_ = &configuration;
+  source.files_ = options.recordings;
+  if (!options.asset_file.empty()) {
+    const auto asset = load_asset_or_explain(options.asset_file);
+    if (!asset) return std::nullopt;
+    source.default_asset_ = asset->asset_id;
+  }
+  for (const std::string& file : source.files_) {
+    if (std::filesystem::exists(file)) continue;
+    complain(Error{.file = file, .place = {}, .value = {}, .rule = "is not there", .advice = {}});
+    return std::nullopt;
+  }
+  return source;
+}
+
+Result<Recording> ReplaySource::read(const std::string& file) const {
+  Result<std::string> asset_id = recorded_asset_id(file);
+  if (!asset_id) return fail(asset_id.error());
+  if (asset_id->empty()) *asset_id = default_asset_;
+  const AssetConfig* asset = configuration_->find_asset(*asset_id);
+  if (asset == nullptr) {
+    std::vector<std::string> known;
+    for (const AssetConfig& candidate : configuration_->assets) known.push_back(candidate.asset_id);
+    return fail(Error{
+        .file = file,
+        .place = "asset_id",
+        .value = *asset_id,
+        .rule = asset_id->empty() ? "names no asset" : "is not a configured asset",
+        .advice = asset_id->empty() ? "say which with --asset FILE, or in a sidecar" : suggest(*asset_id, known)});
+  }
+  const Result<const PlantDescription*> plant = find_plant(asset->model);
+  if (!plant) return fail(plant.error());
+  Result<Recording> recording = read_recording(file, **plant);
+  if (recording) recording->asset_id = *asset_id;
+  return recording;
+}
+
+std::vector<RawSamples> ReplaySource::next() {
+  while (next_ < files_.size()) {
+    const Result<Recording> recording = read(files_[next_++]);
+    if (recording) return blocks_of(*recording);
+    complain(recording.error());
+    ++failures_;
+  }
+  return {};
+}
+
+}  // namespace sealwatch::cli

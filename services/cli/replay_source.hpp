@@ -1,0 +1,35 @@
+// The recordings of a replay, one after the other, as the blocks that data acquisition takes.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/configuration.hpp"
+#include "sealwatch/core/recording.hpp"
+#include "sealwatch/message/data_acquisition.hpp"
+#include "services/cli/commands.hpp"
+
+namespace sealwatch::cli {
+
+class ReplaySource {
+ public:
+  /// Checks that every file is there. Recordings are read one at a time, when their turn comes.
+  [[nodiscard]] static std::optional<ReplaySource> open(const ReplayOptions& options,
+                                                        const Configuration& configuration);
+  /// Blocks of the next readable recording; none at the end. A bad recording is complained about and passed over.
+  [[nodiscard]] std::vector<RawSamples> next();
+  [[nodiscard]] std::size_t tests() const { return files_.size(); }
+  [[nodiscard]] std::size_t failures() const { return failures_; }
+
+ private:
+  [[nodiscard]] Result<Recording> read(const std::string& file) const;
+
+  const Configuration* configuration_ = nullptr;
+  std::vector<std::string> files_;
+  std::string default_asset_;  ///< for recordings that name none
+  std::size_t next_ = 0;
+  std::size_t failures_ = 0;
+};
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,37 @@
+// What every live command needs: the validated configuration, the bus, a way to be interrupted.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "sealwatch/config/configuration.hpp"
+#include "sealwatch/port/bus.hpp"
+
+namespace sealwatch::cli {
+
+/// The configuration at `path`; its faults are listed on standard error.
+[[nodiscard]] std::optional<Configuration> load_or_explain(const std::string& path);
+
+/// The asset file at `path`; its faults are listed on standard error.
+[[nodiscard]] std::optional<AssetConfig> load_asset_or_explain(const std::string& path);
+
+struct Session {
+  Configuration configuration;
+  std::unique_ptr<Bus> bus;
+};
+
+/// Loads the configuration and joins the bus; says on standard error what went wrong.
+[[nodiscard]] std::optional<Session> open_session(const std::string& config);
+
+/// "sealwatch: " and the error, on standard error.
+void complain(const Error& error);
+
+/// Makes Ctrl-C and SIGTERM set interrupted() instead of ending the program.
+void catch_interrupts();
+[[nodiscard]] bool interrupted();
+
+/// A name for this run of a command that no other run has: "replay-4f21c09a".
+[[nodiscard]] std::string unique_name(const std::string& command);
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,101 @@
+// `sealwatch simulate`: recordings of the virtual bench, with the truth beside them.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/virtual_bench/simulate_life.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+/// Digits of a written sample: two more than the sensors' noise needs.
+constexpr int kSignificantDigits = 9;
+
+std::optional<bench::LifeSetting> life_of(const SimulateOptions& options) {
+  const Result<UtcTime> start = parse_utc(options.start);
+  if (!start) {
+    complain(start.error());
+    return std::nullopt;
+  }
+  bench::LifeSetting life;
+  life.seed = options.seed;
+  life.months = options.months;
+  life.installed = *start;
+  life.missing_share = options.missing_share;
+  life.cut_share = options.cut_share;
+  life.degradation.initial_condition = options.condition;
+  if (!options.ageing) {
+    life.degradation.initial_gamma = {0.0, 0.0};
+    life.degradation.steepening_limit = {0.0, 0.0};
+    life.degradation.irregularity = {0.0, 0.0};
+  }
+  return life;
+}
+
+/// What was true of one test: for whoever wants to judge an estimate by it.
+std::string truth_line(const bench::PlannedTest& test, const std::string& recording) {
+  const nlohmann::ordered_json truth = {{"recording", recording},
+                                        {"month", test.month},
+                                        {"start_time", format_utc(test.start_time)},
+                                        {"theta", test.condition},
+                                        {"R_CL_Pa_s_m3", test.resistance_Pa_s_m3},
+                                        {"load_factor", test.load_factor},
+                                        {"recorded_share", test.recorded_share}};
+  return truth.dump();
+}
+
+Status write_life(const AssetConfig& asset, const bench::LifeSetting& life, const SimulateOptions& options,
+                  const std::vector<bench::PlannedTest>& plan) {
+  const std::filesystem::path folder = options.directory;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  std::ofstream truth(folder / "truth.jsonl");
+  if (!truth)
+    return fail(Error{.file = folder.string(), .place = {}, .value = {}, .rule = "cannot be written to", .advice = {}});
+  bench::TestSetting setting;
+  setting.sample_rate_Hz = options.sample_rate_Hz;
+  Progress progress("simulate", plan.size());
+  for (std::size_t k = 0; k < plan.size(); ++k) {
+    progress.show(k, format_date(plan[k].start_time));
+    if (plan[k].recorded_share <= 0.0) {
+      truth << truth_line(plan[k], "") << "\n";
+      continue;
+    }
+    const Result<Recording> recording = bench::simulate_planned(asset, life, plan[k], setting);
+    if (!recording) return fail(recording.error());
+    const std::string file = (folder / (recording->recording_id + ".csv")).string();
+    if (Status written = write_recording_csv(*recording, file, kSignificantDigits); !written) return written;
+    truth << truth_line(plan[k], recording->recording_id) << "\n";
+  }
+  return {};
+}
+
+}  // namespace
+
+int run_simulate(const SimulateOptions& options) {
+  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  const std::optional<bench::LifeSetting> life = life_of(options);
+  if (!asset || !life) return kBadInput;
+  const Result<std::vector<bench::PlannedTest>> plan = bench::plan_life(*asset, *life);
+  if (!plan) {
+    complain(plan.error());
+    return kBadInput;
+  }
+  if (const Status written = write_life(*asset, *life, options, *plan); !written) {
+    complain(written.error());
+    return kBadInput;
+  }
+  const bench::PlannedTest& last = plan->back();
+  std::printf("%zu months in %s, %s to %s; seal condition %s at the last (the truth is in truth.jsonl)\n", plan->size(),
+              options.directory.c_str(), format_date(plan->front().start_time).c_str(),
+              format_date(last.start_time).c_str(), percent(last.condition).c_str());
+  return kOk;
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,253 @@
+#include "services/cli/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sealwatch/core/time.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/common/message/json.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+std::string event_date(const Header& header) {
+  return header.event_time_known ? date(header.event_time_ns) : "(no date) ";
+}
+
+std::string join(const std::vector<std::string>& parts, const char* separator = "; ") {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : separator) + part;
+  return text;
+}
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return static_cast<char>(std::toupper(c)); });
+  return result;
+}
+
+std::string words(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string forecast_words(const Forecast& forecast) {
+  if (forecast.state != ForecastState::ok) return words(name_of(forecast.state));
+  return number(forecast.rul_months, 3) + " months, 95 % within " + number(forecast.interval_95_low_months, 3) +
+         " to " + number(forecast.interval_95_high_months, 3);
+}
+
+std::string content(const RawSamples& m) {
+  return m.source_id + " block " + std::to_string(m.block_number) + " (" + std::string(name_of(m.boundary)) + "), " +
+         std::to_string(m.samples.time_s.size()) + " samples of " + std::to_string(m.samples.channels.size()) +
+         " channels";
+}
+std::string content(const SampleBlock& m) {
+  return "block " + std::to_string(m.block_number) + " (" + std::string(name_of(m.boundary)) + "), " +
+         std::to_string(m.samples.time_s.size()) + " samples";
+}
+std::string content(const TestWindow& m) {
+  return std::to_string(m.samples.time_s.size()) + " samples at " + number(m.sample_rate_Hz, 3) + " Hz, " +
+         std::to_string(m.samples.channels.size()) + " channels" + (m.complete ? "" : ", incomplete");
+}
+std::string content(const TestFeatures& m) {
+  std::string text;
+  for (const Quantity& feature : m.features)
+    text += (text.empty() ? "" : ", ") + feature.name + " " + number(feature.value, 3) + " " + feature.unit;
+  return text;
+}
+std::string content(const StateReport& m) {
+  std::string text = m.header.pst_id.empty() ? "test overdue" : "PST " + words(name_of(m.verdict));
+  if (!m.verdict_reasons.empty()) text += " (" + join(m.verdict_reasons) + ")";
+  text += ", region " + std::string(name_of(m.region));
+  if (m.pst_overdue) text += ", " + number(m.overdue_days, 2) + " days overdue";
+  return text;
+}
+std::string content(const HealthReport& m) {
+  std::string text = "grade " + number(m.health_grade, 2);
+  if (m.trend_known) text += " (" + number(m.health_trend_per_year, 2) + " a year)";
+  if (!m.ambiguity_group.empty())
+    text +=
+        ", " + words(name_of(m.ambiguity_group.front().kind)) + " " + percent(m.ambiguity_group.front().likelihood, 0);
+  if (!m.admissible_for_prognosis) text += ", not for prognosis: " + join(m.inadmissible_reasons);
+  return text;
+}
+std::string content(const LeakageEstimate& m) {
+  if (!m.estimated) return "no estimate: " + join(m.reasons);
+  std::string text =
+      "R_CL " + number(m.resistance_Pa_s_m3, 3) + " +- " + number(m.resistance_std_Pa_s_m3, 2) + " Pa s/m3";
+  if (m.condition_known) text += ", seal condition " + percent(m.condition) + " +- " + percent(m.condition_std, 2);
+  if (!m.used_for_forecast) text += ", left out: " + join(m.reasons);
+  return text;
+}
+std::string content(const RemainingLife& m) {
+  if (m.forecasts.empty()) return "no forecast";
+  return "remaining life " + forecast_words(m.forecasts.front()) + (m.windows_disagree ? ", windows disagree" : "");
+}
+std::string content(const PstRequest& m) { return "test due " + date(m.due_time_ns) + ": " + m.reason; }
+std::string content(const Advisory& m) {
+  std::string text = upper(name_of(m.priority)) + " " + words(name_of(m.action));
+  if (m.latest_by_known) text += " by " + date(m.latest_by_ns);
+  if (m.state != AdvisoryState::active) text += " [" + std::string(name_of(m.state)) + "]";
+  return text + ": " + m.recommendation;
+}
+std::string content(const Acknowledgement& m) { return m.advisory_id + " by " + m.acknowledged_by + " " + m.remark; }
+std::string content(const MaintenanceEvent& m) { return words(m.kind) + " by " + m.reported_by + " " + m.remark; }
+
+}  // namespace
+
+std::string one_line(const Message& message) {
+  return event_date(header_of(message)) + "  " + asset_of(message) + "  " + std::string(name_of(topic_of(message))) +
+         "  " + std::visit([](const auto& m) { return content(m); }, message);
+}
+
+std::string one_line(const ServiceStatus& status) {
+  std::uint64_t written = 0;
+  for (const StreamPosition& stream : status.written) written += stream.sequence;
+  return status.service + "  " + status.state + "  pid " + std::to_string(status.process_id) + "  " +
+         std::to_string(written) + " messages written, " + std::to_string(status.pending_inputs) + " inputs waiting" +
+         (status.last_error.empty() ? "" : "  last error: " + status.last_error);
+}
+
+namespace {
+
+std::string forecast_row(const Forecast& forecast, bool in_charge) {
+  char line[200];
+  const std::string method = forecast.method + (in_charge ? " *" : "");
+  std::snprintf(line, sizeof line, "                   %-14s %2d months  ", method.c_str(), forecast.window_months);
+  if (forecast.state != ForecastState::ok)
+    return line + words(name_of(forecast.state)) + ": " + forecast.explanation + "\n";
+  char figures[200];
+  std::snprintf(figures, sizeof figures, "%6.1f     %6.1f .. %-6.1f   %5.1f / %5.1f / %5.1f   %s\n",
+                forecast.rul_months, forecast.interval_95_low_months, forecast.interval_95_high_months,
+                forecast.rul_p10_months, forecast.rul_p50_months, forecast.rul_p90_months,
+                date(forecast.end_of_life_ns).c_str());
+  return std::string(line) + figures;
+}
+
+}  // namespace
+
+std::string forecast_table(const std::vector<Forecast>& forecasts) {
+  if (forecasts.empty()) return {};
+  std::string text =
+      "  remaining life   method         window     forecast   95 % interval      P10 /   P50 /   P90   end of life\n";
+  for (const Forecast& forecast : forecasts) text += forecast_row(forecast, &forecast == &forecasts.front());
+  text += "                   (months from the last test; * in charge)\n";
+  bool first = true;
+  for (const FailureProbability& item : forecasts.front().failure_probability) {
+    text += first ? "  P(failure)       before " : "                   before ";
+    text += (item.label == date(item.before_ns) ? item.label : item.label + ", " + date(item.before_ns)) + ": " +
+            percent(item.probability) + "\n";
+    first = false;
+  }
+  return text;
+}
+
+void AssetView::take(const Message& message) {
+  asset_id_ = asset_of(message);
+  if (const auto* estimate = std::get_if<LeakageEstimate>(&message)) estimates_[estimate->header.pst_id] = *estimate;
+  if (const auto* life = std::get_if<RemainingLife>(&message)) life_ = *life;
+  if (const auto* health = std::get_if<HealthReport>(&message)) health_ = *health;
+  if (const auto* state = std::get_if<StateReport>(&message)) state_ = *state;
+  if (const auto* advisory = std::get_if<Advisory>(&message))
+    if (advisory->state != AdvisoryState::superseded) advisory_ = *advisory;
+}
+
+std::string AssetView::seal_lines() const {
+  std::string text;
+  if (life_ && life_->condition_known)
+    text += "  seal condition   " + percent(life_->condition) + " +- " + percent(life_->condition_std, 2) +
+            " of its elastic modulus when new (fails at " + percent(life_->threshold, 0) + ")\n";
+  const LeakageEstimate* latest = nullptr;
+  for (const auto& [id, estimate] : estimates_)
+    if (estimate.estimated && (latest == nullptr || estimate.header.event_time_ns >= latest->header.event_time_ns))
+      latest = &estimate;
+  if (latest != nullptr)
+    text += "  leakage          R_CL " + number(latest->resistance_Pa_s_m3, 4) + " +- " +
+            number(latest->resistance_std_Pa_s_m3, 2) + " Pa s/m3, from the " + latest->chosen_model + " model\n";
+  if (health_) {
+    text += "  health           grade " + number(health_->health_grade, 2) + " (1 as new, 0 failed)";
+    if (health_->trend_known) text += ", " + number(health_->health_trend_per_year, 2) + " a year";
+    if (!health_->ambiguity_group.empty())
+      text += "; most likely " + words(name_of(health_->ambiguity_group.front().kind)) + " (" +
+              percent(health_->ambiguity_group.front().likelihood, 0) + ")";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string AssetView::history_chart() const {
+  std::vector<ChartPoint> points;
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+  double lowest = 1.0;
+  double highest = 0.0;
+  for (const auto& [id, estimate] : estimates_) {
+    if (!estimate.used_for_forecast || !estimate.condition_known || !estimate.header.event_time_known) continue;
+    const std::int64_t time = estimate.header.event_time_ns;
+    if (points.empty() || time < first) first = time;
+    if (points.empty() || time > last) last = time;
+    points.push_back({static_cast<double>(time), estimate.condition});
+    lowest = std::min(lowest, estimate.condition);
+    highest = std::max(highest, estimate.condition);
+  }
+  if (points.size() < 3 || !life_) return {};
+  ChartOptions options;
+  options.threshold = life_->threshold;
+  options.threshold_label = "fails";
+  options.y_low = std::floor(20.0 * std::min(lowest, life_->threshold)) / 20.0 - 0.05;
+  options.y_high = std::ceil(20.0 * highest) / 20.0;
+  options.x_low_label = date(first);
+  options.x_high_label = date(last);
+  return "\n  seal condition over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
+}
+
+std::string AssetView::forecast_lines() const {
+  if (!life_) return {};
+  std::string text = forecast_table(life_->forecasts);
+  if (life_->windows_disagree)
+    text += "                   windows disagree: " + wrapped(life_->disagreement, 100, 19) + "\n";
+  return text;
+}
+
+std::string AssetView::advisory_lines() const {
+  if (!advisory_) return {};
+  std::string text =
+      "  advisory         " + upper(name_of(advisory_->priority)) + ", " + words(name_of(advisory_->action));
+  if (advisory_->latest_by_known) text += ", latest by " + date(advisory_->latest_by_ns);
+  text += "\n                   " + wrapped(advisory_->recommendation, 100, 19) + "\n";
+  for (const std::string& reason : advisory_->reasons)
+    text += "                   - " + wrapped(reason, 100, 21) + "\n";
+  return text;
+}
+
+std::string AssetView::left_out_lines() const {
+  std::string text;
+  for (const auto& [id, estimate] : estimates_)
+    if (!estimate.used_for_forecast)
+      text += "                   " + id + ": " + wrapped(join(estimate.reasons), 100, 21) + "\n";
+  return text.empty() ? text : "  left out         of the forecast, kept in the record:\n" + text;
+}
+
+std::string AssetView::json() const {
+  std::string text = "{\"schema\":\"sealwatch.asset/1\",\"asset_id\":\"" + asset_id_ + "\"";
+  const auto add = [&text](const auto& last) {
+    if (last) text += ",\"" + std::string(name_of(topic_of(Message(*last)))) + "\":" + to_json(Message(*last));
+  };
+  add(state_);
+  add(health_);
+  add(life_);
+  add(advisory_);
+  return text + "}";
+}
+
+std::string AssetView::screen() const {
+  std::string text = "== " + asset_id_;
+  if (life_ && life_->header.event_time_known) text += ", last test " + date(life_->header.event_time_ns);
+  text += ", " + std::to_string(estimates_.size()) + " tests in view\n";
+  return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines() + left_out_lines();
+}
+
+}  // namespace sealwatch::cli

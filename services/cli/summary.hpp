@@ -1,0 +1,47 @@
+// Messages and assets in words, for the terminal: one line a message, one screen an asset.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/topics.hpp"
+
+namespace sealwatch::cli {
+
+/// One line of what a message says: event date, asset, topic, the figures that matter with units.
+[[nodiscard]] std::string one_line(const Message& message);
+[[nodiscard]] std::string one_line(const ServiceStatus& status);
+
+/// Forecasts side by side, with intervals and failure probabilities.
+[[nodiscard]] std::string forecast_table(const std::vector<Forecast>& forecasts);
+
+/// The last word of every layer on one asset, and the history of its seal.
+class AssetView {
+ public:
+  void take(const Message& message);
+  /// One screen: seal condition and its history, forecasts with intervals, advisory with its reasons, where to look
+  /// further.
+  [[nodiscard]] std::string screen() const;
+  /// The same for machines: the last message of each topic (schema sealwatch.asset/1).
+  [[nodiscard]] std::string json() const;
+  /// Tests seen, and those whose estimate took part in the forecast.
+  [[nodiscard]] std::size_t tests() const { return estimates_.size(); }
+
+ private:
+  [[nodiscard]] std::string seal_lines() const;
+  [[nodiscard]] std::string history_chart() const;
+  [[nodiscard]] std::string forecast_lines() const;
+  [[nodiscard]] std::string advisory_lines() const;
+  [[nodiscard]] std::string left_out_lines() const;
+
+  std::string asset_id_;
+  std::map<std::string, LeakageEstimate> estimates_;  ///< by PST id
+  std::optional<RemainingLife> life_;
+  std::optional<HealthReport> health_;
+  std::optional<StateReport> state_;
+  std::optional<Advisory> advisory_;
+};
+
+}  // namespace sealwatch::cli

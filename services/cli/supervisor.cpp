@@ -1,0 +1,129 @@
+#include "services/cli/supervisor.hpp"
+
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+#include "services/common/runtime/configuration_loader.hpp"
+
+extern char** environ;
+
+namespace sealwatch::cli {
+namespace {
+
+constexpr std::chrono::seconds kPatience{5};
+
+std::string program_name(std::string service) {
+  for (char& letter : service)
+    if (letter == '_') letter = '-';
+  return "sealwatch-" + service;
+}
+
+/// Beside this program (a build tree, an installation), else wherever PATH finds it.
+std::string program_path(const std::string& program) {
+  std::error_code error;
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  for (const auto& candidate : {here / program, here / ".." / "libexec" / "sealwatch" / program})
+    if (!error && std::filesystem::exists(candidate)) return std::filesystem::weakly_canonical(candidate).string();
+  return program;
+}
+
+std::string ending(int status) {
+  if (WIFSIGNALED(status)) return std::string("was killed by signal ") + strsignal(WTERMSIG(status));
+  return "ended with exit status " + std::to_string(WEXITSTATUS(status));
+}
+
+}  // namespace
+
+std::vector<ServiceProgram> service_programs(const std::string& config, const std::string& state_directory) {
+  std::vector<ServiceProgram> programs;
+  for (const std::string& service : service_names()) {
+    ServiceProgram program{.name = service, .arguments = {program_path(program_name(service)), "--config", config}};
+    if (!state_directory.empty()) program.arguments.insert(program.arguments.end(), {"--state", state_directory});
+    programs.push_back(std::move(program));
+  }
+  return programs;
+}
+
+Supervisor::Supervisor(std::vector<ServiceProgram> programs, std::chrono::milliseconds restart_pause)
+    : restart_pause_(restart_pause) {
+  for (ServiceProgram& program : programs)
+    children_.push_back({.program = std::move(program), .process = -1, .started = {}});
+}
+
+Supervisor::~Supervisor() { stop(); }
+
+Status Supervisor::launch(Child& child) {
+  std::vector<char*> arguments;
+  for (std::string& argument : child.program.arguments) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  // A group of its own, so that Ctrl-C in the terminal reaches the supervisor alone, which then stops the services in
+  // order.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  const int error = posix_spawnp(&child.process, arguments[0], nullptr, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  child.started = std::chrono::steady_clock::now();
+  if (error == 0) return {};
+  child.process = -1;
+  return fail(Error{.file = child.program.arguments[0],
+                    .place = {},
+                    .value = {},
+                    .rule = std::string("cannot be started: ") + std::strerror(error),
+                    .advice = "build it (deploy/build.sh) or install the package"});
+}
+
+Status Supervisor::start() {
+  for (Child& child : children_)
+    if (const Status launched = launch(child); !launched) return launched;
+  return {};
+}
+
+std::vector<std::string> Supervisor::tend() {
+  std::vector<std::string> events;
+  for (Child& child : children_) {
+    int status = 0;
+    if (child.process > 0 && waitpid(child.process, &status, WNOHANG) == child.process) {
+      events.push_back(child.program.name + " " + ending(status));
+      child.process = -1;
+    }
+    if (child.process > 0 || std::chrono::steady_clock::now() - child.started < restart_pause_) continue;
+    const Status launched = launch(child);
+    events.push_back(launched ? child.program.name + " started again" : launched.error().describe());
+  }
+  return events;
+}
+
+void Supervisor::stop() {
+  for (const Child& child : children_)
+    if (child.process > 0) kill(child.process, SIGTERM);
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  for (Child& child : children_) {
+    while (child.process > 0) {
+      int status = 0;
+      if (waitpid(child.process, &status, WNOHANG) != 0) {
+        child.process = -1;
+      } else if (std::chrono::steady_clock::now() > deadline) {
+        kill(child.process, SIGKILL);
+        waitpid(child.process, &status, 0);
+        child.process = -1;
+      } else {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    }
+  }
+}
+
+pid_t Supervisor::process_of(const std::string& name) const {
+  for (const Child& child : children_)
+    if (child.program.name == name) return child.process;
+  return -1;
+}
+
+}  // namespace sealwatch::cli

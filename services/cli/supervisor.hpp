@@ -1,0 +1,53 @@
+// Starts the services as child processes, restarts one that ends, stops them all: what systemd does on a Master Control
+// System, for a desk.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "sealwatch/core/result.hpp"
+
+namespace sealwatch::cli {
+
+struct ServiceProgram {
+  std::string name;                    ///< "state_detection"
+  std::vector<std::string> arguments;  ///< argv, the program's path first
+};
+
+/// The six services' programs, found beside this program or in PATH; `state_directory` instead of the configuration's
+/// unless it is "".
+[[nodiscard]] std::vector<ServiceProgram> service_programs(const std::string& config,
+                                                           const std::string& state_directory);
+
+class Supervisor {
+ public:
+  /// A program that ends is started again, at the earliest `restart_pause` after its last start.
+  explicit Supervisor(std::vector<ServiceProgram> programs,
+                      std::chrono::milliseconds restart_pause = std::chrono::seconds(1));
+  /// Stops what still runs.
+  ~Supervisor();
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  [[nodiscard]] Status start();
+  /// Restarts programs that ended; returns what happened, in words.
+  [[nodiscard]] std::vector<std::string> tend();
+  /// Asks all to end (SIGTERM), waits up to five seconds, then kills. Idempotent.
+  void stop();
+  [[nodiscard]] pid_t process_of(const std::string& name) const;
+
+ private:
+  struct Child {
+    ServiceProgram program;
+    pid_t process = -1;
+    std::chrono::steady_clock::time_point started;
+  };
+  [[nodiscard]] static Status launch(Child& child);
+  std::vector<Child> children_;
+  std::chrono::milliseconds restart_pause_;
+};
+
+}  // namespace sealwatch::cli

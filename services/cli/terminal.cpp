@@ -1,0 +1,124 @@
+#include "services/cli/terminal.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sealwatch/core/time.hpp"
+
+namespace sealwatch::cli {
+
+std::string number(double value, int digits) {
+  char text[64];
+  if (value != 0.0 && std::isfinite(value)) {
+    const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value))));
+    if (exponent >= 6 || exponent < -3) {
+      std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+      return text;
+    }
+    std::snprintf(text, sizeof text, "%.*f", std::max(digits - 1 - exponent, 0), value);
+    return text;
+  }
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+std::string percent(double share, int decimals) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f %%", decimals, 100.0 * share);
+  return text;
+}
+
+std::string date(std::int64_t time_ns) { return format_date(UtcTime{time_ns}); }
+
+std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
+  std::string result;
+  std::size_t column = indent;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    if (column > indent && column + 1 + end > width) {
+      result += '\n';
+      result.append(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      result += ' ';
+      ++column;
+    }
+    result += text.substr(0, end);
+    column += end;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
+
+void Progress::show(std::size_t done, std::string_view remark) {
+  const std::size_t tenth = total_ == 0 ? 10 : 10 * done / total_;
+  if (isatty(STDERR_FILENO) != 0) {
+    constexpr int kBar = 24;
+    const int filled = total_ == 0 ? kBar : static_cast<int>(kBar * done / total_);
+    std::fprintf(stderr, "\r\033[K%s [%s%s] %zu/%zu %.*s", what_.c_str(),
+                 std::string(static_cast<std::size_t>(filled), '#').c_str(),
+                 std::string(static_cast<std::size_t>(kBar - filled), '.').c_str(), done, total_,
+                 static_cast<int>(remark.size()), remark.data());
+    std::fflush(stderr);
+    drawn_ = true;
+  } else if (tenth > last_tenth_) {
+    std::fprintf(stderr, "%s: %zu of %zu %.*s\n", what_.c_str(), done, total_, static_cast<int>(remark.size()),
+                 remark.data());
+    last_tenth_ = tenth;
+  }
+}
+
+void Progress::clear() {
+  if (!drawn_) return;
+  std::fprintf(stderr, "\r\033[K");
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+void Progress::finish() { clear(); }
+
+namespace {
+
+/// Cell of a coordinate between low and high in `cells` cells, clamped.
+int cell(double value, double low, double high, int cells) {
+  const double share = high > low ? (value - low) / (high - low) : 0.0;
+  return std::clamp(static_cast<int>(std::lround(share * (cells - 1))), 0, cells - 1);
+}
+
+}  // namespace
+
+std::string chart(const std::vector<ChartPoint>& points, const ChartOptions& options) {
+  if (points.empty()) return {};
+  double x_low = points.front().x;
+  double x_high = points.front().x;
+  for (const ChartPoint& point : points) {
+    x_low = std::min(x_low, point.x);
+    x_high = std::max(x_high, point.x);
+  }
+  std::vector<std::string> rows(static_cast<std::size_t>(options.height),
+                                std::string(static_cast<std::size_t>(options.width), ' '));
+  const int threshold_row = options.height - 1 - cell(options.threshold, options.y_low, options.y_high, options.height);
+  for (int column = 0; column < options.width; column += 2)
+    rows[static_cast<std::size_t>(threshold_row)][static_cast<std::size_t>(column)] = '-';
+  for (const ChartPoint& point : points) {
+    const int row = options.height - 1 - cell(point.y, options.y_low, options.y_high, options.height);
+    rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(cell(point.x, x_low, x_high, options.width))] = 'o';
+  }
+  std::string text;
+  for (int row = 0; row < options.height; ++row) {
+    const double y = options.y_high - (options.y_high - options.y_low) * row / (options.height - 1);
+    char label[16];
+    std::snprintf(label, sizeof label, "%6.2f |", y);
+    text += label + rows[static_cast<std::size_t>(row)];
+    if (row == threshold_row) text.append("  ").append(options.threshold_label);
+    text += '\n';
+  }
+  const int gap = options.width - static_cast<int>(options.x_low_label.size() + options.x_high_label.size());
+  return text + "       +" + std::string(static_cast<std::size_t>(options.width), '-') + "\n        " +
+         options.x_low_label + std::string(static_cast<std::size_t>(std::max(gap, 1)), ' ') + options.x_high_label +
+         "\n";
+}
+
+}  // namespace sealwatch::cli

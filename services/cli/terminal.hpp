@@ -1,0 +1,61 @@
+// What the command line shows: numbers with units that people can read, progress on standard error, small charts.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sealwatch::cli {
+
+/// `value` with `digits` significant digits, "1.23e+12" only where plain digits would be longer than ten characters.
+[[nodiscard]] std::string number(double value, int digits = 4);
+/// "12.34 %"
+[[nodiscard]] std::string percent(double share, int decimals = 1);
+/// Date of a UTC time in nanoseconds, "2031-04-12".
+[[nodiscard]] std::string date(std::int64_t time_ns);
+
+/// Breaks `text` into lines of at most `width` characters at blanks, each later line behind `indent` blanks.
+[[nodiscard]] std::string wrapped(std::string_view text, std::size_t width, std::size_t indent);
+
+/// One line on standard error that is overwritten, when that is a terminal; otherwise a line every ten percent.
+class Progress {
+ public:
+  Progress(std::string what, std::size_t total) : what_(std::move(what)), total_(total) {}
+  ~Progress() { finish(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void show(std::size_t done, std::string_view remark = {});
+  /// Clears the line so that other output can follow; the next show() draws it again.
+  void clear();
+  void finish();
+
+ private:
+  std::string what_;
+  std::size_t total_;
+  std::size_t last_tenth_ = 0;
+  bool drawn_ = false;
+};
+
+/// One point of a chart; `error` is one standard deviation (0: none).
+struct ChartPoint {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+struct ChartOptions {
+  int width = 64;
+  int height = 10;
+  double y_low = 0.0;
+  double y_high = 1.0;
+  double threshold = 0.0;  ///< a dashed line across
+  std::string threshold_label;
+  std::string x_low_label;
+  std::string x_high_label;
+};
+
+/// A chart of points in characters, a label on each axis end.
+[[nodiscard]] std::string chart(const std::vector<ChartPoint>& points, const ChartOptions& options);
+
+}  // namespace sealwatch::cli

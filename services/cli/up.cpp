@@ -1,0 +1,34 @@
+// `sealwatch up`: the six services on this machine, restarted when one ends.
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/supervisor.hpp"
+
+namespace sealwatch::cli {
+
+int run_up(const UpOptions& options) {
+  if (!load_or_explain(options.config)) return kBadInput;
+  const std::vector<ServiceProgram> programs = service_programs(options.config, options.state_directory);
+  Supervisor supervisor(programs);
+  catch_interrupts();
+  if (const Status started = supervisor.start(); !started) {
+    complain(started.error());
+    return kInternalFailure;
+  }
+  for (const ServiceProgram& program : programs)
+    std::printf("started %s, pid %d\n", program.name.c_str(), static_cast<int>(supervisor.process_of(program.name)));
+  std::printf("sealwatch is up; `sealwatch status` in another terminal shows more; Ctrl-C stops it\n");
+  std::fflush(stdout);
+  while (!interrupted()) {
+    for (const std::string& event : supervisor.tend()) std::fprintf(stderr, "%s\n", event.c_str());
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  supervisor.stop();
+  std::printf("all services stopped\n");
+  return kOk;
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,137 @@
+// Recorded tests through the real six processes: live and offline agree, deaths change nothing, late subscribers are
+// served.
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "tests/integration/six_services.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+std::string file_text(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+void expect_same(const StoredResults& one, const StoredResults& other) {
+  ASSERT_EQ(one.size(), other.size());
+  for (const auto& [service, outputs] : one) {
+    const auto& others = other.at(service);
+    ASSERT_EQ(outputs.size(), others.size()) << service;
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      ASSERT_EQ(outputs[k].first, others[k].first) << service << " output " << k;
+      ASSERT_EQ(outputs[k].second, others[k].second) << service << " " << outputs[k].first;
+    }
+  }
+}
+
+class Replay : public SixServices {
+ protected:
+  /// The undisturbed run that others are compared with.
+  Finished undisturbed(const std::string& state) {
+    return run(with({"sealwatch", "replay", "--config", config(), "--with-services", "--state",
+                     state_directory(state).string(), "--results", (folder_ / "live").string(), "--quiet"},
+                    recordings()));
+  }
+};
+
+TEST_F(Replay, LiveAndOfflineConcludeTheSame) {
+  const Finished live = undisturbed("state");
+  ASSERT_EQ(live.status, 0) << live.output;
+  EXPECT_NE(live.output.find("remaining life"), std::string::npos) << live.output;
+  const Finished offline = run(with({"sealwatch", "replay", "--config", config(), "--offline", "--results",
+                                     (folder_ / "offline").string(), "--quiet"},
+                                    recordings()));
+  ASSERT_EQ(offline.status, 0) << offline.output;
+  for (const char* topic : {"test_features", "state_report", "health_report", "leakage_estimate", "remaining_life",
+                            "pst_request", "advisory"}) {
+    const std::string file = std::string(topic) + ".jsonl";
+    const std::string text = file_text(folder_ / "live" / file);
+    EXPECT_GE(std::count(text.begin(), text.end(), '\n'), static_cast<long>(recordings().size())) << topic;
+    EXPECT_EQ(text, file_text(folder_ / "offline" / file)) << topic;
+  }
+}
+
+TEST_F(Replay, ASecondReplayChangesNothing) {
+  ASSERT_EQ(undisturbed("state").status, 0);
+  const StoredResults first = stored_results("state");
+  const Finished again = undisturbed("state");
+  ASSERT_EQ(again.status, 0) << again.output;
+  expect_same(first, stored_results("state"));
+}
+
+TEST_F(Replay, ALateSubscriberGetsTheLastStateOfTheAsset) {
+  cli::Supervisor services(programs("state"));
+  ASSERT_TRUE(services.start().has_value());
+  ASSERT_EQ(run(with({"sealwatch", "replay", "--config", config(), "--quiet"}, recordings())).status, 0);
+  const Finished status = run({"sealwatch", "status", "--config", config(), "--json"});
+  ASSERT_EQ(status.status, 0) << status.output;
+  const auto result = nlohmann::json::parse(status.output);
+  EXPECT_EQ(result["services"].size(), 6U);
+  const std::string last_test = result["assets"]["XT03-MV2"]["leakage_estimate"]["header"]["pst_id"];
+  const StoredResults stored = stored_results("state");
+  EXPECT_NE(stored.at("prognostic_assessment").back().first.find(last_test), std::string::npos) << last_test;
+  // A restarted writer serves later subscribers too: its journal is all it needs.
+  ASSERT_EQ(kill(services.process_of("advisory_generation"), SIGKILL), 0);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+  while (std::chrono::steady_clock::now() < end) {
+    (void)services.tend();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  const Finished later = run({"sealwatch", "status", "--config", config(), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(later.output)["assets"]["XT03-MV2"]["advisory"]["header"]["pst_id"], last_test);
+}
+
+TEST_F(Replay, KilledAtRandomMomentsEachServiceEndsWithTheSameResults) {
+  ASSERT_EQ(undisturbed("undisturbed").status, 0);
+
+  constexpr int kDeathsOfEach = 3;
+  const unsigned seed = std::random_device{}();
+  std::cout << "seed " << seed << "\n";
+  std::mt19937 random(seed);
+  std::vector<std::string> victims;
+  for (const cli::ServiceProgram& service : programs("killed"))
+    for (int k = 0; k < kDeathsOfEach; ++k) victims.push_back(service.name);
+  std::shuffle(victims.begin(), victims.end(), random);
+
+  cli::Supervisor services(programs("killed"), std::chrono::milliseconds(50));
+  ASSERT_TRUE(services.start().has_value());
+  const pid_t replay =
+      start(with({"sealwatch", "replay", "--config", config(), "--quiet"}, recordings()), folder_ / "replay.log");
+  std::uniform_int_distribution<int> pause_ms(20, 400);
+  auto next_death = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+  std::map<std::string, int> deaths;
+  int status = 0;
+  while (waitpid(replay, &status, WNOHANG) == 0) {
+    (void)services.tend();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (victims.empty() || std::chrono::steady_clock::now() < next_death) continue;
+    next_death = std::chrono::steady_clock::now() + std::chrono::milliseconds(pause_ms(random));
+    const pid_t victim = services.process_of(victims.back());
+    if (victim <= 0) continue;
+    kill(victim, SIGKILL);
+    ++deaths[victims.back()];
+    victims.pop_back();
+  }
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << file_text(folder_ / "replay.log");
+  services.stop();
+  EXPECT_TRUE(victims.empty()) << "the replay ended before all deaths; " << victims.size() << " left";
+  EXPECT_EQ(deaths.size(), 6U);
+  expect_same(stored_results("undisturbed"), stored_results("killed"));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

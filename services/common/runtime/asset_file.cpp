@@ -162,7 +162,8 @@ void read_pst(YamlMap& asset, AssetConfig& config) {
 
 void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
   std::vector<std::string> elements = names_of(plant.elements);
-  for (const ChannelDescription& channel : plant.channels) elements.push_back(std::string("sensor:").append(channel.name));
+  for (const ChannelDescription& channel : plant.channels)
+    elements.push_back(std::string("sensor:").append(channel.name));
   std::size_t index = 0;
   for (const YAML::Node& node : asset.list("physics")) {
     YamlMap map = asset.inside(node, "physics", index++);
@@ -183,13 +184,17 @@ void read_alert_limits(YamlMap& asset, AssetConfig& config) {
     auto map = all->map(quantity);
     if (!map) continue;
     AlertLimits limits;
+    bool complete = true;
     for (auto [key, target] :
-         {std::pair{"advisory", &limits.advisory}, {"warning", &limits.warning}, {"alarm", &limits.alarm}})
-      if (!map->read(key, *target) && !map->has(key)) map->fault(key, {}, "must be given");
+         {std::pair{"advisory", &limits.advisory}, {"warning", &limits.warning}, {"alarm", &limits.alarm}}) {
+      if (map->read(key, *target)) continue;
+      if (!map->has(key)) map->fault(key, {}, "must be given");
+      complete = false;
+    }
     map->finish();
     const bool rising = limits.advisory <= limits.warning && limits.warning <= limits.alarm;
     const bool falling = limits.advisory >= limits.warning && limits.warning >= limits.alarm;
-    if (!rising && !falling)
+    if (complete && !rising && !falling)
       map->fault("warning", text_of(limits.warning),
                  "must lie between advisory and alarm, " + text_of(limits.advisory) + " and " + text_of(limits.alarm));
     config.alert_limits[quantity] = limits;

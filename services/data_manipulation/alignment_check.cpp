@@ -178,10 +178,12 @@ void AlignmentCheck::judge_offsets() {
                 "velocity and flow agree with each other; corrected");
     return;
   }
+  // One that also disagrees with the third channel is the wrong one; else the third is too unsure to be a witness.
+  const bool told = late.size() == 1 && !agree;
   for (const Comparison* one : late)
-    note_offset(one->channel, one->estimate.offset_s, one->estimate.offset_std_s, late.size() == 1,
-                late.size() == 1 ? "against the other channels; corrected"
-                                 : "against position; the three channels agree in no pair");
+    note_offset(one->channel, one->estimate.offset_s, one->estimate.offset_std_s, told,
+                told ? "against the other channels; corrected"
+                     : "against position, and which of the channels is wrong cannot be told");
 }
 
 /// Absolute pressures have no sign to swap, so that pressure_differential is the one that is wrong.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "sealwatch/signal/statistics.hpp"
 #include "sealwatch/signal/test_record.hpp"
+#include "services/common/signal/feature_parts.hpp"
 #include "services/common/signal/mass_balance.hpp"
 
 namespace sealwatch::signal {
@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kStrokeShare = 0.05;  // stroke times run from 5 % to 95 %
 constexpr double kPressureRise_s = 0.3;
-
-std::span<const double> part(const std::vector<double>& values, Range range) {
-  return std::span<const double>(values).subspan(range.begin, range.size());
-}
 
 class FeatureList {
  public:
@@ -59,20 +55,6 @@ class FeatureList {
 };
 
 bool is_stroke(MotionKind kind) { return kind == MotionKind::out || kind == MotionKind::back; }
-
-/// Mean of several ranges' means, each weighted by its length.
-std::optional<Estimate> pooled_mean(const std::vector<double>& values, const std::vector<Range>& ranges) {
-  double count = 0.0, sum = 0.0, variance = 0.0;
-  for (const Range& range : ranges) {
-    const Estimate one = mean(part(values, range));
-    const auto weight = static_cast<double>(range.size());
-    count += weight;
-    sum += weight * one.value;
-    variance += weight * weight * one.std_error * one.std_error;
-  }
-  if (count == 0.0) return std::nullopt;
-  return Estimate{sum / count, std::sqrt(variance) / count};
-}
 
 /// The usable middles of all strokes, or settled parts of all standstills, of one kind.
 std::vector<Range> FeatureList::ranges(MotionKind kind) const {
@@ -117,17 +99,6 @@ std::optional<Estimate> FeatureList::speed(MotionKind kind) const {
   std::optional<Estimate> result = mean_over(kind, &test_.velocity());
   if (result) result->value = std::abs(result->value);
   return result;
-}
-
-/// Time at which the smoothed position first passes `level` in the range, by linear interpolation.
-std::optional<double> crossing_s(const TestRecord& test, Range range, double level, double direction) {
-  const std::vector<double>& x = test.position();
-  for (std::size_t i = std::max<std::size_t>(range.begin, 1); i < range.end; ++i) {
-    if (direction * (x[i - 1] - level) > 0.0 || direction * (x[i] - level) < 0.0) continue;
-    const double share = x[i] == x[i - 1] ? 0.0 : (level - x[i - 1]) / (x[i] - x[i - 1]);
-    return test.samples().time_s[i - 1] + share * test.interval_s();
-  }
-  return std::nullopt;
 }
 
 /// From 5 % to 95 % of the way between the standstills before and after the stroke; both must have been recorded.
@@ -253,25 +224,6 @@ std::optional<Estimate> FeatureList::efficiency(MotionKind kind) const {
   const double ratio = area * velocity->value / (*cylinder.displacement_m3_rad * shaft->value);
   return Estimate{ratio,
                   std::abs(ratio) * std::hypot(velocity->std_error / velocity->value, shaft->std_error / shaft->value)};
-}
-
-/// Share of samples in runs of at least five that stand exactly at the largest magnitude: a limit, not a peak.
-double saturation(const std::vector<double>& drive) {
-  double largest = 0.0;
-  for (const double value : drive) largest = std::max(largest, std::abs(value));
-  if (largest == 0.0) return 0.0;
-  std::size_t saturated = 0;
-  for (std::size_t i = 0, end = 0; i < drive.size(); i = end) {
-    while (end < drive.size() && drive[end] == drive[i]) ++end;
-    if (end - i >= 5 && std::abs(drive[i]) >= largest) saturated += end - i;
-  }
-  return static_cast<double>(saturated) / static_cast<double>(drive.size());
-}
-
-Estimate peak(const std::vector<double>& values, double noise_std) {
-  double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
-  return {largest, noise_std};
 }
 
 void FeatureList::add_electrics() {

@@ -1,14 +1,11 @@
 #include "services/common/signal/mass_balance.hpp"
 
 #include <cmath>
-#include <span>
+
+#include "services/common/signal/feature_parts.hpp"
 
 namespace sealwatch::signal {
 namespace {
-
-std::span<const double> part(const std::vector<double>& values, Range range) {
-  return std::span<const double>(values).subspan(range.begin, range.size());
-}
 
 constexpr double kClearly = 3.0;  // standard errors
 

@@ -1,10 +1,6 @@
 // Every field of every topic through the codec and through Cyclone's own serialisation, over UDP.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <regex>
-#include <sstream>
-
 #include "tests/unit/transport/filled.hpp"
 #include "tests/unit/transport/kits.hpp"
 
@@ -91,62 +87,6 @@ TEST_F(RoundTripOfAdvisory, KeepsEveryValueOfItsEnums) {
   expect_all_values(&Advisory::priority, through);
   expect_all_values(&Advisory::action, through);
   expect_all_values(&Advisory::state, through);
-}
-
-// ---- names and order of enumerators: what a foreign reader of the IDL sees
-
-std::string idl_text() {
-  std::stringstream text;
-  for (const char* file : {"common", "data_acquisition", "data_manipulation", "state_detection", "health_assessment",
-                           "prognostic_assessment", "advisory_generation"})
-    text << std::ifstream(std::string(SEALWATCH_SOURCE_DIR "/idl/") + file + ".idl").rdbuf();
-  return text.str();
-}
-
-/// "BlockBoundary" -> "BLOCK_BOUNDARY"
-std::string shouted(std::string_view name) {
-  std::string result;
-  for (const char c : name) {
-    if (std::isupper(c) != 0 && !result.empty()) result += '_';
-    result += static_cast<char>(std::toupper(c));
-  }
-  return result;
-}
-
-template <DescribedEnum Enum>
-void expect_in_idl(const std::string& text, const std::string& name) {
-  const std::string prefix = shouted(name) + "_";
-  std::string expected = "@appendable enum " + name + " {";
-  for (const std::string_view& value : EnumNames<Enum>::kNames) {
-    expected += &value == &EnumNames<Enum>::kNames.front() ? " " : ", ";
-    expected += prefix;
-    for (const char c : value) expected += static_cast<char>(std::toupper(c));
-  }
-  expected += " };";
-  const std::string one_line = std::regex_replace(text, std::regex("\\s+"), " ");
-  EXPECT_NE(one_line.find(expected), std::string::npos) << "idl/ must have: " << expected;
-}
-
-TEST(Idl, EnumsHaveTheNamesAndTheOrderOfTheirCppOnes) {
-  const std::string text = idl_text();
-  expect_in_idl<ChannelState>(text, "ChannelState");
-  expect_in_idl<BlockBoundary>(text, "BlockBoundary");
-  expect_in_idl<PhaseKind>(text, "PhaseKind");
-  expect_in_idl<AlertRegion>(text, "AlertRegion");
-  expect_in_idl<PstVerdict>(text, "PstVerdict");
-  expect_in_idl<Reference>(text, "Reference");
-  expect_in_idl<FaultKind>(text, "FaultKind");
-  expect_in_idl<ForecastState>(text, "ForecastState");
-  expect_in_idl<AdvisoryPriority>(text, "AdvisoryPriority");
-  expect_in_idl<AdvisoryAction>(text, "AdvisoryAction");
-  expect_in_idl<AdvisoryState>(text, "AdvisoryState");
-}
-
-TEST(Idl, EverythingIsAppendableSoThatItMayGrow) {
-  const std::string text = idl_text();
-  const std::regex not_appendable("(^|\n)\\s*(?!//)(?!@appendable)(struct|enum)\\s+\\w+");
-  std::smatch match;
-  EXPECT_FALSE(std::regex_search(text, match, not_appendable)) << match.str();
 }
 
 }  // namespace

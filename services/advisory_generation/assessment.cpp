@@ -7,9 +7,9 @@
 namespace sealwatch::advisory_generation {
 namespace {
 
-// Campaigns come about once a year: one that is longer before the P10 end of life is not the last before it, later ones
-// are just not known yet.
-constexpr double kCampaignSpacing_months = 12.0;
+// When no later campaign is known, one that is longer before the P10 end of life is not the last before it: campaigns
+// come at least every year or two, later ones are just not planned yet.
+constexpr double kUnplannedAfter_months = 12.0;
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 
 const ProposedFault* dominant_fault(const HealthReport& health, const Options& options) {
@@ -23,11 +23,13 @@ const ProposedFault* dominant_fault(const HealthReport& health, const Options& o
 UtcTime replace_by(const Forecast& forecast, UtcTime now, const Options& options) {
   const UtcTime early_end = add_months(now, forecast.rul_p10_months);
   std::optional<UtcTime> campaign;
+  bool later_one_known = false;
   for (const FailureProbability& candidate : forecast.failure_probability) {
-    const bool near_enough = months_between({candidate.before_ns}, early_end) <= kCampaignSpacing_months;
-    if (candidate.probability <= options.largest_failure_probability && near_enough)
-      campaign = UtcTime{candidate.before_ns};
+    later_one_known = candidate.probability > options.largest_failure_probability;
+    if (later_one_known) break;
+    campaign = UtcTime{candidate.before_ns};
   }
+  if (campaign && !later_one_known && months_between(*campaign, early_end) > kUnplannedAfter_months) campaign.reset();
   return start_of_day(campaign.value_or(early_end));
 }
 
@@ -35,6 +37,16 @@ WearLevel level_for(double months_to_booking, const Options& options) {
   if (months_to_booking < 0.0) return WearLevel::book_at_once;
   if (months_to_booking <= options.booking_horizon_months) return WearLevel::book;
   return months_to_booking <= options.planning_horizon_months ? WearLevel::plan : WearLevel::none;
+}
+
+/// How far the logarithmic law puts the end of life behind the forecast in charge; 0 where it gives none.
+double law_gap_months(const RemainingLife& life) {
+  const Forecast& in_charge = life.forecasts.front();
+  for (const Forecast& other : life.forecasts)
+    if (other.method == "ols_log_time" && other.window_months == in_charge.window_months &&
+        other.state == ForecastState::ok)
+      return other.rul_p50_months - in_charge.rul_p50_months;
+  return 0.0;
 }
 
 void judge_wear(TestVerdict& verdict, const Evidence& evidence, const SiteConfig* site, const Options& options) {
@@ -52,14 +64,18 @@ void judge_wear(TestVerdict& verdict, const Evidence& evidence, const SiteConfig
       verdict.replace_by = start_of_day(now);
       verdict.urgent = true;
       return;
-    case ForecastState::ok:
-      verdict.replace_by = replace_by(forecast, now, options);
+    case ForecastState::ok: {
+      const UtcTime work = replace_by(forecast, now, options);
       verdict.urgent = forecast.rul_p10_months <= options.urgent_months;
-      verdict.wear =
-          verdict.urgent
-              ? WearLevel::replace
-              : level_for(months_between(now, *verdict.replace_by) - booking_lead_time_months(site), options);
+      verdict.wear = verdict.urgent ? WearLevel::replace
+                                    : level_for(months_between(now, work) - booking_lead_time_months(site), options);
+      const bool laws_agree = law_gap_months(evidence.life) <= options.largest_law_gap_months;
+      if (laws_agree || verdict.urgent)
+        verdict.replace_by = work;
+      else
+        verdict.wear = std::min(*verdict.wear, WearLevel::plan);
       return;
+    }
   }
 }
 

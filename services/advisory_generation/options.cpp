@@ -16,6 +16,8 @@ Status Options::validate() const {
     return fail(
         broken("booking_horizon_months", booking_horizon_months, "must be above 0, below planning_horizon_months"));
   if (!(urgent_months >= 0.0)) return fail(broken("urgent_months", urgent_months, "must not be negative"));
+  if (!(largest_law_gap_months > 0.0))
+    return fail(broken("largest_law_gap_months", largest_law_gap_months, "must be positive"));
   if (confirming_tests < 1 || confirming_tests > confirming_window)
     return fail(broken("confirming_tests", static_cast<double>(confirming_tests), "must be 1 to confirming_window"));
   if (easing_tests < confirming_window)

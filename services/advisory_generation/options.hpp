@@ -18,6 +18,11 @@ struct Options {
   /// A P10 end of life nearer than this leaves no test in between to wait for: the seal counts as gone.
   double urgent_months = 1.0;
 
+  /// Money is spent (a vessel booked) only when the straight and the logarithmic law of ageing agree to this much: on
+  /// seals of the reference recursion the end of life lies between them, 10 months apart in the last three years, 50
+  /// before.
+  double largest_law_gap_months = 24.0;
+
   /// A worse level is shown once `confirming_tests` of the last `confirming_window` judged tests ask for it or more ...
   std::size_t confirming_tests = 2;
   std::size_t confirming_window = 3;

@@ -21,9 +21,11 @@ void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) 
     reasons.push_back(name + in_months(forecast.rul_p50_months) + " left (80 %: " + in_months(forecast.rul_p10_months) +
                       " to " + in_months(forecast.rul_p90_months) + "), end of life " +
                       format_date({forecast.end_of_life_ns}) + "; " + forecast.explanation);
-    for (const FailureProbability& one : forecast.failure_probability)
+    for (const FailureProbability& one : forecast.failure_probability) {
       reasons.push_back("failure before " + one.label + " (" + format_date({one.before_ns}) +
                         "): " + in_percent(one.probability));
+      if (one.probability > 0.5) break;  // later ones only come nearer to certainty
+    }
   }
   if (life.windows_disagree) reasons.push_back("windows disagree: " + life.disagreement);
 }
@@ -33,8 +35,8 @@ void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& lea
     std::string text = "R_CL = " + three_digits(leakage.resistance_Pa_s_m3) + " +- " +
                        three_digits(leakage.resistance_std_Pa_s_m3) + " Pa s/m3";
     if (leakage.condition_known)
-      text = "seal condition " + as_condition(leakage.condition) + " +- " + as_condition(leakage.condition_std) +
-             " (limit " + as_condition(life.threshold) + "), " + text;
+      text = "seal condition " + forecast::condition_with_std(leakage.condition, leakage.condition_std) + " (limit " +
+             as_condition(life.threshold) + "), " + text;
     reasons.push_back(text);
   }
   if (!leakage.used_for_forecast) reasons.push_back("left out of the forecast: " + joined(leakage.reasons));

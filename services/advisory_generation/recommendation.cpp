@@ -68,7 +68,11 @@ Recommendation by_wear(const Context& c) {
     case WearLevel::plan:
       r.priority = AdvisoryPriority::medium;
       r.action = AdvisoryAction::plan_replacement;
-      r.text = "Plan to replace the piston seal " + when + "; the vessel must be booked by " + booked_by + "." + view;
+      r.text = r.work_before
+                   ? "Plan to replace the piston seal " + when + "; the vessel must be booked by " + booked_by + "."
+                   : "Prepare the replacement of the piston seal; it is too early for a date, straight and "
+                     "logarithmic ageing end years apart.";
+      r.text += view;
       return r;
     case WearLevel::book:
       r.priority = AdvisoryPriority::high;

@@ -30,11 +30,12 @@ Header header_for(const std::string& topic, const Header& cause, std::vector<std
 
 std::string estimate_id(const std::string& pst_id) { return "leakage_estimate/" + pst_id; }
 
-std::string dates(const std::vector<forecast::ConditionSample>& samples) {
+std::string dates_after(const std::vector<forecast::ConditionSample>& samples, UtcTime begin) {
   std::string text;
   for (const forecast::ConditionSample& sample : samples)
-    text +=
-        (text.empty() ? "" : ", ") + format_date(sample.time) + " (" + forecast::as_condition(sample.condition) + ")";
+    if (sample.time > begin)
+      text +=
+          (text.empty() ? "" : ", ") + format_date(sample.time) + " (" + forecast::as_condition(sample.condition) + ")";
   return text;
 }
 
@@ -170,9 +171,10 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   life.forecasts = std::move(answer.forecasts);
   life.windows_disagree = answer.windows_disagree;
   life.disagreement = answer.disagreement;
-  if (!answer.left_out.empty())
-    for (Forecast& forecast : life.forecasts)
-      forecast.explanation += "; left out because they stand alone: " + dates(answer.left_out);
+  for (Forecast& forecast : life.forecasts) {
+    const std::string alone = dates_after(answer.left_out, add_months(now, -forecast.window_months));
+    if (!alone.empty()) forecast.explanation += "; left out because they stand alone: " + alone;
+  }
   return life;
 }
 

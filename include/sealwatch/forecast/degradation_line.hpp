@@ -19,10 +19,10 @@
 // line, known up to its estimation error and the seal's irregularity, is below theta_max at y,
 //
 //   P(Y <= y) = F_nu( (theta_max - theta_hat(y)) / se(y) ),   nu = n - 2
-//   se(y)^2   = sigma_p^2 + sigma^2 / n + (sigma^2 / S_yy + kappa^2 b^2) (y - y_bar)^2
+//   se(y)^2   = sigma_p^2 + sigma^2 / n + (sigma^2 / S_yy) (y - y_bar)^2 + kappa^2 b^2 (y - y_now)^2
 //
 //   F_nu   Student's t distribution;  S_yy = sum (y_i - y_bar)^2
-//   kappa  standard deviation of the future slope relative to the window's slope (0: the line stays straight)
+//   kappa  standard deviation of the slope from now on relative to the window's slope (0: the line stays straight)
 //
 // Exact for normal scatter about a straight line with kappa = 0, and skewed to the late side as it must be.
 #pragma once
@@ -47,6 +47,7 @@ struct DegradationLine {
   double scatter_variance = 0.0;       ///< sigma^2
   double irregularity_variance = 0.0;  ///< sigma_p^2
   double slope_drift = 0.0;            ///< kappa
+  double now_y = 0.0;                  ///< y_now
 
   [[nodiscard]] int degrees_of_freedom() const { return tests - 2; }
   [[nodiscard]] double condition_at(double y) const { return mean_condition + slope * (y - mean_y); }
@@ -61,6 +62,6 @@ struct DegradationLine {
 
 /// None for fewer than three points or when all stand at one time.
 [[nodiscard]] std::optional<DegradationLine> fit_degradation_line(std::span<const LinePoint> points,
-                                                                  double slope_drift);
+                                                                  double slope_drift = 0.0, double now_y = 0.0);
 
 }  // namespace sealwatch::forecast

@@ -13,6 +13,8 @@ namespace sealwatch::forecast {
 [[nodiscard]] std::string in_percent(double share);
 /// 0.72345 -> "0.723": theta and its standard errors.
 [[nodiscard]] std::string as_condition(double condition);
+/// Value and standard error of theta: "0.7235 +- 0.0021".
+[[nodiscard]] std::string condition_with_std(double condition, double condition_std);
 /// 2.2e13 -> "2.20e+13": quantities over many orders of magnitude, three digits.
 [[nodiscard]] std::string three_digits(double value);
 

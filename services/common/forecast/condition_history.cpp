@@ -7,11 +7,12 @@
 namespace sealwatch::forecast {
 namespace {
 
-constexpr std::size_t kNeighbours = 12;       // a year of monthly tests: the line bends little within it
-constexpr std::size_t kFewestNeighbours = 6;  // below, the median absolute deviation says nothing
+constexpr std::size_t kNeighbours = 12;   // a year of monthly tests: the line bends little within it
+constexpr std::size_t kFewestBefore = 6;  // below, the median absolute deviation says nothing
 // With twelve neighbours the robust deviation itself is good to about a quarter; five of it keep false marks below 1 in
 // 200.
 constexpr double kOutlierLimit = 5.0;
+constexpr double kSmallestDeviation = 0.01;
 constexpr double kNormalFromMedianDeviation = 1.4826;
 constexpr double kSmallestScatter = 1e-6;  // rounding of histories in text files
 
@@ -40,8 +41,9 @@ std::vector<ConditionSample> nearest_in_time(std::span<const ConditionSample> hi
 
 /// Deviation of the sample from its neighbours' line in robust standard deviations.
 double deviation(std::span<const ConditionSample> history, std::size_t index) {
+  if (index < kFewestBefore) return 0.0;
   const std::vector<ConditionSample> neighbours = nearest_in_time(history, index);
-  if (neighbours.size() < kFewestNeighbours) return 0.0;
+
   std::vector<double> slopes;  // per month
   for (std::size_t i = 0; i < neighbours.size(); ++i)
     for (std::size_t j = i + 1; j < neighbours.size(); ++j)
@@ -62,7 +64,9 @@ double deviation(std::span<const ConditionSample> history, std::size_t index) {
   for (double& value : levels) value = std::abs(value - level);
   const double scatter =
       std::max({kNormalFromMedianDeviation * median(levels), median(standard_errors), kSmallestScatter});
-  return (history[index].condition - level) / std::hypot(scatter, history[index].condition_std);
+  const double off = history[index].condition - level;
+  if (std::abs(off) < kSmallestDeviation) return 0.0;
+  return off / std::hypot(scatter, history[index].condition_std);
 }
 
 }  // namespace

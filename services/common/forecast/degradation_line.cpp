@@ -22,26 +22,37 @@ double DegradationLine::no_fall_probability() const {
 }
 
 double DegradationLine::crossing_probability(double threshold, double y) const {
-  const double distance = y - mean_y;
-  const double slope_variance = scatter_variance / sum_squares_y + slope_drift * slope_drift * slope * slope;
-  const double variance = irregularity_variance + scatter_variance / tests + slope_variance * distance * distance;
+  const double mean_variance = irregularity_variance + scatter_variance / tests;
+  const double from_mean = y - mean_y;
+  const double from_now = y - now_y;
+  const double variance = mean_variance + scatter_variance / sum_squares_y * from_mean * from_mean +
+                          slope_drift * slope_drift * slope * slope * from_now * from_now;
   return student_t_probability((threshold - condition_at(y)) / std::sqrt(variance), degrees_of_freedom());
 }
 
-// Solves threshold - theta_hat(y) = T_q se(y), a quadratic in y - y_bar; the sign of T_q selects the root.
+// Solves threshold - theta_hat(y) = T_q se(y), a quadratic a Y^2 - 2 h Y + g = 0 in Y = y - y_bar, where
+// h^2 - a g = T_q^2 root_squared (written out, because the difference cancels); the sign of T_q selects the root.
 std::optional<double> DegradationLine::crossing_quantile(double threshold, double probability) const {
   const double T = student_t_quantile(probability, degrees_of_freedom());
-  const double slope_variance = scatter_variance / sum_squares_y + slope_drift * slope_drift * slope * slope;
   const double mean_variance = irregularity_variance + scatter_variance / tests;
-  const double distance = threshold - mean_condition;
-  const double denominator = slope * slope - T * T * slope_variance;
-  if (slope >= 0.0 || denominator <= 0.0) return std::nullopt;
-  const double root = std::sqrt(mean_variance * denominator + slope_variance * distance * distance);
-  return mean_y + (slope * distance + T * root) / denominator;
+  const double slope_variance = scatter_variance / sum_squares_y;
+  const double drift_variance = slope_drift * slope_drift * slope * slope;
+  const double fall = threshold - mean_condition;
+  const double now = now_y - mean_y;
+  const double a = slope * slope - T * T * (slope_variance + drift_variance);
+  const double h = slope * fall - T * T * drift_variance * now;
+  const double here = mean_variance + drift_variance * now * now;
+  const double root_squared =
+      slope * slope * here - 2.0 * slope * fall * drift_variance * now +
+      (slope_variance + drift_variance) * fall * fall +
+      T * T * (drift_variance * drift_variance * now * now - (slope_variance + drift_variance) * here);
+  if (slope >= 0.0 || a <= 0.0) return std::nullopt;
+  return mean_y + (h + T * std::sqrt(std::max(root_squared, 0.0))) / a;
 }
 
-std::optional<DegradationLine> fit_degradation_line(std::span<const LinePoint> points, double slope_drift) {
-  DegradationLine line{.tests = static_cast<int>(points.size()), .slope_drift = slope_drift};
+std::optional<DegradationLine> fit_degradation_line(std::span<const LinePoint> points, double slope_drift,
+                                                    double now_y) {
+  DegradationLine line{.tests = static_cast<int>(points.size()), .slope_drift = slope_drift, .now_y = now_y};
   if (line.tests <= kFittedNumbers) return std::nullopt;
   double measuring_variance = 0.0;
   for (const LinePoint& point : points) {

@@ -82,7 +82,7 @@ std::optional<DegradationLine> fit(const TimeAxis& axis, const std::vector<Condi
   for (const ConditionSample& sample : window)
     if (axis.months(sample.time) > 0.0)
       points.push_back({axis.y(axis.months(sample.time)), sample.condition, sample.condition_std});
-  return fit_degradation_line(points, slope_drift);
+  return fit_degradation_line(points, slope_drift, axis.y(axis.now_months));
 }
 
 struct CrossingQuantiles {
@@ -116,8 +116,8 @@ void fill_numbers(Forecast& forecast, const ForecastRequest& request, const Degr
 }
 
 std::string describe_ok(const Forecast& forecast, const ForecastRequest& request, const DegradationLine& line) {
-  std::string text =
-      std::to_string(forecast.tests_used) + " tests, scatter of one " + as_condition(std::sqrt(line.scatter_variance));
+  std::string text = std::to_string(forecast.tests_used) + " tests, scatter of one " +
+                     three_digits(std::sqrt(line.scatter_variance)) + " of theta";
   const double age = months_between(request.history.back().time, request.now);
   if (age > kJitterMonths) text += "; the last usable test was " + in_months(age) + " ago";
   if (forecast.interval_95_high_months >= kLongestMonths)

@@ -26,7 +26,7 @@ TEST(StudentT, QuantilesOfTheTable) {
 const std::vector<LinePoint> kByHand{{1, 0.90, 0}, {2, 0.88, 0}, {3, 0.87, 0}, {4, 0.83, 0}, {5, 0.82, 0}};
 
 TEST(DegradationLine, RegressionByHand) {
-  const auto line = fit_degradation_line(kByHand, 0.0);
+  const auto line = fit_degradation_line(kByHand);
   ASSERT_TRUE(line);
   EXPECT_NEAR(line->mean_condition, 0.86, kRounding);
   EXPECT_NEAR(line->slope, -0.021, kRounding);
@@ -41,7 +41,7 @@ TEST(DegradationLine, RegressionByHand) {
 //   root = sqrt(7.6e-5 * 4.240125e-4 + 6.33333e-6 * 0.0676) = 6.78427e-4
 //   Y_10, Y_90 = 3 + (0.00546 -+ 1.637744 * 6.78427e-4) / 4.240125e-4
 TEST(DegradationLine, IntervalByHand) {
-  const auto line = fit_degradation_line(kByHand, 0.0);
+  const auto line = fit_degradation_line(kByHand);
   ASSERT_TRUE(line);
   constexpr double kSixDigits = 1e-3;  // the figures above are rounded to six digits
   EXPECT_NEAR(*line->crossing_quantile(0.60, 0.10), 13.25655, kSixDigits);
@@ -50,7 +50,7 @@ TEST(DegradationLine, IntervalByHand) {
 
 TEST(DegradationLine, ProbabilityIsTheInverseOfTheQuantile) {
   for (const double slope_drift : {0.0, 0.1}) {
-    const auto line = fit_degradation_line(kByHand, slope_drift);
+    const auto line = fit_degradation_line(kByHand, slope_drift, 5.0);
     for (const double p : {0.025, 0.1, 0.5, 0.9, 0.975})
       EXPECT_NEAR(line->crossing_probability(0.60, *line->crossing_quantile(0.60, p)), p, 1e-9);
   }
@@ -69,7 +69,7 @@ TEST(DegradationLine, MeasuringErrorMovesNoSealButBoundsTheScatter) {
 
 TEST(DegradationLine, NoQuantileWhereTheSlopeMayBeZero) {
   const std::vector<LinePoint> noisy{{1, 0.90, 0}, {2, 0.80, 0}, {3, 0.95, 0}, {4, 0.82, 0}, {5, 0.87, 0}};
-  const auto line = fit_degradation_line(noisy, 0.0);
+  const auto line = fit_degradation_line(noisy);
   ASSERT_TRUE(line);
   EXPECT_GT(line->no_fall_probability(), 0.1);
   EXPECT_FALSE(line->crossing_quantile(0.60, 0.975));

@@ -28,7 +28,7 @@ Status check_input(const TimeSeries& recorded, std::initializer_list<const char*
                         .place = {},
                         .value = name,
                         .rule = "drives the simulation and is not recorded",
-                        .advice = "record it, or use the fit of the cylinder circuit"});
+                        .advice = "record it; plant eha takes the flow instead of the motor's voltage"});
   return {};
 }
 
@@ -77,6 +77,8 @@ Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConf
   const auto plant = find_plant(asset.model);
   if (!plant) return fail(plant.error());
   if (const Status status = check_recording(**plant, recorded); !status) return fail(status.error());
+  if (asset.model == "eha" && !recorded.has("motor_voltage") && recorded.has("flow"))
+    return simulate_eha_circuit(**plant, asset, recorded);
   if (asset.model == "eha") {
     if (const Status status = check_input(recorded, {"motor_voltage"}); !status) return fail(status.error());
     return simulate_eha(**plant, asset, recorded);

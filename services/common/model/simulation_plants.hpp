@@ -9,6 +9,10 @@ namespace sealwatch {
 
 [[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha(const PlantDescription& plant, const AssetConfig& asset,
                                                             const TimeSeries& recorded);
+/// The cylinder circuit of `eha`, driven by the recorded flow.
+[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha_circuit(const PlantDescription& plant,
+                                                                    const AssetConfig& asset,
+                                                                    const TimeSeries& recorded);
 [[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha_switched(const PlantDescription& plant,
                                                                      const AssetConfig& asset,
                                                                      const TimeSeries& recorded);

@@ -38,17 +38,40 @@ std::string suggest_channel(std::string_view name, const PlantDescription& plant
 Result<UnitConversion> find_conversion(std::string_view unit, std::string_view si_unit) {
   if (unit.empty() || unit == si_unit) return UnitConversion{.scale = 1.0, .offset = 0.0, .si_unit = {}};
   if (unit.size() > kLongestPrinted) return fail("is not a known unit");
-  const Result<UnitConversion> known = find_unit(unit);
+  Result<UnitConversion> known = find_unit(unit);
   if (known && known->si_unit != si_unit) return fail("cannot be converted to " + std::string(si_unit));
   return known;
 }
 
 }  // namespace
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[at]);
+    const std::size_t length = lead < 0x80   ? 1
+                               : lead < 0xC2 ? 0
+                               : lead < 0xE0 ? 2
+                               : lead < 0xF0 ? 3
+                               : lead < 0xF5 ? 4
+                                             : 0;
+    if (length == 0 || at + length > text.size()) return false;
+    unsigned code = length == 1 ? lead : lead & (0x7FU >> length);
+    for (std::size_t k = 1; k < length; ++k) {
+      const auto next = static_cast<unsigned char>(text[at + k]);
+      if ((next & 0xC0U) != 0x80U) return false;
+      code = code << 6U | (next & 0x3FU);
+    }
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    if (overlong || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) return false;
+    at += length;
+  }
+  return true;
+}
+
 std::string printable(std::string_view text) {
   std::string out(text.substr(0, kLongestPrinted));
   for (char& letter : out)
-    if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) letter = '?';
+    if (static_cast<unsigned char>(letter) < 0x20 || static_cast<unsigned char>(letter) >= 0x7f) letter = '?';
   return text.size() > kLongestPrinted ? out + "..." : out;
 }
 

@@ -26,7 +26,10 @@ struct ColumnarSamples {
   std::string content_hash;
 };
 
-/// `text` as fit to be printed: control characters replaced, at most 60 characters.
+/// Whether `text` is UTF-8, as everything that goes into messages must be.
+[[nodiscard]] bool is_utf8(std::string_view text);
+
+/// `text` as fit to be printed: whatever is not printable ASCII replaced by '?', at most 60 characters.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// An error at a place of a file that the caller names.

@@ -75,7 +75,7 @@ Result<std::size_t> CsvRows::find_row_end() {
 Status CsvRows::split_row(char* begin, char* end, std::vector<std::string_view>& cells) const {
   for (char* at = begin;; ++at) {
     std::string_view cell;
-    char* stop = at;
+    char* stop = nullptr;
     if (has_quotes_ && at != end && *at == '"') {
       stop = unquote(at, end, cell);
       if (stop == nullptr)

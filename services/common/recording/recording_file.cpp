@@ -95,6 +95,7 @@ Result<Recording> read_recording(const std::string& path, const PlantDescription
   Recording recording;
   recording.file = path;
   recording.recording_id = fs::path(path).stem().string();
+  if (!is_utf8(recording.recording_id)) recording.recording_id = printable(recording.recording_id);
   recording.content_hash = std::move(read->content_hash);
   recording.samples = std::move(read->samples);
   apply_sidecar(*sidecar, read->columns, recording);

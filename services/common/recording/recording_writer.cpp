@@ -58,7 +58,7 @@ Status write_whole(const std::string& path, const std::string& text) {
 
 Status write_recording_csv(const Recording& recording, const std::string& path, int significant_digits) {
   const std::string sidecar = fs::path(path).replace_extension(".yaml").string();
-  if (const Status status = write_whole(sidecar, format_sidecar(recording)); !status) return status;
+  if (Status status = write_whole(sidecar, format_sidecar(recording)); !status) return status;
   return write_whole(path, format_csv(recording.samples, std::min(significant_digits, 17)));
 }
 

@@ -114,6 +114,7 @@ Result<Sidecar> read_document(const YAML::Node& document, const PlantDescription
 }  // namespace
 
 Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& plant) {
+  if (!is_utf8(text)) return fail("is not UTF-8");
   try {
     return read_document(YAML::Load(text), plant);
   } catch (const YAML::Exception& problem) {
@@ -122,6 +123,7 @@ Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& p
 }
 
 Result<std::string> parse_sidecar_asset_id(const std::string& text) {
+  if (!is_utf8(text)) return fail("is not UTF-8");
   try {
     const YAML::Node asset_id = YAML::Load(text)["asset_id"];
     return asset_id.IsDefined() && asset_id.IsScalar() ? asset_id.Scalar() : std::string();

@@ -81,6 +81,21 @@ TEST(Csv, HeaderErrorsNameRowAndColumn) {
   EXPECT_THAT(error_of("time,\n0,1\n"), HasSubstr("row 1, column 2"));
 }
 
+TEST(Csv, ErrorsCanBePrintedWhateverTheFileHolds) {
+  const Result<ColumnarSamples> result = read(std::string("time,\x01\xFF\x7F") + std::string(1000, 'x') + "\n0,1\n");
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().value, "???" + std::string(57, 'x') + "...");
+}
+
+TEST(Text, KnowsUtf8) {
+  for (const char* good : {"", "plain", "caf\xC3\xA9", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xEF\xBB\xBF"})
+    EXPECT_TRUE(is_utf8(good)) << good;
+  // Latin-1, cut short, overlong, surrogate, beyond the last code point, stray continuation.
+  for (const char* bad :
+       {"caf\xE9", "\xE2\x82", "\xC0\xAF", "\xE0\x80\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\x80"})
+    EXPECT_FALSE(is_utf8(bad)) << bad;
+}
+
 TEST(Csv, SampleErrorsNameRowAndColumn) {
   EXPECT_THAT(error_of("time,position\n0,1\n1,abc\n"), HasSubstr("row 3, column position: 'abc': must be a number"));
   EXPECT_THAT(error_of("time,position\n0,1\n1,2x\n2,3\n"), HasSubstr("row 3, column position: '2x': must be a number"));

@@ -89,6 +89,10 @@ TEST_F(RecordingFile, WithoutSidecarOnlyTheFileSpeaks) {
   EXPECT_EQ(recording.content_hash, content_hash(text));
 }
 
+TEST_F(RecordingFile, ANameThatIsNotUtf8IsMadePrintable) {
+  EXPECT_EQ(read(write("t\xE9st.csv", "time,position\n0,1\n")).recording_id, "t?st");
+}
+
 TEST_F(RecordingFile, NoiseIsInTheColumnsUnit) {
   write("a.yaml", "noise_std: {pressure_a: 0.1, fluid_temperature: 0.5, flow: 1}\n");
   const Recording recording = read(write("a.csv", "time,fluid_temperature[degC],pressure_a[bar]\n0,4,1\n"));

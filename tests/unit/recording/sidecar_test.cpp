@@ -59,6 +59,7 @@ TEST(SidecarText, ErrorsNameLineAndKey) {
               HasSubstr("line 1, key interpolation: 'cubic': must be hold or linear"));
   EXPECT_THAT(error_of("note: a\nnote: b\n"), HasSubstr("line 2, key note: 'b': stands there twice"));
   EXPECT_THAT(error_of("note: {a: b}\n"), HasSubstr("line 1, key note: must be plain text"));
+  EXPECT_THAT(error_of("note: caf\xE9\n"), HasSubstr("is not UTF-8"));
   EXPECT_THAT(error_of("- pst\n"), HasSubstr("must be a mapping"));
   EXPECT_THAT(error_of("[a, b]: c\n"), HasSubstr("a key must be plain text"));
   EXPECT_THAT(error_of("test: pst\nnote: [open\n"), HasSubstr("is not YAML"));

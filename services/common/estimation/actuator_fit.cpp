@@ -31,7 +31,7 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
 // From the asset's values; from others only where that does not converge.
 Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const ActuatorFitOptions& options) {
   Result<PemOptimum> best = search(problem, start_point(problem, 1.0), options);
-  if (problem.shared.empty() || (best && best->converged)) return best;
+  if (problem.shared.empty() || (best && (best->converged || best->hopeless))) return best;
   for (const double factor : options.restart_factors) {
     Result<PemOptimum> other = search(problem, start_point(problem, factor), options);
     if (other && (!best || better(*other, *best))) best = std::move(other);
@@ -48,6 +48,8 @@ Status ActuatorFitOptions::validate() const {
   if (!(cost_tolerance > 0.0)) return fail("cost_tolerance must be positive, is " + in_words(cost_tolerance));
   if (!(relative_tolerance > 0.0 && relative_tolerance <= 1e-3))
     return fail("relative_tolerance must be positive and at most 1e-3, is " + in_words(relative_tolerance));
+  if (!(hopeless_rms > admissibility.largest_noise_normalised_rms))
+    return fail("hopeless_rms must be above largest_noise_normalised_rms, is " + in_words(hopeless_rms));
   if (!(steps_per_sample > 0.0)) return fail("steps_per_sample must be positive, is " + in_words(steps_per_sample));
   for (const double factor : restart_factors)
     if (!(factor > 0.0)) return fail("restart_factors must be positive, one is " + in_words(factor));

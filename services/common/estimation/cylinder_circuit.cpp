@@ -73,7 +73,8 @@ Eigen::MatrixXd rows_that_count(const Eigen::MatrixXd& innovations, const std::v
 }
 
 BalanceFit fit_balance(const VolumeBalance& balance, const AssetConfig& asset) {
-  const Eigen::MatrixXd innovations = whiten(balance);
+  const WhitenedBalance whitened = whiten(balance);
+  const Eigen::MatrixXd& innovations = whitened.innovations;
   const Eigen::MatrixXd rows = rows_that_count(innovations, balance.restart);
   const Eigen::Index unknowns = rows.cols() - 1;
   const Eigen::VectorXd scale = rows.rightCols(unknowns).colwise().norm().cwiseMax(1e-300);
@@ -82,8 +83,9 @@ BalanceFit fit_balance(const VolumeBalance& balance, const AssetConfig& asset) {
   bounds.lower = bounds.lower.cwiseProduct(scale);
   bounds.upper = bounds.upper.cwiseProduct(scale);
   BalanceFit fit;
-  const Eigen::VectorXd scaled =
-      solve_in_box(regressors.transpose() * regressors, regressors.transpose() * rows.col(0), bounds);
+  Eigen::MatrixXd normal = regressors.transpose() * regressors;
+  if (unknowns > 1) normal(1, 1) -= std::min(0.5, whitened.noise_in_g2 / (scale(1) * scale(1)));
+  const Eigen::VectorXd scaled = solve_in_box(normal, regressors.transpose() * rows.col(0), bounds);
   for (Eigen::Index j = 0; j < unknowns; ++j)
     fit.at_bound.push_back(scaled(j) <= bounds.lower(j) || scaled(j) >= bounds.upper(j));
   fit.coefficients = scaled.cwiseQuotient(scale);

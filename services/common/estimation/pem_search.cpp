@@ -93,19 +93,21 @@ ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
 }
 
 // Ends the search when an iteration changes the cost, or a rejected one promised to change it, by no more than
-// `tolerance`.
+// `tolerance`; gives it up when after several iterations the cost is still above `hopeless_cost`.
 class CostResolved final : public ceres::IterationCallback {
  public:
-  explicit CostResolved(double tolerance) : tolerance_(tolerance) {}
+  CostResolved(double tolerance, double hopeless_cost) : tolerance_(tolerance), hopeless_cost_(hopeless_cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;
+    if (iteration.iteration >= kIterationsForHope && iteration.cost > hopeless_cost_) return ceres::SOLVER_ABORT;
     const double promised = iteration.cost_change / iteration.relative_decrease;  // by the linear model
     const bool resolved = std::abs(iteration.cost_change) <= tolerance_ || (promised >= 0.0 && promised <= tolerance_);
     return resolved ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
-  double tolerance_;
+  static constexpr int kIterationsForHope = 8;  // fits that come to something are there by then
+  double tolerance_, hopeless_cost_;
 };
 
 // Ceres reports steps into parameter regions that cannot be simulated as warnings; they are ordinary rejected steps
@@ -138,7 +140,11 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
     ceres_problem.AddResidualBlock(costs.back(), nullptr, blocks);
   }
   if (!problem.shared.empty()) set_bounds(ceres_problem, problem.shared, optimum.point.shared);
-  CostResolved resolved(options.cost_tolerance * static_cast<double>(problem.recordings.size()));
+  double residuals = 0.0;
+  for (const PemRecording& recording : problem.recordings)
+    residuals += static_cast<double>(recording.simulation->recorded().size());
+  CostResolved resolved(options.cost_tolerance * static_cast<double>(problem.recordings.size()),
+                        0.5 * residuals * options.hopeless_rms * options.hopeless_rms);
   ceres::Solver::Options solver = solver_options(options);
   solver.callbacks.push_back(&resolved);
   ceres::Solver::Summary summary;
@@ -147,8 +153,10 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   optimum.converged = within_tolerance || summary.termination_type == ceres::CONVERGENCE;
   optimum.cost = summary.final_cost;
   optimum.iterations = static_cast<int>(summary.iterations.size());
-  optimum.termination =
-      within_tolerance ? "converged: the last step changed the cost by less than its tolerance" : summary.message;
+  optimum.hopeless = summary.termination_type == ceres::USER_FAILURE;
+  optimum.termination = within_tolerance   ? "converged: the last step changed the cost by less than its tolerance"
+                        : optimum.hopeless ? "given up: the model does not come near the recording"
+                                           : summary.message;
   for (std::size_t k = 0; k < costs.size(); ++k) {
     Result<Linearisation> linearisation = costs[k]->take_linearisation(optimum.point.shared, optimum.point.own[k]);
     if (!linearisation) return fail(linearisation.error());

@@ -20,6 +20,7 @@ struct PemOptimum {
   std::vector<Linearisation> at_optimum;  ///< per recording
   double cost = 0.0;
   bool converged = false;
+  bool hopeless = false;  ///< given up far from the recording
   int iterations = 0;
   std::string termination;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "services/common/estimation/channel_noise.hpp"
 
@@ -99,6 +100,8 @@ Result<CylinderSignals> gather_cylinder_signals(const AssetConfig& asset, const 
   signals.flow_m3_s = flow->values;
   signals.area_m2 = area->second.value;
   signals.dead_volume_m3 = dead_volume->second.value;
+  if (const auto beta = asset.parameters.find("beta"); beta != asset.parameters.end())
+    signals.bulk_modulus_Pa = beta->second.value;
   signals.flow_noise_std = noise_std_of(asset, *flow);
   signals.flow_lag_s = time_constant_of(asset, "flow");
   if (const Status found = gather_pressures(asset, samples, signals); !found) return fail(found.error());
@@ -137,13 +140,22 @@ VolumeBalance make_volume_balance(const CylinderSignals& signals) {
   }
   balance.white_std =
       std::hypot(signals.area_m2 * signals.position_noise_std, (signals.flow_lag_s - lag_s) * signals.flow_noise_std);
+  if (both_pressures) {
+    const double mean_position_m =
+        std::accumulate(signals.position_m.begin(), signals.position_m.end(), 0.0) / static_cast<double>(n);
+    balance.g2_noise_std = (signals.dead_volume_m3 + signals.area_m2 * mean_position_m) * signals.pressure_noise_std;
+    if (signals.bulk_modulus_Pa > 0.0)
+      balance.white_std = std::hypot(balance.white_std, balance.g2_noise_std / signals.bulk_modulus_Pa);
+  }
   return balance;
 }
 
-Eigen::MatrixXd whiten(const VolumeBalance& balance) {
-  Eigen::MatrixXd innovations = Eigen::MatrixXd::Zero(balance.columns.rows(), balance.columns.cols());
-  const double white_variance = balance.white_std * balance.white_std;
+WhitenedBalance whiten(const VolumeBalance& balance) {
   using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 3>;  // at most 3 columns, no allocation
+  WhitenedBalance result;
+  result.innovations = Eigen::MatrixXd::Zero(balance.columns.rows(), balance.columns.cols());
+  const double white_variance = balance.white_std * balance.white_std;
+  const double g2_variance = balance.g2_noise_std * balance.g2_noise_std;
   Row level = balance.columns.row(0);
   double level_variance = white_variance;
   for (Eigen::Index k = 1; k < balance.columns.rows(); ++k) {
@@ -155,12 +167,15 @@ Eigen::MatrixXd whiten(const VolumeBalance& balance) {
     }
     level_variance += balance.level_step_std[sample] * balance.level_step_std[sample];
     const double variance = level_variance + white_variance;
+    const double gain = level_variance / variance;
     const Row error = balance.columns.row(k) - level;
-    innovations.row(k) = error / std::sqrt(variance);
-    level += level_variance / variance * error;
-    level_variance *= 1.0 - level_variance / variance;
+    result.innovations.row(k) = error / std::sqrt(variance);
+    // White noise of variance s leaves the settled filter with variance 2 s / (2 - gain).
+    result.noise_in_g2 += 2.0 * g2_variance / ((2.0 - gain) * variance);
+    level += gain * error;
+    level_variance *= 1.0 - gain;
   }
-  return innovations;
+  return result;
 }
 
 }  // namespace sealwatch

@@ -20,8 +20,9 @@ struct CylinderSignals {
   std::vector<double> position_m;        ///< recorded, or summed up from the velocity
   std::span<const double> velocity_m_s;  ///< empty when not recorded
   bool position_recorded = false;
-  double area_m2 = 0.0;         ///< A_C
-  double dead_volume_m3 = 0.0;  ///< V_0
+  double area_m2 = 0.0;          ///< A_C
+  double dead_volume_m3 = 0.0;   ///< V_0
+  double bulk_modulus_Pa = 0.0;  ///< beta that the asset starts from; 0 when it has none
   double flow_noise_std = 0.0, pressure_noise_std = 0.0, position_noise_std = 0.0, velocity_noise_std = 0.0;
   double flow_lag_s = 0.0, pressure_lag_s = 0.0, position_lag_s = 0.0, velocity_lag_s = 0.0;
 };
@@ -34,14 +35,20 @@ struct VolumeBalance {
   Eigen::MatrixXd columns;             ///< y, g1 and, with both pressures, g2; in m3, m3 Pa s/m3, m3 Pa
   std::vector<double> level_step_std;  ///< of the level from sample k-1 to k [m3]
   double white_std = 0.0;              ///< of one sample [m3]
+  double g2_noise_std = 0.0;           ///< white noise of one sample of g2, from the pressure sensor [m3 Pa]
   std::vector<bool> restart;
 };
 
 [[nodiscard]] VolumeBalance make_volume_balance(const CylinderSignals& signals);
 
-/// The columns' one-step prediction errors, each divided by its standard deviation; rows where the level starts are
-/// zero.
-[[nodiscard]] Eigen::MatrixXd whiten(const VolumeBalance& balance);
+struct WhitenedBalance {
+  /// The columns' one-step prediction errors over their standard deviation; rows where the level starts are zero.
+  Eigen::MatrixXd innovations;
+  /// How much of g2's sum of squares is pressure noise: left in, it would bias 1/beta towards zero.
+  double noise_in_g2 = 0.0;
+};
+
+[[nodiscard]] WhitenedBalance whiten(const VolumeBalance& balance);
 
 /// Running integral by the trapezoidal rule, 0 at the first sample.
 [[nodiscard]] std::vector<double> integrate(std::span<const double> time_s, std::span<const double> values);

@@ -16,11 +16,16 @@ constexpr double kKappa = 3.0;
 constexpr double kLogPriorLeakage = -4.5;
 constexpr double kLogPriorLoad = -5.0;
 constexpr double kLogPriorOther = -6.0;
+constexpr double kUnexplainedFailure = -9.0;
 constexpr double kLeastLikelihood = 0.02;
 /// Two faults whose signatures are nearly one are not tried as a pair: their difference would only fit noise.
 constexpr double kLargestCosine = 0.95;
 
 using Key = std::pair<FaultKind, std::string>;  // kind and element
+
+bool can_fail_a_test(const Signature& signature) {
+  return signature.kind != FaultKind::sensor || signature.element == "sensor:position";
+}
 
 /// One fault, or two at once.
 struct Hypothesis {
@@ -33,12 +38,14 @@ struct Hypothesis {
 class Matcher {
  public:
   Matcher(const std::vector<Deviation>& deviations, const std::vector<Signature>& signatures,
-          const std::map<std::string, SensorRemark>& remarks)
-      : signatures_(signatures), remarks_(remarks) {
+          const std::map<std::string, SensorRemark>& remarks, bool failed)
+      : signatures_(signatures), remarks_(remarks), failed_(failed) {
     for (const Deviation& deviation : deviations)
       if (deviation.informative) z_.push_back(deviation.value);
     for (const Signature& signature : signatures) scaled_.push_back(scale(signature, deviations));
   }
+
+  [[nodiscard]] double score_of_no_fault() const { return unexplained(false); }
 
   [[nodiscard]] std::vector<Hypothesis> all() const {
     std::vector<Hypothesis> hypotheses;
@@ -80,6 +87,7 @@ class Matcher {
     for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
     return sum;
   }
+  [[nodiscard]] double unexplained(bool explains) const { return failed_ && !explains ? kUnexplainedFailure : 0.0; }
   [[nodiscard]] Key key_of(std::size_t h) const { return {signatures_[h].kind, signatures_[h].element}; }
   [[nodiscard]] double log_prior(std::size_t h) const {
     const FaultKind kind = signatures_[h].kind;
@@ -97,7 +105,7 @@ class Matcher {
   [[nodiscard]] Hypothesis single(std::size_t h) const {
     const double amplitude = dot(z_, scaled_[h]);
     const double gain = allowed(h, amplitude) ? 0.5 * kKappa * kKappa * amplitude * amplitude : 0.0;
-    return {h, std::nullopt, gain + bonus(h) + log_prior(h), 1.0};
+    return {h, std::nullopt, gain + bonus(h) + log_prior(h) + unexplained(can_fail_a_test(signatures_[h])), 1.0};
   }
 
   /// Least squares of z on two unit signatures; nothing where one of them has the wrong sign or they are nearly one.
@@ -115,21 +123,24 @@ class Matcher {
     const double weight_h = kKappa * kKappa * a * a + bonus(h);
     const double weight_k = kKappa * kKappa * b * b + bonus(k);
     if (!(weight_h > 0.0) || !(weight_k > 0.0)) return std::nullopt;
-    return Hypothesis{h, k, gain + bonus(h) + bonus(k) + log_prior(h) + log_prior(k), weight_h / (weight_h + weight_k)};
+    const bool explains = can_fail_a_test(signatures_[h]) || can_fail_a_test(signatures_[k]);
+    return Hypothesis{h, k, gain + bonus(h) + bonus(k) + log_prior(h) + log_prior(k) + unexplained(explains),
+                      weight_h / (weight_h + weight_k)};
   }
 
   const std::vector<Signature>& signatures_;
   const std::map<std::string, SensorRemark>& remarks_;
+  bool failed_;
   Vector z_;
   std::vector<Vector> scaled_;
 };
 
-/// Likelihood of each fault, and of none.
+/// Likelihood of each fault, and of none; `no_fault` comes in as its score.
 std::map<Key, double> likelihoods_of(const std::vector<Signature>& signatures,
                                      const std::vector<Hypothesis>& hypotheses, double& no_fault) {
-  double largest = 0.0;  // score of no fault
+  double largest = no_fault;
   for (const Hypothesis& hypothesis : hypotheses) largest = std::max(largest, hypothesis.score);
-  no_fault = std::exp(-largest);
+  no_fault = std::exp(no_fault - largest);
   double sum = no_fault;
   std::map<Key, double> likelihood;
   const auto add = [&](std::size_t h, double weight) {
@@ -152,13 +163,15 @@ std::map<Key, double> likelihoods_of(const std::vector<Signature>& signatures,
 }  // namespace
 
 AmbiguityGroup find_ambiguity_group(const std::vector<Deviation>& deviations, const std::vector<Signature>& signatures,
-                                    const std::map<std::string, SensorRemark>& remarks) {
+                                    const std::map<std::string, SensorRemark>& remarks, const std::string& failure) {
   AmbiguityGroup group;
-  const Matcher matcher(deviations, signatures, remarks);
+  const Matcher matcher(deviations, signatures, remarks, !failure.empty());
   std::vector<Proposal> proposals;
+  group.no_fault_likelihood = matcher.score_of_no_fault();
   for (const auto& [key, likelihood] : likelihoods_of(signatures, matcher.all(), group.no_fault_likelihood)) {
     const FailureCode code = failure_code(key.first);
     proposals.push_back({{key.first, key.second, likelihood, code.mode, code.mechanism, {}}, matcher.best_of(key)});
+    if (!failure.empty()) proposals.back().fault.evidence.push_back("the test failed: " + failure);
   }
   std::stable_sort(proposals.begin(), proposals.end(),
                    [](const Proposal& a, const Proposal& b) { return a.fault.likelihood > b.fault.likelihood; });

@@ -13,6 +13,9 @@
 // both priors and both amplitudes; their likelihood is divided between the two as they share the explained deviation.
 // bonus_h is what the status and the alignment of a sensor's channel say. Likelihoods below 2 % are left out and the
 // rest adds up to 1.
+//
+// A failed test has a cause: no fault, and faults that could not make a test fail (sensors, but the position's), lose
+// e^-9. What remains is told apart by the deviations or, where nothing was measured, by the prior.
 #pragma once
 
 #include <map>
@@ -35,9 +38,10 @@ struct SensorRemark {
   std::string text;
 };
 
-/// `remarks` by element ("sensor:flow").
+/// `remarks` by element ("sensor:flow"); `failure`: why the test failed, "" when it did not.
 [[nodiscard]] AmbiguityGroup find_ambiguity_group(const std::vector<Deviation>& deviations,
                                                   const std::vector<Signature>& signatures,
-                                                  const std::map<std::string, SensorRemark>& remarks);
+                                                  const std::map<std::string, SensorRemark>& remarks,
+                                                  const std::string& failure = {});
 
 }  // namespace sealwatch

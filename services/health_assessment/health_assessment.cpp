@@ -116,10 +116,12 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
     const std::vector<Deviation> deviations = deviations_of(state_report);
     const double last_grade = state.last ? state.last->health_grade : 1.0;
     report.health_grade = health_grade(asset->second, state_report, deviations, last_grade);
+    const bool failed = state_report.verdict == PstVerdict::failed && !state_report.verdict_reasons.empty();
     const SensorRemarks remarks = sensor_remarks(state_report, features);
     const std::vector<Signature> signatures =
-        fault_signatures(asset->second, deviations, recorded_channels(features), suspects_of(remarks));
-    AmbiguityGroup group = find_ambiguity_group(deviations, signatures, remarks);
+        fault_signatures(asset->second, deviations, recorded_channels(features), suspects_of(remarks), failed);
+    AmbiguityGroup group = find_ambiguity_group(deviations, signatures, remarks,
+                                                failed ? state_report.verdict_reasons.front() : std::string());
     report.no_fault_likelihood = group.no_fault_likelihood;
     report.ambiguity_group = std::move(group.faults);
   }

@@ -98,13 +98,15 @@ std::vector<Signature> sensor_faults(const OperatingPoint& p) {
 }  // namespace
 
 std::vector<Signature> fault_signatures(const AssetConfig& asset, const std::vector<Deviation>& deviations,
-                                        const std::set<std::string>& channels, const std::set<std::string>& suspects) {
+                                        const std::set<std::string>& channels, const std::set<std::string>& suspects,
+                                        bool failed) {
   const OperatingPoint point = operating_point(asset, deviations);
   std::vector<Signature> all = actuator_faults(point, find_deviation(deviations, "leakage_resistance") != nullptr);
   for (Signature& signature : sensor_faults(point))
     if (channels.count(signature.element.substr(std::string("sensor:").size())) != 0)
       all.push_back(std::move(signature));
   std::erase_if(all, [&](const Signature& signature) {
+    if (failed && signature.kind != FaultKind::sensor) return false;
     return std::none_of(signature.moves.begin(), signature.moves.end(),
                         [&](const auto& move) { return find_deviation(deviations, move.first) != nullptr; });
   });

@@ -44,10 +44,11 @@ struct Signature {
 };
 
 /// Signatures of all faults that can show in the quantities at hand, those of sensors that are in `channels`, and one
-/// without moves for each suspect sensor that none of these is of.
+/// without moves for each suspect sensor that none of these is of. After a failed test, also those of the actuator's
+/// faults that no quantity at hand shows.
 [[nodiscard]] std::vector<Signature> fault_signatures(const AssetConfig& asset,
                                                       const std::vector<Deviation>& deviations,
                                                       const std::set<std::string>& channels,
-                                                      const std::set<std::string>& suspects);
+                                                      const std::set<std::string>& suspects, bool failed = false);
 
 }  // namespace sealwatch

@@ -14,6 +14,8 @@ namespace sealwatch {
 namespace {
 
 constexpr const char* kProducer = "state_detection 0.1.0";
+/// An asset whose test has been overdue for longer is not in live operation: old recordings are being taken in.
+constexpr double kLongestSilence_months = 12.0;
 constexpr std::string_view kEventPrefix = "maintenance_event/";
 
 void add_source(Header& header, const Header& source) {
@@ -146,7 +148,7 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
                            const TestWindow& window, StateReport& report) const {
   AssetHistory& history = state.history;
   const std::vector<Quantity> indicators = condition_indicators(asset, features, window);
-  Verdict verdict = judge_test(asset, features, indicators);
+  Verdict verdict = judge_test(asset, features, window, indicators);
   report.verdict = verdict.verdict;
   report.verdict_reasons = std::move(verdict.reasons);
   note_lateness(state, asset, report);
@@ -208,6 +210,7 @@ std::optional<StateReport> StateDetection::overdue_report(const std::string& ass
   const PstSetting& pst = assets_.at(asset_id).pst;
   const auto overdue = schedule.overdue_from(pst, options_.overdue_grace_share);
   if (!overdue || now < *overdue) return std::nullopt;
+  if (add_months(*overdue, kLongestSilence_months) < now) return std::nullopt;
   const auto late = schedule.lateness(*overdue, pst, options_.overdue_grace_share);  // says nothing about `now`
   StateReport report;
   report.asset_id = asset_id;

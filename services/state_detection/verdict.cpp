@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "services/state_detection/indicators.hpp"
 #include "services/state_detection/rules.hpp"
@@ -42,24 +43,38 @@ double required_stroke_m(const AssetConfig& asset, const TestFeatures& features)
   return std::abs(asset.pst.stroke_m);
 }
 
+/// Largest distance from the start. A piston that never moved has no feature `travel`, but that must not go unjudged.
+std::optional<double> travel_m(const TestFeatures& features, const TestWindow& window) {
+  if (const auto travel = feature_of(features, "travel")) return travel;
+  const bool in_order = std::any_of(
+      features.channel_status.begin(), features.channel_status.end(),
+      [](const ChannelStatus& status) { return status.channel == "position" && status.state == ChannelState::OK; });
+  const Series* position = window.samples.find("position");
+  if (!in_order || position == nullptr || position->values.empty()) return std::nullopt;
+  const auto [least, largest] = std::minmax_element(position->values.begin(), position->values.end());
+  return *largest - *least;
+}
+
 /// Why nothing can be said, or "".
-std::string why_not_judged(const AssetConfig& asset, const TestFeatures& features) {
+std::string why_not_judged(const AssetConfig& asset, const TestFeatures& features, bool travel_known) {
   if (!features.test_kind.empty() && features.test_kind != "pst" && !is_full_stroke(features))
     return "the recording is of kind '" + features.test_kind + "', not a stroke test";
   const double expected_s = asset.pst.expected_duration_s();
   if (!moved_as_a_test_does(features) && features.duration_s < kWholeShare * expected_s)
     return text("the recording was cut after %.1f s of about %.0f s", features.duration_s, expected_s);
   if (!features.complete) return text("the end of the test was not recorded (%.1f s were)", features.duration_s);
-  if (!feature_of(features, "travel")) return "the position was not recorded, so the stroke cannot be judged";
+  if (!travel_known) return "the position was not recorded, so the stroke cannot be judged";
   return {};
 }
 
-void judge_stroke(const AssetConfig& asset, const TestFeatures& features, std::vector<std::string>& failures) {
+void judge_stroke(const AssetConfig& asset, const TestFeatures& features, double travel,
+                  std::vector<std::string>& failures) {
   const double stroke_mm = 1e3 * required_stroke_m(asset, features);
-  const double travel_mm = 1e3 * feature_of(features, "travel").value_or(0.0);
+  const double travel_mm = 1e3 * travel;
   if (travel_mm < (1.0 - kStrokeTolerance) * stroke_mm)
     failures.push_back(text("the piston moved %.2f mm of the %.1f mm stroke", travel_mm, stroke_mm));
-  if (is_full_stroke(features)) return;  // it stays where it went
+  if (is_full_stroke(features)) return;                  // it stays where it went
+  if (travel_mm < kStrokeTolerance * stroke_mm) return;  // it never left
   const auto error = feature_of(features, "return_error");
   if (!error)
     failures.push_back("the piston did not come back to where it started");
@@ -83,17 +98,20 @@ void judge_speed(const AssetConfig& asset, const std::vector<Quantity>& indicato
 
 }  // namespace
 
-Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const std::vector<Quantity>& indicators) {
+Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
+                   const std::vector<Quantity>& indicators) {
   if (features.aborted) {
     const std::string why = features.abort_reason.empty() ? "no reason given" : features.abort_reason;
     return {PstVerdict::aborted, {text("given up after %.1f s: ", features.duration_s) + why}};
   }
-  if (const std::string why = why_not_judged(asset, features); !why.empty()) return {PstVerdict::not_judged, {why}};
+  const std::optional<double> travel = travel_m(features, window);
+  if (const std::string why = why_not_judged(asset, features, travel.has_value()); !why.empty())
+    return {PstVerdict::not_judged, {why}};
 
   Verdict verdict{PstVerdict::passed, {}};
-  verdict.reasons.push_back(text("the piston moved %.2f mm", 1e3 * *feature_of(features, "travel")));
+  verdict.reasons.push_back(text("the piston moved %.2f mm", 1e3 * *travel));
   std::vector<std::string> failures;
-  judge_stroke(asset, features, failures);
+  judge_stroke(asset, features, *travel, failures);
   judge_speed(asset, indicators, verdict, failures);
   if (!failures.empty()) return {PstVerdict::failed, failures};
   return verdict;

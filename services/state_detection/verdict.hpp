@@ -22,7 +22,7 @@ struct Verdict {
 };
 
 /// `indicators` as condition_indicators gives them for the same test.
-[[nodiscard]] Verdict judge_test(const AssetConfig& asset, const TestFeatures& features,
+[[nodiscard]] Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
                                  const std::vector<Quantity>& indicators);
 
 }  // namespace sealwatch

@@ -189,6 +189,32 @@ TEST(FaultChain, AdmissibilityHasReasons) {
   }
 }
 
+TEST(FaultChain, AFailedTestHasACause) {
+  Chain chain;
+  chain.run_in();
+  Condition condition;
+  condition.stroke_m = 0.008;
+  const HealthReport& report = chain.play(condition);
+  EXPECT_EQ(report.health_grade, 0.0);
+  EXPECT_LT(report.no_fault_likelihood, 0.02);
+  ASSERT_FALSE(report.ambiguity_group.empty());
+  for (const ProposedFault& fault : report.ambiguity_group)
+    EXPECT_TRUE(fault.kind != FaultKind::sensor || fault.element == "sensor:position") << fault.element;
+  EXPECT_THAT(report.ambiguity_group.front().evidence,
+              testing::Contains(testing::HasSubstr("the test failed: the piston")));
+}
+
+TEST(FaultChain, AFailedTestWithMoreFrictionIsFriction) {
+  Chain chain;
+  chain.run_in();
+  Condition condition;
+  condition.stroke_m = 0.008;
+  condition.friction_N = 5000;
+  const HealthReport& report = chain.play(condition);
+  EXPECT_EQ(report.ambiguity_group.front().kind, FaultKind::friction);
+  EXPECT_GT(report.ambiguity_group.front().likelihood, 0.9);
+}
+
 TEST(FaultChain, SmallQualityLossesAreNoReason) {
   Chain chain;
   Circumstances circumstances;

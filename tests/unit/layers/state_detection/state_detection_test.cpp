@@ -274,6 +274,30 @@ TEST(StateDetection, OverdueOncePerDueDateAndNotInReplay) {
   }
 }
 
+TEST(StateDetection, OldRecordingsThatAreTakenInLiveAreNotOverdue) {
+  Journal journal;
+  StateDetection detection = layer();
+  play(detection, journal, {}, {});
+  EXPECT_TRUE(detection.tick(synthetic::month(17 * 12)).outputs.empty());
+}
+
+TEST(StateDetection, WarmOilMovesNoRegionAndTeachesNothing) {
+  Journal journal;
+  StateDetection detection = layer();
+  for (int number = 0; number < 10; ++number) {
+    Condition condition;
+    Circumstances circumstances;
+    circumstances.number = number;
+    const bool warm = number >= 5 && number < 8;
+    if (warm) circumstances.temperature_deviation_K = 15;
+    if (warm) condition.theta = 0.62;  // leaks as a worn seal would
+    play(detection, journal, condition, circumstances);
+    const RegionJudgement& seal = judgement(last_report(journal), "leakage_resistance", Reference::limit);
+    EXPECT_EQ(seal.raw_region, warm ? AlertRegion::warning : AlertRegion::normal) << number;
+    EXPECT_EQ(seal.region, AlertRegion::normal) << number;
+  }
+}
+
 TEST(StateDetection, UnknownEventTimeIsNeverLate) {
   Journal journal;
   StateDetection detection = layer();

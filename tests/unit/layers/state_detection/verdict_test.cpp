@@ -14,7 +14,7 @@ using testing::HasSubstr;
 Verdict judge(const synthetic::Condition& condition, const synthetic::Circumstances& circumstances) {
   const AssetConfig asset = synthetic::asset();
   const synthetic::Test test = synthetic::make(condition, circumstances);
-  return judge_test(asset, test.features, condition_indicators(asset, test.features, test.window));
+  return judge_test(asset, test.features, test.window, condition_indicators(asset, test.features, test.window));
 }
 
 TEST(Verdict, HealthyTestPasses) {
@@ -31,6 +31,19 @@ TEST(Verdict, ShortStrokeFails) {
   EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("12.00 mm of the 16.0 mm")));
 }
 
+TEST(Verdict, APistonThatNeverMovedFails) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Test test = synthetic::make({}, {});
+  std::erase_if(test.features.features,
+                [](const Quantity& f) { return f.name == "travel" || f.name == "return_error"; });
+  test.features.phases = {{PhaseKind::rest, 0.0, 31.0}};
+  for (Series& series : test.window.samples.channels)
+    if (series.name == "position") std::fill(series.values.begin(), series.values.end(), 0.06);
+  const Verdict verdict = judge_test(asset, test.features, test.window, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::failed);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("0.00 mm of the 16.0 mm")));
+}
+
 TEST(Verdict, SlowClosingFails) {
   synthetic::Condition condition;
   condition.speed_m_s = 1.1e-3;
@@ -44,9 +57,9 @@ TEST(Verdict, NotComingBackFails) {
   synthetic::Test test = synthetic::make({}, {});
   for (Quantity& feature : test.features.features)
     if (feature.name == "return_error") feature.value = -2e-3;
-  EXPECT_THAT(judge_test(asset, test.features, {}).reasons, ElementsAre(HasSubstr("2.00 mm away")));
+  EXPECT_THAT(judge_test(asset, test.features, test.window, {}).reasons, ElementsAre(HasSubstr("2.00 mm away")));
   std::erase_if(test.features.features, [](const Quantity& f) { return f.name == "return_error"; });
-  const Verdict verdict = judge_test(asset, test.features, {});
+  const Verdict verdict = judge_test(asset, test.features, test.window, {});
   EXPECT_EQ(verdict.verdict, PstVerdict::failed);
   EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("did not come back")));
 }
@@ -84,9 +97,9 @@ TEST(Verdict, FullStrokeMustReachTheFullStroke) {
   const AssetConfig asset = synthetic::asset();
   synthetic::Test test = synthetic::make({}, {});
   test.features.test_kind = "full_stroke";
-  EXPECT_EQ(judge_test(asset, test.features, {}).verdict, PstVerdict::failed);
+  EXPECT_EQ(judge_test(asset, test.features, test.window, {}).verdict, PstVerdict::failed);
   test.features.features.front().value = 0.0799;  // travel
-  EXPECT_EQ(judge_test(asset, test.features, {}).verdict, PstVerdict::passed);
+  EXPECT_EQ(judge_test(asset, test.features, test.window, {}).verdict, PstVerdict::passed);
 }
 
 }  // namespace

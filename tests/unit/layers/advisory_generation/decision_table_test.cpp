@@ -116,6 +116,23 @@ TEST(DecisionTable, LastKnownCampaignLongBeforeTheEndIsNotTheLastOne) {
   EXPECT_EQ(assess(evidence, nullptr, {}).verdict.wear, WearLevel::none);
 }
 
+TEST(DecisionTable, NoVesselIsBookedWhileTheLawsOfAgeingDiffer) {
+  const TestCase one{.rul_months = 24};
+  Evidence evidence = one.evidence();
+  Forecast logarithmic = evidence.life.forecasts[0];
+  logarithmic.method = "ols_log_time";
+  logarithmic.rul_p50_months = 24 + 23;  // within largest_law_gap_months
+  evidence.life.forecasts.push_back(logarithmic);
+  EXPECT_EQ(assess(evidence, nullptr, {}).verdict.wear, WearLevel::book);
+  evidence.life.forecasts[1].rul_p50_months = 24 + 25;
+  const Assessment apart = assess(evidence, nullptr, {});
+  EXPECT_EQ(apart.verdict.wear, WearLevel::plan);
+  EXPECT_FALSE(apart.verdict.replace_by);
+  VerdictMemory memory;
+  for (int repeat = 0; repeat < 2; ++repeat) memory.judge(apart.verdict, one.time(), {});
+  EXPECT_THAT(recommend(evidence, apart, memory.in_force(), nullptr).text, HasSubstr("too early for a date"));
+}
+
 TEST(DecisionTable, LessUrgentCallsStandInTheReasons) {
   const Recommendation r = confirmed({.rul_months = 24, .faults = {kSensor}});
   ASSERT_EQ(r.also.size(), 1u);

@@ -36,6 +36,9 @@ struct ActuatorFitOptions {
   /// values, the switched one 5; a trial that needs more is far from any optimum and would only cost time: it counts as
   /// a failed step.
   double steps_per_sample = 10.0;
+  /// A search whose whitened rms is still above this after some iterations is given up: the model is not that of the
+  /// recording, and its parameters would mean nothing.
+  double hopeless_rms = 20.0;
   /// Where the first search ends badly, the shared parameters are started again at these multiples of the asset's
   /// values.
   std::vector<double> restart_factors = {0.5, 2.0};

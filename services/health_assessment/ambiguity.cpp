@@ -91,7 +91,9 @@ class Matcher {
   [[nodiscard]] Key key_of(std::size_t h) const { return {signatures_[h].kind, signatures_[h].element}; }
   [[nodiscard]] double log_prior(std::size_t h) const {
     const FaultKind kind = signatures_[h].kind;
-    if (kind == FaultKind::internal_leakage) return kLogPriorLeakage;
+    // Sticking is what stops a piston; a seal that leaks as one at its threshold does still moves the valve.
+    if (failed_ && kind == FaultKind::friction) return kLogPriorLeakage;
+    if (!failed_ && kind == FaultKind::internal_leakage) return kLogPriorLeakage;
     return kind == FaultKind::load ? kLogPriorLoad : kLogPriorOther;
   }
   [[nodiscard]] double bonus(std::size_t h) const {

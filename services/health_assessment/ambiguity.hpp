@@ -15,7 +15,8 @@
 // rest adds up to 1.
 //
 // A failed test has a cause: no fault, and faults that could not make a test fail (sensors, but the position's), lose
-// e^-9. What remains is told apart by the deviations or, where nothing was measured, by the prior.
+// e^-9, and friction takes leakage's prior and leakage that of the others. What remains is told apart by the deviations
+// or, where nothing was measured, by the prior.
 #pragma once
 
 #include <map>

@@ -198,6 +198,7 @@ TEST(FaultChain, AFailedTestHasACause) {
   EXPECT_EQ(report.health_grade, 0.0);
   EXPECT_LT(report.no_fault_likelihood, 0.02);
   ASSERT_FALSE(report.ambiguity_group.empty());
+  EXPECT_EQ(report.ambiguity_group.front().kind, FaultKind::friction);
   for (const ProposedFault& fault : report.ambiguity_group)
     EXPECT_TRUE(fault.kind != FaultKind::sensor || fault.element == "sensor:position") << fault.element;
   EXPECT_THAT(report.ambiguity_group.front().evidence,

@@ -29,7 +29,7 @@ std::string in_percent(double share) {
 std::string as_condition(double condition) { return print("%.3f", condition); }
 
 std::string condition_with_std(double condition, double condition_std) {
-  return print("%.4f", condition) + " +- " + print("%.4f", condition_std);
+  return print("%.4f", condition) + " +- " + print(condition_std < 1e-4 ? "%.0e" : "%.4f", condition_std);
 }
 
 std::string three_digits(double value) { return print("%.2e", value); }

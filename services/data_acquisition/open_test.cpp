@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "sealwatch/core/units.hpp"
 
@@ -131,7 +132,7 @@ void OpenTest::count_gap(double interval_s) {
     std::nth_element(first_intervals_s_.begin(), first_intervals_s_.begin() + kIntervalsForUsual / 2,
                      first_intervals_s_.end());
     usual_interval_s_ = first_intervals_s_[kIntervalsForUsual / 2];
-    for (const double earlier : std::vector<double>(std::move(first_intervals_s_))) count_gap(earlier);
+    for (const double earlier : std::exchange(first_intervals_s_, {})) count_gap(earlier);
     return;
   }
   if (interval_s > options_->gap_factor * usual_interval_s_)

@@ -54,6 +54,7 @@ TestWindow describe(const std::vector<SampleBlock>& blocks) {
 
 std::vector<Phase> to_message(const std::vector<signal::MotionPhase>& phases) {
   std::vector<Phase> result;
+  result.reserve(phases.size());
   for (const signal::MotionPhase& phase : phases)
     result.push_back({static_cast<PhaseKind>(phase.kind), phase.begin_s, phase.end_s});
   return result;

@@ -20,6 +20,7 @@ bool failed(const std::vector<ChannelStatus>& status, const std::string& channel
 
 std::vector<const SampleBlock*> by_number(const std::vector<SampleBlock>& blocks) {
   std::vector<const SampleBlock*> ordered;
+  ordered.reserve(blocks.size());
   for (const SampleBlock& block : blocks) ordered.push_back(&block);
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const SampleBlock* a, const SampleBlock* b) { return a->block_number < b->block_number; });

@@ -48,6 +48,7 @@ Estimate MassBalance::leakage(Range range) const {
 
 std::optional<Estimate> MassBalance::leakage(const std::vector<Range>& ranges) const {
   std::vector<Estimate> estimates;
+  estimates.reserve(ranges.size());
   for (const Range& range : ranges) estimates.push_back(leakage(range));
   if (estimates.empty()) return std::nullopt;
   return weighted_mean(estimates);

@@ -127,10 +127,8 @@ class CopyFromDds {
   void copy(const Number& from, Number& to) const { to = from; }
   /// DDS drops a message with an enumerator that this version's IDL does not have.
   template <class From, DescribedEnum To>
-    requires std::is_enum_v<From>
-  void copy(const From& from, To& to) const {
-    to = static_cast<To>(from);
-  }
+  requires std::is_enum_v<From>
+  void copy(const From& from, To& to) const { to = static_cast<To>(from); }
   void copy(const char* from, std::string& to) const { to = from == nullptr ? "" : from; }
 
   template <DdsSequence From, class To>

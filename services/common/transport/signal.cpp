@@ -17,7 +17,8 @@ Signal::~Signal() {
 }
 
 void Signal::notify() {
-  const int saved = errno;  // a signal handler must leave it alone
+  if (notified_.exchange(true)) return;  // a burst costs one system call
+  const int saved = errno;               // a signal handler must leave it alone
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(file_descriptor_, &one, sizeof one);  // full means notified already
   errno = saved;
@@ -26,6 +27,8 @@ void Signal::notify() {
 bool Signal::clear() {
   std::uint64_t count = 0;
   [[maybe_unused]] const auto got = read(file_descriptor_, &count, sizeof count);
+  notified_ =
+      false;  // last: a notification before this is seen by whoever looks after clear, one after it writes again
   return woken_.exchange(false);
 }
 

@@ -29,6 +29,7 @@ class Signal {
 
  private:
   int file_descriptor_;
+  std::atomic<bool> notified_ = false;
   std::atomic<bool> woken_ = false;
   static_assert(std::atomic<bool>::is_always_lock_free);
 };

@@ -50,20 +50,38 @@ BusItem decode(const void* sample) {
     return message;
 }
 
-constexpr std::int32_t kReaderLimit = 8192;
-constexpr std::size_t kBatch = 64;
-constexpr std::int32_t kBulkyReaderLimit = 64;
-constexpr std::size_t kBulkyBatch = 4;
+/// How many messages a reader holds, and takes from DDS at once. A message is a few kB, a block of a second of samples
+/// about 20 kB, a test's window about 1 MB. Blocks come in bursts: they must not wait for each other when the reader's
+/// thread has to wait for a core.
+struct Limits {
+  std::int32_t held;
+  std::size_t batch;
+};
+constexpr Limits kSmall = {.held = 8192, .batch = 64};
+constexpr Limits kBlocks = {.held = 512, .batch = 16};
+constexpr Limits kWindows = {.held = 64, .batch = 4};
+
+template <class T>
+constexpr Limits limits_of() {
+  if constexpr (requires(T message) {
+                  message.samples;
+                  message.block_number;
+                })
+    return kBlocks;
+  else if constexpr (requires(T message) { message.samples; })
+    return kWindows;
+  else
+    return kSmall;
+}
 
 template <class T>
 TopicType describe(std::string_view name) {
-  constexpr bool bulky = requires(T message) { message.samples; };
   return {.name = std::string(name),
           .descriptor = Generated<T>::kDescriptor,
           .decode = decode<T>,
           .qos = {},
-          .reader_limit = bulky ? kBulkyReaderLimit : kReaderLimit,
-          .batch = bulky ? kBulkyBatch : kBatch};
+          .reader_limit = limits_of<T>().held,
+          .batch = limits_of<T>().batch};
 }
 
 template <std::size_t... Index>

@@ -10,11 +10,12 @@
 namespace sealwatch::bench {
 namespace {
 
-constexpr std::size_t kIntegral = Eha::kStates;         // index of U
-constexpr std::size_t kFirstFilter = Eha::kStates + 1;  // index of the first sensor's low-pass
+constexpr std::size_t kIntegral = Eha::kStates;          // index of U
+constexpr std::size_t kCommonStates = Eha::kStates + 1;  // behind them, the sensors' low-passes
+constexpr std::size_t kNone = 0;                         // a sensor's index of a low-pass that it has not
 
 /// Usual size of each state, z i omega p_1 p_2 p_A p_B v x U: the integrator sees state / size.
-constexpr std::array<double, kFirstFilter> kSize = {10.0, 5.0, 50.0, 1e6, 1e6, 1e6, 1e6, 1e-3, 1e-2, 10.0};
+constexpr std::array<double, kCommonStates> kSize = {10.0, 5.0, 50.0, 1e6, 1e6, 1e6, 1e6, 1e-3, 1e-2, 10.0};
 
 double size_of(Quantity quantity) {
   switch (quantity) {
@@ -69,7 +70,7 @@ double quantity_value(Quantity quantity, const Eha::State<double>& y, double vol
   return 0.0;
 }
 
-/// Right-hand side and Jacobian on one straight piece of the reference.
+/// Right-hand side on one straight piece of the reference, and what the sensors show.
 class Equations {
  public:
   explicit Equations(const ClosedLoop& loop, double ramp_speed_m_s) : loop_(loop), p_(loop.parameters) {
@@ -77,8 +78,11 @@ class Equations {
                    .feed_forward_V_s_m = p_.Omega_M * p_.A_C / p_.alpha_P,
                    .ramp_speed_m_s = ramp_speed_m_s};
     size_.assign(kSize.begin(), kSize.end());
-    for (const Sensor& sensor : loop.sensors)
-      if (sensor.setting.time_constant_s > 0.0) size_.push_back(size_of(sensor.quantity));
+    for (const Sensor& sensor : loop.sensors) {
+      const bool filtered = sensor.setting.time_constant_s > 0.0;
+      low_pass_.push_back(filtered ? size_.size() : kNone);
+      if (filtered) size_.push_back(size_of(sensor.quantity));
+    }
   }
 
   void follow(double start_s, double reference_m, double speed_m_s) {
@@ -93,12 +97,11 @@ class Equations {
     const Eha::State<double> dy = Eha::derivatives(y, Eha::Input{control.voltage_V}, p_);
     for (std::size_t k = 0; k < kIntegral; ++k) out[k] = dy[k] / size_[k];
     out[kIntegral] = control.integral_rate_V_s / size_[kIntegral];
-    std::size_t filter = kFirstFilter;
-    for (const Sensor& sensor : loop_.sensors) {
-      if (!(sensor.setting.time_constant_s > 0.0)) continue;
-      const double value = quantity_value(sensor.quantity, y, control.voltage_V, p_);
-      out[filter] = (value / size_[filter] - scaled[filter]) / sensor.setting.time_constant_s;
-      ++filter;
+    for (std::size_t k = 0; k < low_pass_.size(); ++k) {
+      const std::size_t own = low_pass_[k];
+      if (own == kNone) continue;
+      const double value = quantity_value(loop_.sensors[k].quantity, y, control.voltage_V, p_);
+      out[own] = (value / size_[own] - scaled[own]) / loop_.sensors[k].setting.time_constant_s;
     }
   }
 
@@ -115,12 +118,9 @@ class Equations {
     std::vector<double> scaled(size_.size());
     for (std::size_t k = 0; k < kIntegral; ++k) scaled[k] = y[k] / size_[k];
     scaled[kIntegral] = voltage / size_[kIntegral];
-    std::size_t filter = kFirstFilter;
-    for (const Sensor& sensor : loop_.sensors)
-      if (sensor.setting.time_constant_s > 0.0) {
-        scaled[filter] = quantity_value(sensor.quantity, y, voltage, p_) / size_[filter];
-        ++filter;
-      }
+    for (std::size_t k = 0; k < low_pass_.size(); ++k)
+      if (const std::size_t own = low_pass_[k]; own != kNone)
+        scaled[own] = quantity_value(loop_.sensors[k].quantity, y, voltage, p_) / size_[own];
     return scaled;
   }
 
@@ -128,12 +128,10 @@ class Equations {
                     std::vector<std::vector<double>>& out) const {
     const Eha::State<double> y = actuator(scaled.data());
     const double voltage = command(scaled.data(), y, time_s).voltage_V;
-    std::size_t filter = kFirstFilter;
-    for (std::size_t k = 0; k < loop_.sensors.size(); ++k) {
-      const bool filtered = loop_.sensors[k].setting.time_constant_s > 0.0;
+    for (std::size_t k = 0; k < low_pass_.size(); ++k) {
+      const std::size_t own = low_pass_[k];
       out[k][sample] =
-          filtered ? scaled[filter] * size_[filter] : quantity_value(loop_.sensors[k].quantity, y, voltage, p_);
-      if (filtered) ++filter;
+          own != kNone ? scaled[own] * size_[own] : quantity_value(loop_.sensors[k].quantity, y, voltage, p_);
     }
   }
 
@@ -151,7 +149,8 @@ class Equations {
   const ClosedLoop& loop_;
   const EhaParameters<double>& p_;
   CascadeController controller_;
-  std::vector<double> size_;
+  std::vector<double> size_;           ///< of each state
+  std::vector<std::size_t> low_pass_;  ///< index of each sensor's low-pass among the states, or kNone
   double start_s_ = 0.0;
   double reference_m_ = 0.0;
   double speed_m_s_ = 0.0;

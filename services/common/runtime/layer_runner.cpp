@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
@@ -13,19 +12,15 @@ namespace {
 
 using std::chrono::steady_clock;
 
-/// Items taken from the bus at once, and messages sent again at once.
+/// Items taken from the bus at once.
 constexpr std::size_t kBatch = 64;
 constexpr std::chrono::milliseconds kSecond{1000};
-
-double steady_seconds() { return std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count(); }
 
 /// Samples come many times a second; what is concluded from whole tests comes once a month.
 LogLevel level_of(const Message& message) {
   const Topic topic = topic_of(message);
   return topic == Topic::raw_samples || topic == Topic::sample_block ? LogLevel::debug : LogLevel::info;
 }
-
-bool contains(std::span<const Topic> topics, Topic topic) { return std::ranges::find(topics, topic) != topics.end(); }
 
 }  // namespace
 
@@ -47,6 +42,22 @@ Status LayerRunner::start() {
   for (const StreamPosition& known : *positions) committed_[{known.topic, known.writer_id}] = known.sequence;
   reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
 
+  if (Status status = restore_past(); !status) return status;
+  if (Status status = publish_latest(true); !status) return status;
+  started_ = steady_clock::now();
+  ServiceStatus status;
+  status.service = layer_.name();
+  status.writer_id = journal_.writer_id();
+  status.version = options_.version;
+  status.started_ns = clock_.now().nanoseconds;
+  status.process_id = ::getpid();
+  status.state = "running";
+  heartbeat_ = std::make_unique<Heartbeat>(heartbeat_bus_, clock_, status, options_.heartbeat);
+  report_progress();
+  return {};
+}
+
+Status LayerRunner::restore_past() {
   std::size_t restored = 0;
   const Status outputs = journal_.for_each_output([&](const Message& output) {
     layer_.restore(output);
@@ -68,22 +79,6 @@ Status LayerRunner::start() {
             {{"writer", journal_.writer_id()},
              {"restored_outputs", std::to_string(restored)},
              {"open_inputs", std::to_string(open)}});
-  if (Status status = publish_latest(true); !status) return status;
-  const UtcTime now = clock_.now();
-  heartbeat_ = std::make_unique<Heartbeat>(heartbeat_bus_, clock_,
-                                           ServiceStatus{.service = std::string(layer_.name()),
-                                                         .writer_id = journal_.writer_id(),
-                                                         .version = options_.version,
-                                                         .started_ns = now.nanoseconds,
-                                                         .publishing_time_ns = now.nanoseconds,
-                                                         .process_id = ::getpid(),
-                                                         .pending_inputs = 0,
-                                                         .written = {},
-                                                         .received = {},
-                                                         .state = "running",
-                                                         .last_error = {}},
-                                           options_.heartbeat);
-  report_progress();
   return {};
 }
 
@@ -115,42 +110,6 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   }
   report_progress();
   return {};
-}
-
-void LayerRunner::sort_in(BusItem item) {
-  std::visit([this](auto& content) { sort_in(std::move(content)); }, item);
-}
-
-void LayerRunner::sort_in(Message message) {
-  if (!contains(layer_.inputs(), topic_of(message))) return;
-  if (!is_numbered(message)) {
-    ready_.push_back(std::move(message));
-    return;
-  }
-  for (Message& next : reader_->accept(std::move(message))) ready_.push_back(std::move(next));
-}
-
-void LayerRunner::sort_in(const ServiceStatus& status) {
-  if (status.writer_id == journal_.writer_id()) return;
-  for (const StreamPosition& written : status.written) {
-    const auto topic = value_of<Topic>(written.topic);
-    if (!topic || !contains(layer_.inputs(), *topic)) continue;
-    if (reader_->note_written(written, steady_seconds()))
-      log_event(LogLevel::warn, "writer was set back, reading its stream again from the start",
-                {{"service", status.service}, {"writer", written.writer_id}, {"topic", written.topic}});
-  }
-}
-
-void LayerRunner::sort_in(const ResendRequest& request) {
-  const auto topic = value_of<Topic>(request.topic);
-  if (request.writer_id != journal_.writer_id() || !topic || !journal_.written().contains(*topic)) return;
-  log_event(LogLevel::info, "sending again",
-            {{"topic", request.topic},
-             {"first", std::to_string(request.first_sequence)},
-             {"last", std::to_string(request.last_sequence)},
-             {"for", request.requested_by}});
-  resends_.add({*topic, std::max<std::uint64_t>(request.first_sequence, 1),
-                std::min(request.last_sequence, journal_.written().at(*topic))});
 }
 
 Status LayerRunner::in_batch(const std::function<Status()>& work) {
@@ -224,50 +183,12 @@ Status LayerRunner::keep(const Conclusion& conclusion, const std::string& input_
 Status LayerRunner::let_time_pass() {
   if (options_.local_inputs)
     for (Message& message : options_.local_inputs()) ready_.push_back(std::move(message));
-  if (replaying_) return {};
+  // A test is not overdue or lost while messages about it may be on their way.
+  const bool up_to_date = drained_ && ready_.empty() && !reader_->is_behind();
+  if (replaying_ || !up_to_date || steady_clock::now() - started_ < options_.settling) return {};
   const Conclusion conclusion = layer_.tick(clock_.now());
   if (conclusion.outputs.empty() && conclusion.consumed.empty()) return {};
   return in_batch([&] { return keep(conclusion, {}); });
-}
-
-Status LayerRunner::serve_resends() {
-  const auto range = resends_.take(kBatch);
-  if (!range) return {};
-  const auto messages = journal_.outputs(range->topic, range->first, range->last, kBatch);
-  if (!messages) return fail(messages.error());
-  for (const Message& message : *messages) {
-    publish(message, "sent again");
-    sent_again_[{topic_of(message), asset_of(message)}] = header_of(message).stream_sequence;
-  }
-  return resends_.empty() ? publish_latest(false) : Status();
-}
-
-/// A late subscriber gets what each writer published last of every asset, which must be the latest: at the start (all
-/// of them), and after older messages were sent again.
-Status LayerRunner::publish_latest(bool all) {
-  if (!all && sent_again_.empty()) return {};
-  const auto latest = journal_.latest_outputs();
-  if (!latest) return fail(latest.error());
-  for (const Message& message : *latest) {
-    const auto sent = sent_again_.find({topic_of(message), asset_of(message)});
-    if (all || (sent != sent_again_.end() && sent->second < header_of(message).stream_sequence))
-      publish(message, "published again");
-  }
-  sent_again_.clear();
-  return {};
-}
-
-void LayerRunner::send_requests() {
-  if (!drained_ || !ready_.empty()) return;
-  for (const ResendRequest& request : reader_->requests(steady_seconds())) {
-    log_event(LogLevel::info, "asking again",
-              {{"topic", request.topic},
-               {"writer", request.writer_id},
-               {"first", std::to_string(request.first_sequence)},
-               {"last", std::to_string(request.last_sequence)}});
-    if (Status status = bus_.publish(request); !status)
-      log_event(LogLevel::warn, "request not published", {{"error", status.error().describe()}});
-  }
 }
 
 void LayerRunner::publish(const Message& message, std::string_view event) {

@@ -32,6 +32,8 @@ struct RunnerOptions {
   Heartbeat::Options heartbeat = {};
   /// A batch is committed when the layer has computed for this long.
   std::chrono::milliseconds batch_time{100};
+  /// Time does not pass for the layer until the writers have had so long to say what it missed while it was dead.
+  std::chrono::milliseconds settling{3000};
   /// Inputs that come from no bus (recordings dropped into a directory), asked for about once a second. A message that
   /// comes twice is taken once, by its id.
   std::function<std::vector<Message>()> local_inputs = {};
@@ -51,12 +53,11 @@ class LayerRunner {
   [[nodiscard]] Status step(std::chrono::milliseconds timeout);
   /// Steps until `stop` is set (then wake the bus).
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
-  /// Whether nothing waits to be concluded, sent again or filled up, as far as this side knows.
-  [[nodiscard]] bool is_idle() const { return ready_.empty() && resends_.empty() && drained_; }
 
  private:
   using Key = std::pair<std::string, std::string>;  // topic, writer id
 
+  [[nodiscard]] Status restore_past();
   void sort_in(BusItem item);
   void sort_in(Message message);
   void sort_in(const ServiceStatus& status);
@@ -89,6 +90,7 @@ class LayerRunner {
   bool drained_ = false;    ///< the bus had nothing more at the last look
   bool replaying_ = false;  ///< the last input was a recording played back: time does not pass
   std::string last_error_;
+  std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};
   std::unique_ptr<Heartbeat> heartbeat_;
 };

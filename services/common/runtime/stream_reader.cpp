@@ -83,6 +83,10 @@ std::vector<ResendRequest> StreamReader::requests(double now_s) {
   return requests;
 }
 
+bool StreamReader::is_behind() const {
+  return std::ranges::any_of(streams_, [](const auto& entry) { return entry.second.written > entry.second.position; });
+}
+
 std::vector<std::pair<std::string, std::string>> StreamReader::active() const {
   std::vector<Key> keys;
   for (const auto& [key, stream] : streams_)

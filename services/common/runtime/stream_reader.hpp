@@ -40,6 +40,8 @@ class StreamReader {
   bool note_written(const StreamPosition& written, double now_s);
   /// What to ask for now. Call it only when nothing is waiting to be received: what waits is not missing.
   [[nodiscard]] std::vector<ResendRequest> requests(double now_s);
+  /// Whether a stream is known to go further than it was read.
+  [[nodiscard]] bool is_behind() const;
   /// Streams that were heard of since the start.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> active() const;
 

@@ -209,32 +209,36 @@ TEST_F(RunnerTest, AForeignSendersMessagesGetIdsAndTheLastOneMayComeAgain) {
   EXPECT_EQ(ids[2], ids[0] + "#2");
 }
 
-TEST_F(RunnerTest, TimePassesInLiveOperationAlone) {
-  JoiningLayer* layer = nullptr;
-  const auto observed = [&layer] {
-    auto made = std::make_unique<JoiningLayer>();
-    layer = made.get();
-    return made;
-  };
-  InMemoryBus bus(network_);
-  InMemoryBus heartbeat_bus(network_);
-  TestClock clock;
-  for (const bool replay : {true, false}) {
-    const Place place;
-    auto journal = Journal::open(place.connection(), "health_assessment");
-    const auto made = observed();
-    LayerRunner runner(*made, bus, heartbeat_bus, *journal, clock, fast_options());
-    ASSERT_TRUE(runner.start());
-    send(features("p1", 1, replay, replay ? "a" : "b"));
+class TimeTest : public RunnerTest {
+ protected:
+  /// How often time passes in the second after `messages` came.
+  std::size_t ticks_after(const std::vector<Message>& messages, RunnerOptions options = fast_options()) {
+    JoiningLayer layer;
+    InMemoryBus bus(network_);
+    InMemoryBus heartbeat_bus(network_);
+    TestClock clock;
+    auto journal = Journal::open(place_.connection(), "health_assessment");
+    LayerRunner runner(layer, bus, heartbeat_bus, *journal, clock, options);
+    EXPECT_TRUE(runner.start());
+    for (const Message& message : messages) send(message);
     EXPECT_TRUE(runner.step(milliseconds(1)));
     std::this_thread::sleep_for(milliseconds(1050));
     EXPECT_TRUE(runner.step(milliseconds(1)));
-    if (replay)
-      EXPECT_THAT(layer->ticks, IsEmpty());
-    else
-      EXPECT_THAT(layer->ticks, ::testing::Each(clock.now()));
-    EXPECT_EQ(layer->ticks.empty(), replay);
+    EXPECT_THAT(layer.ticks, ::testing::Each(clock.now()));
+    return layer.ticks.size();
   }
+};
+
+TEST_F(TimeTest, PassesOnceASecondInLiveOperation) { EXPECT_EQ(ticks_after({features("p1", 1)}), 2U); }
+
+TEST_F(TimeTest, StandsStillInAReplay) { EXPECT_EQ(ticks_after({features("p1", 1, true)}), 0U); }
+
+TEST_F(TimeTest, StandsStillWhileMessagesAreMissing) { EXPECT_EQ(ticks_after({features("p3", 3)}), 0U); }
+
+TEST_F(TimeTest, StandsStillUntilTheWritersHaveBeenHeard) {
+  RunnerOptions options = fast_options();
+  options.settling = milliseconds(500);
+  EXPECT_EQ(ticks_after({features("p1", 1)}, options), 1U);
 }
 
 TEST_F(RunnerTest, TakesLocalInputsOnce) {

@@ -1,0 +1,197 @@
+// Asset files (INTERFACES section 2): defaults from the plant table, every fault named, write and read back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/runtime/yaml_place.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+AssetConfig load(const std::string& yaml) {
+  const YamlPlace place;
+  auto asset = load_asset(place.write("a.yaml", yaml));
+  EXPECT_TRUE(asset.has_value()) << asset.error().describe();
+  return asset ? *asset : AssetConfig();
+}
+
+struct BadCase {
+  const char* name;
+  const char* yaml;
+  const char* message;
+};
+
+class BadAsset : public ::testing::TestWithParam<BadCase> {};
+
+TEST_P(BadAsset, IsNamed) {
+  const YamlPlace place;
+  const auto asset = check_asset(place.write("a.yaml", GetParam().yaml));
+  ASSERT_FALSE(asset.has_value());
+  std::vector<std::string> found;
+  for (const Error& error : asset.error()) found.push_back(place.bare(error.describe()));
+  EXPECT_THAT(found, ElementsAre(GetParam().message));
+}
+
+const BadCase kBadCases[] = {
+    {"no_id", "site: x\n", "a.yaml: key asset_id: must be given"},
+    {"empty_id", "asset_id: \"\"\n", "a.yaml: line 1, key asset_id: must not be empty"},
+    {"model", "asset_id: A\nmodel: eah\n", "a.yaml: line 2, key model: 'eah': is not known; did you mean 'eha'?"},
+    {"unknown_key", "asset_id: A\nsegmnet: x\n",
+     "a.yaml: line 2, key segmnet: 'segmnet': is not a known key; did you mean 'segment'?"},
+    {"unknown_parameter", "asset_id: A\nparameters:\n  R_CL: 2.0e13\n  betta: 1\n",
+     "a.yaml: line 4, key parameters.betta: 'betta': is not a known key; did you mean 'beta'?"},
+    {"unknown_key_of_parameter", "asset_id: A\nparameters: {R_CL: {value: 2.0e13, mim: 1}}\n",
+     "a.yaml: line 2, key parameters.R_CL.mim: 'mim': is not a known key; did you mean 'min'?"},
+    {"text_in_number", "asset_id: A\nparameters: {R_CL: 2.6e13x}\n",
+     "a.yaml: line 2, key parameters.R_CL: '2.6e13x': must be a number above 0"},
+    {"infinite", "asset_id: A\nparameters: {p_ambient: .inf}\n",
+     "a.yaml: line 2, key parameters.p_ambient: '.inf': must be a number"},
+    {"below_min", "asset_id: A\nparameters: {R_CL: {value: 1.0e12, min: 2.0e12, max: 3.0e13}}\n",
+     "a.yaml: line 2, key parameters.R_CL.value: '1e+12': must lie between min and max, 2e+12 and 3e+13"},
+    {"min_above_max", "asset_id: A\nparameters: {R_CL: {min: 3.0e13, max: 2.0e13}}\n",
+     "a.yaml: line 2, key parameters.R_CL.min: '3e+13': min must not be above max, which are 3e+13 and 2e+13"},
+    {"unknown_channel", "asset_id: A\nsensors: {presure_a: {noise_std: 1}}\n",
+     "a.yaml: line 2, key sensors.presure_a: 'presure_a': is not a known key; did you mean 'pressure_a'?"},
+    {"unknown_channel_by_key", "asset_id: A\nsensors: {noise_std: {presure_a: 1}}\n",
+     "a.yaml: line 2, key sensors.noise_std.presure_a: 'presure_a': is not a known key; did you mean 'pressure_a'?"},
+    {"negative_noise", "asset_id: A\nsensors: {flow: {noise_std: -1}}\n",
+     "a.yaml: line 2, key sensors.flow.noise_std: '-1': must be a number, 0 or above"},
+    {"range", "asset_id: A\nsensors: {flow: {range: [2, 1]}}\n",
+     "a.yaml: line 2, key sensors.flow.range: must be two numbers, the lower one first: [min, max]"},
+    {"seal", "asset_id: A\nseal: {resistance_100: 1.0e12}\n",
+     "a.yaml: line 2, key seal.resistance_60: '4.64e+12': must be below resistance_100, 1e+12: a worn seal leaks more"},
+    {"threshold", "asset_id: A\nseal: {threshold: 60}\n",
+     "a.yaml: line 2, key seal.threshold: '60': must be a number between 0 and 1"},
+    {"no_stroke", "asset_id: A\npst: {stroke: 0}\n",
+     "a.yaml: line 2, key pst.stroke: '0': must not be 0: a test has to move the stem"},
+    {"beyond_stroke", "asset_id: A\npst: {start: 0.07, stroke: 0.02}\n",
+     "a.yaml: line 2, key pst.stroke: '0.02': start + stroke is 0.09 m: must stay within the actuator's stroke, 0 to "
+     "0.08 m"},
+    {"speed", "asset_id: A\npst: {speed: 0}\n", "a.yaml: line 2, key pst.speed: '0': must be a number above 0"},
+    {"physics_element", "asset_id: A\nphysics:\n  - {id: stribeck_friction, element: pisten}\n",
+     "a.yaml: line 3, key physics[0].element: 'pisten': is not known; did you mean 'piston'?"},
+    {"limits", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5, alarm: 3}}\n",
+     "a.yaml: line 2, key alert_limits.hold_decay.warning: '5': must lie between advisory and alarm, 1 and 3"},
+    {"limit_missing", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5}}\n",
+     "a.yaml: line 2, key alert_limits.hold_decay.alarm: must be given"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, BadAsset, ::testing::ValuesIn(kBadCases),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST(AssetTest, UnsetValuesTakeThePlantTablesDefaults) {
+  const AssetConfig asset = load("asset_id: A\n");
+  const PlantDescription& plant = **find_plant("eha");
+  ASSERT_EQ(asset.parameters.size(), plant.parameters.size());
+  for (const ParameterDescription& row : plant.parameters) {
+    const ParameterSetting& setting = asset.parameters.at(row.name);
+    EXPECT_EQ(setting.value, row.value) << row.name;
+    EXPECT_EQ(setting.min, row.min) << row.name;
+    EXPECT_EQ(setting.max, row.max) << row.name;
+    EXPECT_EQ(setting.estimate, row.estimate) << row.name;
+  }
+  ASSERT_EQ(asset.sensors.size(), plant.channels.size());
+  EXPECT_EQ(asset.sensors.at("pressure_a").noise_std, 1.0e4);
+  EXPECT_EQ(asset.sensors.at("pressure_a").time_constant_s, 5e-3);
+  ASSERT_TRUE(asset.seal.has_value());
+  EXPECT_EQ(asset.seal->resistance_100_Pa_s_m3, 2.6e13);
+  EXPECT_EQ(asset.pst.stroke_m, -0.016);
+}
+
+TEST(AssetTest, GivenValuesAreReadInEitherForm) {
+  const AssetConfig asset = load(R"(asset_id: A
+segment: wing valve
+parameters:
+  R_CL: {value: 2.0e13, min: 1.0e12, max: 7.8e13, estimate: false}
+  f_C: 1.5e6
+  beta: {estimate: false}
+sensors:
+  noise_std: {flow: 1.0e-8}
+  pressure_a: {noise_std: 5, time_constant: 0.001, quantisation: 2, range: [-1, 1.0e7]}
+seal: {resistance_100: 3.0e13, resistance_60: 5.0e12, threshold: 0.55}
+pst: {start: 0.05, stroke: 0.01, speed: 0.002, hold: 4, interval_months: 3}
+alert_limits: {seal_condition: {advisory: 0.8, warning: 0.7, alarm: 0.6}}
+physics:
+  - {id: stribeck_friction, element: piston, parameters: {F_s: 4000, v_s: 0.001}}
+  - {id: sensor_bias, element: "sensor:flow", parameters: {bias: 1.0e-8}}
+)");
+  EXPECT_EQ(asset.segment, "wing valve");
+  EXPECT_EQ(asset.parameters.at("R_CL").value, 2.0e13);
+  EXPECT_EQ(asset.parameters.at("R_CL").min, 1.0e12);
+  EXPECT_FALSE(asset.parameters.at("R_CL").estimate);
+  EXPECT_EQ(asset.parameters.at("f_C").value, 1.5e6);
+  EXPECT_EQ(asset.parameters.at("beta").value, 1.2e9);
+  EXPECT_FALSE(asset.parameters.at("beta").estimate);
+  EXPECT_EQ(asset.sensors.at("flow").noise_std, 1.0e-8);
+  EXPECT_EQ(asset.sensors.at("pressure_a").noise_std, 5.0);
+  EXPECT_EQ(asset.sensors.at("pressure_a").time_constant_s, 0.001);
+  EXPECT_EQ(asset.sensors.at("pressure_a").quantisation, 2.0);
+  EXPECT_EQ(asset.sensors.at("pressure_a").range_max, 1.0e7);
+  EXPECT_EQ(asset.seal->threshold, 0.55);
+  EXPECT_EQ(asset.pst.interval_months, 3.0);
+  EXPECT_EQ(asset.alert_limits.at("seal_condition").alarm, 0.6);
+  ASSERT_EQ(asset.physics.size(), 2U);
+  EXPECT_EQ(asset.physics[0].parameters.at("F_s"), 4000.0);
+  EXPECT_EQ(asset.physics[1].element, "sensor:flow");
+}
+
+TEST(AssetTest, AValueOutsideTheTablesBoundsBringsItsOwn) {
+  const AssetConfig asset = load("asset_id: A\nparameters: {A_C: 0.5, p_ambient: 2.0e8}\n");
+  EXPECT_EQ(asset.parameters.at("A_C").min, 0.05);
+  EXPECT_EQ(asset.parameters.at("A_C").max, 5.0);
+  EXPECT_EQ(asset.parameters.at("p_ambient").max, 2.0e8);
+}
+
+TEST(AssetTest, TheSealIsUndefinedWhereTheFileSaysSoOrThePlantHasNone) {
+  EXPECT_FALSE(load("asset_id: A\nseal: null\n").seal.has_value());
+  EXPECT_FALSE(load("asset_id: A\nmodel: eha_switched\n").seal.has_value());
+  EXPECT_TRUE(load("asset_id: A\nmodel: eha_switched\nseal: {}\n").seal.has_value());
+}
+
+TEST(AssetTest, SeveralFaultsAsOneErrorNameThemAll) {
+  const YamlPlace place;
+  const auto asset = load_asset(place.write("a.yaml", "asset_id: A\nmodell: eha\nseall: {}\n"));
+  ASSERT_FALSE(asset.has_value());
+  EXPECT_THAT(asset.error().describe(), HasSubstr("modell"));
+  EXPECT_THAT(asset.error().describe(), HasSubstr("seall"));
+}
+
+TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
+  AssetConfig asset = load("asset_id: 'yes: \"odd\" id'\nsegment: \"# no comment\"\n");
+  double odd = 1.0 / 3.0;
+  for (auto& [name, setting] : asset.parameters) setting.value *= 1.0 + 1e-3 * (odd = odd * 0.7 + 0.01);
+  asset.sensors.at("flow") = {1.0 / 3.0, 1e-300, 0.1, -0.1, 1e300};
+  asset.seal->threshold = 0.1 + 0.2;
+  asset.pst.hold_s = 1.0 / 7.0;
+  asset.physics = {{"stribeck_friction", "piston", {{"F_s", 1.0 / 3.0}}}};
+  asset.alert_limits["hold_decay"] = {1.0 / 3.0, 2.0 / 3.0, 1.0};
+  const AssetConfig back = load(asset_to_yaml(asset));
+  EXPECT_EQ(asset_to_yaml(back), asset_to_yaml(asset));
+  EXPECT_EQ(back.asset_id, asset.asset_id);
+  EXPECT_EQ(back.segment, asset.segment);
+  for (const auto& [name, setting] : asset.parameters) EXPECT_EQ(back.parameters.at(name).value, setting.value) << name;
+  EXPECT_EQ(back.sensors.at("flow").time_constant_s, 1e-300);
+  EXPECT_EQ(back.seal->threshold, asset.seal->threshold);
+  EXPECT_EQ(back.pst.hold_s, asset.pst.hold_s);
+  EXPECT_EQ(back.physics.at(0).parameters, asset.physics.at(0).parameters);
+  EXPECT_EQ(back.alert_limits.at("hold_decay").advisory, 1.0 / 3.0);
+  AssetConfig without = asset;
+  without.seal.reset();
+  EXPECT_FALSE(load(asset_to_yaml(without)).seal.has_value());
+}
+
+TEST(AssetTest, IsSavedWhereItMayBeWritten) {
+  const YamlPlace place;
+  AssetConfig asset = load("asset_id: A\n");
+  ASSERT_TRUE(save_asset(asset, place.directory() + "/saved.yaml"));
+  EXPECT_EQ(load_asset(place.directory() + "/saved.yaml")->asset_id, "A");
+  EXPECT_THAT(save_asset(asset, "/nowhere/at/all.yaml").error().describe(),
+              HasSubstr("/nowhere/at/all.yaml: cannot be"));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

@@ -1,0 +1,199 @@
+// The configuration as a whole: defaults, and every fault with file, line, key, value, rule and advice.
+#include "services/common/runtime/configuration_loader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/runtime/yaml_place.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::vector<std::string> faults(const YamlPlace& place, const std::string& path) {
+  const auto configuration = load_configuration(path);
+  if (configuration) return {};
+  std::vector<std::string> found;
+  for (const Error& error : configuration.error()) found.push_back(place.bare(error.describe()));
+  return found;
+}
+
+struct BadCase {
+  const char* name;
+  const char* yaml;
+  const char* message;
+};
+
+class BadConfiguration : public ::testing::TestWithParam<BadCase> {};
+
+TEST_P(BadConfiguration, IsNamed) {
+  const YamlPlace place;
+  EXPECT_THAT(faults(place, place.write("sealwatch.yaml", GetParam().yaml)), ElementsAre(GetParam().message));
+}
+
+const BadCase kBadCases[] = {
+    {"unknown_key", "domain: 1\nstate_directroy: x\n",
+     "sealwatch.yaml: line 2, key state_directroy: 'state_directroy': is not a known key; did you mean "
+     "'state_directory'?"},
+    {"unknown_service", "services:\n  state_detecton: {}\n",
+     "sealwatch.yaml: line 2, key services.state_detecton: 'state_detecton': is not a known key; did you mean "
+     "'state_detection'?"},
+    {"unknown_key_of_service", "services: {state_detection: {enable: true}}\n",
+     "sealwatch.yaml: line 1, key services.state_detection.enable: 'enable': is not a known key; did you mean "
+     "'enabled'?"},
+    {"unknown_topic", "topics:\n  advisories: {keep_all: true}\n",
+     "sealwatch.yaml: line 2, key topics.advisories: 'advisories': is not a known key; did you mean 'advisory'?"},
+    {"domain_too_large", "domain: 233\n",
+     "sealwatch.yaml: line 1, key domain: '233': must be a whole number from 0 to 232"},
+    {"domain_broken", "domain: 1.5\n",
+     "sealwatch.yaml: line 1, key domain: '1.5': must be a whole number from 0 to 232"},
+    {"not_a_bool", "services: {state_detection: {enabled: 1}}\n",
+     "sealwatch.yaml: line 1, key services.state_detection.enabled: '1': must be true or false"},
+    {"level", "logging:\n  level: inf\n",
+     "sealwatch.yaml: line 2, key logging.level: 'inf': is not known; did you mean 'info'?"},
+    {"rotation", "logging: {rotate_at_MB: 0}\n",
+     "sealwatch.yaml: line 1, key logging.rotate_at_MB: '0': must be a number above 0"},
+    {"lifespan", "topics: {advisory: {lifespan_s: -1}}\n",
+     "sealwatch.yaml: line 1, key topics.advisory.lifespan_s: '-1': must be a number, 0 or above"},
+    {"journal", "services: {state_detection: {journal: x.db}}\n",
+     "sealwatch.yaml: line 1, key services.state_detection.journal: 'x.db': must be a connection string; write "
+     "sqlite3://FILE or postgresql://dbname=NAME"},
+    {"recordings_of_another_service", "services: {state_detection: {recordings_directory: in}}\n",
+     "sealwatch.yaml: line 1, key services.state_detection.recordings_directory: 'recordings_directory': is not a "
+     "known key; known are: enabled, journal"},
+    {"site_twice", "sites:\n  - site: a\n  - site: a\n",
+     "sealwatch.yaml: line 3, key sites[1].site: 'a': is there twice; name each site once"},
+    {"site_without_name", "sites:\n  - booking_lead_time_months: 3\n",
+     "sealwatch.yaml: line 2, key sites[0].site: must be given"},
+    {"campaign_date", "sites:\n  - site: a\n    campaigns:\n      - {label: x, start: 2017-13-01}\n",
+     "sealwatch.yaml: line 4, key sites[0].campaigns[0].start: '2017-13-01': must be a UTC time in ISO 8601; write it "
+     "as 2031-04-12T03:00:00Z"},
+    {"campaign_without_date", "sites: [{site: a, campaigns: [{label: x}]}]\n",
+     "sealwatch.yaml: line 1, key sites[0].campaigns[0].start: must be given"},
+    {"not_a_list", "sites: north\n", "sealwatch.yaml: line 1, key sites: 'north': must be a list"},
+    {"not_a_map", "logging: loud\n",
+     "sealwatch.yaml: line 1, key logging: 'loud': must be a mapping of keys to values"},
+    {"root_not_a_map", "- a\n- b\n", "sealwatch.yaml: line 1: must be a mapping of keys to values"},
+    {"twice", "domain: 1\ndomain: 2\n", "sealwatch.yaml: line 2, key domain: 'domain': stands twice; keep one of them"},
+    {"empty_state_directory", "state_directory: \"\"\n",
+     "sealwatch.yaml: line 1, key state_directory: must not be empty"},
+    {"asset_missing", "assets: [none.yaml]\n", "none.yaml: cannot be read; check that the file exists and may be read"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, BadConfiguration, ::testing::ValuesIn(kBadCases),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST(ConfigurationTest, ABrokenFileIsNamedWithItsLine) {
+  const YamlPlace place;
+  const auto found = faults(place, place.write("sealwatch.yaml", "domain: 1\nlogging: {level: info\n"));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found[0], HasSubstr("sealwatch.yaml: line 3: is not YAML: "));
+}
+
+TEST(ConfigurationTest, AMissingFileIsNamed) {
+  const YamlPlace place;
+  EXPECT_THAT(faults(place, place.directory()),
+              ElementsAre("sealwatch.yaml: cannot be read; check that the file exists and may be read"));
+}
+
+TEST(ConfigurationTest, AllFaultsOfAllFilesAreNamedAtOnce) {
+  const YamlPlace place;
+  const std::string file = place.write("sealwatch.yaml", "domain: -1\nsites: [{site: north_field}]\nloging: {}\n");
+  place.write("assets/1.yaml", "asset_id: A\nsite: north_feild\nmodel: eha\n");
+  place.write("assets/2.yaml", "asset_id: B\nparameters: {f_C: -1, R_CI: 1}\n");
+  EXPECT_THAT(
+      faults(place, file),
+      ElementsAre("sealwatch.yaml: line 1, key domain: '-1': must be a whole number from 0 to 232",
+                  "sealwatch.yaml: line 3, key loging: 'loging': is not a known key; did you mean 'logging'?",
+                  "assets/1.yaml: line 2, key site: 'north_feild': is not one of the configuration's sites; did you "
+                  "mean 'north_field'?",
+                  "assets/2.yaml: line 2, key parameters.f_C: '-1': must be a number above 0",
+                  "assets/2.yaml: line 2, key parameters.R_CI: 'R_CI': is not a known key; did you mean 'R_CL'?"));
+}
+
+TEST(ConfigurationTest, OneIdForTwoAssetsIsNamedWithBothFiles) {
+  const YamlPlace place;
+  const std::string file = place.write("sealwatch.yaml", "");
+  place.write("assets/1.yaml", "asset_id: A\n");
+  place.write("assets/2.yaml", "asset_id: A\n");
+  EXPECT_THAT(
+      faults(place, file),
+      ElementsAre("assets/2.yaml: key asset_id: 'A': is the id of another asset already, in assets/1.yaml; give "
+                  "each asset an id of its own"));
+}
+
+TEST(ConfigurationTest, AnEmptyFileIsAllDefaults) {
+  const YamlPlace place;
+  const auto configuration = load_configuration(place.write("sealwatch.yaml", ""));
+  ASSERT_TRUE(configuration.has_value());
+  EXPECT_EQ(configuration->domain, 0);
+  EXPECT_EQ(configuration->services.size(), 6U);
+  EXPECT_EQ(configuration->services.at("state_detection").journal, "sqlite3://state/state_detection.db");
+  EXPECT_TRUE(configuration->assets.empty());
+}
+
+TEST(ConfigurationTest, EveryKeyIsRead) {
+  const YamlPlace place;
+  place.write("mine/a.yaml", "asset_id: A\nsite: s\n");
+  const auto configuration = load_configuration(place.write("sealwatch.yaml", R"(
+domain: 7
+state_directory: /var/s
+cyclonedds_uri: <x/>
+logging: {level: debug, directory: logs, rotate_at_MB: 0.5, rotated_files: 3}
+services:
+  data_acquisition: {enabled: false, journal: "sqlite3://x.db", recordings_directory: in}
+topics: {advisory: {keep_all: false, transient_local: false, lifespan_s: 3}}
+sites:
+  - site: s
+    booking_lead_time_months: 9
+    campaigns: [{label: later, start: 2019-01-02}, {start: 2018-01-02}]
+assets: [mine/a.yaml]
+)"));
+  ASSERT_TRUE(configuration.has_value()) << combine(configuration.error()).describe();
+  EXPECT_EQ(configuration->domain, 7);
+  EXPECT_EQ(configuration->cyclonedds_uri, "<x/>");
+  EXPECT_EQ(configuration->logging.level, "debug");
+  EXPECT_EQ(configuration->logging.directory, "/var/s/logs");
+  EXPECT_EQ(configuration->logging.rotate_at_MB, 0.5);
+  EXPECT_EQ(configuration->logging.rotated_files, 3);
+  EXPECT_FALSE(configuration->services.at("data_acquisition").enabled);
+  EXPECT_EQ(configuration->services.at("data_acquisition").journal, "sqlite3://x.db");
+  EXPECT_EQ(configuration->services.at("data_acquisition").recordings_directory, "/var/s/in");
+  EXPECT_EQ(configuration->services.at("state_detection").journal, "sqlite3:///var/s/state_detection.db");
+  EXPECT_FALSE(configuration->topics.at("advisory").keep_all);
+  EXPECT_FALSE(configuration->topics.at("advisory").transient_local);
+  EXPECT_EQ(configuration->topics.at("advisory").lifespan_s, 3.0);
+  const SiteConfig* site = configuration->find_site("s");
+  ASSERT_NE(site, nullptr);
+  EXPECT_EQ(site->booking_lead_time_months, 9.0);
+  ASSERT_EQ(site->campaigns.size(), 2U);
+  EXPECT_EQ(site->campaigns[0].label, "2018-01-02") << "sorted, and named by its date where it has no label";
+  EXPECT_EQ(site->campaigns[1].label, "later");
+  EXPECT_NE(configuration->find_asset("A"), nullptr);
+}
+
+TEST(ConfigurationTest, TheCommandLineWinsOverTheFile) {
+  const YamlPlace place;
+  const auto configuration = load_configuration(place.write("sealwatch.yaml", "domain: 7\nlogging: {directory: log}\n"),
+                                                {.state_directory = "/other", .domain = 9});
+  ASSERT_TRUE(configuration.has_value());
+  EXPECT_EQ(configuration->domain, 9);
+  EXPECT_EQ(configuration->services.at("state_detection").journal, "sqlite3:///other/state_detection.db");
+  EXPECT_EQ(configuration->logging.directory, "/other/log");
+}
+
+TEST(ConfigurationTest, TheOneThatComesWithSealwatchIsValid) {
+  const auto configuration = load_configuration(SEALWATCH_SOURCE_DIR "/config");
+  ASSERT_TRUE(configuration.has_value()) << combine(configuration.error()).describe();
+  const AssetConfig* asset = configuration->find_asset("XT03-MV2");
+  ASSERT_NE(asset, nullptr);
+  EXPECT_TRUE(asset->seal.has_value());
+  const SiteConfig* site = configuration->find_site(asset->site);
+  ASSERT_NE(site, nullptr);
+  EXPECT_FALSE(site->campaigns.empty());
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

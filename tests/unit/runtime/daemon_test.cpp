@@ -1,0 +1,150 @@
+// A daemon from its command line to SIGTERM, in this process and with the bus in memory.
+#include "services/common/runtime/daemon.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <future>
+
+#include "services/common/runtime/log.hpp"
+#include "services/common/runtime/service_manager.hpp"
+#include "services/common/store/journal.hpp"
+#include "tests/unit/runtime/harness.hpp"
+#include "tests/unit/runtime/yaml_place.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Plays systemd: receives what a daemon notifies.
+class ServiceManager {
+ public:
+  explicit ServiceManager(const std::string& directory) : path_(directory + "/notify") {
+    socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path_.copy(address.sun_path, sizeof address.sun_path - 1);
+    EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    const timeval patience{10, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    ::setenv("NOTIFY_SOCKET", path_.c_str(), 1);
+  }
+  ~ServiceManager() {
+    ::unsetenv("NOTIFY_SOCKET");
+    ::close(socket_);
+  }
+  ServiceManager(const ServiceManager&) = delete;
+  ServiceManager& operator=(const ServiceManager&) = delete;
+  /// Waits until `state` is notified; false after ten seconds of silence.
+  bool heard(const std::string& state) {
+    char text[256];
+    for (;;) {
+      const ssize_t size = ::recv(socket_, text, sizeof text, 0);
+      if (size <= 0) return false;
+      if (std::string(text, static_cast<std::size_t>(size)) == state) return true;
+    }
+  }
+
+ private:
+  std::string path_;
+  int socket_ = -1;
+};
+
+class DaemonTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    // The daemon waits for signals in a thread; in this process no other thread may take them.
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    place_.write("sealwatch.yaml", "logging: {directory: log}\n");
+  }
+  int run(const std::vector<std::string>& arguments) {
+    std::vector<const char*> argv = {"sealwatch-data-acquisition"};
+    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    return run_daemon(static_cast<int>(argv.size()), argv.data(), parts_);
+  }
+  std::vector<std::string> usual() const {
+    return {"--config", place_.directory(), "--state", place_.directory() + "/state"};
+  }
+
+  YamlPlace place_;
+  std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
+  DaemonParts parts_{.service = "data_acquisition",
+                     .make_layer = [](const Configuration&, const Clock&) { return std::make_unique<CuttingLayer>(); },
+                     .make_bus = [this](const Configuration&) -> Result<std::unique_ptr<Bus>> {
+                       return std::make_unique<InMemoryBus>(network_);
+                     }};
+};
+
+TEST_F(DaemonTest, RunsUntilSigtermAndTellsTheServiceManager) {
+  ServiceManager manager(place_.directory());
+  auto daemon = std::async(std::launch::async, [this] { return run(usual()); });
+  ASSERT_TRUE(manager.heard("READY=1"));
+  Feeder feeder(network_, blocks_of_tests(1, {"A"}));
+  feeder.send(2);
+  ASSERT_TRUE(step_until([&] { return feeder.beat(), feeder.all_received(); },
+                         [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }));
+  EXPECT_TRUE(manager.heard("WATCHDOG=1"));
+  ::kill(::getpid(), SIGTERM);
+  EXPECT_TRUE(manager.heard("STOPPING=1"));
+  EXPECT_EQ(daemon.get(), 0);
+  auto journal = Journal::open("sqlite3://" + place_.directory() + "/state/data_acquisition.db", "data_acquisition");
+  ASSERT_TRUE(journal.has_value());
+  EXPECT_EQ(journal->written().at(Topic::test_features), 1U);
+  std::ifstream log(place_.directory() + "/state/log/data_acquisition.log");
+  const std::string text{std::istreambuf_iterator<char>(log), {}};
+  EXPECT_THAT(text, HasSubstr("concluded topic=test_features pst=\"A test 0\" asset=A"));
+}
+
+TEST_F(DaemonTest, RefusesToRunTwiceOnOneState) {
+  const auto lock = InstanceLock::take(place_.directory() + "/state", "data_acquisition");
+  ASSERT_TRUE(lock.has_value());
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(usual()), 2);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr("another data_acquisition works in this directory, process " + std::to_string(::getpid())));
+}
+
+TEST_F(DaemonTest, RefusesABadConfigurationBeforeAnythingStarts) {
+  place_.write("sealwatch.yaml", "domian: 1\nstate_directroy: x\n");
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(usual()), 2);
+  const std::string text = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(text, HasSubstr("did you mean 'domain'?"));
+  EXPECT_THAT(text, HasSubstr("did you mean 'state_directory'?"));
+  EXPECT_FALSE(std::filesystem::exists(place_.directory() + "/state"));
+}
+
+TEST_F(DaemonTest, EndsWithInternalFailureWhenItsJournalIsNone) {
+  place_.write("state/data_acquisition.db", std::string(5000, 'x'));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(usual()), 3);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("not a database"));
+}
+
+TEST_F(DaemonTest, AnswersQuestionsAndRefusesWhatItDoesNotKnow) {
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(run({"--version"}), 0);
+  EXPECT_THAT(::testing::internal::GetCapturedStdout(), ::testing::MatchesRegex("sealwatch [0-9.]+\n"));
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(run({"--help"}), 0);
+  EXPECT_THAT(::testing::internal::GetCapturedStdout(), HasSubstr("--config"));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run({"--confg", "x"}), 2);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("--confg"));
+}
+
+TEST(InstanceLockTest, IsFreeAgainWhenItsHolderEnds) {
+  const YamlPlace place;
+  { ASSERT_TRUE(InstanceLock::take(place.directory(), "x").has_value()); }
+  EXPECT_TRUE(InstanceLock::take(place.directory(), "x").has_value());
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

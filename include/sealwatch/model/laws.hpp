@@ -30,14 +30,6 @@ template <class A, class S>
   return R(s * log1p(exp(ratio)));
 }
 
-/// The larger of a and b, rounded over the width s near a = b.
-template <class A, class B>
-[[nodiscard]] auto smooth_max(const A& a, const B& b, double s) {
-  using std::sqrt;
-  const auto difference = a - b;
-  return 0.5 * (a + b + sqrt(difference * difference + s * s));
-}
-
 /// |a|, rounded over the width s: sqrt(a^2 + s^2) - s; zero at zero.
 template <class A>
 [[nodiscard]] auto smooth_abs(const A& a, double s) {

@@ -42,13 +42,11 @@ TEST(Laws, SmoothPositiveIsThePositivePartBeyondItsWidth) {
     expect_slope([](const auto& x) { return laws::smooth_positive(x, 2e4); }, a, 1.0, kDifferenceError);
 }
 
-TEST(Laws, SmoothAbsAndMaxTouchTheirCorners) {
+TEST(Laws, SmoothAbsTouchesItsCorner) {
   EXPECT_EQ(laws::smooth_abs(0.0, 10.0), 0.0);
   EXPECT_NEAR(laws::smooth_abs(-1e6, 10.0), 1e6 - 10.0, 1e-3);
-  EXPECT_NEAR(laws::smooth_max(3.0, 1.0, 1e-3), 3.0, 1e-6);
   for (const double a : {-20.0, 0.0, 5.0}) {
     expect_slope([](const auto& x) { return laws::smooth_abs(x, 10.0); }, a, 1e-4, kDifferenceError);
-    expect_slope([](const auto& x) { return laws::smooth_max(x, 0.0, 10.0); }, a, 1e-4, kDifferenceError);
   }
 }
 

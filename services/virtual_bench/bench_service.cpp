@@ -26,7 +26,7 @@ Status BenchService::step(std::chrono::milliseconds timeout) {
     if (!blocks) return fail(blocks.error());
     for (RawSamples& block : *blocks) {
       block.header.publishing_time_ns = clock_.now().nanoseconds;
-      if (const Status status = bus_.publish(Message(std::move(block))); !status) return status;
+      if (Status status = bus_.publish(Message(std::move(block))); !status) return status;
     }
   }
   return {};

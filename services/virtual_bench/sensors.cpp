@@ -48,6 +48,7 @@ Result<std::vector<Sensor>> find_sensors(const AssetConfig& asset, const PlantDe
     const ChannelDescription* const channel = plant.find_channel(name);
     if (known == kQuantities.end() || channel == nullptr) {
       std::vector<std::string> names;
+      names.reserve(kQuantities.size());
       for (const auto& entry : kQuantities) names.emplace_back(entry.first);
       return fail(Error{.file = {},
                         .place = "channel",

@@ -94,7 +94,7 @@ Status SimulatedActuator::start_command(UtcTime time, std::vector<RawSamples>& o
   const bool aborts = running_.has_value();
   if (aborts) out.push_back(running_->abort(time, kAbortReason));
   const double speed = stroke_m(asset_) / setting_.closing_time_s;
-  if (const Status status = start(closing_profile(asset_.pst.start_m, setting_.closed_m, speed), time, {}); !status)
+  if (Status status = start(closing_profile(asset_.pst.start_m, setting_.closed_m, speed), time, {}); !status)
     return status;
   const UtcTime free_again = add_seconds(running_->end(), setting_.deferral_s);
   next_test_ = aborts ? free_again : std::max(next_test_, free_again);

@@ -66,7 +66,7 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   if (!problem) return failed(problem.error());
   problem->simulation_options = simulation_options(recordings, options);
   Result<PemOptimum> optimum = search_from_several_starts(*problem, options);
-  if (optimum && add_interpolation_error(*problem, *optimum, asset, recordings)) {
+  if (optimum && !optimum->hopeless && add_interpolation_error(*problem, *optimum, asset, recordings)) {
     const int iterations = optimum->iterations;
     optimum = search(*problem, optimum->point, options);
     if (optimum) optimum->iterations += iterations;

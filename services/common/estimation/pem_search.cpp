@@ -71,14 +71,19 @@ class RecordingCost final : public ceres::CostFunction {
   mutable bool known_ = false;
 };
 
-void set_bounds(ceres::Problem& ceres_problem, const std::vector<Unknown>& unknowns, std::vector<double>& values) {
+// Moves unknowns that left their bounds to the bound and adds them to `held`. True when there were any.
+bool hold_at_bounds(const std::vector<Unknown>& unknowns, std::vector<double>& values, std::vector<int>& held) {
+  bool moved = false;
   for (std::size_t k = 0; k < unknowns.size(); ++k) {
     if (!(unknowns[k].max > unknowns[k].min)) continue;
-    const double lower = unknowns[k].to_unknown(unknowns[k].min), upper = unknowns[k].to_unknown(unknowns[k].max);
-    values[k] = std::clamp(values[k], lower, upper);
-    if (std::isfinite(lower)) ceres_problem.SetParameterLowerBound(values.data(), static_cast<int>(k), lower);
-    if (std::isfinite(upper)) ceres_problem.SetParameterUpperBound(values.data(), static_cast<int>(k), upper);
+    const double inside =
+        std::clamp(values[k], unknowns[k].to_unknown(unknowns[k].min), unknowns[k].to_unknown(unknowns[k].max));
+    if (inside == values[k]) continue;
+    values[k] = inside;
+    held.push_back(static_cast<int>(k));
+    moved = true;
   }
+  return moved;
 }
 
 ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
@@ -139,7 +144,6 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
     blocks.push_back(optimum.point.own[k].data());
     ceres_problem.AddResidualBlock(costs.back(), nullptr, blocks);
   }
-  if (!problem.shared.empty()) set_bounds(ceres_problem, problem.shared, optimum.point.shared);
   double residuals = 0.0;
   for (const PemRecording& recording : problem.recordings)
     residuals += static_cast<double>(recording.simulation->recorded().size());
@@ -148,11 +152,21 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   ceres::Solver::Options solver = solver_options(options);
   solver.callbacks.push_back(&resolved);
   ceres::Solver::Summary summary;
-  ceres::Solve(solver, &ceres_problem, &summary);
+  // Ceres' own bounds shorten every step that would cross one, which costs dozens of iterations here. Instead the
+  // search is free, and what ends outside is held at its bound in the next one.
+  std::vector<int> held;
+  do {
+    const auto shared_size = static_cast<int>(optimum.point.shared.size());
+    if (!held.empty() && static_cast<int>(held.size()) < shared_size)
+      ceres_problem.SetManifold(optimum.point.shared.data(), new ceres::SubsetManifold(shared_size, held));
+    else if (!held.empty())
+      ceres_problem.SetParameterBlockConstant(optimum.point.shared.data());
+    ceres::Solve(solver, &ceres_problem, &summary);
+    optimum.iterations += static_cast<int>(summary.iterations.size());
+  } while (summary.termination_type != ceres::FAILURE && hold_at_bounds(problem.shared, optimum.point.shared, held));
   const bool within_tolerance = summary.termination_type == ceres::USER_SUCCESS;
   optimum.converged = within_tolerance || summary.termination_type == ceres::CONVERGENCE;
   optimum.cost = summary.final_cost;
-  optimum.iterations = static_cast<int>(summary.iterations.size());
   optimum.hopeless = summary.termination_type == ceres::USER_FAILURE;
   optimum.termination = within_tolerance   ? "converged: the last step changed the cost by less than its tolerance"
                         : optimum.hopeless ? "given up: the model does not come near the recording"

@@ -79,6 +79,8 @@ Status Channel::open_topic() {
 Status Channel::subscribe(Arrivals& arrivals) {
   if (subscribed()) return {};
   if (Status opened = open_topic(); !opened) return opened;
+  assert(type_->batch <= kLargestBatch);
+  buffer_ = std::make_unique<SampleBuffer>(*type_->descriptor, type_->batch);
   const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(&arrivals),
                                                                                  &dds_delete_listener);
   dds_lset_data_available(listener.get(), announce);
@@ -90,17 +92,13 @@ Status Channel::subscribe(Arrivals& arrivals) {
 }
 
 bool Channel::take_batch(std::vector<Stamped>& taken) const {
-  // The batch must be the same in every call: Cyclone 0.10 overruns the array of loans when it becomes smaller.
-  std::array<void*, kLargestBatch> samples{};
   std::array<dds_sample_info_t, kLargestBatch> infos;
-  assert(type_->batch <= kLargestBatch);
   const dds_return_t count =
-      dds_take(reader_, samples.data(), infos.data(), type_->batch, static_cast<std::uint32_t>(type_->batch));
+      dds_take(reader_, buffer_->data(), infos.data(), buffer_->size(), static_cast<std::uint32_t>(buffer_->size()));
   assert(count >= 0);
   for (std::size_t k = 0; static_cast<dds_return_t>(k) < count; ++k)
     if (infos[k].valid_data)
-      taken.push_back({.published = infos[k].source_timestamp, .item = type_->decode(samples[k])});
-  if (count > 0) dds_return_loan(reader_, samples.data(), count);
+      taken.push_back({.published = infos[k].source_timestamp, .item = type_->decode((*buffer_)[k])});
   return count > 0;
 }
 

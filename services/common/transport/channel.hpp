@@ -7,11 +7,13 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <mutex>
 
 #include "dds/dds.h"
 #include "sealwatch/port/bus.hpp"
 #include "services/common/transport/dds_bus.hpp"
+#include "services/common/transport/sample_buffer.hpp"
 #include "services/common/transport/signal.hpp"
 #include "services/common/transport/topic_types.hpp"
 
@@ -57,6 +59,7 @@ class Channel {
   dds_entity_t reader_ = 0;
   dds_entity_t writer_ = 0;
   dds_time_t last_written_ = 0;
+  std::unique_ptr<SampleBuffer> buffer_;  ///< one batch
 };
 
 }  // namespace sealwatch::transport

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sealwatch/estimation/covariance.hpp"
+#include "sealwatch/estimation/cylinder_circuit.hpp"
 #include "services/common/estimation/fit_report.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/estimation/pem_search.hpp"
@@ -26,6 +26,21 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
   simulation.maximum_steps =
       static_cast<std::size_t>(kFewestSteps + options.steps_per_sample * static_cast<double>(samples));
   return simulation;
+}
+
+// Seal leakage and bulk modulus from the cylinder circuit, where it can be fitted: one linear regression instead of a
+// step from the asset's value, which overshoots where the seal is worn.
+void start_from_cylinder_circuit(PemProblem& problem, const AssetConfig& asset,
+                                 std::span<const TimeSeries> recordings) {
+  if (!asset.parameters.contains("A_C")) return;
+  for (const TimeSeries& recorded : recordings) {
+    const FitReport circuit = fit_cylinder_circuit(asset, recorded, {});
+    if (!circuit.admissible) continue;
+    for (const EstimatedParameter& parameter : circuit.parameters)
+      for (Unknown& unknown : problem.shared)
+        if (unknown.name == parameter.name) unknown.start = parameter.value;
+    return;
+  }
 }
 
 // From the asset's values; from others only where that does not converge.
@@ -65,6 +80,7 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   Result<PemProblem> problem = make_pem_problem(asset, recordings, options.estimate_shared);
   if (!problem) return failed(problem.error());
   problem->simulation_options = simulation_options(recordings, options);
+  start_from_cylinder_circuit(*problem, asset, recordings);
   Result<PemOptimum> optimum = search_from_several_starts(*problem, options);
   if (optimum && !optimum->hopeless && add_interpolation_error(*problem, *optimum, asset, recordings)) {
     const int iterations = optimum->iterations;

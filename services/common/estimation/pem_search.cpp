@@ -104,15 +104,17 @@ class CostResolved final : public ceres::IterationCallback {
   CostResolved(double tolerance, double hopeless_cost) : tolerance_(tolerance), hopeless_cost_(hopeless_cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;
-    if (iteration.iteration >= kIterationsForHope && iteration.cost > hopeless_cost_) return ceres::SOLVER_ABORT;
+    if (iteration.step_is_successful && ++successful_ >= kIterationsForHope && iteration.cost > hopeless_cost_)
+      return ceres::SOLVER_ABORT;
     const double promised = iteration.cost_change / iteration.relative_decrease;  // by the linear model
     const bool resolved = std::abs(iteration.cost_change) <= tolerance_ || (promised >= 0.0 && promised <= tolerance_);
     return resolved ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
-  static constexpr int kIterationsForHope = 8;  // fits that come to something are there by then
+  static constexpr int kIterationsForHope = 6;  // fits that come to something are there by then
   double tolerance_, hopeless_cost_;
+  int successful_ = 0;
 };
 
 // Ceres reports steps into parameter regions that cannot be simulated as warnings; they are ordinary rejected steps

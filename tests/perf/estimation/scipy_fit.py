@@ -65,8 +65,8 @@ def low_pass(times, signal, tau):
 def simulate(unknowns, times, voltage, first):
     p = dict(FIXED)
     for name, value in zip(START, unknowns):
-        p[name] = START[name] * np.exp(value)
-    p["Phi"] = unknowns[6]
+        p[name] = START[name] * np.exp(value - 1)  # start at one: least_squares takes steps relative to the value
+    p["Phi"] = unknowns[6] - 1
     p_a, p_b, x = unknowns[7] * first["pressure_a"], unknowns[8] * first["pressure_b"], unknowns[9] * first["position"]
     omega, i = first["shaft_speed"], first["motor_current"]
     y0 = [voltage[0], i, omega, p_a, p_b, p_a, p_b, 0.0, x]
@@ -86,11 +86,11 @@ def main():
         outputs = simulate(unknowns, times, voltage, first)
         return np.concatenate([(outputs[name] - data[name]) / CHANNELS[name][0] for name in CHANNELS])
 
-    start = np.r_[np.zeros(7), np.ones(3)]
+    start = np.ones(10)
     fit = least_squares(residuals, start, method="trf", x_scale="jac", diff_step=1e-4, ftol=1e-5)
     names = list(START)
-    print("SciPy:", ", ".join(f"{name} {START[name] * np.exp(value):.4g}" for name, value in zip(names, fit.x)),
-          f"Phi {fit.x[6]:.4f}, rms {np.sqrt(2 * fit.cost / fit.fun.size):.3f}, {fit.nfev} steps")
+    print("SciPy:", ", ".join(f"{name} {START[name] * np.exp(value - 1):.4g}" for name, value in zip(names, fit.x)),
+          f"Phi {fit.x[6] - 1:.4f}, rms {np.sqrt(2 * fit.cost / fit.fun.size):.3f}, {fit.nfev} steps")
 
 
 main()

@@ -19,6 +19,8 @@ using std::chrono::steady_clock;
 
 /// How many tests data acquisition may lie behind: enough to keep all services busy, few enough to keep memory small.
 constexpr std::size_t kTestsAhead = 6;
+/// And how many tests any later service may lie behind the one before it.
+constexpr std::uint64_t kLongestBacklog = 12;
 /// Without any sign of progress for this long, the replay gives up and says what it waits for.
 constexpr std::chrono::seconds kPatience{60};
 constexpr std::chrono::seconds kPatienceForServices{15};
@@ -56,7 +58,8 @@ class LiveReplay {
     if (!wait_for_services(supervisor)) return kAnswerIsNo;
     last_progress_ = steady_clock::now();
     while (!interrupted() && !(feeder_.done() && quiescence_.reached(feeder_.writer_id(), feeder_.last_sequence()))) {
-      if (const Status fed = feeder_.feed(*session_.bus, steady_clock::now()); !fed) return give_up(fed.error());
+      if (quiescence_.backlog() < kLongestBacklog)
+        if (const Status fed = feeder_.feed(*session_.bus, steady_clock::now()); !fed) return give_up(fed.error());
       for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(20)))
         if (const Status taken = take(item); !taken) return give_up(taken.error());
       tend(supervisor);

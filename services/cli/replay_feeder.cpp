@@ -64,6 +64,23 @@ Status ReplayFeeder::take(const ResendRequest& request, Bus& bus) {
   return {};
 }
 
+std::uint64_t Quiescence::backlog() const {
+  std::uint64_t longest = 0;
+  for (const auto& [service, topics] : inputs_of_) {
+    const auto reader = last_.find(service);
+    if (reader == last_.end()) continue;
+    for (const std::string& topic : topics) {
+      if (topic == "raw_samples" || topic == "sample_block") continue;  // many a test; held back by their own limit
+      for (const auto& [other, writer] : last_)
+        for (const StreamPosition& written : writer.written)
+          if (const std::uint64_t received = received_up_to(reader->second, topic, written.writer_id);
+              written.topic == topic && written.sequence > received)
+            longest = std::max(longest, written.sequence - received);
+    }
+  }
+  return longest;
+}
+
 std::vector<std::string> Quiescence::missing() const {
   std::vector<std::string> services;
   for (const auto& [service, topics] : inputs_of_)

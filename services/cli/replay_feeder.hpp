@@ -62,6 +62,8 @@ class Quiescence {
   /// an input of long ago), and each has received every stream of its input
   /// topics to its end, that of `source` up to `sequence` included.
   [[nodiscard]] bool reached(const std::string& source_writer, std::uint64_t source_sequence) const;
+  /// Messages about whole tests that the service furthest behind has still to take: what a replay must not let grow.
+  [[nodiscard]] std::uint64_t backlog() const;
   /// Expected services that have not been heard.
   [[nodiscard]] std::vector<std::string> missing() const;
   /// What is still under way, in words.

@@ -199,6 +199,7 @@ std::string AssetView::history_chart() const {
   options.threshold_label = "fails";
   options.y_low = std::floor(20.0 * std::min(lowest, life_->threshold)) / 20.0 - 0.05;
   options.y_high = std::ceil(20.0 * highest) / 20.0;
+  options.height = 1 + static_cast<int>(std::lround((options.y_high - options.y_low) / 0.025));
   options.x_low_label = date(first);
   options.x_high_label = date(last);
   return "\n  seal condition over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";

@@ -122,7 +122,10 @@ Status LayerRunner::in_batch(const std::function<Status()>& work) {
   }
   for (const auto& [stream, sequence] : uncommitted_) committed_[stream] = sequence;
   uncommitted_.clear();
-  for (const Message& message : std::exchange(outbox_, {})) publish(message, "concluded");
+  // Told before it is sent: a reader must never see a message that the heartbeat does not know yet.
+  report_progress();
+  for (const Message& message : std::exchange(outbox_, {}))
+    if (!publish(message, "concluded")) break;
   return {};
 }
 
@@ -191,16 +194,18 @@ Status LayerRunner::let_time_pass() {
   return in_batch([&] { return keep(conclusion, {}); });
 }
 
-void LayerRunner::publish(const Message& message, std::string_view event) {
+bool LayerRunner::publish(const Message& message, std::string_view event) {
   log_message(event == "concluded" ? level_of(message) : LogLevel::debug, event, message);
   const Status published = bus_.publish(message);
-  if (published) return;
-  // Its readers will miss it and ask for it: it is in the journal.
+  if (published) return true;
+  // Its readers will miss it, and what would have followed it, and ask for it: it is in the journal.
   last_error_ = published.error().describe();
   log_message(LogLevel::warn, "not published", message, {{"error", last_error_}});
+  return false;
 }
 
 void LayerRunner::report_progress() {
+  if (!heartbeat_) return;  // the past is still being restored
   std::vector<StreamPosition> written;
   for (const auto& [topic, sequence] : journal_.written())
     written.push_back({std::string(name_of(topic)), journal_.writer_id(), sequence});

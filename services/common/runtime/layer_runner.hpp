@@ -71,7 +71,9 @@ class LayerRunner {
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest(bool all);
   void send_requests();
-  void publish(const Message& message, std::string_view event);
+  /// False when the bus did not take it: then what follows is left to be asked for, so that one reader that does not
+  /// take its messages cannot hold up this service for long.
+  bool publish(const Message& message, std::string_view event);
   void report_progress();
 
   Layer& layer_;

@@ -61,7 +61,10 @@ Status LayerRunner::serve_resends() {
   const auto messages = journal_.outputs(range->topic, range->first, range->last, kPiece);
   if (!messages) return fail(messages.error());
   for (const Message& message : *messages) {
-    publish(message, "sent again");
+    if (!publish(message, "sent again")) {
+      resends_.clear();
+      break;
+    }
     sent_again_[{topic_of(message), asset_of(message)}] = header_of(message).stream_sequence;
   }
   return resends_.empty() ? publish_latest(false) : Status();

@@ -22,6 +22,8 @@ class ResendQueue {
   void add(Range wanted);
   /// The next at most `most` messages to send, topics in turn.
   [[nodiscard]] std::optional<Range> take(std::uint64_t most);
+  /// Forgets what waits; whoever still misses it asks again.
+  void clear() { waiting_.clear(); }
   [[nodiscard]] bool empty() const { return waiting_.empty(); }
 
  private:

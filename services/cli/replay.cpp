@@ -43,6 +43,14 @@ int replay_offline(LayerSet layers, ReplaySource& source, ReplayLog& log) {
   return interrupted() ? kAnswerIsNo : kOk;
 }
 
+/// What each service that the configuration enables reads: those that a replay waits for.
+std::map<std::string, std::vector<std::string>> enabled_inputs(const LayerSet& layers,
+                                                               const Configuration& configuration) {
+  auto inputs = layers.inputs_by_layer();
+  std::erase_if(inputs, [&](const auto& layer) { return !enabled(configuration, layer.first); });
+  return inputs;
+}
+
 /// One replay over the bus.
 class LiveReplay {
  public:
@@ -51,7 +59,7 @@ class LiveReplay {
         log_(log),
         feeder_(
             unique_name("replay"), [&source] { return source.next(); }, kTestsAhead, speed),
-        quiescence_(layers.inputs_by_layer()) {}
+        quiescence_(enabled_inputs(layers, session.configuration)) {}
 
   int run(Supervisor* supervisor) {
     if (const Status joined = join(); !joined) return give_up(joined.error());
@@ -135,17 +143,17 @@ class LiveReplay {
 /// Replays through the services that run in this domain, started here if the user asked for it.
 int replay_live(const ReplayOptions& options, const LayerSet& layers, ReplaySource& source, ReplayLog& log,
                 double speed) {
+  std::optional<Session> session = open_session(options.config);
+  if (!session) return kBadInput;
   std::optional<Supervisor> supervisor;
   if (options.with_services) {
-    supervisor.emplace(service_programs(options.config, options.state_directory));
+    supervisor.emplace(service_programs(options.config, options.state_directory, session->configuration));
     if (const Status started = supervisor->start(); !started) {
       complain(started.error());
       return kInternalFailure;
     }
   }
-  std::optional<Session> session = open_session(options.config);
-  return session ? LiveReplay(*session, layers, source, log, speed).run(supervisor ? &*supervisor : nullptr)
-                 : kBadInput;
+  return LiveReplay(*session, layers, source, log, speed).run(supervisor ? &*supervisor : nullptr);
 }
 
 }  // namespace

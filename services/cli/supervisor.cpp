@@ -40,9 +40,16 @@ std::string ending(int status) {
 
 }  // namespace
 
-std::vector<ServiceProgram> service_programs(const std::string& config, const std::string& state_directory) {
+bool enabled(const Configuration& configuration, const std::string& service) {
+  const auto named = configuration.services.find(service);
+  return named == configuration.services.end() || named->second.enabled;
+}
+
+std::vector<ServiceProgram> service_programs(const std::string& config, const std::string& state_directory,
+                                             const Configuration& configuration) {
   std::vector<ServiceProgram> programs;
   for (const std::string& service : service_names()) {
+    if (!enabled(configuration, service)) continue;
     ServiceProgram program{.name = service, .arguments = {program_path(program_name(service)), "--config", config}};
     if (!state_directory.empty()) program.arguments.insert(program.arguments.end(), {"--state", state_directory});
     programs.push_back(std::move(program));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/config/configuration.hpp"
 #include "sealwatch/core/result.hpp"
 
 namespace sealwatch::cli {
@@ -17,10 +18,13 @@ struct ServiceProgram {
   std::vector<std::string> arguments;  ///< argv, the program's path first
 };
 
-/// The six services' programs, found beside this program or in PATH; `state_directory` instead of the configuration's
-/// unless it is "".
+/// The programs of the services that `configuration`, read from the file or directory `config`, enables; found beside
+/// this program or in PATH. `state_directory` instead of the configuration's unless it is "".
 [[nodiscard]] std::vector<ServiceProgram> service_programs(const std::string& config,
-                                                           const std::string& state_directory);
+                                                           const std::string& state_directory,
+                                                           const Configuration& configuration = {});
+/// Whether this machine is to run the service: `services.NAME.enabled`, true where nothing is said.
+[[nodiscard]] bool enabled(const Configuration& configuration, const std::string& service);
 
 class Supervisor {
  public:

@@ -10,8 +10,10 @@
 namespace sealwatch::cli {
 
 int run_up(const UpOptions& options) {
-  if (!load_or_explain(options.config)) return kBadInput;
-  const std::vector<ServiceProgram> programs = service_programs(options.config, options.state_directory);
+  const std::optional<Configuration> configuration = load_or_explain(options.config);
+  if (!configuration) return kBadInput;
+  const std::vector<ServiceProgram> programs =
+      service_programs(options.config, options.state_directory, *configuration);
   Supervisor supervisor(programs);
   catch_interrupts();
   if (const Status started = supervisor.start(); !started) {

@@ -1,0 +1,14 @@
+# Installs what runs sealwatch (component "services"): programs, systemd units, default configuration, documents. Manual page and
+# completion are installed where they are made, services/cli. All programs share a folder: `sealwatch up` looks for the services
+# beside itself.
+foreach(service data-acquisition data-manipulation state-detection health-assessment prognostic-assessment
+                advisory-generation virtual-bench)
+  install(TARGETS sealwatch-${service} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT services)
+endforeach()
+add_subdirectory(systemd)
+
+set(document_directory ${CMAKE_INSTALL_DATADIR}/doc/sealwatch)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+  DESTINATION ${document_directory} COMPONENT services)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${document_directory} COMPONENT services
+  FILES_MATCHING PATTERN *.md PATTERN examples EXCLUDE)

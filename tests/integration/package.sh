@@ -1,0 +1,138 @@
+#!/usr/bin/env bash
+# package.sh SOURCE_DIR BUILD_DIR: makes the Debian packages, looks into them, unpacks sealwatch and uses it as a normal user
+# would. Nothing is installed; everything happens in a temporary directory.
+set -euo pipefail
+source_dir=$1 build_dir=$2
+services=(data-acquisition data-manipulation state-detection health-assessment prognostic-assessment advisory-generation)
+
+scratch=$(mktemp -d)
+chmod 755 "$scratch"
+root=$scratch/root
+up=
+cleanup() {
+  if [ -n "$up" ]; then kill "$up" && wait "$up" || true; fi
+  rm -rf "$scratch"
+}
+trap cleanup EXIT
+
+fail() {
+  echo "$1"
+  shift
+  for file in "$@"; do echo "--- $file"; cat "$file"; done
+  exit 1
+}
+have() { command -v "$1" >/dev/null || { echo "not checked, as there is no $1: $2"; return 1; }; }
+
+make_packages() {
+  cpack --config "$build_dir/CPackConfig.cmake" -G DEB -B "$scratch/packages" >"$scratch/cpack.log" 2>&1 ||
+    fail "cpack failed" "$scratch/cpack.log"
+  dpkg-deb -x "$scratch"/packages/sealwatch_*.deb "$root"
+  dpkg-deb -e "$scratch"/packages/sealwatch_*.deb "$scratch/control"
+  dpkg-deb -c "$scratch"/packages/sealwatch-dev_*.deb >"$scratch/development"
+}
+
+check_contents() {
+  local path
+  for path in bin/sealwatch bin/sealwatch-virtual-bench "${services[@]/#/bin/sealwatch-}" lib/sysusers.d/sealwatch.conf \
+    lib/systemd/system/sealwatch.target share/doc/sealwatch/{copyright,README.md,CHANGELOG.md,LICENSE}; do
+    [ -s "$root/usr/$path" ] || fail "/usr/$path is not in sealwatch"
+  done
+  for path in libsealwatch_client.a sealwatchConfig.cmake sealwatch/client/subscriber.hpp idl/advisory_generation.idl; do
+    grep -q "/$path\$" "$scratch/development" || fail "$path is not in sealwatch-dev" "$scratch/development"
+  done
+  diff -r "$source_dir/config" "$root/etc/sealwatch" || fail "the default configuration is another one"
+  diff <(cd "$root" && find etc -type f -printf '/%p\n' | sort) <(sort "$scratch/control/conffiles") ||
+    fail "the conffiles are not the files below /etc"
+}
+
+check_control() {
+  local needed script
+  # The second is loaded at run time: no linker knows of it.
+  for needed in libddsc libsoci-sqlite3-4.0 libyaml-cpp libspdlog libmatio; do
+    grep -q "^Depends:.*\b$needed" "$scratch/control/control" || fail "does not depend on $needed" "$scratch/control/control"
+  done
+  grep -q '^Recommends: libsoci-postgresql4.0' "$scratch/control/control" || fail "does not recommend PostgreSQL"
+  for script in postinst prerm postrm; do
+    sh -n "$scratch/control/$script"
+    ! grep -E '^[^#]*systemctl.* (start|enable|restart)' "$scratch/control/$script" || fail "$script starts services by itself"
+  done
+}
+
+check_units() {
+  have systemd-analyze "the units" || return 0
+  cp -n /lib/systemd/system/{sysinit,basic,shutdown,multi-user}.target "$root/usr/lib/systemd/system/" 2>/dev/null ||
+    { echo "not checked, as systemd is not installed: the units"; return 0; }
+  local service
+  for service in "${services[@]}"; do
+    # It says nothing of good units, and has exit status 0 for some bad ones.
+    systemd-analyze verify --man=no --root="$root" "sealwatch@$service.service" >"$scratch/verify" 2>&1 &&
+      [ ! -s "$scratch/verify" ] || fail "unit sealwatch@$service is faulty" "$scratch/verify"
+    grep -q "^Wants=.*sealwatch@$service.service" "$root/usr/lib/systemd/system/sealwatch.target" ||
+      fail "sealwatch.target does not want $service"
+  done
+}
+
+check_page() {
+  have man "the manual page" || return 0
+  LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -E UTF-8 -l "$root/usr/share/man/man1/sealwatch.1" \
+    >"$scratch/page" 2>"$scratch/page_warnings" || fail "man cannot show the page" "$scratch/page_warnings"
+  [ ! -s "$scratch/page_warnings" ] || fail "the manual page has faults" "$scratch/page_warnings"
+  grep -q 'sealwatch replay' "$scratch/page" || fail "the manual page does not tell of replay" "$scratch/page"
+}
+
+check_completion() {
+  local completed
+  completed=$(bash -c 'source "$1"; COMP_WORDS=(sealwatch re); COMP_CWORD=1; _sealwatch; echo "${COMPREPLY[@]}"' bash \
+    "$root/usr/share/bash-completion/completions/sealwatch")
+  [ "$completed" = "replay replaced" ] || fail "'sealwatch re' completes to '$completed'"
+}
+
+check_programs() {
+  local version service
+  version=$(dpkg-deb -f "$scratch"/packages/sealwatch_*.deb Version)
+  [ "$("${as_user[@]}" "$root/usr/bin/sealwatch" --version)" = "sealwatch $version" ] || fail "the program has another version"
+  "${as_user[@]}" "$root/usr/bin/sealwatch" config check --config "$root/etc/sealwatch" || fail "the default configuration is faulty"
+  for service in "${services[@]}" virtual-bench; do
+    "${as_user[@]}" "$root/usr/bin/sealwatch-$service" --help | grep -e --config >/dev/null || fail "sealwatch-$service gives no help"
+  done
+}
+
+# Five services of six, since the configuration disables one: `up` starts those, and `replay` does not wait for the sixth.
+check_services() {
+  local sealwatch=$root/usr/bin/sealwatch config=$scratch/config
+  cp -r "$root/etc/sealwatch" "$config"
+  sed -i 's/advisory_generation: {enabled: true}/advisory_generation: {enabled: false}/' "$config/sealwatch.yaml"
+  "${as_user[@]}" "$sealwatch" simulate --asset "$config/assets/xt03-mv2.yaml" --months 1 --rate 50 --out life >"$scratch/simulated"
+  "${as_user[@]}" "$sealwatch" up --config "$config" >"$scratch/up" 2>&1 &
+  up=$!
+  "${as_user[@]}" bash -c '"$1" replay --config "$2" --quiet life/*.csv' bash "$sealwatch" "$config" >"$scratch/replayed" 2>&1 ||
+    fail "replay through the unpacked services failed" "$scratch/replayed" "$scratch/up"
+  kill "$up"
+  wait "$up" || fail "sealwatch up did not end well" "$scratch/up"
+  up=
+  [ "$(grep -c '^started ' "$scratch/up")" -eq 5 ] || fail "not five services were started" "$scratch/up"
+  [ -s "$scratch/home/state/prognostic_assessment.db" ] || fail "there is no journal in ./state"
+  [ ! -e "$scratch/home/state/advisory_generation.db" ] || fail "a disabled service was started"
+}
+
+export CYCLONEDDS_URI="<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/>\
+</Interfaces></General><Discovery><Tag>package-$$</Tag></Discovery></Domain></CycloneDDS>"
+unset SEALWATCH_CONFIG
+# A user without rights, in a home of his own: using sealwatch must need no more.
+mkdir "$scratch/home"
+as_user=(env -C "$scratch/home")
+if [ "$(id -u)" -eq 0 ]; then
+  chown 65534:65534 "$scratch/home"
+  as_user+=(setpriv --reuid=65534 --regid=65534 --clear-groups)
+fi
+
+have dpkg-shlibdeps "the packages" || exit 0
+make_packages
+check_contents
+check_control
+check_units
+check_page
+check_completion
+check_programs
+check_services
+echo "the package holds what it should, and what it installs works"

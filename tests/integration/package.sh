@@ -115,6 +115,19 @@ check_services() {
   [ ! -e "$scratch/home/state/advisory_generation.db" ] || fail "a disabled service was started"
 }
 
+# The prefix is chosen when installing: units must name it, and what an operator changed must survive a second time.
+check_other_prefix() {
+  local prefix=$scratch/prefix turn
+  for turn in first second; do
+    cmake --install "$build_dir" --prefix "$prefix" --component services >"$scratch/install" 2>&1 ||
+      fail "the $turn installation to a prefix failed" "$scratch/install"
+    echo "# changed after the $turn" >>"$prefix/etc/sealwatch/sealwatch.yaml"
+  done
+  grep -q "^ExecStart=$prefix/bin/sealwatch-%i --config $prefix/etc/sealwatch " "$prefix/lib/systemd/system/sealwatch@.service" ||
+    fail "the unit names another prefix" "$prefix/lib/systemd/system/sealwatch@.service"
+  grep -q 'changed after the first' "$prefix/etc/sealwatch/sealwatch.yaml" || fail "a changed configuration was overwritten"
+}
+
 export CYCLONEDDS_URI="<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/>\
 </Interfaces></General><Discovery><Tag>package-$$</Tag></Discovery></Domain></CycloneDDS>"
 unset SEALWATCH_CONFIG
@@ -135,4 +148,5 @@ check_page
 check_completion
 check_programs
 check_services
+check_other_prefix
 echo "the package holds what it should, and what it installs works"

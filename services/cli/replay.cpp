@@ -11,6 +11,7 @@
 #include "services/cli/session.hpp"
 #include "services/cli/supervisor.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
+#include "services/common/runtime/stream_reader.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -64,12 +65,16 @@ class LiveReplay {
   int run(Supervisor* supervisor) {
     if (const Status joined = join(); !joined) return give_up(joined.error());
     if (!wait_for_services(supervisor)) return kAnswerIsNo;
+    reader_.emplace("replay", quiescence_.written(ReplayLog::topics()));
     last_progress_ = steady_clock::now();
-    while (!interrupted() && !(feeder_.done() && quiescence_.reached(feeder_.writer_id(), feeder_.last_sequence()))) {
+    while (!interrupted() && !over()) {
       if (quiescence_.backlog() < kLongestBacklog)
         if (const Status fed = feeder_.feed(*session_.bus, steady_clock::now()); !fed) return give_up(fed.error());
-      for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(20)))
+      const std::vector<BusItem> items = session_.bus->receive(std::chrono::milliseconds(20));
+      for (const BusItem& item : items)
         if (const Status taken = take(item); !taken) return give_up(taken.error());
+      if (items.empty())
+        if (const Status asked = ask_for_missing(); !asked) return give_up(asked.error());
       tend(supervisor);
       if (steady_clock::now() - last_progress_ > kPatience) return stalled();
     }
@@ -85,8 +90,10 @@ class LiveReplay {
   bool wait_for_services(Supervisor* supervisor) {
     const auto end = steady_clock::now() + kPatienceForServices;
     while (!interrupted() && steady_clock::now() < end) {
-      for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(100)))
+      for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(100))) {
         if (const auto* status = std::get_if<ServiceStatus>(&item)) quiescence_.take(*status);
+        if (const auto* message = std::get_if<Message>(&item)) log_.take_earlier(*message);
+      }
       tend(supervisor);
       if (quiescence_.missing().empty()) return true;
     }
@@ -103,15 +110,32 @@ class LiveReplay {
 
   Status take(const BusItem& item) {
     if (const auto* message = std::get_if<Message>(&item)) {
-      log_.take(*message);
+      for (const Message& next : reader_->accept(*message)) log_.take(next);
       last_progress_ = steady_clock::now();
     } else if (const auto* status = std::get_if<ServiceStatus>(&item)) {
       feeder_.take(*status);
       quiescence_.take(*status);
+      for (const StreamPosition& written : quiescence_.written(ReplayLog::topics()))
+        (void)reader_->note_written(written, seconds(steady_clock::now()));
     } else {
       return feeder_.take(std::get<ResendRequest>(item), *session_.bus);
     }
     return {};
+  }
+
+  /// Everything sent, everything concluded, and all conclusions seen.
+  [[nodiscard]] bool over() const {
+    return feeder_.done() && quiescence_.reached(feeder_.writer_id(), feeder_.last_sequence()) && !reader_->is_behind();
+  }
+
+  Status ask_for_missing() {
+    for (const ResendRequest& request : reader_->requests(seconds(steady_clock::now())))
+      if (const Status asked = session_.bus->publish(request); !asked) return asked;
+    return {};
+  }
+
+  static double seconds(steady_clock::time_point time) {
+    return std::chrono::duration<double>(time.time_since_epoch()).count();
   }
 
   void tend(Supervisor* supervisor) {
@@ -137,6 +161,8 @@ class LiveReplay {
   ReplayLog& log_;
   ReplayFeeder feeder_;
   Quiescence quiescence_;
+  std::optional<StreamReader>
+      reader_;  ///< conclusions in order and without gaps, from where the services stood at the start
   steady_clock::time_point last_progress_;
 };
 

@@ -81,6 +81,15 @@ std::uint64_t Quiescence::backlog() const {
   return longest;
 }
 
+std::vector<StreamPosition> Quiescence::written(std::span<const Topic> topics) const {
+  std::vector<StreamPosition> positions;
+  for (const auto& [service, status] : last_)
+    for (const StreamPosition& position : status.written)
+      if (std::any_of(topics.begin(), topics.end(), [&](Topic topic) { return name_of(topic) == position.topic; }))
+        positions.push_back(position);
+  return positions;
+}
+
 std::vector<std::string> Quiescence::missing() const {
   std::vector<std::string> services;
   for (const auto& [service, topics] : inputs_of_)

@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,8 @@ class Quiescence {
   [[nodiscard]] bool reached(const std::string& source_writer, std::uint64_t source_sequence) const;
   /// Messages about whole tests that the service furthest behind has still to take: what a replay must not let grow.
   [[nodiscard]] std::uint64_t backlog() const;
+  /// How far all services' streams of these topics go.
+  [[nodiscard]] std::vector<StreamPosition> written(std::span<const Topic> topics) const;
   /// Expected services that have not been heard.
   [[nodiscard]] std::vector<std::string> missing() const;
   /// What is still under way, in words.

@@ -21,6 +21,8 @@ class ReplayLog {
   /// The topics it wants to see.
   [[nodiscard]] static std::span<const Topic> topics();
   void take(const Message& message);
+  /// A conclusion from before this replay: part of the final screen, not of the results.
+  void take_earlier(const Message& message) { assets_[asset_of(message)].take(message); }
   /// Something that happened besides, like a service that was started again.
   void remark(const std::string& text);
   /// The final screen: each asset's forecast, interval, reasons, and where to look further.

@@ -61,7 +61,11 @@ TEST_F(Replay, LiveAndOfflineConcludeTheSame) {
     const std::string file = std::string(topic) + ".jsonl";
     const std::string text = file_text(folder_ / "live" / file);
     EXPECT_GE(std::count(text.begin(), text.end(), '\n'), static_cast<long>(recordings().size())) << topic;
-    EXPECT_EQ(text, file_text(folder_ / "offline" / file)) << topic;
+    const std::string offline_text = file_text(folder_ / "offline" / file);
+    EXPECT_TRUE(text == offline_text)
+        << topic << ": first difference at byte "
+        << std::mismatch(text.begin(), text.end(), offline_text.begin(), offline_text.end()).first - text.begin()
+        << " of " << text.size() << " and " << offline_text.size();
   }
 }
 

@@ -5,6 +5,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 deploy/install_packages.sh test
-deploy/build.sh release
+deploy/build.sh release -DSEALWATCH_TESTS=ON
 cd build/release
 exec ctest --output-on-failure --parallel "$(nproc)" "$@"

@@ -1,13 +1,14 @@
 // The two ends of the latency measurement (latency.py): actuators that send blocks of 10 samples at 200 Hz in real
 // time, and a reader of what arrives.
 //
-//   live_latency send together|staggered ACTUATORS SECONDS
+//   live_latency send spread|together|endings ACTUATORS SECONDS
 //   live_latency receive SECONDS    prints "topic asset message_id recording/block sampled_ns arrived_ns" for each
 //   block
 //
-// together: all actuators take their samples at the same instants, one test each: the worst burst. staggered: each test
-// (31 s) begins a fiftieth of its length after the last actuator's and is followed by the next: all loads at once.
-// sampled_ns: when the block's last sample was taken, sent in publishing_time_ns. Clock: the system's, nanoseconds.
+// spread: one test of each actuator, their samples taken evenly between each other's. together: all actuators take
+// their samples at the same instants: the worst burst. endings: each test (31 s) begins a fiftieth of its length after
+// the last actuator's and is followed by the next, so that some test ends every 0.6 s. sampled_ns: when the block's
+// last sample was taken, sent in publishing_time_ns. Clock: the system's, nanoseconds.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -67,19 +68,25 @@ void wait_until(const Clock& clock, std::int64_t time_ns) {
   if (left_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(left_ns));
 }
 
-Status send(DdsBus& bus, bool staggered, std::size_t actuators, double seconds) {
+/// How much later than the actuator before it an actuator takes its samples.
+std::int64_t lag_ns(const std::string& mode, std::size_t blocks_of_a_test, std::size_t actuators) {
+  if (mode == "together") return 0;
+  const std::int64_t spread_ns = kBlock_ns / static_cast<std::int64_t>(actuators);
+  if (mode == "spread") return spread_ns;
+  const std::int64_t test_ns = static_cast<std::int64_t>(blocks_of_a_test) * kBlock_ns;
+  return test_ns / static_cast<std::int64_t>(actuators) / kBlock_ns * kBlock_ns + spread_ns;
+}
+
+Status send(DdsBus& bus, const std::string& mode, std::size_t actuators, double seconds) {
   const SystemClock clock;
   const std::vector<RawSamples> blocks = blocks_of_one_test();
   if (Status ready = bus.wait_for_subscribers(Topic::raw_samples, kReaders, milliseconds(15'000)); !ready) return ready;
-  const std::int64_t test_ns = static_cast<std::int64_t>(blocks.size()) * kBlock_ns;
   const std::int64_t begin_ns = clock.now().nanoseconds + 200'000'000;
-  std::vector<Actuator> all(actuators);
+  std::vector<Actuator> all;
   for (std::size_t k = 0; k < actuators; ++k)
-    all[k] = {.asset_id = "LIVE-" + std::to_string(k + 1),
-              .next_ns = begin_ns + kBlock_ns +
-                         (staggered ? static_cast<std::int64_t>(k) * (test_ns + kBlock_ns) /
-                                          static_cast<std::int64_t>(actuators)
-                                    : 0)};
+    all.push_back(
+        {.asset_id = "LIVE-" + std::to_string(k + 1),
+         .next_ns = begin_ns + kBlock_ns + static_cast<std::int64_t>(k) * lag_ns(mode, blocks.size(), actuators)});
   const std::int64_t end_ns = begin_ns + static_cast<std::int64_t>(seconds * 1e9);
   while (true) {
     Actuator& next = *std::ranges::min_element(all, {}, &Actuator::next_ns);
@@ -125,7 +132,7 @@ int main(int argc, char** argv) {
   if (!sends && !(words.size() == 2 && words[0] == "receive")) return 2;
   const auto bus = open_dds_bus({});
   const Status done = !bus    ? fail(bus.error())
-                      : sends ? send(**bus, words[1] == "staggered", std::stoul(words[2]), std::atof(words[3].c_str()))
+                      : sends ? send(**bus, words[1], std::stoul(words[2]), std::atof(words[3].c_str()))
                               : receive(**bus, std::atof(words[1].c_str()));
   if (!done) std::cerr << done.error().describe() << '\n';
   return done ? 0 : 1;

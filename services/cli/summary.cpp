@@ -141,6 +141,7 @@ std::string forecast_table(const std::vector<Forecast>& forecasts) {
     text += (item.label == date(item.before_ns) ? item.label : item.label + ", " + date(item.before_ns)) + ": " +
             percent(item.probability) + "\n";
     first = false;
+    if (item.probability > 0.9995) break;  // later ones are certain too
   }
   return text;
 }
@@ -226,9 +227,13 @@ std::string AssetView::advisory_lines() const {
 
 std::string AssetView::left_out_lines() const {
   std::string text;
-  for (const auto& [id, estimate] : estimates_)
-    if (!estimate.used_for_forecast)
-      text += "                   " + id + ": " + wrapped(join(estimate.reasons), 100, 21) + "\n";
+  for (const auto& [id, estimate] : estimates_) {
+    if (estimate.used_for_forecast || estimate.reasons.empty()) continue;
+    const std::size_t more = estimate.reasons.size() - 1;
+    const std::string rest =
+        more == 0 ? "" : " (and " + std::to_string(more) + " more: sealwatch watch leakage_estimate)";
+    text += "                   " + id + ": " + wrapped(estimate.reasons.front() + rest, 100, 21) + "\n";
+  }
   return text.empty() ? text : "  left out         of the forecast, kept in the record:\n" + text;
 }
 

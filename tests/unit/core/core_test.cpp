@@ -99,7 +99,6 @@ TEST(Text, ContentHashIsFnv1a) {
   EXPECT_EQ(content_hash("foobar"), "85944171f73967e8");
 }
 
-
 struct Sample {
   int first = 1;
   double second_Pa = 2.0;

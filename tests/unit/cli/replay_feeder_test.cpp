@@ -1,0 +1,141 @@
+#include "services/cli/replay_feeder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sealwatch/port/in_memory_bus.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+/// `tests` tests of two blocks, one second each.
+std::function<std::vector<RawSamples>()> source(int tests) {
+  return [made = 0, tests]() mutable {
+    std::vector<RawSamples> blocks;
+    if (made == tests) return blocks;
+    ++made;
+    for (int k = 0; k < 2; ++k) {
+      RawSamples block;
+      block.asset_id = "A";
+      block.recording_id = "test " + std::to_string(made);
+      block.block_number = static_cast<std::uint64_t>(k);
+      block.boundary = k == 0 ? BlockBoundary::begin : BlockBoundary::end;
+      block.samples.time_s = {0.0 + k, 1.0 + k};
+      blocks.push_back(block);
+    }
+    return blocks;
+  };
+}
+
+ServiceStatus journaled(const std::string& writer, std::uint64_t sequence) {
+  ServiceStatus status;
+  status.service = "data_acquisition";
+  status.received = {{.topic = "raw_samples", .writer_id = writer, .sequence = sequence}};
+  return status;
+}
+
+class Feeder : public ::testing::Test {
+ protected:
+  Feeder() {
+    const std::array topics = {Topic::raw_samples};
+    EXPECT_TRUE(reader_.subscribe(topics).has_value());
+  }
+  /// Sequence numbers that arrived since the last call.
+  std::vector<std::uint64_t> arrived() {
+    std::vector<std::uint64_t> sequences;
+    for (const BusItem& item : reader_.receive(milliseconds(0), 100))
+      sequences.push_back(header_of(std::get<Message>(item)).stream_sequence);
+    return sequences;
+  }
+  std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
+  InMemoryBus writer_{network_};
+  InMemoryBus reader_{network_};
+};
+
+TEST_F(Feeder, StaysAFewTestsAheadOfWhatIsJournaled) {
+  ReplayFeeder feeder("w", source(3), 1, 0.0);
+  ASSERT_TRUE(feeder.feed(writer_, steady_clock::now()).has_value());
+  EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{1, 2}));
+  ASSERT_TRUE(feeder.feed(writer_, steady_clock::now()).has_value());
+  EXPECT_TRUE(arrived().empty()) << "the first test is not journaled yet";
+  feeder.take(journaled("w", 2));
+  ASSERT_TRUE(feeder.feed(writer_, steady_clock::now()).has_value());
+  EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{3, 4}));
+}
+
+TEST_F(Feeder, SendsAgainWhatIsMissed) {
+  ReplayFeeder feeder("w", source(1), 1, 0.0);
+  ASSERT_TRUE(feeder.feed(writer_, steady_clock::now()).has_value());
+  (void)arrived();
+  const ResendRequest request{
+      .writer_id = "w", .topic = "raw_samples", .first_sequence = 2, .last_sequence = 9, .requested_by = "x"};
+  ASSERT_TRUE(feeder.take(request, writer_).has_value());
+  EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{2}));
+  ResendRequest other = request;
+  other.writer_id = "somebody else";
+  ASSERT_TRUE(feeder.take(other, writer_).has_value());
+  EXPECT_TRUE(arrived().empty());
+}
+
+TEST_F(Feeder, IsDoneWhenTheLastBlockIsJournaled) {
+  ReplayFeeder feeder("w", source(1), 2, 0.0);
+  ASSERT_TRUE(feeder.feed(writer_, steady_clock::now()).has_value());
+  feeder.take(journaled("w", 1));
+  EXPECT_FALSE(feeder.done());
+  feeder.take(journaled("w", 2));
+  EXPECT_TRUE(feeder.done());
+}
+
+TEST_F(Feeder, KeepsTheRecordedPace) {
+  ReplayFeeder feeder("w", source(1), 1, 2.0);
+  const auto start = steady_clock::now();
+  ASSERT_TRUE(feeder.feed(writer_, start).has_value());
+  EXPECT_TRUE(arrived().empty()) << "the first block ends after one recorded second";
+  ASSERT_TRUE(feeder.feed(writer_, start + milliseconds(501)).has_value());
+  EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{1}));
+  ASSERT_TRUE(feeder.feed(writer_, start + milliseconds(1001)).has_value());
+  EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{2}));
+}
+
+using Inputs = std::map<std::string, std::vector<std::string>>;
+
+ServiceStatus status(const std::string& service, std::uint64_t pending, std::vector<StreamPosition> written,
+                     std::vector<StreamPosition> received) {
+  ServiceStatus result;
+  result.service = service;
+  result.writer_id = service;
+  result.pending_inputs = pending;
+  result.written = std::move(written);
+  result.received = std::move(received);
+  return result;
+}
+
+TEST(Quiescence, IsReachedWhenEveryStreamIsReadToItsEnd) {
+  const Inputs inputs = {{"first", {"raw_samples"}}, {"second", {"test_window"}}};
+  Quiescence quiescence(inputs);
+  EXPECT_EQ(quiescence.missing(), (std::vector<std::string>{"first", "second"}));
+  quiescence.take(status("first", 0, {{"test_window", "first", 5}}, {{"raw_samples", "w", 7}}));
+  quiescence.take(status("second", 0, {}, {{"test_window", "first", 3}}));
+  EXPECT_TRUE(quiescence.missing().empty());
+  EXPECT_FALSE(quiescence.reached("w", 7));
+  EXPECT_EQ(quiescence.backlog(), 2U);
+  quiescence.take(status("second", 1, {}, {{"test_window", "first", 5}}));
+  EXPECT_FALSE(quiescence.reached("w", 7)) << "an input is still waiting";
+  quiescence.take(status("second", 0, {}, {{"test_window", "first", 5}}));
+  EXPECT_TRUE(quiescence.reached("w", 7));
+  EXPECT_FALSE(quiescence.reached("w", 8)) << "the source goes further than what was received";
+  EXPECT_EQ(quiescence.backlog(), 0U);
+}
+
+TEST(Quiescence, DoesNotWaitForInputsThatLayAroundBefore) {
+  const Inputs inputs = {{"first", {"raw_samples"}}};
+  Quiescence quiescence(inputs);
+  quiescence.take(status("first", 2, {}, {}));
+  quiescence.take(status("first", 2, {}, {{"raw_samples", "w", 1}}));
+  EXPECT_TRUE(quiescence.reached("w", 1));
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

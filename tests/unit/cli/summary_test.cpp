@@ -1,0 +1,83 @@
+#include "services/cli/summary.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sealwatch/core/time.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Header header_of_test(const std::string& date) {
+  Header header;
+  header.pst_id = "A-" + date;
+  header.event_time_known = true;
+  header.event_time_ns = parse_utc(date).value().nanoseconds;
+  return header;
+}
+
+Forecast forecast_of(double months) {
+  Forecast forecast;
+  forecast.method = "ols";
+  forecast.window_months = 36;
+  forecast.state = ForecastState::ok;
+  forecast.rul_months = forecast.rul_p50_months = months;
+  forecast.interval_95_low_months = months - 2.0;
+  forecast.interval_95_high_months = months + 3.0;
+  forecast.failure_probability = {
+      {.before_ns = parse_utc("2031-06-01").value().nanoseconds, .label = "summer", .probability = 0.25}};
+  return forecast;
+}
+
+TEST(OneLine, SaysWhatMattersWithUnits) {
+  LeakageEstimate estimate;
+  estimate.asset_id = "A";
+  estimate.header = header_of_test("2031-04-12");
+  estimate.estimated = true;
+  estimate.resistance_Pa_s_m3 = 1.0e13;
+  estimate.resistance_std_Pa_s_m3 = 2.0e11;
+  estimate.used_for_forecast = true;
+  EXPECT_EQ(one_line(Message(estimate)), "2031-04-12  A  leakage_estimate  R_CL 1.00e+13 +- 2.0e+11 Pa s/m3");
+  estimate.estimated = false;
+  estimate.reasons = {"cut"};
+  EXPECT_THAT(one_line(Message(estimate)), HasSubstr("no estimate: cut"));
+}
+
+TEST(ForecastTable, ShowsNumbersOnlyWhereThereIsAForecast) {
+  Forecast none;
+  none.method = "ols";
+  none.window_months = 48;
+  none.state = ForecastState::insufficient_history;
+  none.explanation = "12 of 24 tests";
+  const std::string table = forecast_table({forecast_of(18.0), none});
+  EXPECT_THAT(table, HasSubstr("18.0"));
+  EXPECT_THAT(table, HasSubstr("16.0 .. 21.0"));
+  EXPECT_THAT(table, HasSubstr("insufficient history: 12 of 24 tests"));
+  EXPECT_THAT(table, HasSubstr("before summer, 2031-06-01: 25.0 %"));
+}
+
+TEST(AssetView, KeepsTheActiveAdvisoryAndNamesWhatWasLeftOut) {
+  AssetView view;
+  Advisory active;
+  active.asset_id = "A";
+  active.recommendation = "Book a vessel.";
+  view.take(Message(active));
+  Advisory superseded = active;
+  superseded.state = AdvisoryState::superseded;
+  superseded.recommendation = "Do nothing.";
+  view.take(Message(superseded));
+  LeakageEstimate left_out;
+  left_out.asset_id = "A";
+  left_out.header = header_of_test("2031-04-12");
+  left_out.reasons = {"cut after 7 s", "no hold"};
+  view.take(Message(left_out));
+  EXPECT_THAT(view.screen(), HasSubstr("Book a vessel."));
+  EXPECT_THAT(view.screen(), Not(HasSubstr("Do nothing.")));
+  EXPECT_THAT(view.screen(), HasSubstr("cut after 7 s (and 1 more"));
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

@@ -1,0 +1,42 @@
+#include "services/cli/terminal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sealwatch::cli {
+namespace {
+
+TEST(Terminal, NumbersKeepSignificantDigits) {
+  EXPECT_EQ(number(0.0), "0");
+  EXPECT_EQ(number(3.14159, 3), "3.14");
+  EXPECT_EQ(number(-0.0421, 2), "-0.042");
+  EXPECT_EQ(number(123456.0, 3), "123456");
+  EXPECT_EQ(number(2.6e13, 3), "2.60e+13");
+  EXPECT_EQ(number(1.0e-7, 2), "1.0e-07");
+  EXPECT_EQ(percent(0.1234), "12.3 %");
+}
+
+TEST(Terminal, WrappedLinesStayWithinTheWidth) {
+  const std::string text = wrapped("one two three four five six seven eight nine ten", 20, 4);
+  EXPECT_EQ(text, "one two three\n    four five six\n    seven eight nine\n    ten");
+  EXPECT_EQ(wrapped("", 20, 4), "");
+  EXPECT_EQ(wrapped("averyveryverylongword", 10, 0), "averyveryverylongword");
+}
+
+TEST(Terminal, ChartShowsEachPointAndTheThreshold) {
+  ChartOptions options;
+  options.width = 5;
+  options.height = 3;
+  options.threshold = 0.0;
+  options.threshold_label = "fails";
+  options.x_low_label = "a";
+  options.x_high_label = "b";
+  EXPECT_EQ(chart({{0.0, 1.0}, {4.0, 0.5}}, options),
+            "  1.00 |o    \n  0.50 |    o\n  0.00 |- - -  fails\n       +-----\n        a   b\n");
+  EXPECT_EQ(chart({}, options), "");
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

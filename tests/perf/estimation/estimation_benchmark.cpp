@@ -1,16 +1,20 @@
 // One 31 s, 200 Hz partial stroke test: PEM of the whole actuator (six shared parameters, the load and three initial
 // values) on one thread from nominal values, and the same fit by SciPy (LSODA, least_squares) on the same recording.
 //
-//   estimation_benchmark            both; SciPy takes a minute or two
+//   estimation_benchmark            both; SciPy takes half a minute; fails where the goals are missed
 //   estimation_benchmark --no-scipy
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/estimation/cylinder_circuit.hpp"
@@ -71,21 +75,32 @@ void write_csv(const std::filesystem::path& file) {
   stream << '\n';
 }
 
-double seconds_of_one_fit() {
-  double best = 1e9;
-  for (int k = 0; k < 5; ++k) {
+constexpr double kGoal_s = 0.05;
+constexpr double kGoalRatio = 600.0;
+
+/// Seconds of each of some fits, sorted. One line says where they end, to compare with SciPy's.
+std::vector<double> seconds_of_fits() {
+  std::vector<double> seconds;
+  for (int k = 0; k < 15; ++k) {
     const auto begin = std::chrono::steady_clock::now();
-    benchmark::DoNotOptimize(fit_actuator(nominal_asset(), {&recording(), 1}));
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    const JointFit fit = fit_actuator(nominal_asset(), {&recording(), 1});
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    if (k > 0) continue;
+    std::printf("sealwatch:");
+    for (const EstimatedParameter& p : fit.report.parameters) std::printf(" %s %.4g,", p.name.c_str(), p.value);
+    const double residuals = static_cast<double>(recording().time_s.size() * fit.report.channels.size());
+    std::printf(" rms %.3f, %d iterations\n", std::sqrt(2.0 * fit.report.cost / residuals), fit.report.iterations);
   }
-  return best;
+  std::sort(seconds.begin(), seconds.end());
+  return seconds;
 }
 
 int compare_with_scipy() {
   const std::filesystem::path csv = std::filesystem::temp_directory_path() / "sealwatch_estimation_benchmark.csv";
   write_csv(csv);
-  const double ours = seconds_of_one_fit();
-  std::printf("sealwatch: %.4f s\n", ours);
+  const std::vector<double> seconds = seconds_of_fits();
+  const double ours = seconds[seconds.size() / 2];
+  std::printf("sealwatch: %.4f s best, %.4f s median of %zu\n", seconds.front(), ours, seconds.size());
   std::fflush(stdout);
   const auto begin = std::chrono::steady_clock::now();
   const std::string command =
@@ -98,8 +113,10 @@ int compare_with_scipy() {
     std::fprintf(stderr, "the SciPy fit could not be run (python3-scipy)\n");
     return 1;
   }
-  std::printf("SciPy: %.2f s, %.0f times as long\n", theirs, theirs / ours);
-  return 0;
+  const bool met = ours <= kGoal_s && theirs / ours >= kGoalRatio;
+  std::printf("SciPy: %.2f s, %.0f times our median (goals %.2f s and %.0f times: %s)\n", theirs, theirs / ours,
+              kGoal_s, kGoalRatio, met ? "met" : "MISSED");
+  return met ? 0 : 1;
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kSamples = 10;
 constexpr std::int64_t kBlock_ns = 50'000'000;
-constexpr std::size_t kReaders = 2;  // data acquisition and `receive`
+constexpr std::int32_t kDomain = 97;  // of its own: what others multicast in domain 0 would be received here too
+constexpr std::size_t kReaders = 2;   // data acquisition and `receive`
 
 /// A whole test of the virtual bench at 200 Hz, cut into blocks.
 std::vector<RawSamples> blocks_of_one_test() {
@@ -130,7 +131,9 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   const bool sends = words.size() == 4 && words[0] == "send";
   if (!sends && !(words.size() == 2 && words[0] == "receive")) return 2;
-  const auto bus = open_dds_bus({});
+  Configuration configuration;
+  configuration.domain = kDomain;
+  const auto bus = open_dds_bus(configuration);
   const Status done = !bus    ? fail(bus.error())
                       : sends ? send(**bus, words[1], std::stoul(words[2]), std::atof(words[3].c_str()))
                               : receive(**bus, std::atof(words[1].c_str()));

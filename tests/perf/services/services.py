@@ -8,6 +8,7 @@ import tempfile
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
+DOMAIN = 97  # of its own: what others multicast in domain 0 would be received here too
 SERVICES = ["data-acquisition", "data-manipulation", "state-detection", "health-assessment", "prognostic-assessment",
             "advisory-generation"]
 
@@ -26,7 +27,7 @@ class Services:
         self.environment = dict(os.environ, CYCLONEDDS_URI=uri(f"perf-{os.getpid()}-{time.monotonic_ns()}"))
         for name in self.names:
             self.processes[name] = self.start([self.binaries / f"sealwatch-{name}", "--config", self.config,
-                                               "--state", self.state])
+                                               "--state", self.state, "--domain", DOMAIN])
         return self
 
     def start(self, command, **options):

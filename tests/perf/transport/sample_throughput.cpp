@@ -62,7 +62,9 @@ Status subscribe(DdsBus& bus, Clock::duration duration) {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const auto duration = std::chrono::milliseconds(static_cast<long>(1000.0 * std::atof(argv[2])));
-  const auto bus = open_dds_bus({});
+  Configuration configuration;
+  configuration.domain = 97;  // as in sample_throughput.sh
+  const auto bus = open_dds_bus(configuration);
   const Status done = !bus                                ? fail(bus.error())
                       : argv[1] == std::string("publish") ? publish(**bus, duration)
                                                           : subscribe(**bus, duration);

@@ -24,7 +24,9 @@ constexpr std::size_t kTestsAhead = 6;
 constexpr std::uint64_t kLongestBacklog = 12;
 /// Without any sign of progress for this long, the replay gives up and says what it waits for.
 constexpr std::chrono::seconds kPatience{60};
-constexpr std::chrono::seconds kPatienceForServices{15};
+/// Services that run are heard within a second or two; those just started may need longer on a busy machine.
+constexpr std::chrono::seconds kPatienceForRunning{4};
+constexpr std::chrono::seconds kPatienceForStarted{15};
 
 /// Recorded seconds per second; 0 for "max".
 std::optional<double> speed_of(const std::string& text) {
@@ -88,7 +90,7 @@ class LiveReplay {
   }
 
   bool wait_for_services(Supervisor* supervisor) {
-    const auto end = steady_clock::now() + kPatienceForServices;
+    const auto end = steady_clock::now() + (supervisor != nullptr ? kPatienceForStarted : kPatienceForRunning);
     while (!interrupted() && steady_clock::now() < end) {
       for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(100))) {
         if (const auto* status = std::get_if<ServiceStatus>(&item)) quiescence_.take(*status);

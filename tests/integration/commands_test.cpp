@@ -1,0 +1,163 @@
+// `sealwatch` as scripts use it: machine-readable results, exit status, errors that name file and place.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/six_services.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Commands : public SixServices {
+ protected:
+  static std::string asset() { return config() + "/assets/xt03-mv2.yaml"; }
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    const std::string file = (folder_ / name).string();
+    std::ofstream(file) << text;
+    return file;
+  }
+  /// One test of a worn seal, with the truth.
+  [[nodiscard]] std::pair<std::string, json> worn_test() const {
+    const std::string folder = (folder_ / "worn").string();
+    const Finished made = run({"sealwatch", "simulate", "--asset", asset(), "--condition", "0.8", "--rate", "100",
+                               "--seed", "5", "--out", folder});
+    EXPECT_EQ(made.status, 0) << made.output;
+    json truth;
+    std::ifstream(folder + "/truth.jsonl") >> truth;
+    return {folder + "/" + truth["recording"].get<std::string>() + ".csv", truth};
+  }
+  /// A history that falls by `per_month` from 0.95 over `tests` months.
+  [[nodiscard]] std::string history(int tests, double per_month) const {
+    std::string text = "time[iso8601],theta[1],theta_std[1]\n";
+    for (int k = 0; k < tests; ++k) {
+      char line[80];
+      std::snprintf(line, sizeof line, "%d-%02d-10T00:00:00Z,%.6f,0.001\n", 2020 + k / 12, k % 12 + 1,
+                    0.95 - per_month * k + 0.0005 * (k % 3 - 1));
+      text += line;
+    }
+    return write("history.csv", text);
+  }
+};
+
+TEST_F(Commands, FitRecoversTheBenchAndPrintsItsSchema) {
+  const auto [recording, truth] = worn_test();
+  const Finished fit = run({"sealwatch", "fit", "--asset", asset(), recording, "--json"});
+  ASSERT_EQ(fit.status, 0) << fit.output;
+  const json result = json::parse(fit.output);
+  EXPECT_EQ(result["schema"], "sealwatch.fit/1");
+  EXPECT_EQ(result["asset_id"], "XT03-MV2");
+  EXPECT_TRUE(result["admissible"].get<bool>());
+  EXPECT_EQ(result["loads"].size(), 1U);
+  for (const char* key : {"noise_normalised_rms", "nrmse_percent", "whiteness_p", "independence_p"})
+    EXPECT_TRUE(result["channels"]["pressure_a"].contains(key)) << key;
+  const auto leakage = std::find_if(result["parameters"].begin(), result["parameters"].end(),
+                                    [](const json& p) { return p["name"] == "R_CL"; });
+  ASSERT_NE(leakage, result["parameters"].end());
+  EXPECT_EQ((*leakage)["unit"], "Pa s/m3");
+  EXPECT_TRUE((*leakage)["free"].get<bool>());
+  // Four standard errors: one chance in 16 000 for an honest estimate.
+  EXPECT_NEAR((*leakage)["value"].get<double>(), truth["R_CL_Pa_s_m3"].get<double>(),
+              4.0 * (*leakage)["std_error"].get<double>());
+}
+
+TEST_F(Commands, FitOfTheCylinderCircuitAgrees) {
+  const auto [recording, truth] = worn_test();
+  const Finished fit =
+      run({"sealwatch", "fit", "--asset", asset(), "--model", "cylinder_circuit", recording, "--json"});
+  ASSERT_EQ(fit.status, 0) << fit.output;
+  const json leakage = json::parse(fit.output)["parameters"][0];
+  EXPECT_EQ(leakage["name"], "R_CL");
+  EXPECT_NEAR(leakage["value"].get<double>(), truth["R_CL_Pa_s_m3"].get<double>(),
+              4.0 * leakage["std_error"].get<double>());
+}
+
+TEST_F(Commands, ForecastOfASteadyDeclineMeetsItsEnd) {
+  // 0.95 - 0.005 k reaches 0.60 at k = 70; the last of 48 tests is k = 47: 23 months are left.
+  const Finished forecast =
+      run({"sealwatch", "forecast", "--history", history(48, 0.005), "--before", "2025-06-01", "--json"});
+  ASSERT_EQ(forecast.status, 0) << forecast.output;
+  const json result = json::parse(forecast.output);
+  EXPECT_EQ(result["schema"], "sealwatch.forecast/1");
+  EXPECT_EQ(result["at"], "2023-12-10T00:00:00Z");
+  int windows = 0;
+  for (const json& one : result["forecasts"]) {
+    if (one["method"] != "ols") continue;
+    ++windows;
+    EXPECT_EQ(one["state"], "ok") << one;
+    EXPECT_NEAR(one["rul_months"]["p50"].get<double>(), 23.0, 1.0) << one;
+    EXPECT_LT(one["rul_months"]["p10"], one["rul_months"]["p90"]);
+    EXPECT_EQ(one["interval_95"].size(), 2U);
+    EXPECT_EQ(one["end_of_life"].get<std::string>().substr(0, 4), "2025");
+    EXPECT_TRUE(one["failure_probability_before"].contains("2025-06-01"));
+  }
+  EXPECT_EQ(windows, 3);
+}
+
+TEST_F(Commands, ForecastSaysWhenItCannotTell) {
+  const Finished few = run({"sealwatch", "forecast", "--history", history(5, 0.005), "--json"});
+  EXPECT_EQ(few.status, 1) << few.output;
+  EXPECT_EQ(json::parse(few.output)["forecasts"][0]["state"], "insufficient_history");
+  EXPECT_FALSE(json::parse(few.output)["forecasts"][0].contains("rul_months"));
+  EXPECT_EQ(
+      json::parse(
+          run({"sealwatch", "forecast", "--history", history(48, 0.0), "--json"}).output)["forecasts"][0]["state"],
+      "no_significant_trend");
+  EXPECT_EQ(
+      json::parse(
+          run({"sealwatch", "forecast", "--history", history(48, 0.01), "--json"}).output)["forecasts"][0]["state"],
+      "past_threshold");
+}
+
+TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
+  const auto refused = [this](const std::vector<std::string>& arguments) {
+    const Finished finished = run(arguments);
+    EXPECT_EQ(finished.status, 2) << finished.output;
+    return finished.output;
+  };
+  const std::string text_in_number = write("bad.csv", "time[s],position[mm]\n0.0,1.0\n0.1,abc\n");
+  EXPECT_THAT(refused({"sealwatch", "fit", "--asset", asset(), text_in_number}),
+              ::testing::AllOf(HasSubstr("bad.csv"), HasSubstr("row 3"), HasSubstr("position"), HasSubstr("abc")));
+  EXPECT_THAT(
+      refused({"sealwatch", "fit", "--asset", write("asset.yaml", "asset_id: A\nparametres: {}\n"), text_in_number}),
+      ::testing::AllOf(HasSubstr("line 2"), HasSubstr("parametres"), HasSubstr("did you mean 'parameters'?")));
+  EXPECT_THAT(
+      refused({"sealwatch", "forecast", "--history",
+               write("twice.csv", "time[iso8601],theta[1],theta_std[1]\n2020-02-01,0.9,0.01\n2020-01-01,0.9,0.01\n")}),
+      ::testing::AllOf(HasSubstr("twice.csv"), HasSubstr("row 3")));
+  EXPECT_THAT(refused({"sealwatch", "watch", "advisries"}), HasSubstr("did you mean 'advisory'?"));
+  EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--speed", "fast", text_in_number}),
+              HasSubstr("--speed"));
+  EXPECT_EQ(run({"sealwatch", "no_such_command"}).status, 2);
+}
+
+TEST_F(Commands, ReplayPassesOverABadRecordingAndSaysSo) {
+  const auto [recording, truth] = worn_test();
+  const std::string bad = write("empty.csv", "");
+  const Finished replay = run({"sealwatch", "replay", "--config", config(), "--offline", "--quiet", bad, recording});
+  EXPECT_EQ(replay.status, 2) << replay.output;
+  EXPECT_THAT(replay.output, HasSubstr("empty.csv"));
+  EXPECT_THAT(replay.output, HasSubstr("R_CL")) << "the good recording is concluded all the same";
+}
+
+TEST_F(Commands, ReplayWithoutServicesSaysWhatToDo) {
+  const auto [recording, truth] = worn_test();
+  const Finished replay = run({"sealwatch", "replay", "--config", config(), recording});
+  EXPECT_EQ(replay.status, 1) << replay.output;
+  EXPECT_THAT(replay.output, HasSubstr("sealwatch up"));
+}
+
+TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
+  EXPECT_EQ(run({"sealwatch", "config", "check", "--config", config()}).status, 0);
+  const std::string file = write("sealwatch.yaml", "domain: 900\nservises: {}\n");
+  const Finished check = run({"sealwatch", "config", "check", "--config", file});
+  EXPECT_EQ(check.status, 2);
+  EXPECT_THAT(check.output, ::testing::AllOf(HasSubstr("line 1"), HasSubstr("900"), HasSubstr("line 2"),
+                                             HasSubstr("did you mean 'services'?")));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

@@ -1,5 +1,6 @@
 #include "services/common/runtime/layer_runner.hpp"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -106,6 +107,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   send_requests();
   if (steady_clock::now() - last_second_ >= kSecond) {
     last_second_ = steady_clock::now();
+    give_memory_back();
     if (Status status = let_time_pass(); !status) return status;
   }
   report_progress();
@@ -131,6 +133,8 @@ Status LayerRunner::in_batch(const std::function<Status()>& work) {
 
 Status LayerRunner::take_ready() {
   const auto begin = steady_clock::now();
+  last_work_ = begin;
+  holds_memory_ = true;
   do {
     const Message message = std::move(ready_.front());
     ready_.pop_front();
@@ -181,6 +185,13 @@ Status LayerRunner::keep(const Conclusion& conclusion, const std::string& input_
     if (Status status = journal_.consume(id); !status) return status;
   }
   return {};
+}
+
+/// After a burst of work an idle service is as small as before it.
+void LayerRunner::give_memory_back() {
+  if (!holds_memory_ || steady_clock::now() - last_work_ < kSecond) return;
+  ::malloc_trim(0);
+  holds_memory_ = false;
 }
 
 Status LayerRunner::let_time_pass() {

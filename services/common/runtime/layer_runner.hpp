@@ -66,6 +66,7 @@ class LayerRunner {
   [[nodiscard]] Status in_batch(const std::function<Status()>& work);
   [[nodiscard]] Status take_ready();
   [[nodiscard]] Status take(const Message& message);
+  void give_memory_back();
   [[nodiscard]] Status keep(const Conclusion& conclusion, const std::string& input_id);
   [[nodiscard]] Status let_time_pass();
   [[nodiscard]] Status serve_resends();
@@ -94,6 +95,8 @@ class LayerRunner {
   std::string last_error_;
   std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};
+  std::chrono::steady_clock::time_point last_work_{};
+  bool holds_memory_ = false;  ///< of work done since memory was given back
   std::unique_ptr<Heartbeat> heartbeat_;
 };
 

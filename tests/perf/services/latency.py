@@ -5,6 +5,8 @@ From the instant of a block's last sample to
   hop          the raw block at a reader in another process, without data acquisition: what one DDS hop costs
   reader       the sample block at that reader, after data acquisition has judged, journaled and published it
   manipulation the same sample block in data manipulation, from that service's journal: the figure with the goal
+Modes (live_latency.cpp): spread, as actuators are that do not share a clock, decides; together and endings are the worst
+that can happen: 50 blocks at one instant, and 50 tests of which one ends every 0.6 s.
 Usage: latency.py BIN_DIRECTORY [SECONDS]
 """
 import pathlib
@@ -72,9 +74,11 @@ def main():
             for place, values in places.items():
                 p50, p99 = quantile(values, 0.5), quantile(values, 0.99)
                 print(f"  {mode:8} {place:12} {len(values)} blocks  p50 {p50:6.2f}  p99 {p99:6.2f}  max {max(values):6.2f} ms")
+            below = quantile(places["manipulation"], 0.99) < GOAL_MS
+            print(f"  {mode:8} p99 in manipulation {'below' if below else 'ABOVE'} {GOAL_MS:.0f} ms")
             print(f"  {mode:8} " + ", ".join(f"{name} {used:.0f} %" for name, used in share.items()) + " of a core")
-            met = met and quantile(places["manipulation"], 0.99) < GOAL_MS
-    print(f"  goal: p99 below {GOAL_MS:.0f} ms in manipulation: {'met' if met else 'MISSED'}")
+            met = met and (below or mode != "spread")
+    print(f"  goal: p99 below {GOAL_MS:.0f} ms in manipulation, spread: {'met' if met else 'MISSED'}")
     sys.exit(not met)
 
 

@@ -12,7 +12,7 @@ import time
 
 from services import DOMAIN, SERVICES, SOURCE, Services, load, memory_MB
 
-GOAL_S = 60.0
+GOAL_S, SETTLE_S = 60.0, 4.0
 SHARED = SOURCE.parent / "shared/data/pst_life/xt03-mv2"
 
 
@@ -54,6 +54,7 @@ def main():
             shares = services.cpu_s()
             print(f"  six services over DDS  {live_s:6.1f} s, processor {used_s + sum(shares.values()):.1f} s: replay {used_s:.1f}, "
                   + ", ".join(f"{name} {shares[name]:.1f}" for name in SERVICES))
+            time.sleep(SETTLE_S)
             print("  resident afterwards    " + ", ".join(
                 f"{name} {memory_MB(services.processes[name].pid, 'VmRSS'):.1f}" for name in SERVICES) + " MB")
         offline_s, used_s = timed([*replay, "--offline", *files])

@@ -75,6 +75,7 @@ std::optional<Words> read(std::string text) {
 const InForce& VerdictMemory::judge(const TestVerdict& verdict, std::optional<UtcTime> now, const Options& options) {
   remember(verdict);
   if (verdict.wear) judge_wear(verdict, options);
+  if (now) drop_stale_date(verdict, *now, options);
   if (verdict.replace_by && now) judge_date(verdict, *now, options);
   in_force_.instruments_doubted =
       raised(last_, &TestVerdict::instruments_doubted, in_force_.instruments_doubted, options);
@@ -92,15 +93,27 @@ void VerdictMemory::judge_wear(const TestVerdict& verdict, const Options& option
   if (verdict.urgent) in_force_.wear = std::max(in_force_.wear, *verdict.wear);
 }
 
+/// A date that has passed, or that none of the last tests names any more, is not in force: advice never names a day of
+/// years ago.
+void VerdictMemory::drop_stale_date(const TestVerdict& verdict, UtcTime now, const Options& options) {
+  if (!in_force_.replace_by) return;
+  const bool still_meant =
+      verdict.replace_by && months_between(*in_force_.replace_by, *verdict.replace_by) <= options.date_tolerance_months;
+  const bool passed = *in_force_.replace_by <= now && !still_meant;
+  const auto recent = newest(last_, options.easing_tests);
+  const bool forgotten = recent.size() == options.easing_tests && votes(recent, &TestVerdict::replace_by).empty();
+  if (passed || forgotten) in_force_.replace_by.reset();
+}
+
 void VerdictMemory::judge_date(const TestVerdict& verdict, UtcTime now, const Options& options) {
   if (!in_force_.replace_by) {
     in_force_.replace_by = verdict.replace_by;
     return;
   }
-  const auto dates = votes(last_, &TestVerdict::replace_by);
   const auto worse = std::less<>();
-  const auto confirmed = reached_by(newest(dates, options.confirming_window), options.confirming_tests, worse);
-  const auto row = newest(dates, options.easing_tests);
+  const auto confirmed = reached_by(votes(newest(last_, options.confirming_window), &TestVerdict::replace_by),
+                                    options.confirming_tests, worse);
+  const auto row = votes(newest(last_, options.easing_tests), &TestVerdict::replace_by);
   UtcTime date = *in_force_.replace_by;
   const bool may_ease = in_force_.wear != WearLevel::replace && row.size() == options.easing_tests;
   if (may_ease) date = std::max(date, *reached_by(row, 1, worse));

@@ -53,6 +53,7 @@ class VerdictMemory {
  private:
   void remember(const TestVerdict& verdict);
   void judge_wear(const TestVerdict& verdict, const Options& options);
+  void drop_stale_date(const TestVerdict& verdict, UtcTime now, const Options& options);
   void judge_date(const TestVerdict& verdict, UtcTime now, const Options& options);
 
   std::vector<TestVerdict> last_;  ///< newest last, bounded

@@ -78,7 +78,8 @@ std::string content(const LeakageEstimate& m) {
   if (!m.estimated) return "no estimate: " + join(m.reasons);
   std::string text =
       "R_CL " + number(m.resistance_Pa_s_m3, 3) + " +- " + number(m.resistance_std_Pa_s_m3, 2) + " Pa s/m3";
-  if (m.condition_known) text += ", seal condition " + percent(m.condition) + " +- " + percent(m.condition_std, 2);
+  if (m.condition_known)
+    text += ", seal condition " + percent(m.condition) + " +- " + number(100.0 * m.condition_std, 2) + " %";
   if (!m.used_for_forecast) text += ", left out: " + join(m.reasons);
   return text;
 }
@@ -146,12 +147,24 @@ std::string forecast_table(const std::vector<Forecast>& forecasts) {
   return text;
 }
 
+namespace {
+
+/// Keeps the word on the latest test: a test that is replayed late does not take its place.
+template <typename T>
+void keep_latest(std::optional<T>& kept, const T& next) {
+  const bool earlier = kept && kept->header.event_time_known && next.header.event_time_known &&
+                       next.header.event_time_ns < kept->header.event_time_ns;
+  if (!earlier) kept = next;
+}
+
+}  // namespace
+
 void AssetView::take(const Message& message) {
   asset_id_ = asset_of(message);
   if (const auto* estimate = std::get_if<LeakageEstimate>(&message)) estimates_[estimate->header.pst_id] = *estimate;
-  if (const auto* life = std::get_if<RemainingLife>(&message)) life_ = *life;
-  if (const auto* health = std::get_if<HealthReport>(&message)) health_ = *health;
-  if (const auto* state = std::get_if<StateReport>(&message)) state_ = *state;
+  if (const auto* life = std::get_if<RemainingLife>(&message)) keep_latest(life_, *life);
+  if (const auto* health = std::get_if<HealthReport>(&message)) keep_latest(health_, *health);
+  if (const auto* state = std::get_if<StateReport>(&message)) keep_latest(state_, *state);
   if (const auto* advisory = std::get_if<Advisory>(&message))
     if (advisory->state != AdvisoryState::superseded) advisory_ = *advisory;
 }
@@ -159,8 +172,8 @@ void AssetView::take(const Message& message) {
 std::string AssetView::seal_lines() const {
   std::string text;
   if (life_ && life_->condition_known)
-    text += "  seal condition   " + percent(life_->condition) + " +- " + percent(life_->condition_std, 2) +
-            " of its elastic modulus when new (fails at " + percent(life_->threshold, 0) + ")\n";
+    text += "  seal condition   " + percent(life_->condition) + " +- " + number(100.0 * life_->condition_std, 2) +
+            " %" + " of its elastic modulus when new (fails at " + percent(life_->threshold, 0) + ")\n";
   const LeakageEstimate* latest = nullptr;
   for (const auto& [id, estimate] : estimates_)
     if (estimate.estimated && (latest == nullptr || estimate.header.event_time_ns >= latest->header.event_time_ns))

@@ -62,6 +62,26 @@ TEST_F(VerdictMemoryTest, SmallChangesDoNotMoveTheDate) {
   EXPECT_EQ(date("2018-01-01"), day("2018-01-01"));
 }
 
+TEST_F(VerdictMemoryTest, ADateThatHasPassedIsNamedNoMore) {
+  date("2014-12-01");  // before kNow, and the test itself means it: late is late
+  EXPECT_EQ(date("2014-12-20"), day("2014-12-01"));
+  EXPECT_EQ(date("2017-06-01"), day("2017-06-01"));
+}
+
+TEST_F(VerdictMemoryTest, ADateThatNoTestNamesAnyMoreIsForgotten) {
+  date("2018-06-01");
+  const TestVerdict without_date{.wear = WearLevel::plan};
+  for (int test = 0; test < 3; ++test) EXPECT_EQ(memory_.judge(without_date, kNow, {}).replace_by, day("2018-06-01"));
+  EXPECT_FALSE(memory_.judge(without_date, kNow, {}).replace_by.has_value());
+}
+
+TEST_F(VerdictMemoryTest, DatesOfLongAgoDoNotVote) {
+  date("2018-06-01");
+  date("2016-06-01");  // one of three: not confirmed
+  for (int test = 0; test < 3; ++test) (void)memory_.judge({.wear = WearLevel::plan}, kNow, {});
+  EXPECT_EQ(date("2016-06-01"), day("2018-06-01")) << "the other vote for 2016 is four tests old";
+}
+
 TEST_F(VerdictMemoryTest, DoubtInInstrumentsIsConfirmedAndGivenUpAlike) {
   const TestVerdict doubted{.instruments_doubted = true};
   EXPECT_FALSE(memory_.judge(doubted, kNow, {}).instruments_doubted);

@@ -46,8 +46,9 @@ std::optional<forecast::ForecastRequest> request_of(const ForecastOptions& optio
   request.threshold = options.threshold_given || !seal ? options.threshold : seal->threshold;
   if (!request.history.empty()) request.now = request.history.back().time;
   for (const std::string& text : options.before) {
-    const Result<UtcTime> before = parse_utc(text);
+    Result<UtcTime> before = parse_utc(text);
     if (!before) {
+      before.error().place = "--before";
       complain(before.error());
       return std::nullopt;
     }

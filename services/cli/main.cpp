@@ -1,20 +1,25 @@
 // `sealwatch`: one program with subcommands for engineers and operators. Arguments only; each command is in its own
 // file.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <functional>
 #include <iostream>
 #include <map>
 
+#include "sealwatch/core/text.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/completion.hpp"
 #include "services/cli/manual.hpp"
+#include "services/cli/session.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
 constexpr const char* kExitStatus =
     "Exit status: 0 ok; 1 it ran and the answer is \"no\"; 2 bad usage or input; 3 internal failure.";
+
+std::string not_negative(const std::string& text) { return text.starts_with("-") ? "must not be negative" : ""; }
 
 /// The command line: its options, and what to run when it has been parsed.
 class CommandLine {
@@ -31,6 +36,7 @@ class CommandLine {
   }
 
   int run(int argc, char** argv) {
+    if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) return unknown(argv[1]);
     try {
       app_.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -40,6 +46,21 @@ class CommandLine {
   }
 
  private:
+  std::vector<std::string> commands() const {
+    std::vector<std::string> names;
+    for (const CLI::App* subcommand : app_.get_subcommands(nullptr)) names.push_back(subcommand->get_name());
+    return names;
+  }
+  bool is_command(const std::string& name) const {
+    const std::vector<std::string> names = commands();
+    return std::find(names.begin(), names.end(), name) != names.end();
+  }
+  int unknown(const std::string& name) const {
+    complain(
+        Error{.file = {}, .place = {}, .value = name, .rule = "is not a command", .advice = suggest(name, commands())});
+    return kBadInput;
+  }
+
   CLI::App* command(const std::string& name, const std::string& meaning, const std::string& example,
                     std::function<int()> run) {
     CLI::App* subcommand = app_.add_subcommand(name, meaning);
@@ -66,7 +87,9 @@ class CommandLine {
         ->capture_default_str();
     simulate->add_option("--start", simulate_.start, "UTC time of installation; the first test is a month later")
         ->capture_default_str();
-    simulate->add_option("--seed", simulate_.seed, "same seed, same recordings")->capture_default_str();
+    simulate->add_option("--seed", simulate_.seed, "same seed, same recordings")
+        ->check(not_negative)
+        ->capture_default_str();
     simulate->add_option("--rate", simulate_.sample_rate_Hz, "samples a second")
         ->check(CLI::Range(10.0, 5000.0))
         ->capture_default_str();
@@ -137,7 +160,8 @@ class CommandLine {
     add_config(watch, watch_.config);
     watch->add_option("topics", watch_.topics, "topics by name, service_status among them (default: all but samples)");
     watch->add_option("--asset", watch_.asset_id, "only this asset");
-    watch->add_option("--seconds", watch_.seconds, "stop after this time (default: until interrupted)");
+    watch->add_option("--seconds", watch_.seconds, "stop after this time (default: until interrupted)")
+        ->check(not_negative);
     watch->add_flag("--json", watch_.json, "one JSON object a line");
 
     CLI::App* up = command("up", "start the six services here and keep them running", "sealwatch up --config config",

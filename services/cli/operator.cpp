@@ -80,9 +80,18 @@ int run_acknowledge(const AcknowledgeOptions& options) {
 }
 
 int run_replaced(const ReplacedOptions& options) {
-  const Result<UtcTime> at = parse_utc(options.at);
+  Result<UtcTime> at = parse_utc(options.at);
   if (!at) {
+    at.error().place = "--at";
     complain(at.error());
+    return kBadInput;
+  }
+  if (at->nanoseconds > now_ns()) {  // a slip in the year would set aside every test until then
+    complain(Error{.file = {},
+                   .place = "--at",
+                   .value = options.at,
+                   .rule = "lies in the future",
+                   .advice = "report a replacement once it has been done"});
     return kBadInput;
   }
   MaintenanceEvent message;

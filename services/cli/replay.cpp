@@ -1,6 +1,7 @@
 // `sealwatch replay`: recorded tests through the live services, or the same layers in this process.
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include "services/cli/commands.hpp"
@@ -66,7 +67,7 @@ class LiveReplay {
 
   int run(Supervisor* supervisor) {
     if (const Status joined = join(); !joined) return give_up(joined.error());
-    if (!wait_for_services(supervisor)) return kAnswerIsNo;
+    if (!wait_for_services(supervisor)) return supervisor != nullptr && supervisor->refused() ? kBadInput : kAnswerIsNo;
     reader_.emplace("replay", quiescence_.written(ReplayLog::topics()));
     last_progress_ = steady_clock::now();
     while (!interrupted() && !over()) {
@@ -97,6 +98,7 @@ class LiveReplay {
         if (const auto* message = std::get_if<Message>(&item)) log_.take_earlier(*message);
       }
       tend(supervisor);
+      if (supervisor != nullptr && supervisor->refused()) return false;  // and has said why
       if (quiescence_.missing().empty()) return true;
     }
     std::string missing;
@@ -196,6 +198,17 @@ int run_replay(const ReplayOptions& options) {
   if (!layers) {
     complain(layers.error());
     return kInternalFailure;
+  }
+  if (std::error_code error; !options.results_directory.empty()) {
+    std::filesystem::create_directories(options.results_directory, error);
+    if (error) {
+      complain(Error{.file = options.results_directory,
+                     .place = "--results",
+                     .value = {},
+                     .rule = "cannot be written to: " + error.message(),
+                     .advice = {}});
+      return kBadInput;
+    }
   }
   ReplayLog log(options, source->tests());
   catch_interrupts();

@@ -15,9 +15,7 @@ constexpr std::array kTopics = {Topic::test_features,    Topic::state_report,   
 
 }  // namespace
 
-ReplayLog::ReplayLog(const ReplayOptions& options, std::size_t tests) : options_(options), progress_("replay", tests) {
-  if (!options_.results_directory.empty()) std::filesystem::create_directories(options_.results_directory);
-}
+ReplayLog::ReplayLog(const ReplayOptions& options, std::size_t tests) : options_(options), progress_("replay", tests) {}
 
 std::span<const Topic> ReplayLog::topics() { return kTopics; }
 

@@ -18,8 +18,9 @@ namespace {
 constexpr int kSignificantDigits = 9;
 
 std::optional<bench::LifeSetting> life_of(const SimulateOptions& options) {
-  const Result<UtcTime> start = parse_utc(options.start);
+  Result<UtcTime> start = parse_utc(options.start);
   if (!start) {
+    start.error().place = "--start";
     complain(start.error());
     return std::nullopt;
   }
@@ -85,6 +86,15 @@ int run_simulate(const SimulateOptions& options) {
   const Result<std::vector<bench::PlannedTest>> plan = bench::plan_life(*asset, *life);
   if (!plan) {
     complain(plan.error());
+    return kBadInput;
+  }
+  if (plan->empty()) {  // a life ends at the threshold
+    complain(Error{.file = {},
+                   .place = "--condition",
+                   .value = number(options.condition, 3),
+                   .rule = "is not above the asset's threshold " + number(asset->seal->threshold, 3) +
+                           ": such a seal has failed before its first test",
+                   .advice = {}});
     return kBadInput;
   }
   if (const Status written = write_life(*asset, *life, options, *plan); !written) {

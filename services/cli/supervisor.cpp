@@ -5,10 +5,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <thread>
 
+#include "services/cli/commands.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
 
 extern char** environ;
@@ -60,7 +62,7 @@ std::vector<ServiceProgram> service_programs(const std::string& config, const st
 Supervisor::Supervisor(std::vector<ServiceProgram> programs, std::chrono::milliseconds restart_pause)
     : restart_pause_(restart_pause) {
   for (ServiceProgram& program : programs)
-    children_.push_back({.program = std::move(program), .process = -1, .started = {}});
+    children_.push_back({.program = std::move(program), .process = -1, .started = {}, .starts = 0, .refused = false});
 }
 
 Supervisor::~Supervisor() { stop(); }
@@ -77,6 +79,7 @@ Status Supervisor::launch(Child& child) {
   const int error = posix_spawnp(&child.process, arguments[0], nullptr, &attributes, arguments.data(), environ);
   posix_spawnattr_destroy(&attributes);
   child.started = std::chrono::steady_clock::now();
+  ++child.starts;
   if (error == 0) return {};
   child.process = -1;
   return fail(Error{.file = child.program.arguments[0],
@@ -99,8 +102,10 @@ std::vector<std::string> Supervisor::tend() {
     if (child.process > 0 && waitpid(child.process, &status, WNOHANG) == child.process) {
       events.push_back(child.program.name + " " + ending(status));
       child.process = -1;
+      child.refused = child.starts == 1 && WIFEXITED(status) && WEXITSTATUS(status) == kBadInput;
     }
-    if (child.process > 0 || std::chrono::steady_clock::now() - child.started < restart_pause_) continue;
+    if (child.process > 0 || child.refused || std::chrono::steady_clock::now() - child.started < restart_pause_)
+      continue;
     const Status launched = launch(child);
     events.push_back(launched ? child.program.name + " started again" : launched.error().describe());
   }
@@ -125,6 +130,10 @@ void Supervisor::stop() {
       }
     }
   }
+}
+
+bool Supervisor::refused() const {
+  return std::any_of(children_.begin(), children_.end(), [](const Child& child) { return child.refused; });
 }
 
 pid_t Supervisor::process_of(const std::string& name) const {

@@ -42,12 +42,17 @@ class Supervisor {
   /// Asks all to end (SIGTERM), waits up to five seconds, then kills. Idempotent.
   void stop();
   [[nodiscard]] pid_t process_of(const std::string& name) const;
+  /// Whether a program ended at its first start because of bad input (exit status 2: its state directory cannot be
+  /// written, or another one works in it). It is not started again: that would end the same way for ever.
+  [[nodiscard]] bool refused() const;
 
  private:
   struct Child {
     ServiceProgram program;
     pid_t process = -1;
     std::chrono::steady_clock::time_point started;
+    int starts = 0;
+    bool refused = false;
   };
   [[nodiscard]] static Status launch(Child& child);
   std::vector<Child> children_;

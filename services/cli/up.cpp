@@ -24,13 +24,14 @@ int run_up(const UpOptions& options) {
     std::printf("started %s, pid %d\n", program.name.c_str(), static_cast<int>(supervisor.process_of(program.name)));
   std::printf("sealwatch is up; `sealwatch status` in another terminal shows more; Ctrl-C stops it\n");
   std::fflush(stdout);
-  while (!interrupted()) {
+  while (!interrupted() && !supervisor.refused()) {
     for (const std::string& event : supervisor.tend()) std::fprintf(stderr, "%s\n", event.c_str());
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
+  const bool refused = supervisor.refused();
   supervisor.stop();
-  std::printf("all services stopped\n");
-  return kOk;
+  std::printf("all services stopped%s\n", refused ? ": one could not start, the reason is above" : "");
+  return refused ? kBadInput : kOk;
 }
 
 }  // namespace sealwatch::cli

@@ -84,14 +84,13 @@ Error error_at(std::string place, std::string_view value, std::string rule, std:
 }
 
 Result<Column> find_column(std::string_view cell, const PlantDescription& plant) {
+  if (cell.find(';') != std::string_view::npos)
+    return fail(error_at({}, cell, "is not a channel of plant " + plant.name, "cells are separated by commas"));
   const Result<NameAndUnit> parts = split_cell(cell);
   if (!parts) return fail(parts.error());
   const std::string_view si_unit = si_unit_of(parts->name, plant);
-  if (si_unit.empty()) {
-    const std::string advice = cell.find(';') == std::string_view::npos ? suggest_channel(parts->name, plant)
-                                                                        : "cells are separated by commas";
-    return fail(error_at({}, cell, "is not a channel of plant " + plant.name, advice));
-  }
+  if (si_unit.empty())
+    return fail(error_at({}, cell, "is not a channel of plant " + plant.name, suggest_channel(parts->name, plant)));
   Result<UnitConversion> conversion = find_conversion(parts->unit, si_unit);
   if (!conversion) {
     Error error = error_at({}, cell, "unit '" + printable(parts->unit) + "' " + conversion.error().rule,

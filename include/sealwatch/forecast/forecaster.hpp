@@ -52,7 +52,8 @@ struct ForecasterSettings {
 [[nodiscard]] const std::vector<std::string>& forecast_methods();
 [[nodiscard]] Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings);
 
-/// The forecasters of MODEL section 6, the one in charge first: ols with 36, 24, 48 months, then the others.
+/// The one in charge first: ols_drift over 36 months, whose point forecast is that of ols and whose interval holds when
+/// the rate of ageing changes, as it does (docs/forecast.md); then the forecasters of MODEL section 6.
 [[nodiscard]] std::vector<ForecasterSettings> default_forecasters();
 
 /// Several forecasters that judge the same history.

@@ -66,8 +66,8 @@ Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettin
 }
 
 std::vector<ForecasterSettings> default_forecasters() {
-  return {{"ols", 36},          {"ols", 24},       {"ols", 48},       {"ols_log_time", 36}, {"ols_log_time", 24},
-          {"ols_log_time", 48}, {"ols_drift", 36}, {"ols_drift", 24}, {"ols_drift", 48}};
+  return {{"ols_drift", 36},    {"ols", 36},          {"ols", 24},       {"ols", 48},      {"ols_log_time", 36},
+          {"ols_log_time", 24}, {"ols_log_time", 48}, {"ols_drift", 24}, {"ols_drift", 48}};
 }
 
 Result<ForecastPanel> ForecastPanel::make(const std::vector<ForecasterSettings>& settings) {

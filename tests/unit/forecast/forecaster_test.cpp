@@ -208,7 +208,7 @@ TEST(Panel, OrderOfArrivalDoesNotMatterAndOutliersAreNamed) {
   life[50].condition = 0.95;
   const auto in_order = panel->forecast({.history = life, .threshold = 0.60, .now = month(60)});
   EXPECT_THAT(in_order.left_out, testing::ElementsAre(life[50]));
-  EXPECT_EQ(in_order.forecasts.front().method, "ols");
+  EXPECT_EQ(in_order.forecasts.front().method, "ols_drift");
   EXPECT_EQ(in_order.forecasts.front().window_months, 36);
   std::shuffle(life.begin(), life.end(), random);
   const auto shuffled = panel->forecast({.history = life, .threshold = 0.60, .now = month(60)});

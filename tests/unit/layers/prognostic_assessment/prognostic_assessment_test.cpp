@@ -38,7 +38,7 @@ TEST_F(PrognosticAssessmentTest, EveryTestGivesEstimateRemainingLifeAndRequest) 
   EXPECT_NEAR(life.condition, 0.76, 1e-9);
   EXPECT_EQ(life.tests_since_replacement, 60);
   const Forecast& in_charge = life.forecasts.front();
-  EXPECT_EQ(in_charge.method, "ols");
+  EXPECT_EQ(in_charge.method, "ols_drift");
   EXPECT_EQ(in_charge.window_months, 36);
   ASSERT_EQ(in_charge.state, ForecastState::ok) << in_charge.explanation;
   EXPECT_NEAR(in_charge.rul_months, 40.0, 1e-6);
@@ -92,7 +92,8 @@ TEST_F(PrognosticAssessmentTest, AfterReplacementTheHistoryStartsAnew) {
   EXPECT_THAT(reset.forecasts.front().explanation, HasSubstr("seal_replaced on 2013-05"));
   EXPECT_EQ(lives[41].tests_since_replacement, 1);
   EXPECT_EQ(lives[41].forecasts.front().state, ForecastState::insufficient_history);
-  const Forecast window_24 = lives.back().forecasts[1];
+  const Forecast window_24 = lives.back().forecasts[2];
+  ASSERT_EQ(window_24.method, "ols");
   ASSERT_EQ(window_24.window_months, 24);
   EXPECT_NEAR(window_24.rul_months, 40.5 + 80.0 - 70.0, 1e-6);
 }

@@ -42,7 +42,6 @@ struct ActuatorFitOptions {
   /// Where the first search ends badly, the shared parameters are started again at these multiples of the asset's
   /// values.
   std::vector<double> restart_factors = {0.5, 2.0};
-  bool estimate_shared = true;  ///< false: loads and initial states only
   AdmissibilityOptions admissibility;
 
   [[nodiscard]] Status validate() const;

@@ -1,4 +1,4 @@
-// The ports Estimator and Simulator by prediction-error minimisation.
+// The port Estimator by prediction-error minimisation.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,5 @@ namespace sealwatch {
 /// that is admissible stands first, so that the fit to trust is always the front one.
 [[nodiscard]] std::unique_ptr<Estimator> make_pem_estimator(ActuatorFitOptions actuator = {},
                                                             CylinderCircuitOptions cylinder = {});
-
-/// Simulates with the asset's parameters; load factor and slow initial states are estimated from the recording.
-[[nodiscard]] std::unique_ptr<Simulator> make_simulator(ActuatorFitOptions options = {});
 
 }  // namespace sealwatch

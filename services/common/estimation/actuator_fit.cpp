@@ -77,7 +77,7 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
     return JointFit{.report = cannot_fit(asset.model, error.describe()), .recordings = {}};
   };
   if (const Status valid = options.validate(); !valid) return failed(valid.error());
-  Result<PemProblem> problem = make_pem_problem(asset, recordings, options.estimate_shared);
+  Result<PemProblem> problem = make_pem_problem(asset, recordings);
   if (!problem) return failed(problem.error());
   problem->simulation_options = simulation_options(recordings, options);
   start_from_cylinder_circuit(*problem, asset, recordings);

@@ -25,29 +25,10 @@ class PemEstimator final : public Estimator {
   CylinderCircuitOptions cylinder_;
 };
 
-class PemSimulator final : public Simulator {
- public:
-  explicit PemSimulator(ActuatorFitOptions options) : options_(std::move(options)) { options_.estimate_shared = false; }
-
-  [[nodiscard]] Result<TimeSeries> simulate(const AssetConfig& asset, const TimeSeries& recorded) const override {
-    JointFit fit = fit_actuator(asset, {&recorded, 1}, options_);
-    if (fit.recordings.empty())
-      return fail(fit.report.reasons.empty() ? "cannot be simulated" : fit.report.reasons.front());
-    return std::move(fit.recordings.front().simulated);
-  }
-
- private:
-  ActuatorFitOptions options_;
-};
-
 }  // namespace
 
 std::unique_ptr<Estimator> make_pem_estimator(ActuatorFitOptions actuator, CylinderCircuitOptions cylinder) {
   return std::make_unique<PemEstimator>(std::move(actuator), cylinder);
-}
-
-std::unique_ptr<Simulator> make_simulator(ActuatorFitOptions options) {
-  return std::make_unique<PemSimulator>(std::move(options));
 }
 
 }  // namespace sealwatch

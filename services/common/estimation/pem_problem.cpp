@@ -109,8 +109,7 @@ double Unknown::to_unknown(double value) const { return logarithmic ? std::log(v
 double Unknown::to_value(double unknown) const { return logarithmic ? scale * std::exp(unknown) : scale * unknown; }
 double Unknown::slope(double unknown) const { return logarithmic ? to_value(unknown) : scale; }
 
-Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
-                                    bool estimate_shared) {
+Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings) {
   PemProblem problem;
   for (const TimeSeries& recorded : recordings) {
     Result<PemRecording> recording = make_recording(asset, recorded);
@@ -118,11 +117,9 @@ Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const Ti
     problem.recordings.push_back(std::move(*recording));
   }
   if (problem.recordings.empty()) return fail("there is no recording");
-  if (estimate_shared) {
-    Result<std::vector<Unknown>> shared = shared_unknowns(asset, *problem.recordings.front().simulation);
-    if (!shared) return fail(shared.error());
-    problem.shared = std::move(*shared);
-  }
+  Result<std::vector<Unknown>> shared = shared_unknowns(asset, *problem.recordings.front().simulation);
+  if (!shared) return fail(shared.error());
+  problem.shared = std::move(*shared);
   return problem;
 }
 

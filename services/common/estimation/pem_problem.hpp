@@ -44,8 +44,7 @@ struct Linearisation {
   RowMatrix jacobian;        ///< d residual / d unknown: shared first, then own
 };
 
-[[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
-                                                  bool estimate_shared);
+[[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings);
 
 [[nodiscard]] ModelValues values_at(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                     const std::vector<double>& own);

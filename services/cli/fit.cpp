@@ -47,6 +47,8 @@ std::optional<std::vector<Recording>> read_all(const FitOptions& options, const 
                      .advice = "one fit is about one asset"});
       return std::nullopt;
     }
+    recording->asset_id =
+        asset.asset_id;  // without a sidecar too: cutting and aligning a test takes the asset's settings
     recordings.push_back(std::move(*recording));
   }
   return recordings;

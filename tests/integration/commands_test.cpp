@@ -73,6 +73,13 @@ TEST_F(Commands, FitOfTheCylinderCircuitAgrees) {
   EXPECT_EQ(leakage["name"], "R_CL");
   EXPECT_NEAR(leakage["value"].get<double>(), truth["R_CL_Pa_s_m3"].get<double>(),
               4.0 * leakage["std_error"].get<double>());
+  // The asset named on the command line is the recording's, whether or not a sidecar says so.
+  std::filesystem::remove(std::filesystem::path(recording).replace_extension(".yaml"));
+  const Finished bare =
+      run({"sealwatch", "fit", "--asset", asset(), "--model", "cylinder_circuit", recording, "--json"});
+  ASSERT_EQ(bare.status, 0) << bare.output;
+  EXPECT_NEAR(json::parse(bare.output)["parameters"][0]["value"].get<double>(), leakage["value"].get<double>(),
+              leakage["std_error"].get<double>());
 }
 
 TEST_F(Commands, ForecastOfASteadyDeclineMeetsItsEnd) {
@@ -131,7 +138,11 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
   EXPECT_THAT(refused({"sealwatch", "watch", "advisries"}), HasSubstr("did you mean 'advisory'?"));
   EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--speed", "fast", text_in_number}),
               HasSubstr("--speed"));
-  EXPECT_EQ(run({"sealwatch", "no_such_command"}).status, 2);
+  EXPECT_THAT(refused({"sealwatch", "simulat"}), HasSubstr("did you mean 'simulate'?"));
+  EXPECT_THAT(refused({"sealwatch", "simulate", "--asset", asset(), "--condition", "0.5", "--out", folder_.string()}),
+              HasSubstr("--condition"));
+  EXPECT_THAT(refused({"sealwatch", "replaced", "--config", config(), "XT03-MV2", "--at", "2999-01-01", "--by", "me"}),
+              HasSubstr("--at"));
 }
 
 TEST_F(Commands, ReplayPassesOverABadRecordingAndSaysSo) {

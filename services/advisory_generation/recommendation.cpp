@@ -70,8 +70,7 @@ Recommendation by_wear(const Context& c) {
       r.action = AdvisoryAction::plan_replacement;
       r.text = r.work_before
                    ? "Plan to replace the piston seal " + when + "; the vessel must be booked by " + booked_by + "."
-                   : "Prepare the replacement of the piston seal; it is too early for a date, straight and "
-                     "logarithmic ageing end years apart.";
+                   : "Prepare the replacement of the piston seal; it is too early for a date to book by.";
       r.text += view;
       return r;
     case WearLevel::book:
@@ -131,11 +130,18 @@ std::vector<Recommendation> calls(const Context& c) {
 
 }  // namespace
 
-Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& in_force,
+Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& remembered,
                          const SiteConfig* site) {
-  Context context{evidence, assessment, in_force, site, std::nullopt};
-  if (in_force.replace_by)
-    context.book_by = start_of_day(add_months(*in_force.replace_by, -booking_lead_time_months(site)));
+  InForce in_force = remembered;
+  std::optional<UtcTime> book_by;
+  if (in_force.replace_by) book_by = start_of_day(add_months(*in_force.replace_by, -booking_lead_time_months(site)));
+  // Level and date are remembered apart: a booking date that has passed meanwhile is urgent, whatever the level was.
+  const Header& header = evidence.life.header;
+  if (book_by && header.event_time_known && book_by->nanoseconds <= header.event_time_ns) {
+    if (in_force.wear == WearLevel::book) in_force.wear = WearLevel::book_at_once;
+    if (in_force.wear == WearLevel::plan) in_force.replace_by = book_by = std::nullopt;
+  }
+  const Context context{evidence, assessment, in_force, site, book_by};
   const std::vector<Recommendation> all = calls(context);
   const auto first =
       std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.priority < b.priority; });

@@ -220,11 +220,12 @@ std::string AssetView::history_chart() const {
 }
 
 std::string AssetView::forecast_lines() const {
-  if (!life_) return {};
-  std::string text = forecast_table(life_->forecasts);
-  if (life_->windows_disagree)
-    text += "                   windows disagree: " + wrapped(life_->disagreement, 100, 19) + "\n";
-  return text;
+  if (!life_ || life_->forecasts.empty()) return {};
+  // The one in charge and the straight lines beside it; the others are in the message.
+  std::vector<Forecast> shown = {life_->forecasts.front()};
+  for (std::size_t k = 1; k < life_->forecasts.size(); ++k)
+    if (life_->forecasts[k].method == "ols") shown.push_back(life_->forecasts[k]);
+  return forecast_table(shown);
 }
 
 std::string AssetView::advisory_lines() const {
@@ -232,10 +233,11 @@ std::string AssetView::advisory_lines() const {
   std::string text =
       "  advisory         " + upper(name_of(advisory_->priority)) + ", " + words(name_of(advisory_->action));
   if (advisory_->latest_by_known) text += ", latest by " + date(advisory_->latest_by_ns);
+  if (advisory_->state == AdvisoryState::acknowledged) text += ", acknowledged by " + advisory_->acknowledged_by;
   text += "\n                   " + wrapped(advisory_->recommendation, 100, 19) + "\n";
   for (const std::string& reason : advisory_->reasons)
     text += "                   - " + wrapped(reason, 100, 21) + "\n";
-  return text;
+  return text + "                   (to acknowledge: " + advisory_->advisory_id + ")\n";
 }
 
 std::string AssetView::left_out_lines() const {

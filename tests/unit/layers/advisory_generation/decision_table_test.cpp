@@ -133,6 +133,20 @@ TEST(DecisionTable, NoVesselIsBookedWhileTheLawsOfAgeingDiffer) {
   EXPECT_THAT(recommend(evidence, apart, memory.in_force(), nullptr).text, HasSubstr("too early for a date"));
 }
 
+TEST(DecisionTable, ABookingDateThatHasPassedIsUrgentWhateverTheRememberedLevel) {
+  const TestCase one{.rul_months = 24};
+  const Evidence evidence = one.evidence();
+  const Assessment assessment = assess(evidence, nullptr, {});
+  const UtcTime past_booking = add_months(one.time(), 3.0);  // the lead time is longer than three months
+  const Recommendation booked =
+      recommend(evidence, assessment, {.wear = WearLevel::book, .replace_by = past_booking}, nullptr);
+  EXPECT_EQ(booked.priority, AdvisoryPriority::urgent) << booked.text;
+  const Recommendation planned =
+      recommend(evidence, assessment, {.wear = WearLevel::plan, .replace_by = past_booking}, nullptr);
+  EXPECT_EQ(planned.priority, AdvisoryPriority::medium) << planned.text;
+  EXPECT_FALSE(planned.latest_by.has_value()) << "no day in the past is named";
+}
+
 TEST(DecisionTable, LessUrgentCallsStandInTheReasons) {
   const Recommendation r = confirmed({.rul_months = 24, .faults = {kSensor}});
   ASSERT_EQ(r.also.size(), 1u);

@@ -76,6 +76,12 @@ std::optional<double> mean_value(const TimeSeries& recorded, std::string_view ch
 Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConfig& asset, const TimeSeries& recorded) {
   const auto plant = find_plant(asset.model);
   if (!plant) return fail(plant.error());
+  if (!asset.physics.empty())
+    return fail(Error{.file = {},
+                      .place = "asset " + asset.asset_id + ", key physics",
+                      .value = asset.physics.front().id,
+                      .rule = "is a law that this version cannot simulate yet",
+                      .advice = "remove it: a fit without it would not be the model you mean"});
   if (const Status status = check_recording(**plant, recorded); !status) return fail(status.error());
   if (asset.model == "eha" && !recorded.has("motor_voltage") && recorded.has("flow"))
     return simulate_eha_circuit(**plant, asset, recorded);

@@ -159,6 +159,15 @@ TEST(Simulation, TakesTheFlowWhereTheVoltageIsNotRecorded) {
   EXPECT_NEAR(predicted->find("velocity")->values[halfway], recorded.find("velocity")->values[halfway], 1e-6);
 }
 
+TEST(PlantSimulation, RefusesPhysicsThatItWouldLeaveOut) {
+  AssetConfig asset = nominal_asset("eha");
+  const TimeSeries recorded = standard_pst(asset, 100.0);
+  asset.physics.push_back({.id = "coulomb_friction", .element = "piston", .parameters = {{"F_c", 4000.0}}});
+  const auto refused = PlantSimulation::create(asset, recorded);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().value, "coulomb_friction");
+}
+
 TEST(ModelSimulator, EstimatesTheLoadAndTheInitialStateOnly) {
   const AssetConfig asset = nominal_asset("eha");
   TimeSeries recorded = standard_pst(asset, 100.0);

@@ -102,7 +102,7 @@ int run_replaced(const ReplacedOptions& options) {
   message.header.event_time_known = true;
   message.header.event_time_ns = at->nanoseconds;
   message.header.message_id = "maintenance_event/" + options.asset_id + "/" + format_utc(*at);
-  return send(options.config, message, {"prognostic_assessment", "advisory_generation"});
+  return send(options.config, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
 }
 
 }  // namespace sealwatch::cli

@@ -90,9 +90,10 @@ void Journal::Database::create_schema() {
   const std::string version = std::to_string(kJournalSchemaVersion);
   const std::string writer = make_writer_id(service);
   const std::string insert = "INSERT INTO meta(name, value) VALUES(:name, :value)";
-  sql << insert, soci::use(std::string("schema_version"), "name"), soci::use(version, "value");
-  sql << insert, soci::use(std::string("service"), "name"), soci::use(service, "value");
-  sql << insert, soci::use(std::string("writer_id"), "name"), soci::use(writer, "value");
+  // Named, as SOCI keeps references until the statement runs: at the end of the line, after temporaries are gone.
+  const std::array<std::pair<std::string, std::string>, 3> rows = {
+      {{"schema_version", version}, {"service", service}, {"writer_id", writer}}};
+  for (const auto& [key, value] : rows) sql << insert, soci::use(key, "name"), soci::use(value, "value");
   transaction.commit();
 }
 

@@ -1,0 +1,110 @@
+// The catalogue of physics that a plant's model may lack: typed laws, each of which adds one contribution to one
+// balance.
+//
+//   balance of the plant:  ... + contribution(signals, hidden state, parameters),   hidden:  dh/dt = rate(...)
+//
+// A plant offers sites (model/<plant>.hpp): places in its balances, each of a kind with stated signals and unit. A law
+// is written for a kind, so that the same Coulomb friction serves every piston. At strength 0 a law is absent and its
+// contribution is zero. `evaluate` works on dual numbers over signals, hidden state and parameters; the simulation
+// chains them to whatever it differentiates by.
+//
+// Signs: losses are positive. A force opposes +x, a torque opposes +omega, a voltage is lost before the winding, a flow
+// leaves (chamber) or passes from the first port to the second (pump: 1 to 2, seal: A to B), a drop opposes the flow
+// into the chamber.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/core/fields.hpp"
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/model/dual.hpp"
+
+namespace sealwatch {
+
+/// What a site takes, with its unit, and the signals that laws see there (unused ones are 0).
+///   voltage_command  V          current i, command u, its rate du/dt
+///   winding_voltage  V          current i, speed omega
+///   shaft_torque     N m        speed omega, pressure difference p_1 - p_2, current i
+///   pump_slip        m3/s       pressure difference p_1 - p_2, speed omega
+///   line_drop        Pa         flow into the chamber q, pressure drop D
+///   valve_crack      Pa         pressure drop D over the valve, flow q     (lowers the cracking pressure)
+///   outflow          m3/s       pressure above the reservoir p - p_0
+///   compliance       m3/Pa      absolute pressure
+///   seal_leakage     m3/s       pressure difference p_A - p_B, speed v, position x
+///   piston_force     N          speed v, position x, p_A, p_B
+///   inverse_modulus  1/Pa       absolute pressure                          (added to 1/beta)
+///   viscosity        1          dissipated power |z i|                     (relative change of viscosity)
+///   tank_flow        V/s        level, level upstream                      (of the tank whose balance it is)
+///   sensor_*         channel    the simulated channel
+SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_slip, line_drop, valve_crack, outflow,
+               compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, sensor_bias, sensor_gain,
+               sensor_lag)
+
+inline constexpr std::size_t kSiteSignals = 4;
+inline constexpr std::size_t kLawParameters = 4;
+/// Signals, hidden state, parameters: one direction each.
+inline constexpr int kLawDirections = static_cast<int>(kSiteSignals + 1 + kLawParameters);
+using LawScalar = Dual<kLawDirections>;
+
+struct LawInput {
+  std::array<LawScalar, kSiteSignals> signal;
+  LawScalar hidden;
+  std::array<LawScalar, kLawParameters> parameter;
+};
+
+struct LawOutput {
+  LawScalar contribution;  ///< unit of the site
+  LawScalar rate;          ///< d hidden / dt
+};
+
+struct LawParameter {
+  std::string_view name;  ///< "F_c"
+  std::string_view unit;
+  std::string_view meaning;
+  /// Start values: the first is usual. For a strength: its usual size; for a shape: the grid that is searched.
+  std::vector<double> start;
+  double min = 0.0;  ///< bounds; a strength whose min is 0 can only dissipate (or whatever `energy` says)
+  double max = 0.0;
+  bool strength = false;  ///< the contribution is proportional to it (all strengths 0: the law is absent)
+  /// Size of a strength from which an engineer would care: about 1 % of what the element carries.
+  double significant = 0.0;
+};
+
+struct HiddenState {
+  std::string_view name;  ///< "bristle"
+  std::string_view unit;
+  double scale = 1.0;         ///< its usual size
+  bool free_initial = false;  ///< each recording's own (a shaft angle)
+};
+
+struct Law {
+  std::string_view id;    ///< of INTERFACES section 5; several forms may share one id
+  std::string_view form;  ///< which form: "laminar"; "" where there is one
+  SiteKind kind = SiteKind::piston_force;
+  std::string_view equation;  ///< "F_c tanh(v / v_s)"
+  std::string_view meaning;   ///< for an engineer: what it is
+  std::string_view energy;    ///< the condition that keeps it physical
+  std::string_view source;
+  std::vector<LawParameter> parameters;
+  std::optional<HiddenState> hidden = {};
+  LawOutput (*evaluate)(const LawInput& input) = nullptr;  ///< null for sensors, which the simulation applies itself
+  /// Elements that the law fits beside its kind; empty: all of that kind.
+  std::vector<std::string_view> elements = {};
+};
+
+/// All laws, in the order of their files (services/common/model/laws).
+[[nodiscard]] std::span<const Law> all_laws();
+
+/// The law of that id whose parameters have these names; an Error with the nearest id or name otherwise.
+[[nodiscard]] Result<const Law*> find_law(std::string_view id, const std::vector<std::string>& parameter_names);
+
+/// Contribution alone, of plain numbers: for drawings and for the sensitivity pass. `strength` scales all strengths.
+[[nodiscard]] LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters);
+
+}  // namespace sealwatch

@@ -1,0 +1,58 @@
+#include "sealwatch/model/physics.hpp"
+
+#include <algorithm>
+
+#include "sealwatch/core/text.hpp"
+
+namespace sealwatch {
+namespace {
+
+bool has_parameters(const Law& law, const std::vector<std::string>& names) {
+  return names.size() == law.parameters.size() && std::ranges::all_of(law.parameters, [&](const LawParameter& known) {
+           return std::ranges::find(names, known.name) != names.end();
+         });
+}
+
+std::string parameter_list(const Law& law) {
+  std::string text;
+  for (const LawParameter& parameter : law.parameters) {
+    if (!text.empty()) text += ", ";
+    text += parameter.name;
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<const Law*> find_law(std::string_view id, const std::vector<std::string>& parameter_names) {
+  std::vector<std::string> ids;
+  std::string forms;
+  for (const Law& law : all_laws()) {
+    ids.emplace_back(law.id);
+    if (law.id != id) continue;
+    if (has_parameters(law, parameter_names)) return &law;
+    if (!forms.empty()) forms += " or ";
+    forms += parameter_list(law);
+  }
+  if (forms.empty())
+    return fail(Error{.file = {},
+                      .place = "physics",
+                      .value = std::string(id),
+                      .rule = "is not a law of the catalogue",
+                      .advice = suggest(id, ids)});
+  std::string rule = "needs exactly the parameters ";
+  rule += forms;
+  return fail(Error{.file = {}, .place = "physics", .value = std::string(id), .rule = std::move(rule), .advice = {}});
+}
+
+LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters) {
+  LawInput input;
+  for (std::size_t k = 0; k < signals.size(); ++k)
+    input.signal[k] = LawScalar::variable(signals[k], static_cast<int>(k));
+  input.hidden = LawScalar::variable(hidden, static_cast<int>(kSiteSignals));
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    input.parameter[k] = LawScalar::variable(parameters[k], static_cast<int>(kSiteSignals + 1 + k));
+  return input;
+}
+
+}  // namespace sealwatch

@@ -54,6 +54,8 @@ struct DegradationLine {
   [[nodiscard]] double slope_std() const;
   /// One-sided p-value of "the condition does not fall".
   [[nodiscard]] double no_fall_probability() const;
+  /// se(y), with the change of slope counted from now.
+  [[nodiscard]] double prediction_std(double y) const;
   /// P(Y <= y) for the time at which the condition falls to `threshold`.
   [[nodiscard]] double crossing_probability(double threshold, double y) const;
   /// The y before which the threshold is crossed with `probability`; none when the slope is too uncertain to say.

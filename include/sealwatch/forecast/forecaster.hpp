@@ -17,6 +17,8 @@
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/forecast/condition_history.hpp"
+#include "sealwatch/forecast/fleet_population.hpp"
+#include "sealwatch/forecast/predictive_distribution.hpp"
 #include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch::forecast {
@@ -35,18 +37,42 @@ struct ForecastRequest {
   std::vector<FailureHorizon> horizons = {};  ///< those not after `now` are passed over
 };
 
+/// The message and, in state ok, the whole distribution that its numbers are quantiles of.
+struct PredictiveForecast {
+  Forecast forecast;
+  std::optional<PredictiveDistribution> distribution = {};
+};
+
+/// What the condition will be: location and scale of a Student t distribution (0 degrees of freedom: normal). The
+/// condition itself; an estimate of it scatters by its own standard error besides.
+struct ConditionForecast {
+  UtcTime time;
+  double condition = 0.0;
+  double condition_std = 0.0;
+  int degrees_of_freedom = 0;
+};
+
+/// Pure: the same request gives the same answer.
 class Forecaster {
  public:
   virtual ~Forecaster() = default;
-  /// Pure: the same request gives the same answer.
-  [[nodiscard]] virtual Forecast forecast(const ForecastRequest& request) const = 0;
+  [[nodiscard]] virtual PredictiveForecast predict(const ForecastRequest& request) const = 0;
+  /// The condition at `when`, not before `request.now`; none where `predict` is not ok.
+  [[nodiscard]] virtual std::optional<ConditionForecast> predict_condition(const ForecastRequest& request,
+                                                                           UtcTime when) const = 0;
+  [[nodiscard]] Forecast forecast(const ForecastRequest& request) const { return predict(request).forecast; }
 };
 
-/// Which forecaster, by name: "ols" (t on theta), "ols_log_time" (ln t on theta), "ols_drift" (as ols, and carries that
-/// the slope will change).
+/// Which forecaster, by name:
+///   ols           straight line of theta over t                        ols_log_time  the same over ln t
+///   ols_drift     as ols, and carries that the slope will change       ols_fieller   as ols, with Fieller's interval
+///   state_space   the degradation law as a state-space model           fleet         the same, pooled with the fleet
+///   average       average of `members` by their past scores
 struct ForecasterSettings {
   std::string method = "ols";
   int window_months = 36;
+  FleetPopulation population = {};               ///< of state_space and fleet
+  std::vector<ForecasterSettings> members = {};  ///< of average; none: its default members
 };
 
 [[nodiscard]] const std::vector<std::string>& forecast_methods();
@@ -63,7 +89,9 @@ class ForecastPanel {
 
   struct Answer {
     std::vector<Forecast> forecasts;  ///< in the order of the settings
-    bool windows_disagree = false;    ///< 95 % intervals of two windows of one method do not overlap
+    /// Beside each forecast; none unless it is ok.
+    std::vector<std::optional<PredictiveDistribution>> distributions;
+    bool windows_disagree = false;  ///< 95 % intervals of two windows of one method do not overlap
     std::string disagreement;
     std::vector<ConditionSample> used;      ///< in the order of time
     std::vector<ConditionSample> left_out;  ///< isolated outliers (condition_history.hpp)

@@ -16,6 +16,10 @@ struct OlsOptions {
   DegradationTime time = DegradationTime::months;
   /// kappa: standard deviation of the future slope relative to the window's slope [1].
   double slope_drift = 0.0;
+  /// Fieller's interval of inverse regression as textbooks give it: for the date at which an *estimate* reads
+  /// theta_max, so that all scatter about the line counts, sigma_p^2 = sigma^2; without it only the seal's own
+  /// irregularity does.
+  bool whole_scatter = false;
   /// One-sided level at which the slope must be negative. At 1 % all quantiles up to 97.5 % exist.
   double significance = 0.01;
   /// Share of the window's months that must have a usable test. Half: the rest is bridged, not guessed.
@@ -29,7 +33,9 @@ struct OlsOptions {
 class OlsForecaster final : public Forecaster {
  public:
   [[nodiscard]] static Result<std::unique_ptr<const Forecaster>> make(const OlsOptions& options);
-  [[nodiscard]] Forecast forecast(const ForecastRequest& request) const override;
+  [[nodiscard]] PredictiveForecast predict(const ForecastRequest& request) const override;
+  [[nodiscard]] std::optional<ConditionForecast> predict_condition(const ForecastRequest& request,
+                                                                   UtcTime when) const override;
 
  private:
   explicit OlsForecaster(OlsOptions options) : options_(std::move(options)) {}

@@ -21,13 +21,17 @@ double DegradationLine::no_fall_probability() const {
   return student_t_probability(slope / slope_std(), degrees_of_freedom());
 }
 
-double DegradationLine::crossing_probability(double threshold, double y) const {
+double DegradationLine::prediction_std(double y) const {
   const double mean_variance = irregularity_variance + scatter_variance / tests;
   const double from_mean = y - mean_y;
   const double from_now = y - now_y;
   const double variance = mean_variance + scatter_variance / sum_squares_y * from_mean * from_mean +
                           slope_drift * slope_drift * slope * slope * from_now * from_now;
-  return student_t_probability((threshold - condition_at(y)) / std::sqrt(variance), degrees_of_freedom());
+  return std::sqrt(variance);
+}
+
+double DegradationLine::crossing_probability(double threshold, double y) const {
+  return student_t_probability((threshold - condition_at(y)) / prediction_std(y), degrees_of_freedom());
 }
 
 // Solves threshold - theta_hat(y) = T_q se(y), a quadratic a Y^2 - 2 h Y + g = 0 in Y = y - y_bar, where

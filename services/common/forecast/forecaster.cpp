@@ -46,7 +46,7 @@ std::string disagreement(const std::vector<Forecast>& forecasts) {
 }  // namespace
 
 const std::vector<std::string>& forecast_methods() {
-  static const std::vector<std::string> methods{"ols", "ols_log_time", "ols_drift"};
+  static const std::vector<std::string> methods{"ols", "ols_log_time", "ols_drift", "ols_fieller"};
   return methods;
 }
 
@@ -56,6 +56,8 @@ Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettin
     options.time = DegradationTime::log_months;
   else if (settings.method == "ols_drift")
     options.slope_drift = kSlopeDrift;
+  else if (settings.method == "ols_fieller")
+    options.whole_scatter = true;
   else if (settings.method != "ols")
     return fail(Error{.file = {},
                       .place = "forecast method",
@@ -86,7 +88,11 @@ ForecastPanel::Answer ForecastPanel::forecast(ForecastRequest request) const {
                    [](const ConditionSample& a, const ConditionSample& b) { return a.time < b.time; });
   Answer answer;
   answer.left_out = take_outliers(request.history);
-  for (const auto& forecaster : forecasters_) answer.forecasts.push_back(forecaster->forecast(request));
+  for (const auto& forecaster : forecasters_) {
+    PredictiveForecast predicted = forecaster->predict(request);
+    answer.forecasts.push_back(std::move(predicted.forecast));
+    answer.distributions.push_back(std::move(predicted.distribution));
+  }
   answer.used = std::move(request.history);
   answer.disagreement = disagreement(answer.forecasts);
   answer.windows_disagree = !answer.disagreement.empty();

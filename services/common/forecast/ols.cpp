@@ -1,6 +1,8 @@
 #include "sealwatch/forecast/ols.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 
 #include "sealwatch/forecast/degradation_line.hpp"
@@ -76,37 +78,50 @@ std::string missing_history(const OlsOptions& options, const ForecastRequest& re
   return {};
 }
 
-std::optional<DegradationLine> fit(const TimeAxis& axis, const std::vector<ConditionSample>& window,
-                                   double slope_drift) {
+std::optional<DegradationLine> fit(const OlsOptions& options, const TimeAxis& axis,
+                                   const std::vector<ConditionSample>& window) {
   std::vector<LinePoint> points;
   for (const ConditionSample& sample : window)
     if (axis.months(sample.time) > 0.0)
       points.push_back({axis.y(axis.months(sample.time)), sample.condition, sample.condition_std});
-  return fit_degradation_line(points, slope_drift, axis.y(axis.now_months));
+  auto line = fit_degradation_line(points, options.slope_drift, axis.y(axis.now_months));
+  if (line && options.whole_scatter) line->irregularity_variance = line->scatter_variance;
+  return line;
 }
 
-struct CrossingQuantiles {
-  double low, p10, p50, p90, high;  ///< y
-};
+/// Months left with the probability that the end comes before them. Beyond the highest level that exists nothing is
+/// said.
+constexpr std::array<double, 29> kLevels{0.001, 0.005, 0.01, 0.025, 0.05, 0.075, 0.10,  0.15,  0.20, 0.25,
+                                         0.30,  0.35,  0.40, 0.45,  0.50, 0.55,  0.60,  0.65,  0.70, 0.75,
+                                         0.80,  0.85,  0.90, 0.925, 0.95, 0.975, 0.990, 0.995, 0.999};
 
-std::optional<CrossingQuantiles> crossing_quantiles(const DegradationLine& line, double threshold) {
-  const auto low = line.crossing_quantile(threshold, 0.025);
-  const auto p10 = line.crossing_quantile(threshold, 0.10);
-  const auto p50 = line.crossing_quantile(threshold, 0.50);
-  const auto p90 = line.crossing_quantile(threshold, 0.90);
-  const auto high = line.crossing_quantile(threshold, 0.975);
-  if (!low || !p10 || !p50 || !p90 || !high) return std::nullopt;
-  return CrossingQuantiles{*low, *p10, *p50, *p90, *high};
+/// None when a level up to 97.5 % does not exist.
+std::optional<PredictiveDistribution> crossing_distribution(const DegradationLine& line, double threshold,
+                                                            const TimeAxis& axis) {
+  std::vector<PredictiveDistribution::Point> points;
+  points.reserve(kLevels.size() + 1);
+  for (const double level : kLevels) {
+    const auto y = line.crossing_quantile(threshold, level);
+    if (!y && level <= 0.975) return std::nullopt;
+    if (!y) {
+      points.push_back({kLongestMonths, points.back().probability});
+      break;
+    }
+    points.push_back({axis.remaining_months(*y), level});
+  }
+  auto distribution = PredictiveDistribution::make(std::move(points));
+  assert(distribution);
+  return std::move(*distribution);
 }
 
 void fill_numbers(Forecast& forecast, const ForecastRequest& request, const DegradationLine& line, const TimeAxis& axis,
-                  const CrossingQuantiles& crossing) {
-  forecast.rul_months = axis.remaining_months(crossing.p50);
-  forecast.rul_p10_months = axis.remaining_months(crossing.p10);
+                  const PredictiveDistribution& remaining) {
+  forecast.rul_months = remaining.quantile(0.50);
+  forecast.rul_p10_months = remaining.quantile(0.10);
   forecast.rul_p50_months = forecast.rul_months;
-  forecast.rul_p90_months = axis.remaining_months(crossing.p90);
-  forecast.interval_95_low_months = axis.remaining_months(crossing.low);
-  forecast.interval_95_high_months = axis.remaining_months(crossing.high);
+  forecast.rul_p90_months = remaining.quantile(0.90);
+  forecast.interval_95_low_months = remaining.quantile(0.025);
+  forecast.interval_95_high_months = remaining.quantile(0.975);
   forecast.end_of_life_ns = add_months(request.now, forecast.rul_months).nanoseconds;
   for (const FailureHorizon& horizon : request.horizons)
     if (horizon.before > request.now)
@@ -154,45 +169,55 @@ Result<std::unique_ptr<const Forecaster>> OlsForecaster::make(const OlsOptions& 
   return std::unique_ptr<const Forecaster>(new OlsForecaster(options));
 }
 
-Forecast OlsForecaster::forecast(const ForecastRequest& request) const {
+PredictiveForecast OlsForecaster::predict(const ForecastRequest& request) const {
   Forecast forecast;
   forecast.method = options_.method;
   forecast.window_months = options_.window_months;
-  if (request.history.empty()) return say(forecast, ForecastState::insufficient_history, "no usable test so far");
+  if (request.history.empty()) return {say(forecast, ForecastState::insufficient_history, "no usable test so far")};
 
   const std::vector<ConditionSample> window = last_months(request.history, options_.window_months);
   forecast.tests_used = static_cast<int>(window.size());
   const double present = present_condition(request.history);
   if (present <= request.threshold)
-    return say_past_threshold(forecast, request,
-                              "the condition is " + as_condition(present) +
-                                  " (median of the last tests), the threshold " + as_condition(request.threshold));
+    return {say_past_threshold(forecast, request,
+                               "the condition is " + as_condition(present) +
+                                   " (median of the last tests), the threshold " + as_condition(request.threshold))};
   if (const std::string missing = missing_history(options_, request, window.size()); !missing.empty())
-    return say(forecast, ForecastState::insufficient_history, missing);
+    return {say(forecast, ForecastState::insufficient_history, missing)};
 
   const TimeAxis axis = time_axis(options_.time, request);
-  const auto line = fit(axis, window, options_.slope_drift);
-  if (!line) return say(forecast, ForecastState::insufficient_history, "fewer than three tests since the seal was new");
+  const auto line = fit(options_, axis, window);
+  if (!line)
+    return {say(forecast, ForecastState::insufficient_history, "fewer than three tests since the seal was new")};
   const double p = line->no_fall_probability();
-  const auto crossing = crossing_quantiles(*line, request.threshold);
-  if (p > options_.significance || !crossing)
-    return say(forecast, ForecastState::no_significant_trend,
-               "the condition does not fall significantly over these months (p = " + three_digits(p) + ")");
-  if (crossing->p50 <= axis.y(axis.now_months))
-    return say_past_threshold(forecast, request,
-                              "the fitted line is at " + as_condition(line->condition_at(axis.y(axis.now_months))) +
-                                  " now, the threshold is " + as_condition(request.threshold));
-  fill_numbers(forecast, request, *line, axis, *crossing);
-  if (forecast.rul_months > options_.horizon_months) {
-    Forecast nothing;
-    nothing.method = forecast.method;
-    nothing.window_months = forecast.window_months;
-    nothing.tests_used = forecast.tests_used;
-    return say(nothing, ForecastState::no_significant_trend,
-               "at this rate the end of life is more than " + in_months(options_.horizon_months) +
-                   " away: no date can be told");
-  }
-  return say(forecast, ForecastState::ok, describe_ok(forecast, request, *line));
+  auto remaining = crossing_distribution(*line, request.threshold, axis);
+  if (p > options_.significance || !remaining)
+    return {say(forecast, ForecastState::no_significant_trend,
+                "the condition does not fall significantly over these months (p = " + three_digits(p) + ")")};
+  if (remaining->quantile(0.5) <= 0.0)
+    return {say_past_threshold(forecast, request,
+                               "the fitted line is at " + as_condition(line->condition_at(axis.y(axis.now_months))) +
+                                   " now, the threshold is " + as_condition(request.threshold))};
+  if (remaining->quantile(0.5) > options_.horizon_months)
+    return {say(forecast, ForecastState::no_significant_trend,
+                "at this rate the end of life is more than " + in_months(options_.horizon_months) +
+                    " away: no date can be told")};
+  fill_numbers(forecast, request, *line, axis, *remaining);
+  return {say(forecast, ForecastState::ok, describe_ok(forecast, request, *line)), std::move(remaining)};
+}
+
+std::optional<ConditionForecast> OlsForecaster::predict_condition(const ForecastRequest& request, UtcTime when) const {
+  if (request.history.empty()) return std::nullopt;
+  const std::vector<ConditionSample> window = last_months(request.history, options_.window_months);
+  if (!missing_history(options_, request, window.size()).empty()) return std::nullopt;
+  const TimeAxis axis = time_axis(options_.time, request);
+  const auto line = fit(options_, axis, window);
+  if (!line) return std::nullopt;
+  const double y = axis.y(axis.months(when));
+  return ConditionForecast{.time = when,
+                           .condition = line->condition_at(y),
+                           .condition_std = line->prediction_std(y),
+                           .degrees_of_freedom = line->degrees_of_freedom()};
 }
 
 }  // namespace sealwatch::forecast

@@ -1,6 +1,65 @@
-// What every law file includes. A law is one file here: laws/NAME.cpp defines `Law NAME()` (or, where several forms
-// share an id, `Law NAME()` for each file); the build makes the catalogue from the file names.
+// What every law file includes. A law is one file here: laws/NAME.cpp defines `Law NAME()`; where several forms share
+// an id, each has a file. The build makes the catalogue from the file names. docs/laws.md shows how to add one.
 #pragma once
+
+#include <cmath>
+#include <utility>
 
 #include "sealwatch/model/laws.hpp"
 #include "sealwatch/model/physics.hpp"
+
+namespace sealwatch::laws {
+
+struct StrengthSize {
+  double usual = 0.0;
+  double significant = 0.0;
+  double max = 0.0;
+  bool either_sign = false;  ///< min = -max; else min = 0
+};
+
+/// A parameter to which the contribution is proportional.
+[[nodiscard]] inline LawParameter strength(std::string_view name, std::string_view unit, std::string_view meaning,
+                                           const StrengthSize& size) {
+  return {.name = name,
+          .unit = unit,
+          .meaning = meaning,
+          .start = {size.usual},
+          .min = size.either_sign ? -size.max : 0.0,
+          .max = size.max,
+          .strength = true,
+          .significant = size.significant};
+}
+
+/// A parameter that the contribution follows in a curve, with the grid on which it is searched (the first is usual).
+[[nodiscard]] inline LawParameter shape(std::string_view name, std::string_view unit, std::string_view meaning,
+                                        std::vector<double> grid, double min, double max) {
+  return {.name = name, .unit = unit, .meaning = meaning, .start = std::move(grid), .min = min, .max = max};
+}
+
+/// Speed over which dry friction changes direction: the rounding of a sliding contact.
+[[nodiscard]] inline LawParameter reversal_speed() {
+  return shape("v_s", "m/s", "speed over which the direction changes", {1e-4, 2e-5, 5e-4}, 5e-6, 5e-3);
+}
+
+/// sqrt(a^2 + s^2): |a| rounded over the width s, and never less than |a|, so that a state which decays by it stays
+/// bounded.
+[[nodiscard]] inline LawScalar magnitude(const LawScalar& a, double s) { return sqrt(a * a + s * s); }
+
+/// Width of |v| at standstill in laws that remember a deflection: creep below it relaxes them. [m/s]
+inline constexpr double kStandstill_m_s = 1e-9;
+
+[[nodiscard]] inline LawScalar sine(const LawScalar& a) { return a.chain(std::sin(a.value), std::cos(a.value)); }
+
+/// exp(-a^2)
+[[nodiscard]] inline LawScalar bell(const LawScalar& a) { return exp(-(a * a)); }
+
+/// An absolute pressure that stays above 1 kPa, rounded over 0.5 kPa: below that the oil has cavitated. [Pa]
+[[nodiscard]] inline LawScalar above_vacuum(const LawScalar& pressure) {
+  constexpr double kFloor_Pa = 1e3;
+  return kFloor_Pa + smooth_positive(pressure - kFloor_Pa, 500.0);
+}
+
+/// A tank's level that stays positive, rounded over 0.02 V. [V]
+[[nodiscard]] inline LawScalar wetted(const LawScalar& level) { return 1e-6 + smooth_positive(level, 0.02); }
+
+}  // namespace sealwatch::laws

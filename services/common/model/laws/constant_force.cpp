@@ -1,0 +1,22 @@
+#include "services/common/model/laws/law_files.hpp"
+
+namespace sealwatch::laws {
+
+// F = F_0
+static LawOutput evaluate(const LawInput& in) { return {.contribution = in.parameter[0], .rate = {}}; }
+
+Law constant_force() {
+  return {
+      .id = "constant_force",
+      .form = "",
+      .kind = SiteKind::piston_force,
+      .equation = "F_0",
+      .meaning = "a steady force, or the offset of the drive that pretends one; for plants without a load of their own",
+      .energy = "none: a steady force takes and returns the same work",
+      .source = "Janot, Gautier, Brunot, Data set and reference models of EMPS (2019)",
+      .parameters = {strength("F_0", "N", "force against +x",
+                              {.usual = 3.0, .significant = 1.0, .max = 1e5, .either_sign = true})},
+      .evaluate = &evaluate};
+}
+
+}  // namespace sealwatch::laws

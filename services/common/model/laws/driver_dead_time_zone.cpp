@@ -1,0 +1,24 @@
+#include "services/common/model/laws/law_files.hpp"
+
+namespace sealwatch::laws {
+
+// V = V_z tanh(u / u_s)
+static LawOutput evaluate(const LawInput& in) {
+  return {.contribution = in.parameter[0] * tanh(in.signal[1] / in.parameter[1]), .rate = {}};
+}
+
+Law driver_dead_time_zone() {
+  return {
+      .id = "driver_dead_time",
+      .form = "dead_zone",
+      .kind = SiteKind::voltage_command,
+      .equation = "V_z tanh(u / u_s)",
+      .meaning = "pulses shorter than the dead time are swallowed: small commands give nothing",
+      .energy = "V_z >= 0: what arrives is smaller than the command",
+      .source = "Jeong, Park, IEEE Trans. Industrial Electronics 38 (1991) 108; rounded dead zone",
+      .parameters = {strength("V_z", "V", "command that is swallowed", {.usual = 1.0, .significant = 0.3, .max = 20.0}),
+                     shape("u_s", "V", "command over which it is", {1.0, 0.2, 4.0}, 0.05, 20.0)},
+      .evaluate = &evaluate};
+}
+
+}  // namespace sealwatch::laws

@@ -1,0 +1,29 @@
+#include "services/common/model/laws/law_files.hpp"
+
+namespace sealwatch::laws {
+
+// T = k (max(|i| - i_k, 0)) sign(i) as the difference of two positive parts, each rounded over 0.2 A: odd, zero at
+// zero.
+static LawOutput evaluate(const LawInput& in) {
+  constexpr double kWidth_A = 0.2;
+  const auto& i = in.signal[2];
+  const auto& i_k = in.parameter[1];
+  return {.contribution = in.parameter[0] * (smooth_positive(i - i_k, kWidth_A) - smooth_positive(-i - i_k, kWidth_A)),
+          .rate = {}};
+}
+
+Law torque_saturation_knee() {
+  return {.id = "torque_saturation",
+          .form = "knee",
+          .kind = SiteKind::shaft_torque,
+          .equation = "k max(abs(i) - i_k, 0) sign(i)",
+          .meaning = "the iron saturates: beyond a current the torque grows by less",
+          .energy = "0 <= k <= T_M: the torque never falls with current",
+          .source = "Krause, Wasynczuk, Sudhoff, Analysis of Electric Machinery: piecewise linear saturation",
+          .parameters = {strength("k", "N m/A", "torque lost per current beyond the knee",
+                                  {.usual = 0.04, .significant = 5e-3, .max = 2.0}),
+                         shape("i_k", "A", "knee", {5.0, 2.5, 8.0}, 0.2, 100.0)},
+          .evaluate = &evaluate};
+}
+
+}  // namespace sealwatch::laws

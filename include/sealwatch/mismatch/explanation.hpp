@@ -1,0 +1,150 @@
+// What the mismatch analysis found: everything that report.json, report.html, the asset file with the found physics and
+// the topic `model_discrepancy` are made from. docs/mismatch.md says how each figure comes about.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/fields.hpp"
+#include "sealwatch/core/time_series.hpp"
+#include "sealwatch/estimation/actuator_fit.hpp"
+
+namespace sealwatch::mismatch {
+
+/// A law at an element: what an effect can be named.
+struct LawAt {
+  std::string id;       ///< of INTERFACES section 5, or "unlisted"
+  std::string form;     ///< which form of the law; "" where there is one
+  std::string element;  ///< "piston", "sensor:flow"
+  std::string law;      ///< closed form, "F_c tanh(v / v_s)"
+  std::string meaning;  ///< for an engineer
+};
+
+struct FoundParameter {
+  std::string name;
+  std::string unit;
+  double value = 0.0;
+  double std_error = 0.0;  ///< infinite where the data cannot tell
+  bool at_bound = false;
+};
+
+/// Why another law was not chosen.
+struct Alternative {
+  LawAt what;
+  double misfit_above_best = 0.0;  ///< whitened misfit (long-run) above that of the chosen law, larger is worse
+  std::string why_not;             ///< one sentence
+};
+
+/// One effect that was added to the model.
+struct FoundEffect {
+  LawAt what;
+  std::vector<FoundParameter> parameters;
+  double probability = 0.0;                ///< among all laws that were tried for this effect
+  double element_probability = 0.0;        ///< that it sits in this element
+  std::vector<LawAt> indistinguishable;    ///< other laws that this data cannot tell from it
+  std::vector<std::string> same_elements;  ///< other elements that this data cannot tell from its element
+  double delta_bic = 0.0;                  ///< of the model with it against without it; negative favours it
+  double engineering_share = 0.0;          ///< its size over the size that an engineer would care about
+  std::string regime;                      ///< where it acts: "moving, both directions, above 0.5 mm/s"
+  std::string evidence;                    ///< one sentence
+  std::vector<Alternative> alternatives;   ///< most likely first
+};
+
+/// The missing force, flow, torque or voltage of one element over one recording, as the data alone demands it
+/// (`demanded`, with its band) and as the found law gives it (`law`).
+struct MissingTerm {
+  std::string element;
+  std::string quantity;  ///< "force against +x"
+  std::string unit;
+  std::string recording;
+  std::string state;       ///< what it depends on: "piston velocity"
+  std::string state_unit;  ///< "m/s"
+  std::vector<double> time_s, state_value, demanded, band, law;
+};
+
+struct Power {
+  LawAt what;
+  double minimum_detectable = 0.0;  ///< strength that this data would show with 80 % power at 1 % false alarms
+  std::string unit;
+  double absorbed_share = 0.0;  ///< of the effect that the free parameters swallow, 0..1
+  double significant = 0.0;     ///< strength that an engineer would care about, same unit
+};
+
+/// Fit of one recording and channel. noise_normalised_rms: 1 is the floor.
+struct ChannelComparison {
+  std::string channel;
+  double rms_before = 0.0, rms_after = 0.0;      ///< noise-normalised
+  double nrmse_before = 0.0, nrmse_after = 0.0;  ///< percent
+  double whiteness_before = 0.0, whiteness_after = 0.0, independence_before = 0.0, independence_after = 0.0;  ///< p
+};
+
+struct RecordingComparison {
+  std::string recording;
+  bool holdout = false;
+  bool left_out = false;  ///< a fit recording that was left out in turn, in the absence of holdout recordings
+  std::vector<ChannelComparison> channels;
+  double likelihood_gain = 0.0;            ///< log likelihood after - before, over the long-run factor
+  double gain_low = 0.0, gain_high = 0.0;  ///< its 95 % block-bootstrap interval
+  TimeSeries recorded, before, after;      ///< same channels; for the overlays
+};
+
+struct ParameterShift {
+  std::string name;
+  std::string unit;
+  double before = 0.0, before_std = 0.0, after = 0.0, after_std = 0.0;
+  double datasheet = 0.0;
+};
+
+/// An improvement that physics forbids: it fits better and is not claimed.
+struct Rejected {
+  LawAt what;
+  std::string why;
+};
+
+/// What the effect does to prognosis. Empty when the plant has no seal.
+struct PrognosisShift {
+  bool known = false;
+  double R_CL_before = 0.0, R_CL_after = 0.0, theta_before = 0.0, theta_after = 0.0;
+  std::string sentence;
+};
+
+SEALWATCH_ENUM(Verdict, consistent, mismatch, undetermined)
+
+struct Location {
+  std::string element;
+  double probability = 0.0;
+  std::vector<std::string> indistinguishable_from;
+  std::string evidence;
+};
+
+/// Pooled over recordings: the json's fit.fit and fit.holdout.
+struct PooledFit {
+  std::vector<ChannelComparison> channels;
+};
+
+struct Explanation {
+  std::string asset_id;
+  std::string model;
+  std::vector<std::string> fit_recordings, holdout_recordings;
+  Verdict verdict = Verdict::undetermined;
+  double p_value = 1.0;  ///< that the fitted model and the recordings differ by noise alone
+  bool statistically_significant = false;
+  double explained_share = 0.0;      ///< of the excess misfit of the fit recordings
+  std::vector<Location> location;    ///< most probable first
+  std::vector<FoundEffect> effects;  ///< most probable first
+  std::vector<MissingTerm> missing;
+  std::vector<RecordingComparison> recordings;
+  PooledFit fit, holdout;
+  std::vector<ParameterShift> parameters;
+  std::vector<Power> power;
+  std::vector<Rejected> rejected;
+  PrognosisShift prognosis;
+  std::string next_test;           ///< what to record to settle what is still open, or empty
+  std::string summary;             ///< two or three sentences for a maintenance engineer
+  std::vector<std::string> notes;  ///< noise model, what was tried, limits of the data
+  AssetConfig explained;           ///< the asset with fitted parameters and the found physics
+};
+
+}  // namespace sealwatch::mismatch

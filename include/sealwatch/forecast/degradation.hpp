@@ -59,6 +59,9 @@ class Degradation {
 
   [[nodiscard]] int month() const { return month_; }             ///< n
   [[nodiscard]] double condition() const { return condition_; }  ///< theta(n)
+  [[nodiscard]] double gamma() const { return gamma_; }          ///< gamma(n)
+  /// Gamma_max of this seal.
+  [[nodiscard]] double steepening_limit() const { return steepening_limit_; }
 
   /// Goes on to the next month; returns theta(n).
   double advance() {

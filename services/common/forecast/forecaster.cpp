@@ -4,6 +4,7 @@
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/forecast/ols.hpp"
+#include "sealwatch/forecast/state_space.hpp"
 #include "sealwatch/forecast/words.hpp"
 
 namespace sealwatch::forecast {
@@ -11,6 +12,7 @@ namespace {
 
 // Of the lives of MODEL section 5: see docs/forecast.md, "Why the line's own interval is too narrow".
 constexpr double kSlopeDrift = 0.20;
+constexpr int kFewestTestsWithFleet = 3;  // the fleet says the rest
 
 std::vector<ConditionSample> take_outliers(std::vector<ConditionSample>& history) {
   const std::vector<bool> outlier = isolated_outliers(history);
@@ -46,11 +48,21 @@ std::string disagreement(const std::vector<Forecast>& forecasts) {
 }  // namespace
 
 const std::vector<std::string>& forecast_methods() {
-  static const std::vector<std::string> methods{"ols", "ols_log_time", "ols_drift", "ols_fieller"};
+  static const std::vector<std::string> methods{"ols",         "ols_log_time", "ols_drift",
+                                                "ols_fieller", "state_space",  "fleet"};
   return methods;
 }
 
 Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings) {
+  if (settings.method == "state_space")
+    return StateSpaceForecaster::make(
+        {.method = settings.method, .window_months = settings.window_months, .population = settings.population});
+  if (settings.method == "fleet")
+    return StateSpaceForecaster::make({.method = settings.method,
+                                       .window_months = settings.window_months,
+                                       .population = settings.population,
+                                       .spread = 1.0,
+                                       .fewest_tests = kFewestTestsWithFleet});
   OlsOptions options{.method = settings.method, .window_months = settings.window_months};
   if (settings.method == "ols_log_time")
     options.time = DegradationTime::log_months;

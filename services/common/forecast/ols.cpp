@@ -7,14 +7,12 @@
 
 #include "sealwatch/forecast/degradation_line.hpp"
 #include "sealwatch/forecast/words.hpp"
+#include "services/common/forecast/forecast_parts.hpp"
 
 namespace sealwatch::forecast {
 namespace {
 
-constexpr int kFewestTests = 6;              // below, Student's t is so wide that no interval helps anybody
-constexpr double kLongestMonths = 1200.0;    // upper quantiles are cut here: a hundred years, still a date
-constexpr double kJitterMonths = 1.5;        // m monthly tests span m - 1 months, and each comes up to half a month off
-constexpr std::size_t kTestsForPresent = 3;  // the present condition is the median of so many tests
+constexpr int kFewestTests = 6;  // below, Student's t is so wide that no interval helps anybody
 
 /// Months since the seal was new <-> the time that the line is straight in.
 struct TimeAxis {
@@ -34,34 +32,12 @@ TimeAxis time_axis(DegradationTime kind, const ForecastRequest& request) {
   return {.kind = kind, .installed = installed, .now_months = months_between(installed, request.now)};
 }
 
-double present_condition(const std::vector<ConditionSample>& history) {
-  std::vector<double> last;
-  for (std::size_t i = history.size() - std::min(kTestsForPresent, history.size()); i < history.size(); ++i)
-    last.push_back(history[i].condition);
-  std::sort(last.begin(), last.end());
-  return last[last.size() / 2];
-}
-
 std::vector<ConditionSample> last_months(const std::vector<ConditionSample>& history, int window_months) {
   const UtcTime begin = add_months(history.back().time, -window_months);
   std::vector<ConditionSample> window;
   for (const ConditionSample& sample : history)
     if (sample.time > begin) window.push_back(sample);
   return window;
-}
-
-Forecast& say(Forecast& forecast, ForecastState state, std::string explanation) {
-  forecast.state = state;
-  forecast.explanation = std::move(explanation);
-  return forecast;
-}
-
-Forecast& say_past_threshold(Forecast& forecast, const ForecastRequest& request, std::string explanation) {
-  forecast.end_of_life_ns = request.now.nanoseconds;
-  for (const FailureHorizon& horizon : request.horizons)
-    if (horizon.before > request.now)
-      forecast.failure_probability.push_back({horizon.before.nanoseconds, horizon.label, 1.0});
-  return say(forecast, ForecastState::past_threshold, std::move(explanation));
 }
 
 /// "" when the window is filled well enough.
@@ -114,27 +90,17 @@ std::optional<PredictiveDistribution> crossing_distribution(const DegradationLin
   return std::move(*distribution);
 }
 
-void fill_numbers(Forecast& forecast, const ForecastRequest& request, const DegradationLine& line, const TimeAxis& axis,
-                  const PredictiveDistribution& remaining) {
-  forecast.rul_months = remaining.quantile(0.50);
-  forecast.rul_p10_months = remaining.quantile(0.10);
-  forecast.rul_p50_months = forecast.rul_months;
-  forecast.rul_p90_months = remaining.quantile(0.90);
-  forecast.interval_95_low_months = remaining.quantile(0.025);
-  forecast.interval_95_high_months = remaining.quantile(0.975);
-  forecast.end_of_life_ns = add_months(request.now, forecast.rul_months).nanoseconds;
-  for (const FailureHorizon& horizon : request.horizons)
-    if (horizon.before > request.now)
-      forecast.failure_probability.push_back(
-          {horizon.before.nanoseconds, horizon.label,
-           line.crossing_probability(request.threshold, axis.y(axis.months(horizon.before)))});
+/// Of the line itself: exact where the table of the distribution interpolates.
+void fill_failure_probabilities(Forecast& forecast, const ForecastRequest& request, const DegradationLine& line,
+                                const TimeAxis& axis) {
+  for (FailureProbability& item : forecast.failure_probability)
+    item.probability = line.crossing_probability(request.threshold, axis.y(axis.months({item.before_ns})));
 }
 
 std::string describe_ok(const Forecast& forecast, const ForecastRequest& request, const DegradationLine& line) {
   std::string text = std::to_string(forecast.tests_used) + " tests, scatter of one " +
                      three_digits(std::sqrt(line.scatter_variance)) + " of theta";
-  const double age = months_between(request.history.back().time, request.now);
-  if (age > kJitterMonths) text += "; the last usable test was " + in_months(age) + " ago";
+  text += age_of_last_test(request);
   if (forecast.interval_95_high_months >= kLongestMonths)
     text += "; upper limits are cut at " + in_months(kLongestMonths);
   return text;
@@ -202,7 +168,8 @@ PredictiveForecast OlsForecaster::predict(const ForecastRequest& request) const 
     return {say(forecast, ForecastState::no_significant_trend,
                 "at this rate the end of life is more than " + in_months(options_.horizon_months) +
                     " away: no date can be told")};
-  fill_numbers(forecast, request, *line, axis, *remaining);
+  fill_numbers(forecast, request, *remaining);
+  fill_failure_probabilities(forecast, request, *line, axis);
   return {say(forecast, ForecastState::ok, describe_ok(forecast, request, *line)), std::move(remaining)};
 }
 

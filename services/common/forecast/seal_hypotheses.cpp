@@ -1,0 +1,228 @@
+#include "services/common/forecast/seal_hypotheses.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace sealwatch::forecast {
+namespace {
+
+// A seal that is not of the population: one in twenty, its rate anything between standing still and three times usual.
+constexpr double kStrangerShare = 0.05;
+constexpr double kStrangerInitialStd = 0.05;
+constexpr double kStrangerRateStd = 0.06;
+constexpr double kStrangerSteepeningStd = 0.003;
+// Ages at the first test where the installation is not known, with their prior probabilities: nearly always histories
+// begin with the seal.
+constexpr std::array<std::pair<double, double>, 4> kUnknownAges{
+    {{1.0, 0.85}, {24.0, 0.05}, {72.0, 0.05}, {144.0, 0.05}}};
+
+// Tests since the change, newest first: finer where a change is young. Older ones are found by their nearest.
+constexpr std::array<std::size_t, 15> kTestsSinceChange{2, 3, 4, 6, 8, 10, 13, 17, 22, 28, 36, 46, 60, 78, 100};
+constexpr std::size_t kFewestBeforeChange = 6;
+constexpr double kReplacedPerMonth = 1e-4;  // without anybody saying so
+constexpr double kRateChange = 0.5;         // standard deviation of the new rate, of the old one
+constexpr double kSteepeningChange = 1.0;   // and of the new steepening
+constexpr double kLevelChange = 0.03;       // standard deviation of a step of theta
+constexpr double kSmallestWeight = 1e-5;
+
+// Standard errors are believed unless the mean squared innovation, 0.97 when they are right, says otherwise.
+constexpr int kFewestToJudge = 12;
+constexpr double kTooMuchSurprise = 1.5;
+constexpr double kTooLittleSurprise = 0.5;
+
+struct Noise {
+  double extra_std = 0.0;
+  double irregularity_scale = 1.0;
+};
+
+/// A run of the filter over all tests with the belief before each: where a change can branch off.
+struct Run {
+  SealHypothesis hypothesis;
+  double first_age = 0.0;
+  double log_prior = 0.0;
+  std::vector<SealBelief> before = {};
+  [[nodiscard]] double log_posterior() const { return log_prior + hypothesis.belief.log_evidence; }
+};
+
+double total_std(const DatedTest& test, const Noise& noise) { return std::hypot(test.condition_std, noise.extra_std); }
+
+class Bank {
+ public:
+  Bank(const std::vector<DatedTest>& tests, const HypothesisOptions& options, const Noise& noise)
+      : tests_(tests), options_(options), noise_(noise) {
+    law_ = {.n_0 = options.population.n_0,
+            .steepening_scatter = options.population.steepening_scatter * noise.irregularity_scale,
+            .irregularity_std = options.population.irregularity_std * noise.irregularity_scale};
+  }
+
+  void run_unchanged() {
+    std::vector<std::pair<double, double>> ages(kUnknownAges.begin(), kUnknownAges.end());
+    if (options_.age_at_first_test) ages = {{*options_.age_at_first_test, 1.0}};
+    for (const auto& [age, probability] : ages) {
+      runs_.push_back(run(age, false, std::log(probability * (1.0 - kStrangerShare))));
+      runs_.push_back(run(age, true, std::log(probability * kStrangerShare)));
+    }
+  }
+
+  [[nodiscard]] const Run& best() const {
+    return *std::max_element(runs_.begin(), runs_.end(),
+                             [](const Run& a, const Run& b) { return a.log_posterior() < b.log_posterior(); });
+  }
+
+  SealOpinion opinion() {
+    std::vector<std::pair<double, SealHypothesis>> all;  // with the logarithms of their posteriors
+    for (const Run& one : runs_) all.emplace_back(one.log_posterior(), one.hypothesis);
+    add_changes(all);
+    double highest = all.front().first;
+    for (const auto& [log_posterior, hypothesis] : all) highest = std::max(highest, log_posterior);
+    double sum = 0.0;
+    for (auto& [log_posterior, hypothesis] : all) sum += hypothesis.weight = std::exp(log_posterior - highest);
+    SealOpinion opinion{
+        .hypotheses = {}, .law = law_, .extra_std = noise_.extra_std, .irregularity_scale = noise_.irregularity_scale};
+    for (auto& [log_posterior, hypothesis] : all)
+      if (hypothesis.weight > kSmallestWeight * sum) opinion.hypotheses.push_back(std::move(hypothesis));
+    double kept = 0.0;
+    for (const SealHypothesis& hypothesis : opinion.hypotheses) kept += hypothesis.weight;
+    for (SealHypothesis& hypothesis : opinion.hypotheses) hypothesis.weight /= kept;
+    return opinion;
+  }
+
+ private:
+  [[nodiscard]] SealBelief prior(bool stranger) const {
+    SealBelief belief = new_seal(options_.population, options_.spread);
+    if (!stranger) return belief;
+    belief.covariance = {
+        kStrangerInitialStd * kStrangerInitialStd, 0.0, 0.0,
+        kStrangerRateStd * kStrangerRateStd,       0.0, kStrangerSteepeningStd * kStrangerSteepeningStd};
+    return belief;
+  }
+
+  [[nodiscard]] Run run(double first_age, bool stranger, double log_prior) const {
+    Run run{.hypothesis = {.belief = prior(stranger), .stranger = stranger},
+            .first_age = first_age,
+            .log_prior = log_prior};
+    SealBelief& belief = run.hypothesis.belief;
+    run.before.reserve(tests_.size());
+    for (const DatedTest& test : tests_) {
+      run.before.push_back(belief);
+      take_in(belief, test, first_age);
+    }
+    return run;
+  }
+
+  void take_in(SealBelief& belief, const DatedTest& test, double first_age) const {
+    grow_old(belief, law_, first_age + test.months);
+    observe(belief, test.condition, total_std(test, noise_));
+  }
+
+  void add_changes(std::vector<std::pair<double, SealHypothesis>>& all) const {
+    const Run& base = best();
+    double last_months = tests_.back().months;
+    for (const std::size_t since : kTestsSinceChange) {
+      if (since + kFewestBeforeChange > tests_.size()) break;
+      const std::size_t first = tests_.size() - since;
+      const double stands_for = last_months - tests_[first].months;  // months since the candidate before
+      last_months = tests_[first].months;
+      const double change = std::log(0.5 * options_.change_per_month * std::max(stands_for, 0.1));
+      const double replaced = std::log(kReplacedPerMonth * std::max(stands_for, 0.1));
+      all.push_back(branch(base, SealChange::rate, first, base.log_prior + change));
+      all.push_back(branch(base, SealChange::level, first, base.log_prior + change));
+      all.push_back(branch(base, SealChange::replaced, first, base.log_prior + replaced));
+    }
+  }
+
+  [[nodiscard]] std::pair<double, SealHypothesis> branch(const Run& base, SealChange change, std::size_t first,
+                                                         double log_prior) const {
+    SealHypothesis hypothesis{.belief = base.before[first],
+                              .change = change,
+                              .changed_months = tests_[first].months,
+                              .stranger = base.hypothesis.stranger};
+    SealBelief& belief = hypothesis.belief;
+    double first_age = base.first_age;
+    if (change == SealChange::replaced) {
+      const double evidence = belief.log_evidence;
+      belief = prior(false);
+      belief.log_evidence = evidence;
+      const double gap = first > 0 ? tests_[first].months - tests_[first - 1].months : 1.0;
+      first_age = 0.5 * gap - tests_[first].months;  // some time since the test before
+    } else if (change == SealChange::rate) {
+      belief.covariance[3] += std::pow(kRateChange * belief.mean[1], 2);
+      belief.covariance[5] += std::pow(kSteepeningChange * options_.population.steepening, 2);
+    } else {
+      belief.covariance[0] += kLevelChange * kLevelChange;
+    }
+    for (std::size_t i = first; i < tests_.size(); ++i) take_in(belief, tests_[i], first_age);
+    return {log_prior + belief.log_evidence, std::move(hypothesis)};
+  }
+
+  const std::vector<DatedTest>& tests_;
+  const HypothesisOptions& options_;
+  Noise noise_;
+  DegradationLaw law_;
+  std::vector<Run> runs_;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Scatter of one test from second differences, in which any slow ageing cancels; robust. 0 for fewer than five.
+double scatter_of(const std::vector<DatedTest>& tests) {
+  std::vector<double> differences;
+  for (std::size_t i = 2; i < tests.size(); ++i)
+    differences.push_back(std::abs(tests[i].condition - 2.0 * tests[i - 1].condition + tests[i - 2].condition));
+  if (differences.size() < 3) return 0.0;
+  return 1.4826 * median(std::move(differences)) / std::sqrt(6.0);
+}
+
+constexpr double kUsualScatter = 0.003;  // of an estimate whose standard error is not known, before tests tell it
+constexpr double kSmallestScatter = 1e-5;
+
+std::vector<Noise> candidates(const std::vector<DatedTest>& tests, bool errors_known) {
+  double scatter = scatter_of(tests);
+  if (tests.size() < static_cast<std::size_t>(kFewestToJudge)) scatter = std::max(scatter, kUsualScatter);
+  scatter = std::max(scatter, kSmallestScatter);
+  if (!errors_known) return {{scatter, 1.0}, {0.5 * scatter, 1.0}, {0.25 * scatter, 1.0}, {1.5 * scatter, 1.0}};
+  return {{0.5 * scatter, 1.0}, {scatter, 1.0}, {2.0 * scatter, 1.0}, {0.0, 0.3}, {0.0, 2.0}, {0.0, 4.0}};
+}
+
+}  // namespace
+
+SealOpinion weigh_hypotheses(const std::vector<DatedTest>& tests, const HypothesisOptions& options) {
+  const bool errors_known =
+      std::all_of(tests.begin(), tests.end(), [](const DatedTest& test) { return test.condition_std > 0.0; });
+  const auto bank_with = [&](const Noise& noise) {
+    Bank bank(tests, options, noise);
+    bank.run_unchanged();
+    return bank;
+  };
+  std::optional<Bank> chosen;
+  if (errors_known) {
+    chosen.emplace(bank_with({}));
+    const SealBelief& belief = chosen->best().hypothesis.belief;
+    const double surprise = belief.surprise_squares / std::max(belief.tests, 1);
+    const bool plausible = surprise > kTooLittleSurprise && surprise < kTooMuchSurprise;
+    if (belief.tests < kFewestToJudge || plausible) return chosen->opinion();
+  }
+  std::optional<Noise> best = errors_known ? std::optional<Noise>(Noise{}) : std::nullopt;
+  double best_evidence = chosen ? chosen->best().log_posterior() : 0.0;
+  for (const Noise& noise : candidates(tests, errors_known)) {
+    const double evidence = bank_with(noise).best().log_posterior();
+    if (best && evidence <= best_evidence) continue;
+    best = noise;
+    best_evidence = evidence;
+  }
+  return bank_with(*best).opinion();
+}
+
+void grow_old(SealOpinion& opinion, double months_after_last_test) {
+  for (SealHypothesis& hypothesis : opinion.hypotheses)
+    grow_old(hypothesis.belief, opinion.law, hypothesis.belief.age_months + months_after_last_test);
+}
+
+}  // namespace sealwatch::forecast

@@ -1,0 +1,167 @@
+#include "services/common/report/page.hpp"
+
+#include <cstddef>
+
+namespace sealwatch::report {
+namespace {
+
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
+
+/// Bytes of the well-formed UTF-8 sequence that `text` begins with; 0: none (Unicode 15, table 3-7).
+std::size_t sequence_length(std::string_view text) {
+  const auto byte = [text](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
+  const auto follows = [&byte](std::size_t k) { return (byte(k) & 0xC0U) == 0x80U; };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return follows(1) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const bool overlong = lead == 0xE0 && byte(1) < 0xA0;
+    const bool surrogate = lead == 0xED && byte(1) > 0x9F;
+    return follows(1) && follows(2) && !overlong && !surrogate ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const bool overlong = lead == 0xF0 && byte(1) < 0x90;
+    const bool beyond = lead == 0xF4 && byte(1) > 0x8F;
+    return follows(1) && follows(2) && follows(3) && !overlong && !beyond ? 4 : 0;
+  }
+  return 0;
+}
+
+constexpr std::string_view kStyle = R"css(
+:root{color-scheme:light dark;--page:#fff;--text:#1b1f24;--muted:#5c6670;--line:#d5dae0;--soft:#f3f5f7;--first:#0067a5;
+--second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
+@media (prefers-color-scheme:dark){:root{--page:#14181c;--text:#e4e8ec;--muted:#9aa5b0;--line:#39424b;--soft:#1d2329;
+--first:#63b8f2;--second:#f0954e;--third:#45c79b;--fourth:#dd95d6;--bad:#ff8a80;--good:#5fce8c;--warn:#e5b75a;--metal:#2a323a}}
+*{box-sizing:border-box}
+body{margin:0 auto;padding:1.2rem 1.4rem 3rem;max-width:1040px;background:var(--page);color:var(--text);
+font:15px/1.5 system-ui,"Segoe UI","DejaVu Sans",sans-serif}
+h1{font-size:1.5rem;line-height:1.25;margin:.2rem 0 .1rem}h2{font-size:1.15rem;margin:2.2rem 0 .5rem;padding-bottom:.25rem;
+border-bottom:1px solid var(--line)}h3{font-size:1rem;margin:1.3rem 0 .3rem}
+p{margin:.4rem 0 .7rem;max-width:78ch}.muted{color:var(--muted)}.small{font-size:.86rem}
+ul{margin:.3rem 0 .8rem;padding-left:1.2rem;max-width:80ch}li{margin:.2rem 0}
+code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
+.law{display:inline-block;background:var(--soft);padding:.3rem .6rem;border-radius:.3rem}
+.banner{border-left:.45rem solid var(--muted);background:var(--soft);padding:.8rem 1.1rem;margin:.9rem 0 1.1rem;border-radius:.2rem}
+.banner p{font-size:1.08rem;margin:.2rem 0}.banner.good{border-color:var(--good)}.banner.bad{border-color:var(--second)}
+.banner.warn{border-color:var(--warn)}.verdict{font-weight:700;font-size:1.15rem}
+.figures{display:flex;flex-wrap:wrap;gap:.6rem 2.2rem;margin:.7rem 0}.figures div{min-width:8rem}
+.figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}
+.scroll{overflow-x:auto}table{border-collapse:collapse;margin:.5rem 0 1rem;font-size:.9rem;font-variant-numeric:tabular-nums}
+th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
+th{color:var(--muted);font-weight:600;white-space:nowrap}th.n,td.n{text-align:right;white-space:nowrap}
+tr.strong td{font-weight:600}.better{color:var(--good)}.worse{color:var(--bad)}
+.plots{display:flex;flex-wrap:wrap;gap:.4rem 1.2rem}.plots>div{flex:0 0 auto;max-width:100%}
+svg[role]{max-width:100%;height:auto;display:block}svg text{font:11px system-ui,"Segoe UI","DejaVu Sans",sans-serif;fill:var(--text)}
+svg .tick{fill:var(--muted)}svg .title{font-weight:600}svg .grid{stroke:var(--line);stroke-width:.6}
+svg .frame{fill:none;stroke:var(--muted);stroke-width:.8}
+.ink-foreground{--ink:var(--text)}.ink-muted{--ink:var(--muted)}.ink-first{--ink:var(--first)}.ink-second{--ink:var(--second)}
+.ink-third{--ink:var(--third)}.ink-fourth{--ink:var(--fourth)}.ink-bad{--ink:var(--bad)}
+.stroke{fill:none;stroke:var(--ink)}.fill{fill:var(--ink);stroke:none}.area{fill:var(--ink);fill-opacity:.18;stroke:none}
+details{margin:.5rem 0}summary{cursor:pointer;color:var(--first)}
+@media print{:root{color-scheme:light;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
+--second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
+body{max-width:none;padding:0;font-size:10.5pt}section,.plots>div,tr,.banner{break-inside:avoid}section.long{break-inside:auto}
+h2,h3{break-after:avoid}}
+)css";
+
+/// Closed parts would be missing on paper.
+constexpr std::string_view kScript =
+    "addEventListener('beforeprint',()=>document.querySelectorAll('details').forEach(d=>d.open=true))";
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string html;
+  html.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = sequence_length(text);
+    const char letter = text.front();
+    if (length == 0 || (length == 1 && static_cast<unsigned char>(letter) < ' ' && letter != '\n' && letter != '\t') ||
+        letter == '\x7f')
+      html += kReplacement;
+    else if (letter == '&')
+      html += "&amp;";
+    else if (letter == '<')
+      html += "&lt;";
+    else if (letter == '>')
+      html += "&gt;";
+    else if (letter == '"')
+      html += "&quot;";
+    else if (letter == '\'')
+      html += "&#39;";
+    else
+      html += text.substr(0, length);
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return html;
+}
+
+std::string html_page(std::string_view title, std::string_view body) {
+  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n";
+  page.append("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>")
+      .append(escaped(title))
+      .append("</title>\n<style>")
+      .append(kStyle)
+      .append("</style>\n</head>\n<body>\n")
+      .append(body)
+      .append("\n<script>")
+      .append(kScript)
+      .append("</script>\n</body>\n</html>\n");
+  return page;
+}
+
+std::string section(std::string_view title, std::string_view body) {
+  return std::string("<section class=\"long\">\n<h2>")
+      .append(escaped(title))
+      .append("</h2>\n")
+      .append(body)
+      .append("</section>\n");
+}
+
+std::string paragraph(std::string_view text, std::string_view css_class) {
+  std::string html = "<p";
+  if (!css_class.empty()) html.append(" class=\"").append(css_class).append("\"");
+  return html.append(">").append(escaped(text)).append("</p>\n");
+}
+
+std::string folded(std::string_view label, std::string_view body) {
+  return std::string("<details><summary>")
+      .append(escaped(label))
+      .append("</summary>\n")
+      .append(body)
+      .append("</details>\n");
+}
+
+Table::Table(const std::vector<std::string>& headers) {
+  for (const std::string& header : headers) {
+    const bool right = header.starts_with(">");
+    right_.push_back(right);
+    head_.append(right ? "<th class=\"n\">" : "<th>").append(escaped(header.substr(right ? 1 : 0))).append("</th>");
+  }
+}
+
+void Table::row(const std::vector<std::string>& cells) {
+  std::vector<std::string> html;
+  html.reserve(cells.size());
+  for (const std::string& cell : cells) html.push_back(escaped(cell));
+  row_of_html(html);
+}
+
+void Table::row_of_html(const std::vector<std::string>& cells, std::string_view css_class) {
+  rows_ += "<tr";
+  if (!css_class.empty()) rows_.append(" class=\"").append(css_class).append("\"");
+  rows_ += ">";
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    rows_.append(k < right_.size() && right_[k] ? "<td class=\"n\">" : "<td>").append(cells[k]).append("</td>");
+  rows_ += "</tr>\n";
+}
+
+std::string Table::html() const {
+  return std::string("<div class=\"scroll\"><table>\n<thead><tr>")
+      .append(head_)
+      .append("</tr></thead>\n<tbody>\n")
+      .append(rows_)
+      .append("</tbody>\n</table></div>\n");
+}
+
+}  // namespace sealwatch::report

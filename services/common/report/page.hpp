@@ -1,0 +1,41 @@
+// Self-contained HTML pages: escaping, style sheet, tables. No network, no script needed; light, dark and print.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sealwatch::report {
+
+/// Text for HTML and SVG, in elements and in attributes: & < > " ' are escaped, control characters and bytes that are
+/// not UTF-8 become U+FFFD.
+[[nodiscard]] std::string escaped(std::string_view text);
+
+/// A whole page: <!DOCTYPE html> to </html>. `title` is escaped, `body` is HTML.
+[[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
+
+/// "<section><h2>title</h2>body</section>", the title escaped.
+[[nodiscard]] std::string section(std::string_view title, std::string_view body);
+
+/// "<p>" with escaped text.
+[[nodiscard]] std::string paragraph(std::string_view text, std::string_view css_class = {});
+
+/// A closed part that opens on click (and for print). The label is escaped.
+[[nodiscard]] std::string folded(std::string_view label, std::string_view body);
+
+/// A table. Cells are escaped unless given as html.
+class Table {
+ public:
+  /// Columns whose header begins with '>' are numbers, right-aligned (the sign is not shown).
+  explicit Table(const std::vector<std::string>& headers);
+  void row(const std::vector<std::string>& cells);
+  void row_of_html(const std::vector<std::string>& cells, std::string_view css_class = {});
+  [[nodiscard]] bool empty() const { return rows_.empty(); }
+  [[nodiscard]] std::string html() const;
+
+ private:
+  std::vector<bool> right_;
+  std::string head_, rows_;
+};
+
+}  // namespace sealwatch::report

@@ -1,0 +1,51 @@
+#include "services/common/report/page.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/report/well_formed.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+TEST(Page, EscapesWhatHtmlReads) {
+  EXPECT_EQ(escaped("<script>alert(\"a\" & 'b')</script>"),
+            "&lt;script&gt;alert(&quot;a&quot; &amp; &#39;b&#39;)&lt;/script&gt;");
+  EXPECT_EQ(escaped("µm, L/min"), "µm, L/min");
+}
+
+TEST(Page, ReplacesWhatIsNoText) {
+  EXPECT_EQ(escaped(std::string("a\0b\x1b", 4)), "a\uFFFDb\uFFFD");
+  EXPECT_EQ(escaped("caf\xe9!"), "caf\uFFFD!");                        // Latin-1
+  EXPECT_EQ(escaped("\xc0\xaf"), "\uFFFD\uFFFD");                      // overlong '/'
+  EXPECT_EQ(escaped("\xed\xa0\x80").find('\xed'), std::string::npos);  // half of a surrogate pair
+  EXPECT_EQ(escaped("end\xe2\x82"), "end\uFFFD\uFFFD");                // cut off
+}
+
+TEST(Page, IsWellFormed) {
+  Table table({"channel", ">rms"});
+  table.row({"<flow>", "1 & 2"});
+  table.row_of_html({"<b>x</b>", "2"}, "strong");
+  const std::string page = html_page(
+      "A <b> & c", section("T & U", table.html().append(paragraph("a < b")).append(folded("more", "<p>x</p>"))));
+  EXPECT_EQ(what_is_wrong(page), "");
+  EXPECT_NE(page.find("<title>A &lt;b&gt; &amp; c</title>"), std::string::npos);
+  EXPECT_NE(page.find("<td>&lt;flow&gt;</td><td class=\"n\">1 &amp; 2</td>"), std::string::npos);
+}
+
+TEST(Page, NeedsNoNetwork) {
+  const std::string page = html_page("t", "");
+  for (const char* fetched : {"http:", "https:", "src=", "href=", "@import", "url("})
+    EXPECT_EQ(page.find(fetched), std::string::npos) << fetched;
+}
+
+TEST(WellFormed, SeesWhatIsWrong) {
+  EXPECT_NE(what_is_wrong("<p><b></p></b>"), "");
+  EXPECT_NE(what_is_wrong("<p>a & b</p>"), "");
+  EXPECT_NE(what_is_wrong("<p>a < b</p>"), "");
+  EXPECT_NE(what_is_wrong("<p>"), "");
+  EXPECT_NE(what_is_wrong("<p a=1></p>"), "");
+  EXPECT_NE(what_is_wrong("<p a=\"1\" a=\"2\"></p>"), "");
+}
+
+}  // namespace
+}  // namespace sealwatch::report

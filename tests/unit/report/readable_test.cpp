@@ -1,0 +1,57 @@
+#include "services/common/report/readable.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace sealwatch::report {
+namespace {
+
+TEST(Readable, EverydayUnits) {
+  EXPECT_EQ(readable(1.05e7, "Pa"), "105 bar");
+  EXPECT_EQ(readable(250.0, "Pa"), "2.50 mbar");
+  EXPECT_EQ(readable(1.33e-3, "m/s"), "1.33 mm/s");
+  EXPECT_EQ(readable(7.85e-6, "m3/s"), "0.471 L/min");
+  EXPECT_EQ(readable(-5.0e-6, "m", 2), "-5.0 µm");
+  EXPECT_EQ(readable(4010.0, "N"), "4.01 kN");
+  EXPECT_EQ(readable(104.72, "rad/s", 4), "1000 rpm");
+}
+
+TEST(Readable, OtherUnitsKeepTheirNameWithAPowerOfTen) {
+  EXPECT_EQ(readable(2.6e13, "Pa s/m3"), "2.60·10¹³ Pa·s/m³");
+  EXPECT_EQ(readable(0.004, "1"), "0.00400");
+  const DisplayUnit unit = display_unit("Pa s/m3", 2.6e13);
+  EXPECT_EQ(unit.text, "10¹² Pa·s/m³");
+  EXPECT_DOUBLE_EQ(2.6e13 * unit.factor, 26.0);
+}
+
+TEST(Readable, DigitsCarryIntoTheNextDecade) {
+  EXPECT_EQ(number_text(9.996, 3), "10.0");
+  EXPECT_EQ(number_text(999999.9, 3), "1.00·10⁶");
+  EXPECT_EQ(number_text(0.0), "0");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "–");
+}
+
+TEST(Readable, ASharePretendsNoCertainty) {
+  EXPECT_EQ(percent_text(0.97), "97 %");
+  EXPECT_EQ(percent_text(0.9999999), "over 99.9 %");
+  EXPECT_EQ(percent_text(1e-9), "under 0.1 %");
+  EXPECT_EQ(percent_text(1.0), "100 %");
+  EXPECT_EQ(percent_text(0.004), "0.4 %");
+}
+
+TEST(Readable, PValues) {
+  EXPECT_EQ(p_value_text(0.234), "0.23");
+  EXPECT_EQ(p_value_text(3e-9), "under 10⁻⁸");
+  EXPECT_EQ(p_value_text(0.0), "under 10⁻³⁰⁰");
+}
+
+TEST(Readable, Identifiers) {
+  EXPECT_EQ(words_of("line_resistance"), "line resistance");
+  EXPECT_EQ(words_of("sensor:pressure_a"), "sensor: pressure a");
+  EXPECT_EQ(unit_text("Pa s/m3"), "Pa·s/m³");
+  EXPECT_EQ(unit_text("1"), "");
+}
+
+}  // namespace
+}  // namespace sealwatch::report

@@ -22,6 +22,11 @@ namespace sealwatch::forecast {
 inline constexpr double kDriftSpread = 3.0;
 inline constexpr double kPriorConfidence = 0.9;
 
+/// Variance of the condition: a Student t's is wider than its scale.
+[[nodiscard]] double condition_variance(const ConditionForecast& forecast);
+/// Density that the forecast gives to the estimate: normal, with the variances of both added.
+[[nodiscard]] double condition_density(const ConditionForecast& forecast, const ConditionSample& estimate);
+
 /// One earlier forecast of the condition beside the estimate that came.
 struct ConditionScore {
   UtcTime made;    ///< when the forecast was made

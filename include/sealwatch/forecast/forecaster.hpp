@@ -57,9 +57,9 @@ class Forecaster {
  public:
   virtual ~Forecaster() = default;
   [[nodiscard]] virtual PredictiveForecast predict(const ForecastRequest& request) const = 0;
-  /// The condition at `when`, not before `request.now`; none where `predict` is not ok.
-  [[nodiscard]] virtual std::optional<ConditionForecast> predict_condition(const ForecastRequest& request,
-                                                                           UtcTime when) const = 0;
+  /// The condition at each time of `when`, none before `request.now`; empty when there are too few tests.
+  [[nodiscard]] virtual std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,
+                                                                          std::span<const UtcTime> when) const = 0;
   [[nodiscard]] Forecast forecast(const ForecastRequest& request) const { return predict(request).forecast; }
 };
 

@@ -34,8 +34,8 @@ class OlsForecaster final : public Forecaster {
  public:
   [[nodiscard]] static Result<std::unique_ptr<const Forecaster>> make(const OlsOptions& options);
   [[nodiscard]] PredictiveForecast predict(const ForecastRequest& request) const override;
-  [[nodiscard]] std::optional<ConditionForecast> predict_condition(const ForecastRequest& request,
-                                                                   UtcTime when) const override;
+  [[nodiscard]] std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,
+                                                                  std::span<const UtcTime> when) const override;
 
  private:
   explicit OlsForecaster(OlsOptions options) : options_(std::move(options)) {}

@@ -25,7 +25,7 @@ struct StateSpaceOptions {
   FleetPopulation population = {};
   double spread = 2.0;              ///< widens the population's standard deviations
   int fewest_tests = 6;             ///< below: insufficient_history
-  double change_per_month = 0.002;  ///< prior probability of a change (rate or level) in a month
+  double change_per_month = 0.005;  ///< prior probability of a change (rate or level) in a month
   double horizon_months = 600.0;    ///< a median beyond this is no date
 
   [[nodiscard]] Status validate() const;
@@ -35,8 +35,8 @@ class StateSpaceForecaster final : public Forecaster {
  public:
   [[nodiscard]] static Result<std::unique_ptr<const Forecaster>> make(const StateSpaceOptions& options);
   [[nodiscard]] PredictiveForecast predict(const ForecastRequest& request) const override;
-  [[nodiscard]] std::optional<ConditionForecast> predict_condition(const ForecastRequest& request,
-                                                                   UtcTime when) const override;
+  [[nodiscard]] std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,
+                                                                  std::span<const UtcTime> when) const override;
 
  private:
   explicit StateSpaceForecaster(StateSpaceOptions options) : options_(std::move(options)) {}

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/forecast/forecast_average.hpp"
 #include "sealwatch/forecast/ols.hpp"
 #include "sealwatch/forecast/state_space.hpp"
 #include "sealwatch/forecast/words.hpp"
@@ -54,6 +55,7 @@ const std::vector<std::string>& forecast_methods() {
 }
 
 Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings) {
+  if (settings.method == "average") return AverageForecaster::make(settings);
   if (settings.method == "state_space")
     return StateSpaceForecaster::make(
         {.method = settings.method, .window_months = settings.window_months, .population = settings.population});

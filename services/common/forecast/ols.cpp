@@ -173,18 +173,23 @@ PredictiveForecast OlsForecaster::predict(const ForecastRequest& request) const 
   return {say(forecast, ForecastState::ok, describe_ok(forecast, request, *line)), std::move(remaining)};
 }
 
-std::optional<ConditionForecast> OlsForecaster::predict_condition(const ForecastRequest& request, UtcTime when) const {
-  if (request.history.empty()) return std::nullopt;
+std::vector<ConditionForecast> OlsForecaster::predict_conditions(const ForecastRequest& request,
+                                                                 std::span<const UtcTime> when) const {
+  std::vector<ConditionForecast> conditions;
+  if (request.history.empty()) return conditions;
   const std::vector<ConditionSample> window = last_months(request.history, options_.window_months);
-  if (!missing_history(options_, request, window.size()).empty()) return std::nullopt;
+  if (!missing_history(options_, request, window.size()).empty()) return conditions;
   const TimeAxis axis = time_axis(options_.time, request);
   const auto line = fit(options_, axis, window);
-  if (!line) return std::nullopt;
-  const double y = axis.y(axis.months(when));
-  return ConditionForecast{.time = when,
-                           .condition = line->condition_at(y),
-                           .condition_std = line->prediction_std(y),
-                           .degrees_of_freedom = line->degrees_of_freedom()};
+  if (!line) return conditions;
+  for (const UtcTime time : when) {
+    const double y = axis.y(axis.months(time));
+    conditions.push_back({.time = time,
+                          .condition = line->condition_at(y),
+                          .condition_std = line->prediction_std(y),
+                          .degrees_of_freedom = line->degrees_of_freedom()});
+  }
+  return conditions;
 }
 
 }  // namespace sealwatch::forecast

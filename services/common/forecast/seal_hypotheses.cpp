@@ -29,7 +29,7 @@ constexpr double kLevelChange = 0.03;       // standard deviation of a step of t
 constexpr double kSmallestWeight = 1e-5;
 
 // Standard errors are believed unless the mean squared innovation, 0.97 when they are right, says otherwise.
-constexpr int kFewestToJudge = 12;
+constexpr std::size_t kFewestToJudge = 12;
 constexpr double kTooMuchSurprise = 1.5;
 constexpr double kTooLittleSurprise = 0.5;
 
@@ -47,6 +47,13 @@ struct Run {
   [[nodiscard]] double log_posterior() const { return log_prior + hypothesis.belief.log_evidence; }
 };
 
+/// What one noise setting makes of the tests.
+struct Weighed {
+  SealOpinion opinion;
+  double log_evidence = 0.0;
+  double surprise = 0.0;  ///< mean squared standardised innovation of the likeliest hypothesis
+};
+
 double total_std(const DatedTest& test, const Noise& noise) { return std::hypot(test.condition_std, noise.extra_std); }
 
 class Bank {
@@ -56,8 +63,31 @@ class Bank {
     law_ = {.n_0 = options.population.n_0,
             .steepening_scatter = options.population.steepening_scatter * noise.irregularity_scale,
             .irregularity_std = options.population.irregularity_std * noise.irregularity_scale};
+    run_unchanged();
   }
 
+  [[nodiscard]] Weighed weigh() const {
+    std::vector<std::pair<double, SealHypothesis>> all;  // with the logarithms of their posteriors
+    for (const Run& one : runs_) all.emplace_back(one.log_posterior(), one.hypothesis);
+    add_changes(all);
+    const auto& likeliest_entry =
+        *std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    const double top = likeliest_entry.first;
+    const SealBelief& likeliest = likeliest_entry.second.belief;
+    const double surprise = likeliest.surprise_squares / std::max(likeliest.tests, 1);
+    double sum = 0.0;
+    for (auto& [log_posterior, hypothesis] : all) sum += hypothesis.weight = std::exp(log_posterior - top);
+    SealOpinion opinion{
+        .hypotheses = {}, .law = law_, .extra_std = noise_.extra_std, .irregularity_scale = noise_.irregularity_scale};
+    for (auto& [log_posterior, hypothesis] : all)
+      if (hypothesis.weight > kSmallestWeight * sum) opinion.hypotheses.push_back(std::move(hypothesis));
+    double kept = 0.0;
+    for (const SealHypothesis& hypothesis : opinion.hypotheses) kept += hypothesis.weight;
+    for (SealHypothesis& hypothesis : opinion.hypotheses) hypothesis.weight /= kept;
+    return {.opinion = std::move(opinion), .log_evidence = top + std::log(sum), .surprise = surprise};
+  }
+
+ private:
   void run_unchanged() {
     std::vector<std::pair<double, double>> ages(kUnknownAges.begin(), kUnknownAges.end());
     if (options_.age_at_first_test) ages = {{*options_.age_at_first_test, 1.0}};
@@ -72,25 +102,6 @@ class Bank {
                              [](const Run& a, const Run& b) { return a.log_posterior() < b.log_posterior(); });
   }
 
-  SealOpinion opinion() {
-    std::vector<std::pair<double, SealHypothesis>> all;  // with the logarithms of their posteriors
-    for (const Run& one : runs_) all.emplace_back(one.log_posterior(), one.hypothesis);
-    add_changes(all);
-    double highest = all.front().first;
-    for (const auto& [log_posterior, hypothesis] : all) highest = std::max(highest, log_posterior);
-    double sum = 0.0;
-    for (auto& [log_posterior, hypothesis] : all) sum += hypothesis.weight = std::exp(log_posterior - highest);
-    SealOpinion opinion{
-        .hypotheses = {}, .law = law_, .extra_std = noise_.extra_std, .irregularity_scale = noise_.irregularity_scale};
-    for (auto& [log_posterior, hypothesis] : all)
-      if (hypothesis.weight > kSmallestWeight * sum) opinion.hypotheses.push_back(std::move(hypothesis));
-    double kept = 0.0;
-    for (const SealHypothesis& hypothesis : opinion.hypotheses) kept += hypothesis.weight;
-    for (SealHypothesis& hypothesis : opinion.hypotheses) hypothesis.weight /= kept;
-    return opinion;
-  }
-
- private:
   [[nodiscard]] SealBelief prior(bool stranger) const {
     SealBelief belief = new_seal(options_.population, options_.spread);
     if (!stranger) return belief;
@@ -121,9 +132,7 @@ class Bank {
   void add_changes(std::vector<std::pair<double, SealHypothesis>>& all) const {
     const Run& base = best();
     double last_months = tests_.back().months;
-    for (const std::size_t since : kTestsSinceChange) {
-      if (since + kFewestBeforeChange > tests_.size()) break;
-      const std::size_t first = tests_.size() - since;
+    for (const std::size_t first : first_tests_after_change()) {
       const double stands_for = last_months - tests_[first].months;  // months since the candidate before
       last_months = tests_[first].months;
       const double change = std::log(0.5 * options_.change_per_month * std::max(stands_for, 0.1));
@@ -132,6 +141,37 @@ class Bank {
       all.push_back(branch(base, SealChange::level, first, base.log_prior + change));
       all.push_back(branch(base, SealChange::replaced, first, base.log_prior + replaced));
     }
+  }
+
+  /// Newest first: at fixed numbers of tests ago, and after the largest jump, whose place matters most.
+  [[nodiscard]] std::vector<std::size_t> first_tests_after_change() const {
+    std::vector<std::size_t> firsts;
+    for (const std::size_t since : kTestsSinceChange)
+      if (since + kFewestBeforeChange <= tests_.size()) firsts.push_back(tests_.size() - since);
+    if (const auto jump = largest_jump(); jump && std::find(firsts.begin(), firsts.end(), *jump) == firsts.end())
+      firsts.insert(std::find_if(firsts.begin(), firsts.end(), [&](std::size_t first) { return first < *jump; }),
+                    *jump);
+    return firsts;
+  }
+
+  /// Where the medians of three tests before and three after are furthest apart.
+  [[nodiscard]] std::optional<std::size_t> largest_jump() const {
+    std::optional<std::size_t> place;
+    double largest = 0.0;
+    for (std::size_t i = kFewestBeforeChange; i + 2 < tests_.size(); ++i) {
+      const double jump = std::abs(middle_of(i) - middle_of(i - 3));
+      if (jump <= largest) continue;
+      largest = jump;
+      place = i;
+    }
+    return place;
+  }
+
+  [[nodiscard]] double middle_of(std::size_t i) const {
+    const double a = tests_[i].condition;
+    const double b = tests_[i + 1].condition;
+    const double c = tests_[i + 2].condition;
+    return std::max(std::min(a, b), std::min(std::max(a, b), c));
   }
 
   [[nodiscard]] std::pair<double, SealHypothesis> branch(const Run& base, SealChange change, std::size_t first,
@@ -185,7 +225,7 @@ constexpr double kSmallestScatter = 1e-5;
 
 std::vector<Noise> candidates(const std::vector<DatedTest>& tests, bool errors_known) {
   double scatter = scatter_of(tests);
-  if (tests.size() < static_cast<std::size_t>(kFewestToJudge)) scatter = std::max(scatter, kUsualScatter);
+  if (tests.size() < kFewestToJudge) scatter = std::max(scatter, kUsualScatter);
   scatter = std::max(scatter, kSmallestScatter);
   if (!errors_known) return {{scatter, 1.0}, {0.5 * scatter, 1.0}, {0.25 * scatter, 1.0}, {1.5 * scatter, 1.0}};
   return {{0.5 * scatter, 1.0}, {scatter, 1.0}, {2.0 * scatter, 1.0}, {0.0, 0.3}, {0.0, 2.0}, {0.0, 4.0}};
@@ -196,33 +236,22 @@ std::vector<Noise> candidates(const std::vector<DatedTest>& tests, bool errors_k
 SealOpinion weigh_hypotheses(const std::vector<DatedTest>& tests, const HypothesisOptions& options) {
   const bool errors_known =
       std::all_of(tests.begin(), tests.end(), [](const DatedTest& test) { return test.condition_std > 0.0; });
-  const auto bank_with = [&](const Noise& noise) {
-    Bank bank(tests, options, noise);
-    bank.run_unchanged();
-    return bank;
-  };
-  std::optional<Bank> chosen;
+  std::optional<Weighed> best;
   if (errors_known) {
-    chosen.emplace(bank_with({}));
-    const SealBelief& belief = chosen->best().hypothesis.belief;
-    const double surprise = belief.surprise_squares / std::max(belief.tests, 1);
-    const bool plausible = surprise > kTooLittleSurprise && surprise < kTooMuchSurprise;
-    if (belief.tests < kFewestToJudge || plausible) return chosen->opinion();
+    best = Bank(tests, options, {}).weigh();
+    const bool plausible = best->surprise > kTooLittleSurprise && best->surprise < kTooMuchSurprise;
+    if (plausible || tests.size() < kFewestToJudge) return std::move(best->opinion);
   }
-  std::optional<Noise> best = errors_known ? std::optional<Noise>(Noise{}) : std::nullopt;
-  double best_evidence = chosen ? chosen->best().log_posterior() : 0.0;
   for (const Noise& noise : candidates(tests, errors_known)) {
-    const double evidence = bank_with(noise).best().log_posterior();
-    if (best && evidence <= best_evidence) continue;
-    best = noise;
-    best_evidence = evidence;
+    Weighed trial = Bank(tests, options, noise).weigh();
+    if (!best || trial.log_evidence > best->log_evidence) best = std::move(trial);
   }
-  return bank_with(*best).opinion();
+  return std::move(best->opinion);
 }
 
-void grow_old(SealOpinion& opinion, double months_after_last_test) {
+void grow_old(SealOpinion& opinion, double months) {
   for (SealHypothesis& hypothesis : opinion.hypotheses)
-    grow_old(hypothesis.belief, opinion.law, hypothesis.belief.age_months + months_after_last_test);
+    grow_old(hypothesis.belief, opinion.law, hypothesis.belief.age_months + months);
 }
 
 }  // namespace sealwatch::forecast

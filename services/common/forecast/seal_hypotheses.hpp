@@ -28,7 +28,7 @@ struct SealHypothesis {
 struct HypothesisOptions {
   FleetPopulation population;
   double spread = 1.0;
-  double change_per_month = 0.002;
+  double change_per_month = 0.005;
   std::optional<double> age_at_first_test;  ///< [months]; none: not known
 };
 
@@ -42,7 +42,7 @@ struct SealOpinion {
 /// `tests` in the order of time, at least one.
 [[nodiscard]] SealOpinion weigh_hypotheses(const std::vector<DatedTest>& tests, const HypothesisOptions& options);
 
-/// Carries all on to `months` after the first test.
-void grow_old(SealOpinion& opinion, double months_after_last_test);
+/// Carries all on by `months`.
+void grow_old(SealOpinion& opinion, double months);
 
 }  // namespace sealwatch::forecast

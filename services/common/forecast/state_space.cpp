@@ -174,12 +174,19 @@ PredictiveForecast StateSpaceForecaster::predict(const ForecastRequest& request)
   return {say(forecast, ForecastState::ok, describe_ok(opinion, opened, request)), std::move(remaining)};
 }
 
-std::optional<ConditionForecast> StateSpaceForecaster::predict_condition(const ForecastRequest& request,
-                                                                         UtcTime when) const {
-  if (request.history.empty()) return std::nullopt;
+std::vector<ConditionForecast> StateSpaceForecaster::predict_conditions(const ForecastRequest& request,
+                                                                        std::span<const UtcTime> when) const {
+  std::vector<ConditionForecast> conditions;
+  if (request.history.empty()) return conditions;
   const Opened opened = open_history(request, options_.window_months);
-  if (static_cast<int>(opened.tests.size()) < options_.fewest_tests) return std::nullopt;
-  return condition_of(opinion_of(options_, request, opened, when), when);
+  if (static_cast<int>(opened.tests.size()) < options_.fewest_tests) return conditions;
+  const SealOpinion now = opinion_of(options_, request, opened, request.now);
+  for (const UtcTime time : when) {
+    SealOpinion then = now;
+    grow_old(then, months_between(request.now, time));
+    conditions.push_back(condition_of(then, time));
+  }
+  return conditions;
 }
 
 }  // namespace sealwatch::forecast

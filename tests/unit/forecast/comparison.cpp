@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
     for (const test::MonthOfLife& month : life.months) {
       if (month.sample) request.history.push_back(*month.sample);
       const double left = life.end_months - month.state.month;
-      if (!month.sample || month.state.month < kFirstMonth || left <= 0.0) continue;
+      if (!month.sample || !month.foreseeable || month.state.month < kFirstMonth || left <= 0.0) continue;
       request.now = month.sample->time;
       for (std::size_t f = 0; f < forecasters.size(); ++f) {
         const auto begin = std::chrono::steady_clock::now();

@@ -18,6 +18,7 @@ namespace sealwatch::forecast::test {
 struct MonthOfLife {
   TrueState state;
   std::optional<ConditionSample> sample;  ///< none: no usable test in this month
+  bool foreseeable = true;                ///< false until half a year after a change, and before a replacement
 };
 
 struct RandomLife {
@@ -47,9 +48,10 @@ inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, d
   if (scenario == "replaced") {
     Degradation first(seed + 1000000);
     for (offset = 1.0; offset <= 48.0 && first.advance() > threshold; offset += 1.0)
-      life.months.push_back({{.month = offset - 1e6},  // of another life: not scored
-                             ConditionSample{month(offset), first.condition() + life.condition_std * normal(random),
-                                             life.condition_std}});
+      life.months.push_back(
+          {{.month = offset - 1e6},  // of another life: not scored
+           ConditionSample{month(offset), first.condition() + life.condition_std * normal(random), life.condition_std},
+           false});
   }
   double extra_fall = 0.0;
   double before = 1.0;
@@ -58,11 +60,13 @@ inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, d
     seal.advance();
     if (scenario == "rate" && n > kChange) extra_fall += 0.5 * (last - seal.condition());
     const double condition = seal.condition() - extra_fall;
-    MonthOfLife now{.state = {.month = static_cast<double>(n),
-                              .condition = condition,
-                              .gamma = seal.gamma() * (scenario == "rate" && n > kChange ? 1.5 : 1.0),
-                              .steepening_limit = seal.steepening_limit()},
-                    .sample = std::nullopt};
+    MonthOfLife now{
+        .state = {.month = static_cast<double>(n),
+                  .condition = condition,
+                  .gamma = seal.gamma() * (scenario == "rate" && n > kChange ? 1.5 : 1.0),
+                  .steepening_limit = seal.steepening_limit() * (scenario == "rate" && n > kChange ? 1.5 : 1.0)},
+        .sample = std::nullopt};
+    if (scenario == "rate" || scenario == "level") now.foreseeable = n > kChange + 6.0;
     double estimate = condition + life.condition_std * normal(random);
     if (scenario == "errors") estimate += 2.83 * life.condition_std * normal(random);
     if (scenario == "outliers" && uniform(random) < 0.05)

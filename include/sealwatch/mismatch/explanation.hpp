@@ -11,7 +11,13 @@
 #include "sealwatch/core/time_series.hpp"
 #include "sealwatch/estimation/actuator_fit.hpp"
 
-namespace sealwatch::mismatch {
+namespace sealwatch {
+
+SEALWATCH_ENUM(MismatchVerdict, consistent, mismatch, undetermined)
+
+namespace mismatch {
+
+using Verdict = MismatchVerdict;
 
 /// A law at an element: what an effect can be named.
 struct LawAt {
@@ -110,8 +116,6 @@ struct PrognosisShift {
   std::string sentence;
 };
 
-SEALWATCH_ENUM(Verdict, consistent, mismatch, undetermined)
-
 struct Location {
   std::string element;
   double probability = 0.0;
@@ -147,4 +151,5 @@ struct Explanation {
   AssetConfig explained;           ///< the asset with fitted parameters and the found physics
 };
 
-}  // namespace sealwatch::mismatch
+}  // namespace mismatch
+}  // namespace sealwatch

@@ -17,6 +17,7 @@ struct ParameterSetting {
   double min = 0.0;
   double max = 0.0;
   bool estimate = false;
+  bool operator==(const ParameterSetting&) const = default;
 };
 
 /// One sensor. A zero range (max <= min) means that none is known.
@@ -62,7 +63,7 @@ struct PstSetting {
 struct PhysicsTerm {
   std::string id;
   std::string element;
-  std::map<std::string, double> parameters;
+  std::map<std::string, ParameterSetting> parameters;  ///< of the law; a plain number in the file is fixed
 };
 
 /// Limits of one judged quantity: above (or below, when alarm < advisory) them the region changes.

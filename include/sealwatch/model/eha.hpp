@@ -22,6 +22,7 @@
 
 #include "sealwatch/core/fields.hpp"
 #include "sealwatch/model/laws.hpp"
+#include "sealwatch/model/sites.hpp"
 
 namespace sealwatch {
 
@@ -44,14 +45,50 @@ struct Eha {
   enum Index { kZ, kI, kOmega, kP1, kP2, kPA, kPB, kV, kX };
   struct Input {
     double voltage_V = 0.0;
+    double voltage_rate_V_s = 0.0;
   };
 
-  /// Check valve: opened forward by its drop, or by the pilot pressure of the other port. [m3/s] from port to chamber
-  template <class S, class P>
-  [[nodiscard]] static auto valve_flow(const S& port, const S& chamber, const S& other_port,
-                                       const EhaParameters<P>& p) {
-    const auto drop = port - chamber;
-    const auto forward = laws::smooth_step(p.k_V * (drop - p.p_crack));
+  /// Where laws of the catalogue may act, in the order of `extra`.
+  static constexpr std::array kSites = {
+      Site{"driver", SiteKind::voltage_command},   Site{"winding", SiteKind::winding_voltage},
+      Site{"shaft", SiteKind::shaft_torque},       Site{"pump", SiteKind::pump_slip},
+      Site{"valve_1", SiteKind::line_drop},        Site{"valve_2", SiteKind::line_drop},
+      Site{"valve_1", SiteKind::valve_crack},      Site{"valve_2", SiteKind::valve_crack},
+      Site{"chamber_a", SiteKind::outflow},        Site{"chamber_b", SiteKind::outflow},
+      Site{"chamber_a", SiteKind::compliance},     Site{"chamber_b", SiteKind::compliance},
+      Site{"piston_seal", SiteKind::seal_leakage}, Site{"piston", SiteKind::piston_force},
+      Site{"fluid", SiteKind::inverse_modulus},    Site{"fluid", SiteKind::inverse_modulus},
+      Site{"fluid", SiteKind::inverse_modulus},    Site{"fluid", SiteKind::inverse_modulus},
+      Site{"fluid", SiteKind::viscosity}};
+  enum SiteIndex {
+    kDriverVoltage,
+    kWindingVoltage,
+    kShaftTorque,
+    kPumpSlip,
+    kDrop1,
+    kDrop2,
+    kCrack1,
+    kCrack2,
+    kOutflowA,
+    kOutflowB,
+    kComplianceA,
+    kComplianceB,
+    kSealLeakage,
+    kPistonForce,
+    kModulus1,
+    kModulus2,
+    kModulusA,
+    kModulusB,
+    kViscosity
+  };
+
+  /// Check valve: opened forward by its drop, or by the pilot pressure of the other port. [m3/s] from port to chamber.
+  /// `line_drop` is lost before the valve, `crack` lowers its cracking pressure. [Pa]
+  template <class S, class P, class E = None>
+  [[nodiscard]] static auto valve_flow(const S& port, const S& chamber, const S& other_port, const EhaParameters<P>& p,
+                                       const E& line_drop = {}, const E& crack = {}) {
+    const auto drop = port - chamber - line_drop;
+    const auto forward = laws::smooth_step(p.k_V * (drop - p.p_crack + crack));
     const auto pilot = laws::smooth_step(p.g_V * (p.r_pilot * (other_port - p.p_0) - (chamber - p.p_0)));
     const bool by_forward = value_of(forward) >= value_of(pilot);
     return laws::orifice_flow(p.c_D, p.a_V * (by_forward ? forward : pilot), p.rho, drop, p.eps_V);
@@ -65,31 +102,108 @@ struct Eha {
     return high - low;
   }
 
+  /// Pressure drop and flow of valve k = 1, 2 without what is added: the signals of laws at its line and seat.
   template <class S, class P>
-  [[nodiscard]] static auto derivatives(const State<S>& y, const Input& input, const EhaParameters<P>& p) {
+  [[nodiscard]] static auto valve_signals(int valve, const State<S>& y, const EhaParameters<P>& p) {
+    const S &port = valve == 1 ? y[kP1] : y[kP2], &chamber = valve == 1 ? y[kPA] : y[kPB];
+    return std::pair(port - chamber, valve_flow(port, chamber, valve == 1 ? y[kP2] : y[kP1], p));
+  }
+
+  /// What laws see at a site (model/physics.hpp).
+  template <class R, class S, class P>
+  [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
+                                                           const EhaParameters<P>& p) {
     const auto& [z, i, omega, p_1, p_2, p_A, p_B, v, x] = y;
-    const auto q_PL = laws::laminar_flow(p_1 - p_2, p.R_PL);
-    const auto q_CL = laws::laminar_flow(p_A - p_B, p.R_CL);
+    switch (site) {
+      case kDriverVoltage:
+        return {R(i), R(input.voltage_V), R(input.voltage_rate_V_s), R(0.0)};
+      case kWindingVoltage:
+        return {R(i), R(omega), R(0.0), R(0.0)};
+      case kShaftTorque:
+        return {R(omega), R(p_1 - p_2), R(i), R(0.0)};
+      case kPumpSlip:
+        return {R(p_1 - p_2), R(omega), R(0.0), R(0.0)};
+      case kDrop1:
+      case kDrop2: {
+        const auto [drop, flow] = valve_signals(site == kDrop1 ? 1 : 2, y, p);
+        return {R(flow), R(drop), R(0.0), R(0.0)};
+      }
+      case kCrack1:
+      case kCrack2: {
+        const auto [drop, flow] = valve_signals(site == kCrack1 ? 1 : 2, y, p);
+        return {R(drop), R(flow), R(0.0), R(0.0)};
+      }
+      case kOutflowA:
+        return {R(p_A - p.p_0), R(0.0), R(0.0), R(0.0)};
+      case kOutflowB:
+        return {R(p_B - p.p_0), R(0.0), R(0.0), R(0.0)};
+      case kComplianceA:
+      case kModulusA:
+        return {R(p_A + p.p_ambient), R(0.0), R(0.0), R(0.0)};
+      case kComplianceB:
+      case kModulusB:
+        return {R(p_B + p.p_ambient), R(0.0), R(0.0), R(0.0)};
+      case kModulus1:
+        return {R(p_1 + p.p_ambient), R(0.0), R(0.0), R(0.0)};
+      case kModulus2:
+        return {R(p_2 + p.p_ambient), R(0.0), R(0.0), R(0.0)};
+      case kSealLeakage:
+        return {R(p_A - p_B), R(v), R(x), R(0.0)};
+      case kPistonForce:
+        return {R(v), R(x), R(p_A), R(p_B)};
+      default:
+        return {R(laws::smooth_abs(z * i, kPowerWidth_W)), R(0.0), R(0.0), R(0.0)};
+    }
+  }
+  static constexpr double kPowerWidth_W = 0.1;  ///< width of the corner of the dissipated power
+
+  /// beta / (V (1 + beta inverse_modulus) + beta compliance): pressure rise for oil pressed in. [Pa/m3]
+  template <class V, class P>
+  [[nodiscard]] static auto stiffness(const V& volume, const P& beta, None, None) {
+    return beta / volume;
+  }
+  template <class V, class P, class E>
+  [[nodiscard]] static auto stiffness(const V& volume, const P& beta, const E& inverse_modulus, const E& compliance) {
+    return beta / (volume * (1.0 + beta * inverse_modulus) + beta * compliance);
+  }
+  template <class V, class P, class E>
+  [[nodiscard]] static auto stiffness(const V& volume, const P& beta, const E& inverse_modulus) {
+    return beta / (volume * (1.0 + beta * inverse_modulus));
+  }
+  template <class V, class P>
+  [[nodiscard]] static auto stiffness(const V& volume, const P& beta, None) {
+    return beta / volume;
+  }
+
+  template <class S, class P, class Extra = NoExtra>
+  [[nodiscard]] static auto derivatives(const State<S>& y, const Input& input, const EhaParameters<P>& p,
+                                        const Extra& extra = {}) {
+    const auto& [z, i, omega, p_1, p_2, p_A, p_B, v, x] = y;
+    const auto viscosity = 1.0 + extra[kViscosity];  // relative
+    const auto q_PL = laws::laminar_flow(p_1 - p_2, p.R_PL * viscosity) + extra[kPumpSlip];
+    const auto q_CL = laws::laminar_flow(p_A - p_B, p.R_CL * viscosity) + extra[kSealLeakage];
     const auto q_C1 = laws::make_up_flow(p.K_MU, p.p_0, p_1, p.s_MU);
     const auto q_C2 = laws::make_up_flow(p.K_MU, p.p_0, p_2, p.s_MU);
-    const auto q_V1 = valve_flow(p_1, p_A, p_2, p);
-    const auto q_V2 = valve_flow(p_2, p_B, p_1, p);
+    const auto q_V1 = valve_flow(p_1, p_A, p_2, p, extra[kDrop1], extra[kCrack1]);
+    const auto q_V2 = valve_flow(p_2, p_B, p_1, p, extra[kDrop2], extra[kCrack2]);
     const auto q_P = p.alpha_P * omega;
     const auto A_A = p.A_C;
     const auto A_B = p.area_ratio * p.A_C;
     const auto V_A = p.V_0 + A_A * x;
     const auto V_B = p.V_0 + A_B * (p.x_C - x);
     const auto load = p.phi * (1.0 + p.load_factor);
-    using R = decltype(z * p.R_M);
+    const auto torque_losses = (p.f_M + p.d_P * viscosity) * omega + p.alpha_P * (p_1 - p_2) + extra[kShaftTorque];
+    const auto force_losses = p.f_C * viscosity * v + load + cushion_force(x, v, p) + extra[kPistonForce];
+    using R = decltype((z * p.R_M) + extra[kViscosity]);
     return State<R>{
-        (input.voltage_V - z) / (p.R_M * p.C_M),
-        (z - p.R_M * i - p.Omega_M * omega) / p.L_M,
-        (p.T_M * i - (p.f_M + p.d_P) * omega - p.alpha_P * (p_1 - p_2)) / p.J_M,
-        (p.beta / p.V_P) * (q_P - q_PL - q_V1 + q_C1),
-        (p.beta / p.V_P) * (q_PL - q_P - q_V2 + q_C2),
-        (p.beta / V_A) * (q_V1 - A_A * v - q_CL),
-        (p.beta / V_B) * (q_V2 + A_B * v + q_CL),
-        (A_A * p_A - A_B * p_B - p.f_C * v - load - cushion_force(x, v, p)) / p.m_C,
+        R((input.voltage_V - z - extra[kDriverVoltage]) / (p.R_M * p.C_M)),
+        R((z - p.R_M * i - p.Omega_M * omega - extra[kWindingVoltage]) / p.L_M),
+        R((p.T_M * i - torque_losses) / p.J_M),
+        R(stiffness(p.V_P, p.beta, extra[kModulus1]) * (q_P - q_PL - q_V1 + q_C1)),
+        R(stiffness(p.V_P, p.beta, extra[kModulus2]) * (q_PL - q_P - q_V2 + q_C2)),
+        R(stiffness(V_A, p.beta, extra[kModulusA], extra[kComplianceA]) * (q_V1 - A_A * v - q_CL - extra[kOutflowA])),
+        R(stiffness(V_B, p.beta, extra[kModulusB], extra[kComplianceB]) * (q_V2 + A_B * v + q_CL - extra[kOutflowB])),
+        R((A_A * p_A - A_B * p_B - force_losses) / p.m_C),
         R(v),
     };
   }

@@ -27,18 +27,48 @@ struct EhaCircuit {
     double pressure_b_Pa = 0.0;
   };
 
-  template <class S, class P>
-  [[nodiscard]] static auto derivatives(const State<S>& y, const Input& input, const EhaParameters<P>& p) {
-    using R = decltype(y[0] * p.A_C);
+  static constexpr std::array kSites = {
+      Site{"chamber_a", SiteKind::outflow},        Site{"chamber_a", SiteKind::compliance},
+      Site{"piston_seal", SiteKind::seal_leakage}, Site{"piston", SiteKind::piston_force},
+      Site{"fluid", SiteKind::inverse_modulus},    Site{"fluid", SiteKind::viscosity}};
+  enum SiteIndex { kOutflowA, kComplianceA, kSealLeakage, kPistonForce, kModulusA, kViscosity };
+
+  /// What laws see at a site (model/physics.hpp). The power that warms the oil is the hydraulic one.
+  template <class R, class S, class P>
+  [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
+                                                           const EhaParameters<P>& p) {
+    const auto& [p_A, v, x] = y;
+    switch (site) {
+      case kOutflowA:
+        return {R(p_A - p.p_0), R(0.0), R(0.0), R(0.0)};
+      case kSealLeakage:
+        return {R(p_A - input.pressure_b_Pa), R(v), R(x), R(0.0)};
+      case kPistonForce:
+        return {R(v), R(x), R(p_A), R(input.pressure_b_Pa)};
+      case kViscosity:
+        return {R(laws::smooth_abs((p_A - input.pressure_b_Pa) * input.flow_m3_s, Eha::kPowerWidth_W)), R(0.0), R(0.0),
+                R(0.0)};
+      default:
+        return {R(p_A + p.p_ambient), R(0.0), R(0.0), R(0.0)};
+    }
+  }
+
+  template <class S, class P, class Extra = NoExtra>
+  [[nodiscard]] static auto derivatives(const State<S>& y, const Input& input, const EhaParameters<P>& p,
+                                        const Extra& extra = {}) {
+    using R = decltype(y[0] * p.A_C + extra[0]);
     const auto& [p_A, v, x] = y;
     const double q = input.flow_m3_s, p_B = input.pressure_b_Pa;
     const auto A_A = p.A_C;
     const auto A_B = p.area_ratio * p.A_C;
-    const auto q_CL = laws::laminar_flow(p_A - p_B, p.R_CL);
+    const auto viscosity = 1.0 + extra[kViscosity];  // relative
+    const auto q_CL = laws::laminar_flow(p_A - p_B, p.R_CL * viscosity) + extra[kSealLeakage];
     const auto load = p.phi * (1.0 + p.load_factor);
+    const auto force_losses = p.f_C * viscosity * v + load + Eha::cushion_force(x, v, p) + extra[kPistonForce];
     return State<R>{
-        (p.beta / (p.V_0 + A_A * x)) * (q - A_A * v - q_CL),
-        (A_A * p_A - A_B * p_B - p.f_C * v - load - Eha::cushion_force(x, v, p)) / p.m_C,
+        R(Eha::stiffness(p.V_0 + A_A * x, p.beta, extra[kModulusA], extra[kComplianceA]) *
+          (q - A_A * v - q_CL - extra[kOutflowA])),
+        R((A_A * p_A - A_B * p_B - force_losses) / p.m_C),
         R(v),
     };
   }

@@ -23,7 +23,9 @@
 #include <string_view>
 
 #include "sealwatch/core/fields.hpp"
+#include "sealwatch/model/eha.hpp"
 #include "sealwatch/model/laws.hpp"
+#include "sealwatch/model/sites.hpp"
 
 namespace sealwatch {
 
@@ -48,6 +50,34 @@ struct EhaSwitched {
   struct Input {
     double duty = 0.0;
     double valve_state = 0.0;
+  };
+
+  /// Where laws of the catalogue may act, in the order of `extra`. Valve 1 is the line to chamber A, valve 2 to B.
+  static constexpr std::array kSites = {
+      Site{"driver", SiteKind::voltage_command},   Site{"winding", SiteKind::winding_voltage},
+      Site{"shaft", SiteKind::shaft_torque},       Site{"pump", SiteKind::pump_slip},
+      Site{"valve_1", SiteKind::line_drop},        Site{"valve_2", SiteKind::line_drop},
+      Site{"chamber_a", SiteKind::outflow},        Site{"chamber_b", SiteKind::outflow},
+      Site{"chamber_a", SiteKind::compliance},     Site{"chamber_b", SiteKind::compliance},
+      Site{"piston_seal", SiteKind::seal_leakage}, Site{"piston", SiteKind::piston_force},
+      Site{"fluid", SiteKind::inverse_modulus},    Site{"fluid", SiteKind::inverse_modulus},
+      Site{"fluid", SiteKind::inverse_modulus}};
+  enum SiteIndex {
+    kDriverVoltage,
+    kWindingVoltage,
+    kShaftTorque,
+    kPumpSlip,
+    kDrop1,
+    kDrop2,
+    kOutflowA,
+    kOutflowB,
+    kComplianceA,
+    kComplianceB,
+    kSealLeakage,
+    kPistonForce,
+    kModulusP,
+    kModulusA,
+    kModulusB
   };
 
   static constexpr double kFrictionSpeed_rad_s = 1.0;  ///< width of the reversal of the pump's friction torque
@@ -112,35 +142,92 @@ struct EhaSwitched {
            laws::end_stop_force(-x, -v, p.k_cushion, p.d_cushion);
   }
 
-  template <class S, class P>
-  [[nodiscard]] static auto derivatives(const State<S>& y, const Input& input, const EhaSwitchedParameters<P>& p) {
+  /// Flow into chamber A or B through its joined line. `loss` is lost before the chamber. [m3/s]
+  template <class S, class P, class E = None>
+  [[nodiscard]] static auto chamber_flow(int direction, const S& chamber, const State<S>& y,
+                                         const EhaSwitchedParameters<P>& p, const E& loss = {}) {
+    using R = decltype(line_flow(y[kPP] - chamber - loss, p));
+    if (direction > 0) return R(line_flow(y[kPP] - chamber - loss, p));
+    if (direction < 0) return R(line_flow(y[kPT] - chamber - loss, p));
+    return R(0.0);
+  }
+
+  /// +1, -1 or 0: which way the valves are.
+  [[nodiscard]] static int direction(const Input& input) {
+    return input.valve_state > 0.5 ? 1 : input.valve_state < -0.5 ? -1 : 0;
+  }
+
+  /// What laws see at a site (model/physics.hpp).
+  template <class R, class S, class P>
+  [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
+                                                           const EhaSwitchedParameters<P>& p) {
+    const auto& [i, omega, theta, p_P, p_A, p_B, p_T, v, x] = y;
+    const R none(0.0);
+    switch (site) {
+      case kDriverVoltage:
+        return {R(i), R(p.U_supply * std::abs(input.duty)), none, none};
+      case kWindingVoltage:
+        return {R(i), R(omega), none, none};
+      case kShaftTorque:
+        return {R(omega), R(p_P - p_T), R(i), none};
+      case kPumpSlip:
+        return {R(p_P - p_T), R(omega), none, none};
+      case kDrop1:
+        return {R(chamber_flow(direction(input), p_A, y, p)), R(p_P - p_A), none, none};
+      case kDrop2:
+        return {R(chamber_flow(-direction(input), p_B, y, p)), R(p_P - p_B), none, none};
+      case kOutflowA:
+        return {R(p_A), none, none, none};
+      case kOutflowB:
+        return {R(p_B), none, none, none};
+      case kSealLeakage:
+        return {R(p_A - p_B), R(v), R(x), none};
+      case kPistonForce:
+        return {R(v), R(x), R(p_A), R(p_B)};
+      case kModulusP:
+        return {R(absolute_pressure(p_P, p)), none, none, none};
+      case kComplianceA:
+      case kModulusA:
+        return {R(absolute_pressure(p_A, p)), none, none, none};
+      default:
+        return {R(absolute_pressure(p_B, p)), none, none, none};
+    }
+  }
+
+  template <class S, class P, class Extra = NoExtra>
+  [[nodiscard]] static auto derivatives(const State<S>& y, const Input& input, const EhaSwitchedParameters<P>& p,
+                                        const Extra& extra = {}) {
     using std::abs;
     using std::tanh;
-    using R = decltype(y[0] * p.R_M);
+    using R = decltype(y[0] * p.R_M + extra[0]);
     const auto& [i, omega, theta, p_P, p_A, p_B, p_T, v, x] = y;
-    const bool extend = input.valve_state > 0.5, retract = input.valve_state < -0.5;
-    const R q_PA = extend ? line_flow(p_P - p_A, p) : R(0.0);
-    const R q_PB = retract ? line_flow(p_P - p_B, p) : R(0.0);
-    const R q_AT = retract ? line_flow(p_A - p_T, p) : R(0.0);
-    const R q_BT = extend ? line_flow(p_B - p_T, p) : R(0.0);
+    const int way = direction(input);
+    const R q_A = chamber_flow(way, p_A, y, p, extra[kDrop1]);
+    const R q_B = chamber_flow(-way, p_B, y, p, extra[kDrop2]);
+    const R q_supply = way > 0 ? q_A : q_B;    // both are 0 while the valves block
+    const R q_return = way > 0 ? -q_B : -q_A;  // into the accumulator
     const auto dp = p_P - p_T;
     const auto friction =
         (p.T_0 + p.k_T * laws::smooth_abs(dp, kPressureWidth_Pa)) * tanh(omega / kFrictionSpeed_rad_s);
-    const auto q_pump = p.alpha_P * omega - dp / p.R_PL;
-    const auto q_CL = laws::laminar_flow(p_A - p_B, p.R_CL);
+    const auto q_pump = p.alpha_P * omega - dp / p.R_PL - extra[kPumpSlip];
+    const auto q_CL = laws::laminar_flow(p_A - p_B, p.R_CL) + extra[kSealLeakage];
     const auto V_P = pipe_volume(p.l_supply, p);
     const auto V_chamber = p.V_0 + pipe_volume(p.l_chamber, p);
     const auto V_A = V_chamber + p.A_A * x;
     const auto V_B = V_chamber + p.A_B * (p.x_C - x);
+    const auto voltage_losses = p.R_M * i + p.Omega_M * omega + extra[kDriverVoltage] + extra[kWindingVoltage];
+    const auto force_losses = p.f_C * v + load_force(v, p) + stop_force(x, v, p) + extra[kPistonForce];
     return State<R>{
-        (p.U_supply * std::abs(input.duty) - p.R_M * i - p.Omega_M * omega) / p.L_M,
-        (p.Omega_M * i - p.f_M * omega - p.alpha_P * dp - friction) / p.J_M,
+        R((p.U_supply * std::abs(input.duty) - voltage_losses) / p.L_M),
+        R((p.Omega_M * i - p.f_M * omega - p.alpha_P * dp - friction - extra[kShaftTorque]) / p.J_M),
         R(omega),
-        bulk_modulus(p_P, p) / V_P * (q_pump - q_PA - q_PB),
-        bulk_modulus(p_A, p) / V_A * (q_PA - q_AT - p.A_A * v - q_CL),
-        bulk_modulus(p_B, p) / V_B * (q_PB - q_BT + p.A_B * v + q_CL),
-        (q_AT + q_BT - q_pump) / (gas_compliance(p_T, p) + V_P / bulk_modulus(p_T, p)),
-        (p.A_A * p_A - p.A_B * p_B - p.f_C * v - load_force(v, p) - stop_force(x, v, p)) / p.m_C,
+        R(Eha::stiffness(V_P, bulk_modulus(p_P, p), extra[kModulusP]) * (q_pump - q_supply)),
+        R(Eha::stiffness(V_A, bulk_modulus(p_A, p), extra[kModulusA], extra[kComplianceA]) *
+          (q_A - p.A_A * v - q_CL - extra[kOutflowA])),
+        R(Eha::stiffness(V_B, bulk_modulus(p_B, p), extra[kModulusB], extra[kComplianceB]) *
+          (q_B + p.A_B * v + q_CL - extra[kOutflowB])),
+        R((q_return - q_pump) / (gas_compliance(p_T, p) + V_P / bulk_modulus(p_T, p))),
+        R((p.A_A * p_A - p.A_B * p_B - force_losses) / p.m_C),
         R(v),
     };
   }

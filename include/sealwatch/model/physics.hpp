@@ -81,6 +81,7 @@ struct HiddenState {
   std::string_view unit;
   double scale = 1.0;         ///< its usual size
   bool free_initial = false;  ///< each recording's own (a shaft angle)
+  bool settled = false;       ///< starts at its equilibrium; otherwise at 0
 };
 
 struct Law {

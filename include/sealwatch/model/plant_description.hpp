@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/model/sites.hpp"
 
 namespace sealwatch {
 
@@ -20,6 +21,7 @@ struct ChannelDescription {
   double time_constant_s = 0.0;  ///< default first-order low-pass
   double range_min = 0.0;        ///< plausible range, SI; no range when max <= min
   double range_max = 0.0;
+  bool hold = false;  ///< an input that is held between samples, whatever the recording says
 };
 
 struct ParameterDescription {
@@ -33,20 +35,31 @@ struct ParameterDescription {
   bool estimate = false;  ///< estimated by default where the channels allow it
 };
 
+struct StateDescription {
+  std::string name;  ///< "p_A"
+  std::string unit;  ///< SI
+  std::string meaning;
+};
+
 struct ElementDescription {
   std::string name;  ///< of INTERFACES section 5: "piston_seal"
   std::string meaning;
 };
 
 struct PlantDescription {
-  std::string name;  ///< "eha", "eha_switched"
+  std::string name;  ///< "eha", "eha_switched", "emps", "cascaded_tanks"
   std::string meaning;
   std::vector<ChannelDescription> channels;  ///< without `time`, which every plant has
   std::vector<ParameterDescription> parameters;
+  std::vector<StateDescription> states;
   std::vector<ElementDescription> elements;
+  std::vector<Site> sites = {};  ///< where laws of the catalogue may act
 
   [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
   [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;
+  [[nodiscard]] const StateDescription* find_state(std::string_view state) const;
+  /// Whether recordings differ in a load: phi (1 + Phi), with a load factor Phi of each recording's own.
+  [[nodiscard]] bool has_load() const { return find_parameter("phi") != nullptr; }
 };
 
 /// The plants that sealwatch knows, in a fixed order.

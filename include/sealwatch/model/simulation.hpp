@@ -25,13 +25,14 @@
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time_series.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "sealwatch/model/sites.hpp"
 
 namespace sealwatch {
 
 /// Everything that a simulation depends on besides the recording. SI units.
 struct ModelValues {
-  std::vector<double> parameters;     ///< in the order of PlantDescription::parameters
-  double load_factor = 0.0;           ///< Phi of this recording: load = phi (1 + Phi)
+  std::vector<double> parameters;  ///< in the order of PlantDescription::parameters, then those of the asset's physics
+  double load_factor = 0.0;        ///< Phi of this recording: load = phi (1 + Phi)
   std::vector<double> initial_state;  ///< in the order of PlantSimulation::state_names()
 };
 
@@ -59,6 +60,33 @@ struct SimulatedOutputs {
   std::size_t linearisations = 0;
 };
 
+/// A parameter of a law in the asset's `physics`.
+struct PhysicsParameter {
+  std::string name;  ///< "piston.coulomb_friction.F_c"
+  const Law* law = nullptr;
+  const LawParameter* parameter = nullptr;
+  ParameterSetting setting;
+};
+[[nodiscard]] std::string physics_parameter_name(std::string_view element, std::string_view id,
+                                                 std::string_view parameter);
+
+/// Contributions at sites that are given from outside, each a direction of differentiation: dS/dt = J S + df/dextra
+/// w(t). This is how laws that are not in the model (strength 0) and unknown inputs are looked at.
+class InjectedColumns {
+ public:
+  struct Entry {
+    std::size_t column = 0;  ///< several entries may feed one column
+    std::size_t site = 0;
+  };
+  using Signals = std::span<const std::array<double, kSiteSignals>>;
+  virtual ~InjectedColumns() = default;
+  [[nodiscard]] virtual std::size_t columns() const = 0;
+  [[nodiscard]] virtual std::span<const Entry> entries() const = 0;
+  /// w at time t for each entry, from the signals of all sites. Called in the order of time; the same time may come
+  /// twice.
+  virtual void weigh(double t, Signals signals, std::span<double> weights) = 0;
+};
+
 /// One recording, ready to be simulated as often as wanted. Immutable, so that threads may share it.
 class PlantSimulation {
  public:
@@ -79,13 +107,20 @@ class PlantSimulation {
   [[nodiscard]] virtual const ModelValues& start() const = 0;
   /// Recorded samples of channels(): samples x channels.
   [[nodiscard]] virtual const RowMatrix& recorded() const = 0;
+  /// Where laws may act; empty: nowhere in this plant.
+  [[nodiscard]] virtual std::span<const Site> sites() const = 0;
+  /// Parameters of the asset's physics, in the order in which they follow the plant's in ModelValues::parameters.
+  [[nodiscard]] virtual std::span<const PhysicsParameter> physics_parameters() const = 0;
 
-  /// "R_CL" (a parameter's name), "load_factor" or "initial:p_A"; an Error with the nearest name otherwise.
+  /// "R_CL" (a parameter's name, or that of a law: "piston.coulomb_friction.F_c"), "load_factor" or "initial:p_A"; an
+  /// Error with the nearest name otherwise.
   [[nodiscard]] Result<FreeQuantity> find(std::string_view quantity) const;
 
   /// An Error when the integration fails (parameters that no step size can follow).
+  /// Columns of the sensitivities: free quantities, then the injected ones.
   [[nodiscard]] virtual Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
-                                                     const SimulationOptions& options = {}) const = 0;
+                                                     const SimulationOptions& options = {},
+                                                     InjectedColumns* injected = nullptr) const = 0;
 };
 
 }  // namespace sealwatch

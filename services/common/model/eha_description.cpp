@@ -1,5 +1,6 @@
 // The table of plant `eha`: nominal asset of the reference model (a 300 W class actuator). Symbols as in
 // include/sealwatch/model/eha.hpp, whose EhaParameters has the same names in the same order (a test compares them).
+#include "sealwatch/model/eha.hpp"
 #include "services/common/model/plant_tables.hpp"
 
 namespace sealwatch {
@@ -125,6 +126,20 @@ std::vector<ParameterDescription> parameters() {
   };
 }
 
+std::vector<StateDescription> states() {
+  return {
+      {"z", "V", "voltage behind the driver filter"},
+      {"i", "A", "winding current"},
+      {"omega", "rad/s", "shaft speed"},
+      {"p_1", "Pa", "pump port 1"},
+      {"p_2", "Pa", "pump port 2"},
+      {"p_A", "Pa", "chamber A"},
+      {"p_B", "Pa", "chamber B"},
+      {"v", "m/s", "piston velocity"},
+      {"x", "m", "piston position"},
+  };
+}
+
 std::vector<ElementDescription> elements() {
   return {
       {"driver", "voltage from command to winding"},
@@ -148,7 +163,9 @@ PlantDescription describe_eha() {
                          .meaning = "closed-circuit electro-hydrostatic actuator with pilot-operated check valves",
                          .channels = channels(),
                          .parameters = parameters(),
-                         .elements = elements()};
+                         .states = states(),
+                         .elements = elements(),
+                         .sites = {Eha::kSites.begin(), Eha::kSites.end()}};
   add_sensor_elements(plant);
   return plant;
 }

@@ -1,6 +1,7 @@
 // The table of plant `eha_switched`: a bench with DC motor, one-way gear pump, directional valves, single-rod cylinder
 // and accumulator. The defaults are the values of the bench's author; he has no seal leakage, so R_CL starts
 // practically infinite.
+#include "sealwatch/model/eha_switched.hpp"
 #include "services/common/model/plant_tables.hpp"
 
 namespace sealwatch {
@@ -59,7 +60,8 @@ std::vector<ChannelDescription> channels() {
        .meaning = "directional valves: +1 extends, -1 retracts, 0 blocks",
        .input = true,
        .range_min = -1.0,
-       .range_max = 1.0},
+       .range_max = 1.0,
+       .hold = true},
   };
 }
 
@@ -104,8 +106,17 @@ std::vector<ParameterDescription> parameters() {
   };
 }
 
+std::vector<StateDescription> states() {
+  return {
+      {"i", "A", "motor current"},  {"omega", "rad/s", "shaft speed"}, {"theta", "rad", "shaft angle"},
+      {"p_P", "Pa", "supply line"}, {"p_A", "Pa", "chamber A"},        {"p_B", "Pa", "chamber B"},
+      {"p_T", "Pa", "accumulator"}, {"v", "m/s", "piston velocity"},   {"x", "m", "piston position"},
+  };
+}
+
 std::vector<ElementDescription> elements() {
   return {
+      {"driver", "voltage from duty to winding"},
       {"winding", "winding voltage balance"},
       {"shaft", "torque on motor and pump shaft"},
       {"pump", "flow from the accumulator to the supply line"},
@@ -127,7 +138,9 @@ PlantDescription describe_eha_switched() {
                          .meaning = "bench with one-way pump, directional valves and single-rod cylinder",
                          .channels = channels(),
                          .parameters = parameters(),
-                         .elements = elements()};
+                         .states = states(),
+                         .elements = elements(),
+                         .sites = {EhaSwitched::kSites.begin(), EhaSwitched::kSites.end()}};
   add_sensor_elements(plant);
   return plant;
 }

@@ -69,7 +69,8 @@ ModelValues moved(ModelValues values, std::span<const FreeQuantity> free, const 
 }
 
 std::vector<FreeQuantity> operating_point(const PlantSimulation& simulation) {
-  std::vector<FreeQuantity> free = {simulation.find("load_factor").value()};
+  std::vector<FreeQuantity> free;
+  if (simulation.plant().has_load()) free.push_back(simulation.find("load_factor").value());
   for (const std::string& state : simulation.slow_state_names())
     free.push_back(simulation.find("initial:" + state).value());
   return free;

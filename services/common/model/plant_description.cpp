@@ -25,8 +25,11 @@ const ParameterDescription* PlantDescription::find_parameter(std::string_view pa
   return find_row(parameters, parameter);
 }
 
+const StateDescription* PlantDescription::find_state(std::string_view state) const { return find_row(states, state); }
+
 std::span<const PlantDescription> all_plants() {
-  static const std::array plants = {describe_eha(), describe_eha_switched()};
+  static const std::array plants = {describe_eha(), describe_eha_switched(), describe_emps(),
+                                    describe_cascaded_tanks()};
   return plants;
 }
 

@@ -15,6 +15,7 @@
 #include "services/common/model/plant_system.hpp"
 #include "services/common/model/quasi_steady.hpp"
 #include "services/common/model/sensor_filter.hpp"
+#include "services/common/model/sensor_laws.hpp"
 
 namespace sealwatch {
 
@@ -29,13 +30,21 @@ class PlantSimulationOf final : public PlantSimulation {
  public:
   static constexpr int kStates = Model::Equations::kStates;
 
-  PlantSimulationOf(const PlantDescription& plant, const AssetConfig& asset, const TimeSeries& recorded)
+  PlantSimulationOf(const PlantDescription& plant, const AssetConfig& asset, const TimeSeries& recorded,
+                    PhysicsTerms terms)
       : plant_(plant),
         state_names_(Model::kStateNames.begin(), Model::kStateNames.end()),
         slow_state_names_(Model::kSlowStates.begin(), Model::kSlowStates.end()),
-        input_(recorded.time_s, input_channels(recorded)) {
+        input_(recorded.time_s, input_channels(recorded)),
+        terms_(std::move(terms)) {
     select_channels(asset, recorded);
     start_ = Model::start(plant, asset, recorded);
+    for (const PhysicsParameter& parameter : terms_.parameters) start_.parameters.push_back(parameter.setting.value);
+    start_.initial_state.resize(start_.initial_state.size() + terms_.hidden_names.size(), 0.0);
+    state_names_.insert(state_names_.end(), terms_.hidden_names.begin(), terms_.hidden_names.end());
+    for (const ActiveTerm& term : terms_.active)
+      if (term.hidden >= 0 && term.law->hidden->free_initial)
+        slow_state_names_.push_back(terms_.hidden_names[static_cast<std::size_t>(term.hidden)]);
   }
 
   [[nodiscard]] const PlantDescription& plant() const override { return plant_; }
@@ -45,11 +54,22 @@ class PlantSimulationOf final : public PlantSimulation {
   [[nodiscard]] const ModelValues& start() const override { return start_; }
   [[nodiscard]] const RowMatrix& recorded() const override { return recorded_; }
 
+  [[nodiscard]] std::span<const Site> sites() const override { return sites_of_plant(); }
+  [[nodiscard]] std::span<const PhysicsParameter> physics_parameters() const override { return terms_.parameters; }
+
   [[nodiscard]] Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
-                                             const SimulationOptions& options) const override {
+                                             const SimulationOptions& options,
+                                             InjectedColumns* injected) const override {
+    if (!terms_.parameters.empty() || injected != nullptr) return run_with_physics(values, free, options, injected);
     if (free.size() <= 4) return run_with<4>(values, free, options);
     if (free.size() <= 8) return run_with<8>(values, free, options);
     return run_with<12>(values, free, options);
+  }
+
+  /// Empty where the equations have none.
+  [[nodiscard]] static std::span<const Site> sites_of_plant() {
+    if constexpr (requires { Model::Equations::kSites; }) return Model::Equations::kSites;
+    return {};
   }
 
  private:
@@ -79,14 +99,21 @@ class PlantSimulationOf final : public PlantSimulation {
 
   template <int Width>
   [[nodiscard]] Result<SimulatedOutputs> run_with(const ModelValues& values, std::span<const FreeQuantity> free,
-                                                  const SimulationOptions& options) const;
-  template <int Width>
+                                                  const SimulationOptions& options) const {
+    return Run<Width, false>(*this, values, free, options, nullptr).simulate(values);
+  }
+  /// With the laws in force and columns injected: in a translation unit of its own (plant_physics.hpp).
+  [[nodiscard]] Result<SimulatedOutputs> run_with_physics(const ModelValues& values, std::span<const FreeQuantity> free,
+                                                          const SimulationOptions& options,
+                                                          InjectedColumns* injected) const;
+  template <int Width, bool WithPhysics>
   class Run;
 
   const PlantDescription& plant_;
   std::vector<std::string> state_names_, slow_state_names_, channel_names_;
   std::vector<SimulatedChannel> channels_;
   RecordedInput input_;
+  PhysicsTerms terms_;
   RowMatrix recorded_;
   ModelValues start_;
 };

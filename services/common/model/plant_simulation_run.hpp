@@ -8,21 +8,23 @@ namespace sealwatch {
 inline constexpr double kLongestPointDistance_s = 0.0051;
 
 template <class Model>
-template <int Width>
+template <int Width, bool WithPhysics>
 class PlantSimulationOf<Model>::Run {
  public:
-  using System = PlantSystem<Model, Width>;
+  using System = PlantSystem<Model, Width, WithPhysics>;
+  static constexpr int kStates = System::kStates;
   using Integrator = Bdf<System>;
   using Vector = typename Integrator::Vector;
 
   Run(const PlantSimulationOf& simulation, const ModelValues& values, std::span<const FreeQuantity> free,
-      const SimulationOptions& options)
+      const SimulationOptions& options, InjectedColumns* injected)
       : simulation_(simulation),
         free_(free),
-        columns_(1 + free.size()),
-        system_(simulation.input_, values, free),
-        scale_(scaled(options.relative_tolerance)),
-        integrator_(system_, static_cast<int>(free.size()), scale_,
+        columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())),
+        injected_(injected),
+        system_(simulation.input_, simulation.terms_, values, free, injected),
+        scale_(scaled(simulation.terms_, options.relative_tolerance)),
+        integrator_(system_, static_cast<int>(columns_) - 1, scale_,
                     {.maximum_step = options.maximum_step_s,
                      .maximum_steps = options.maximum_steps,
                      .maximum_order = Model::kMaximumOrder}),
@@ -30,9 +32,12 @@ class PlantSimulationOf<Model>::Run {
         signal_(columns_, 0.0) {
     for (const SimulatedChannel& channel : simulation.channels_)
       filters_.emplace_back(channel.time_constant_s, columns_);
+    if constexpr (WithPhysics)
+      for (std::size_t c = 0; c < simulation.channels_.size(); ++c)
+        sensors_.emplace_back(simulation.terms_.sensors, simulation.channel_names_[c], values, free, columns_);
     const Eigen::Index rows = simulation.recorded_.rows(), channels = simulation.recorded_.cols();
     outputs_.values.resize(rows, channels);
-    outputs_.sensitivities.resize(rows * channels, static_cast<Eigen::Index>(free.size()));
+    outputs_.sensitivities.resize(rows * channels, static_cast<Eigen::Index>(columns_) - 1);
   }
 
   [[nodiscard]] Result<SimulatedOutputs> simulate(const ModelValues& values) {
@@ -49,9 +54,13 @@ class PlantSimulationOf<Model>::Run {
   }
 
  private:
-  static Vector scaled(double relative_tolerance) {
+  static Vector scaled(const PhysicsTerms& terms, double relative_tolerance) {
+    constexpr double kHiddenShare = 1e-5;  // of a hidden state's usual size at the relative tolerance 1e-6
     Vector scale;
-    for (int k = 0; k < kStates; ++k) scale[k] = Model::kScale[k] * relative_tolerance / 1e-6;
+    scale.fill(relative_tolerance / 1e-6);
+    for (int k = 0; k < System::kPlantStates; ++k) scale[k] *= Model::kScale[k];
+    for (std::size_t k = 0; k < terms.hidden_scales.size(); ++k)
+      scale[static_cast<std::size_t>(System::kPlantStates) + k] *= kHiddenShare * terms.hidden_scales[k];
     return scale;
   }
 
@@ -66,13 +75,18 @@ class PlantSimulationOf<Model>::Run {
   // Held states and their seeds from the values, quasi-steady ones with them.
   [[nodiscard]] bool initial_point(const ModelValues& values) {
     const std::size_t stride = integrator_.stride();
-    auto fast = Model::kQuasiSteady;
+    std::array<bool, kStates> fast{};
+    std::copy(Model::kQuasiSteady.begin(), Model::kQuasiSteady.end(), fast.begin());
+    if constexpr (WithPhysics)
+      for (const ActiveTerm& term : simulation_.terms_.active)
+        if (term.hidden >= 0 && term.law->hidden->settled)
+          fast[static_cast<std::size_t>(System::kPlantStates + term.hidden)] = true;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       if (free_[k].kind != FreeQuantity::Kind::initial_state) continue;
       fast[free_[k].index] = false;
       point_[free_[k].index * stride + 1 + k] = 1.0;
     }
-    Vector state;
+    Vector state{};
     std::copy(values.initial_state.begin(), values.initial_state.end(), state.begin());
     const double begin = simulation_.input_.times().front();
     QuasiSteadyState<System> rest(system_, begin, fast, scale_);
@@ -116,7 +130,9 @@ class PlantSimulationOf<Model>::Run {
       const int output = simulation_.channels_[c].output;
       const int state = Model::kOutputs[output].state;
       if (state < 0) compute_output(output, point);
-      filters_[c].advance(time - filtered_until_, state < 0 ? signal_.data() : point + state * integrator_.stride());
+      const double* signal = state < 0 ? signal_.data() : point + state * integrator_.stride();
+      filters_[c].advance(time - filtered_until_, signal);
+      if constexpr (WithPhysics) sensors_[c].advance(time - filtered_until_, filters_[c].output());
     }
     filtered_until_ = time;
   }
@@ -125,53 +141,108 @@ class PlantSimulationOf<Model>::Run {
     const auto first = static_cast<Eigen::Index>(row * filters_.size());
     double* sensitivities = outputs_.sensitivities.data() + first * outputs_.sensitivities.cols();
     double* values = outputs_.values.data() + first;
-    for (const SensorFilter& filter : filters_) {
-      *values++ = filter.output()[0];
-      sensitivities = std::copy(filter.output().begin() + 1, filter.output().end(), sensitivities);
+    for (std::size_t c = 0; c < filters_.size(); ++c) {
+      const std::vector<double>* output = &filters_[c].output();
+      if constexpr (WithPhysics) output = &sensors_[c].output();
+      *values++ = output->front();
+      sensitivities = std::copy(output->begin() + 1, output->end(), sensitivities);
     }
   }
 
-  // dh/dp + dh/dy S by dual numbers whose states carry S.
   void compute_output(int output, const double* point) {
+    if constexpr (WithPhysics)
+      output_with_physics(output, point);
+    else
+      output_of_blocks(output, point);
+  }
+
+  // dh/dp + dh/dy S by dual numbers whose states carry S.
+  void output_of_blocks(int output, const double* point) {
     const std::size_t stride = integrator_.stride();
     const auto input = system_.input_at(integrator_.time());
     if (system_.blocks().empty()) {
       typename System::template State<double> state;
       for (int k = 0; k < kStates; ++k) state[k] = point[k * stride];
-      signal_[0] = Model::output(output, state, input, system_.parameters());
+      signal_[0] = Model::output(output, state, input, system_.values().plant);
     }
     for (const auto& block : system_.blocks()) {
-      typename System::template State<Dual<Width>> state;
-      for (int k = 0; k < kStates; ++k) {
-        state[k].value = point[k * stride];
-        const double* seeds = point + k * stride + 1 + block.first;
-        std::copy(seeds, seeds + block.count, state[k].derivative.begin());
-      }
-      const auto result = Model::output(output, state, input, block.parameters);
+      const auto result = Model::output(output, seeded(point, block), input, block.values.plant);
       signal_[0] = result.value;
       std::copy(result.derivative.begin(), result.derivative.begin() + block.count, signal_.begin() + 1 + block.first);
+    }
+  }
+
+  template <class Block>
+  [[nodiscard]] auto seeded(const double* point, const Block& block) const {
+    const std::size_t stride = integrator_.stride();
+    typename System::template State<Dual<Width>> state;
+    for (int k = 0; k < kStates; ++k) {
+      state[k].value = point[k * stride];
+      const double* seeds = point + k * stride + 1 + block.first;
+      std::copy(seeds, seeds + block.count, state[k].derivative.begin());
+    }
+    return state;
+  }
+
+  template <class State, class Input, class Parameters, class Extra>
+  static auto evaluate_output(int output, const State& y, const Input& input, const Parameters& p, const Extra& extra) {
+    if constexpr (requires { Model::output(output, y, input, p, extra); })
+      return Model::output(output, y, input, p, extra);
+    else
+      return Model::output(output, y, input, p);
+  }
+
+  // The same with what the laws add, and for the injected columns through the gradients by state and by site.
+  void output_with_physics(int output, const double* point) {
+    using Gradient = Dual<kStates + static_cast<int>(System::kSites)>;
+    const std::size_t stride = integrator_.stride();
+    const auto input = system_.input_at(integrator_.time());
+    typename System::template State<Gradient> state;
+    for (int k = 0; k < kStates; ++k) state[k] = Gradient::variable(point[k * stride], k);
+    auto extra = system_.template extra<Gradient>(state, input, system_.values());
+    for (std::size_t site = 0; site < System::kSites; ++site)
+      extra[site].derivative[static_cast<std::size_t>(kStates) + site] += 1.0;
+    const Gradient result = evaluate_output(output, System::plant_state(state), input, system_.values().plant, extra);
+    signal_[0] = result.value;
+    std::fill(signal_.begin() + 1, signal_.end(), 0.0);
+    for (int k = 0; k < kStates; ++k)
+      for (std::size_t column = 1; column < columns_; ++column)
+        signal_[column] += result.derivative[static_cast<std::size_t>(k)] * point[k * stride + column];
+    if (injected_ != nullptr)
+      for (std::size_t e = 0; e < injected_->entries().size(); ++e) {
+        const auto [column, site] = injected_->entries()[e];
+        signal_[1 + free_.size() + column] +=
+            result.derivative[static_cast<std::size_t>(kStates) + site] * system_.weights()[e];
+      }
+    add_parameter_part(output, point, input);
+  }
+
+  template <class Input>
+  void add_parameter_part(int output, const double* point, const Input& input) {
+    typename System::template State<double> state;
+    for (int k = 0; k < kStates; ++k) state[k] = point[k * integrator_.stride()];
+    for (const auto& block : system_.blocks()) {
+      if (!block.has_parameters) continue;
+      const auto extra = system_.template extra<Dual<Width>>(state, input, block.values);
+      const Dual<Width> result = evaluate_output(output, System::plant_state(state), input, block.values.plant, extra);
+      for (int k = 0; k < block.count; ++k)
+        signal_[static_cast<std::size_t>(1 + block.first + k)] += result.derivative[k];
     }
   }
 
   const PlantSimulationOf& simulation_;
   std::span<const FreeQuantity> free_;
   std::size_t columns_;
+  InjectedColumns* injected_;
   System system_;
   Vector scale_;
   Integrator integrator_;
   std::vector<double> point_, signal_;
   std::vector<SensorFilter> filters_;
+  std::vector<SensorLaws> sensors_;  ///< with physics only
   SimulatedOutputs outputs_;
   std::size_t next_ = 1;
   double filtered_until_ = 0.0;  ///< time of the sensors' last point
 };
-
-template <class Model>
-template <int Width>
-Result<SimulatedOutputs> PlantSimulationOf<Model>::run_with(const ModelValues& values,
-                                                            std::span<const FreeQuantity> free,
-                                                            const SimulationOptions& options) const {
-  return Run<Width>(*this, values, free, options).simulate(values);
-}
 
 }  // namespace sealwatch

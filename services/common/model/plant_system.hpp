@@ -11,51 +11,70 @@
 #include "sealwatch/model/dual.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "sealwatch/ode/lu.hpp"
+#include "services/common/model/physics_terms.hpp"
 #include "services/common/model/recorded_input.hpp"
 
 namespace sealwatch {
 
-/// `Width` directions of differentiation are carried at once; free quantities beyond them make further blocks.
-template <class Model, int Width>
+/// `Width` directions of differentiation are carried at once; free quantities beyond them make further blocks. With
+/// physics the state ends with the laws' hidden states.
+template <class Model, int Width, bool WithPhysics>
 class PlantSystem {
  public:
   using Equations = typename Model::Equations;
-  static constexpr int kStates = Equations::kStates;
+  static constexpr int kPlantStates = Equations::kStates;
+  static constexpr int kStates = kPlantStates + (WithPhysics ? kMaximumHiddenStates : 0);
+  static constexpr std::size_t kSites = [] {
+    if constexpr (WithPhysics) return Equations::kSites.size();
+    return std::size_t{0};
+  }();
   using Matrix = typename LuFactorisation<kStates>::Matrix;
   using Parameters = typename Equations::template Parameters<double>;
   template <class S>
-  using State = typename Equations::template State<S>;
+  using State = std::array<S, kStates>;
+  template <class S>
+  using PlantState = typename Equations::template State<S>;
+
+  /// Parameters of the plant and of the laws in force.
+  template <class P>
+  struct Values {
+    typename Equations::template Parameters<P> plant;
+    std::vector<P> laws;
+  };
 
   /// Consecutive free quantities first .. first + Width - 1 with the parameters seeded for them.
   struct Block {
     int first = 0;
     int count = 0;
     bool has_parameters = false;
-    typename Equations::template Parameters<Dual<Width>> parameters;
+    Values<Dual<Width>> values;
   };
 
-  PlantSystem(const RecordedInput& input, const ModelValues& values, std::span<const FreeQuantity> free)
-      : input_(input) {
-    assign(parameters_, values);
+  PlantSystem(const RecordedInput& input, const PhysicsTerms& terms, const ModelValues& values,
+              std::span<const FreeQuantity> free, InjectedColumns* injected)
+      : input_(input), terms_(terms), injected_(injected), injected_begin_(1 + free.size()) {
+    assign(values_, values);
     for (std::size_t first = 0; first < free.size(); first += Width)
       blocks_.push_back(make_block(values, free, static_cast<int>(first)));
+    if (injected_ != nullptr) weights_.resize(injected_->entries().size());
   }
 
   void set_segment(std::size_t segment) { segment_ = segment; }
-  [[nodiscard]] const Parameters& parameters() const { return parameters_; }
+  [[nodiscard]] const Values<double>& values() const { return values_; }
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
 
   void evaluate(double t, const double* y, double* f) const {
     State<double> state;
     std::copy(y, y + kStates, state.begin());
-    const auto result = Equations::derivatives(state, input_at(t), parameters_);
+    const auto result = rates<double>(state, input_at(t), values_);
     std::copy(result.begin(), result.end(), f);
   }
 
   void linearise(double t, const double* y, double* f, Matrix& jacobian) const {
     State<Dual<kStates>> state;
     for (int k = 0; k < kStates; ++k) state[k] = Dual<kStates>::variable(y[k], k);
-    const auto result = Equations::derivatives(state, input_at(t), parameters_);
+    const auto result = rates<Dual<kStates>>(state, input_at(t), values_);
     for (int k = 0; k < kStates; ++k) {
       f[k] = result[k].value;
       jacobian[k] = result[k].derivative;
@@ -67,43 +86,136 @@ class PlantSystem {
     std::copy(y, y + kStates, state.begin());
     for (const Block& block : blocks_) {
       if (!block.has_parameters) continue;
-      const auto result = Equations::derivatives(state, input_at(t), block.parameters);
+      const auto result = rates<Dual<Width>>(state, input_at(t), block.values);
       for (int row = 0; row < kStates; ++row)
         for (int k = 0; k < block.count; ++k)
           x[row * stride + 1 + block.first + k] += factor * result[row].derivative[k];
     }
+    if constexpr (WithPhysics)
+      if (injected_ != nullptr) add_injected(t, state, factor, x, stride);
+  }
+
+  /// What the laws in force add at each site.
+  template <class R, class S, class P>
+  [[nodiscard]] auto extra(const State<S>& y, const typename Equations::Input& input, const Values<P>& values) const {
+    std::array<R, kSites> sum{};
+    if constexpr (WithPhysics) {
+      const PlantState<S> plant = plant_state(y);
+      for (const ActiveTerm& term : terms_.active)
+        for (const std::size_t site : term.sites)
+          sum[site] = sum[site] + contribution<R>(term, site, y, plant, input, values).first;
+    }
+    return sum;
+  }
+
+  template <class S>
+  [[nodiscard]] static PlantState<S> plant_state(const State<S>& y) {
+    PlantState<S> plant;
+    std::copy(y.begin(), y.begin() + kPlantStates, plant.begin());
+    return plant;
   }
 
   [[nodiscard]] auto input_at(double t) const {
-    std::array<double, Model::kInputs.size()> values;
-    for (std::size_t channel = 0; channel < values.size(); ++channel)
+    std::array<double, Model::kInputs.size()> values, slopes;
+    for (std::size_t channel = 0; channel < values.size(); ++channel) {
       values[channel] = input_.value(channel, t, segment_, cursor_);
-    return Model::input(values);
+      slopes[channel] = WithPhysics ? input_.slope(channel, cursor_) : 0.0;
+    }
+    if constexpr (requires { Model::input(values, slopes); })
+      return Model::input(values, slopes);
+    else
+      return Model::input(values);
   }
 
  private:
+  template <class R, class S, class P>
+  [[nodiscard]] std::array<R, kStates> rates(const State<S>& y, const typename Equations::Input& input,
+                                             const Values<P>& values) const {
+    if constexpr (!WithPhysics) {
+      return Equations::derivatives(y, input, values.plant);
+    } else {
+      std::array<R, kStates> result{};
+      const PlantState<S> plant = plant_state(y);
+      std::array<R, kSites> sum{};
+      for (const ActiveTerm& term : terms_.active)
+        for (const std::size_t site : term.sites) {
+          const auto [added, rate] = contribution<R>(term, site, y, plant, input, values);
+          sum[site] = sum[site] + added;
+          if (term.hidden >= 0) result[kPlantStates + term.hidden] = rate;
+        }
+      const auto of_plant = Equations::derivatives(plant, input, values.plant, sum);
+      std::copy(of_plant.begin(), of_plant.end(), result.begin());
+      return result;
+    }
+  }
+
+  /// Contribution and rate of the hidden state of one law at one site.
+  template <class R, class S, class P>
+  [[nodiscard]] std::pair<R, R> contribution(const ActiveTerm& term, std::size_t site, const State<S>& y,
+                                             const PlantState<S>& plant, const typename Equations::Input& input,
+                                             const Values<P>& values) const {
+    const std::array<R, kSiteSignals> signals = Equations::template signals<R>(site, plant, input, values.plant);
+    const std::size_t count = term.law->parameters.size();
+    const P* parameter = values.laws.data() + (term.first_parameter - kPlantParameters);
+    std::array<double, kSiteSignals> signal;
+    std::array<double, kLawParameters> number{};
+    for (std::size_t k = 0; k < kSiteSignals; ++k) signal[k] = value_of(signals[k]);
+    for (std::size_t k = 0; k < count; ++k) number[k] = value_of(parameter[k]);
+    const S hidden = term.hidden >= 0 ? y[kPlantStates + term.hidden] : S(0.0);
+    const LawOutput output = term.law->evaluate(law_input(signal, value_of(hidden), std::span(number).first(count)));
+    return {chain(output.contribution, signals, hidden, parameter, count),
+            chain(output.rate, signals, hidden, parameter, count)};
+  }
+
+  // df/dextra w for the injected columns.
+  void add_injected(double t, const State<double>& y, double factor, double* x, std::size_t stride) const {
+    using Direction = Dual<static_cast<int>(kSites == 0 ? 1 : kSites)>;
+    const PlantState<double> plant = plant_state(y);
+    const auto input = input_at(t);
+    std::array<std::array<double, kSiteSignals>, kSites> signals;
+    for (std::size_t site = 0; site < kSites; ++site)
+      signals[site] = Equations::template signals<double>(site, plant, input, values_.plant);
+    injected_->weigh(t, signals, weights_);
+    const std::array<double, kSites> base = extra<double>(y, input, values_);
+    std::array<Direction, kSites> sum;
+    for (std::size_t site = 0; site < kSites; ++site)
+      sum[site] = Direction::variable(base[site], static_cast<int>(site));
+    const auto result = Equations::derivatives(plant, input, values_.plant, sum);
+    const auto entries = injected_->entries();
+    for (std::size_t e = 0; e < entries.size(); ++e)
+      for (int row = 0; row < kPlantStates; ++row)
+        x[row * stride + injected_begin_ + entries[e].column] +=
+            factor * result[row].derivative[entries[e].site] * weights_[e];
+  }
+
+  static constexpr std::size_t kPlantParameters = Parameters::kFieldCount - 1;  // without the load factor
+
   template <class P>
-  static void assign(typename Equations::template Parameters<P>& parameters, const ModelValues& values) {
+  static void assign(Values<P>& to, const ModelValues& values) {
     std::size_t index = 0;
-    parameters.visit(
+    to.plant.visit(
         [&](std::string_view, P& parameter) {
-          parameter = index < values.parameters.size() ? values.parameters[index] : values.load_factor;
+          parameter = index < kPlantParameters ? values.parameters[index] : values.load_factor;
           ++index;
         },
-        parameters);
+        to.plant);
+    to.laws.assign(values.parameters.begin() + static_cast<std::ptrdiff_t>(kPlantParameters), values.parameters.end());
   }
 
   static Block make_block(const ModelValues& values, std::span<const FreeQuantity> free, int first) {
     Block block;
     block.first = first;
     block.count = std::min(Width, static_cast<int>(free.size()) - first);
-    assign(block.parameters, values);
+    assign(block.values, values);
     for (int k = 0; k < block.count; ++k) {
       const FreeQuantity& quantity = free[first + k];
       if (quantity.kind == FreeQuantity::Kind::initial_state) continue;
-      const bool load = quantity.kind == FreeQuantity::Kind::load_factor;
-      seed(block.parameters, load ? values.parameters.size() : quantity.index, k);
       block.has_parameters = true;
+      const bool load = quantity.kind == FreeQuantity::Kind::load_factor;
+      if (!load && quantity.index >= kPlantParameters)
+        block.values.laws[quantity.index - kPlantParameters].derivative[k] = 1.0;
+      else
+        seed(block.values.plant, load ? kPlantParameters : quantity.index, k);
     }
     return block;
   }
@@ -118,7 +230,11 @@ class PlantSystem {
   }
 
   const RecordedInput& input_;
-  Parameters parameters_;
+  const PhysicsTerms& terms_;
+  InjectedColumns* injected_;
+  std::size_t injected_begin_;
+  mutable std::vector<double> weights_;
+  Values<double> values_;
   std::vector<Block> blocks_;
   std::size_t segment_ = 0;
   mutable std::size_t cursor_ = 0;

@@ -10,6 +10,8 @@ namespace sealwatch {
 
 [[nodiscard]] PlantDescription describe_eha();
 [[nodiscard]] PlantDescription describe_eha_switched();
+[[nodiscard]] PlantDescription describe_emps();
+[[nodiscard]] PlantDescription describe_cascaded_tanks();
 
 /// A positive parameter without published bounds: a tenth to ten times its default.
 [[nodiscard]] inline ParameterDescription scale_parameter(std::string name, std::string unit, double value,

@@ -40,6 +40,12 @@ class RecordedInput {
     const double share = (t - times_[cursor]) / (times_[cursor + 1] - times_[cursor]);
     return input.values[cursor] + std::clamp(share, 0.0, 1.0) * (input.values[cursor + 1] - input.values[cursor]);
   }
+  /// Slope of a channel where value() last looked; 0 where it is held.
+  [[nodiscard]] double slope(std::size_t channel, std::size_t cursor) const {
+    const InputChannel& input = channels_[channel];
+    if (input.hold) return 0.0;
+    return (input.values[cursor + 1] - input.values[cursor]) / (times_[cursor + 1] - times_[cursor]);
+  }
 
  private:
   [[nodiscard]] bool jumps(std::size_t row) const {

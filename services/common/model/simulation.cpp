@@ -1,9 +1,12 @@
 #include "sealwatch/model/simulation.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <numeric>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/model/eha_circuit.hpp"
 #include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
 
@@ -11,6 +14,7 @@ namespace sealwatch {
 namespace {
 
 constexpr std::string_view kInitialPrefix = "initial:";
+constexpr std::string_view kLoadFactor = "load_factor";
 
 Status check_recording(const PlantDescription& plant, const TimeSeries& recorded) {
   if (recorded.time_s.size() < 2) return fail("a simulation needs at least two recorded samples");
@@ -21,14 +25,35 @@ Status check_recording(const PlantDescription& plant, const TimeSeries& recorded
   return {};
 }
 
-Status check_input(const TimeSeries& recorded, std::initializer_list<const char*> needed) {
-  for (const char* name : needed)
+using Simulate = std::unique_ptr<PlantSimulation> (*)(const PlantDescription&, const AssetConfig&, const TimeSeries&,
+                                                      PhysicsTerms);
+struct Plant {
+  std::string_view model;
+  std::vector<std::string> inputs;  ///< that must be recorded
+  Simulate simulate;
+};
+const std::array kPlants = {Plant{"eha", {"motor_voltage"}, &simulate_eha},
+                            Plant{"eha_switched", {"motor_duty", "valve_state"}, &simulate_eha_switched},
+                            Plant{"emps", {"motor_voltage"}, &simulate_emps},
+                            Plant{"cascaded_tanks", {"pump_voltage"}, &simulate_cascaded_tanks}};
+
+/// The cylinder circuit knows nothing of the motor and the pump, and of their laws.
+AssetConfig of_circuit(AssetConfig asset) {
+  std::erase_if(asset.physics, [](const PhysicsTerm& term) {
+    const auto at_element = [&term](const Site& site) { return site.element == term.element; };
+    return std::ranges::any_of(Eha::kSites, at_element) && std::ranges::none_of(EhaCircuit::kSites, at_element);
+  });
+  return asset;
+}
+
+Status check_input(const PlantDescription& plant, const TimeSeries& recorded, const std::vector<std::string>& needed) {
+  for (const std::string& name : needed)
     if (!recorded.has(name))
       return fail(Error{.file = {},
                         .place = {},
                         .value = name,
                         .rule = "drives the simulation and is not recorded",
-                        .advice = "record it; plant eha takes the flow instead of the motor's voltage"});
+                        .advice = plant.name == "eha" ? "record it, or the flow into chamber A" : "record it"});
   return {};
 }
 
@@ -76,30 +101,35 @@ std::optional<double> mean_value(const TimeSeries& recorded, std::string_view ch
 Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConfig& asset, const TimeSeries& recorded) {
   const auto plant = find_plant(asset.model);
   if (!plant) return fail(plant.error());
-  if (!asset.physics.empty())
-    return fail(Error{.file = {},
-                      .place = "asset " + asset.asset_id + ", key physics",
-                      .value = asset.physics.front().id,
-                      .rule = "is a law that this version cannot simulate yet",
-                      .advice = "remove it: a fit without it would not be the model you mean"});
   if (const Status status = check_recording(**plant, recorded); !status) return fail(status.error());
-  if (asset.model == "eha" && !recorded.has("motor_voltage") && recorded.has("flow"))
-    return simulate_eha_circuit(**plant, asset, recorded);
-  if (asset.model == "eha") {
-    if (const Status status = check_input(recorded, {"motor_voltage"}); !status) return fail(status.error());
-    return simulate_eha(**plant, asset, recorded);
+  const bool circuit = asset.model == "eha" && !recorded.has("motor_voltage") && recorded.has("flow");
+  Result<PhysicsTerms> terms = circuit ? resolve_physics(**plant, EhaCircuit::kSites, of_circuit(asset))
+                                       : resolve_physics(**plant, (*plant)->sites, asset);
+  if (!terms) return fail(terms.error());
+  if (circuit) return simulate_eha_circuit(**plant, asset, recorded, std::move(*terms));
+  for (const auto& [model, inputs, simulate] : kPlants) {
+    if (asset.model != model) continue;
+    if (const Status status = check_input(**plant, recorded, inputs); !status) return fail(status.error());
+    return simulate(**plant, asset, recorded, std::move(*terms));
   }
-  if (const Status status = check_input(recorded, {"motor_duty", "valve_state"}); !status) return fail(status.error());
-  return simulate_eha_switched(**plant, asset, recorded);
+  return fail("model " + asset.model + " cannot be simulated");
 }
 
 Result<FreeQuantity> PlantSimulation::find(std::string_view quantity) const {
-  std::vector<std::string> names = {"load_factor"};
-  if (quantity == names.front()) return FreeQuantity{FreeQuantity::Kind::load_factor, 0};
+  std::vector<std::string> names;
+  if (plant().has_load()) {
+    if (quantity == kLoadFactor) return FreeQuantity{FreeQuantity::Kind::load_factor, 0};
+    names.emplace_back(kLoadFactor);
+  }
   const auto& parameters = plant().parameters;
   for (std::size_t index = 0; index < parameters.size(); ++index) {
     if (parameters[index].name == quantity) return FreeQuantity{FreeQuantity::Kind::parameter, index};
     names.push_back(parameters[index].name);
+  }
+  for (std::size_t index = 0; index < physics_parameters().size(); ++index) {
+    const std::string& name = physics_parameters()[index].name;
+    if (name == quantity) return FreeQuantity{FreeQuantity::Kind::parameter, parameters.size() + index};
+    names.push_back(name);
   }
   for (std::size_t index = 0; index < state_names().size(); ++index) {
     const std::string name = std::string(kInitialPrefix) + state_names()[index];

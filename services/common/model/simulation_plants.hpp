@@ -4,17 +4,23 @@
 #include <memory>
 
 #include "sealwatch/model/simulation.hpp"
+#include "services/common/model/physics_terms.hpp"
 
 namespace sealwatch {
 
 [[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha(const PlantDescription& plant, const AssetConfig& asset,
-                                                            const TimeSeries& recorded);
+                                                            const TimeSeries& recorded, PhysicsTerms terms);
 /// The cylinder circuit of `eha`, driven by the recorded flow.
 [[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha_circuit(const PlantDescription& plant,
                                                                     const AssetConfig& asset,
-                                                                    const TimeSeries& recorded);
+                                                                    const TimeSeries& recorded, PhysicsTerms terms);
 [[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha_switched(const PlantDescription& plant,
                                                                      const AssetConfig& asset,
-                                                                     const TimeSeries& recorded);
+                                                                     const TimeSeries& recorded, PhysicsTerms terms);
+[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_emps(const PlantDescription& plant, const AssetConfig& asset,
+                                                             const TimeSeries& recorded, PhysicsTerms terms);
+[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_cascaded_tanks(const PlantDescription& plant,
+                                                                       const AssetConfig& asset,
+                                                                       const TimeSeries& recorded, PhysicsTerms terms);
 
 }  // namespace sealwatch

@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/runtime/yaml_map.hpp"
 
 namespace sealwatch {
 namespace {
+
+constexpr double kNoBound = 1e300;
 
 template <class Row>
 std::vector<std::string> names_of(const std::vector<Row>& rows) {
@@ -160,6 +163,29 @@ void read_pst(YamlMap& asset, AssetConfig& config) {
     map->fault("stroke", text_of(pst.stroke_m), "start + stroke is " + text_of(end_m) + " m: " + rule);
 }
 
+/// A law's parameter: a plain number is fixed; {value, min, max, estimate} may be estimated. Bounds are the law's.
+ParameterDescription describe(const Law* law, const std::string& name) {
+  ParameterDescription row{.name = name, .unit = {}, .meaning = {}, .positive = false};
+  row.min = -kNoBound, row.max = kNoBound;
+  if (law == nullptr) return row;
+  for (const LawParameter& parameter : law->parameters)
+    if (parameter.name == name) row.min = parameter.min, row.max = parameter.max;
+  return row;
+}
+
+void read_law_parameters(YamlMap& map, PhysicsTerm& term) {
+  auto parameters = map.map("parameters");
+  if (!parameters) return;
+  const std::vector<std::string> names = parameters->keys();
+  const Result<const Law*> law = find_law(term.id, names);
+  if (!law && !term.id.empty()) map.fault("id", term.id, law.error().rule, law.error().advice);
+  for (const std::string& name : names) {
+    const ParameterDescription row = describe(law ? *law : nullptr, name);
+    ParameterSetting& setting = term.parameters[name] = {0.0, row.min, row.max, false};
+    read_parameter(*parameters, row, setting);
+  }
+}
+
 void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
   std::vector<std::string> elements = names_of(plant.elements);
   for (const ChannelDescription& channel : plant.channels)
@@ -170,8 +196,7 @@ void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& co
     PhysicsTerm term;
     if (!map.read("id", term.id) && !map.has("id")) map.fault("id", {}, "must be given");
     if (!map.read("element", term.element, elements) && !map.has("element")) map.fault("element", {}, "must be given");
-    if (auto parameters = map.map("parameters"))
-      for (const std::string& name : parameters->keys()) parameters->read(name, term.parameters[name]);
+    read_law_parameters(map, term);
     map.finish();
     config.physics.push_back(std::move(term));
   }

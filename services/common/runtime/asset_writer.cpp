@@ -24,14 +24,17 @@ void write_flow(YAML::Emitter& out, const std::string& key, const Entries& entri
   out << YAML::EndMap;
 }
 
+void write_setting(YAML::Emitter& out, const std::string& name, const ParameterSetting& setting) {
+  write_flow(out, name,
+             {{"value", exact(setting.value)},
+              {"min", exact(setting.min)},
+              {"max", exact(setting.max)},
+              {"estimate", setting.estimate ? "true" : "false"}});
+}
+
 void write_parameters(YAML::Emitter& out, const AssetConfig& asset) {
   out << YAML::Key << "parameters" << YAML::Value << YAML::BeginMap;
-  for (const auto& [name, setting] : asset.parameters)
-    write_flow(out, name,
-               {{"value", exact(setting.value)},
-                {"min", exact(setting.min)},
-                {"max", exact(setting.max)},
-                {"estimate", setting.estimate ? "true" : "false"}});
+  for (const auto& [name, setting] : asset.parameters) write_setting(out, name, setting);
   out << YAML::EndMap;
 }
 
@@ -77,9 +80,9 @@ void write_physics(YAML::Emitter& out, const AssetConfig& asset) {
   for (const PhysicsTerm& term : asset.physics) {
     out << YAML::BeginMap << YAML::Key << "id" << YAML::Value << term.id;
     out << YAML::Key << "element" << YAML::Value << term.element;
-    Entries parameters;
-    for (const auto& [name, value] : term.parameters) parameters.emplace_back(name, exact(value));
-    write_flow(out, "parameters", parameters);
+    out << YAML::Key << "parameters" << YAML::Value << YAML::BeginMap;
+    for (const auto& [name, setting] : term.parameters) write_setting(out, name, setting);
+    out << YAML::EndMap;
     out << YAML::EndMap;
   }
   out << YAML::EndSeq;

@@ -159,13 +159,19 @@ TEST(Simulation, TakesTheFlowWhereTheVoltageIsNotRecorded) {
   EXPECT_NEAR(predicted->find("velocity")->values[halfway], recorded.find("velocity")->values[halfway], 1e-6);
 }
 
-TEST(PlantSimulation, RefusesPhysicsThatItWouldLeaveOut) {
-  AssetConfig asset = nominal_asset("eha");
-  const TimeSeries recorded = standard_pst(asset, 100.0);
-  asset.physics.push_back({.id = "coulomb_friction", .element = "piston", .parameters = {{"F_c", 4000.0}}});
-  const auto refused = PlantSimulation::create(asset, recorded);
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().value, "coulomb_friction");
+TEST(PlantSimulation, RefusesLawsThatDoNotFitThePlant) {
+  const TimeSeries recorded = standard_pst(nominal_asset("eha"), 100.0);
+  const auto refusal = [&](const PhysicsTerm& term) {
+    AssetConfig asset = nominal_asset("eha");
+    asset.physics = {term};
+    const auto refused = PlantSimulation::create(asset, recorded);
+    return refused ? std::string("simulated") : refused.error().rule;
+  };
+  const std::map<std::string, ParameterSetting> friction = {{"F_c", {4000.0}}, {"v_s", {1e-4}}};
+  EXPECT_EQ(refusal({"coulomb_friction", "piston", friction}), "simulated");
+  EXPECT_EQ(refusal({"coulomb_friction", "shaft", friction}), "does not fit this element of eha");
+  EXPECT_EQ(refusal({"coulomb_friction", "piston", {{"F", {4000.0}}}}), "needs exactly the parameters F_c, v_s");
+  EXPECT_EQ(refusal({"coulomb_frictio", "piston", friction}), "is not a law of the catalogue");
 }
 
 TEST(ModelSimulator, EstimatesTheLoadAndTheInitialStateOnly) {

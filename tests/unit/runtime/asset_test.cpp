@@ -74,6 +74,11 @@ const BadCase kBadCases[] = {
     {"speed", "asset_id: A\npst: {speed: 0}\n", "a.yaml: line 2, key pst.speed: '0': must be a number above 0"},
     {"physics_element", "asset_id: A\nphysics:\n  - {id: stribeck_friction, element: pisten}\n",
      "a.yaml: line 3, key physics[0].element: 'pisten': is not known; did you mean 'piston'?"},
+    {"physics_law", "asset_id: A\nphysics:\n  - {id: coulomb_fricton, element: piston, parameters: {F_c: 1}}\n",
+     "a.yaml: line 3, key physics[0].id: 'coulomb_fricton': is not a law of the catalogue; did you mean "
+     "'coulomb_friction'?"},
+    {"physics_parameters", "asset_id: A\nphysics:\n  - {id: coulomb_friction, element: piston, parameters: {F: 1}}\n",
+     "a.yaml: line 3, key physics[0].id: 'coulomb_friction': needs exactly the parameters F_c, v_s"},
     {"limits", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5, alarm: 3}}\n",
      "a.yaml: line 2, key alert_limits.hold_decay.warning: '5': must lie between advisory and alarm, 1 and 3"},
     {"limit_missing", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5}}\n",
@@ -116,8 +121,8 @@ seal: {resistance_100: 3.0e13, resistance_60: 5.0e12, threshold: 0.55}
 pst: {start: 0.05, stroke: 0.01, speed: 0.002, hold: 4, interval_months: 3}
 alert_limits: {seal_condition: {advisory: 0.8, warning: 0.7, alarm: 0.6}}
 physics:
-  - {id: stribeck_friction, element: piston, parameters: {F_s: 4000, v_s: 0.001}}
-  - {id: sensor_bias, element: "sensor:flow", parameters: {bias: 1.0e-8}}
+  - {id: coulomb_friction, element: piston, parameters: {F_c: 4000, v_s: {value: 0.001, estimate: true}}}
+  - {id: sensor_bias, element: "sensor:flow", parameters: {b: 1.0e-8}}
 )");
   EXPECT_EQ(asset.segment, "wing valve");
   EXPECT_EQ(asset.parameters.at("R_CL").value, 2.0e13);
@@ -135,7 +140,9 @@ physics:
   EXPECT_EQ(asset.pst.interval_months, 3.0);
   EXPECT_EQ(asset.alert_limits.at("seal_condition").alarm, 0.6);
   ASSERT_EQ(asset.physics.size(), 2U);
-  EXPECT_EQ(asset.physics[0].parameters.at("F_s"), 4000.0);
+  EXPECT_EQ(asset.physics[0].parameters.at("F_c").value, 4000.0);
+  EXPECT_FALSE(asset.physics[0].parameters.at("F_c").estimate);
+  EXPECT_TRUE(asset.physics[0].parameters.at("v_s").estimate);
   EXPECT_EQ(asset.physics[1].element, "sensor:flow");
 }
 
@@ -167,7 +174,7 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   asset.sensors.at("flow") = {1.0 / 3.0, 1e-300, 0.1, -0.1, 1e300};
   asset.seal->threshold = 0.1 + 0.2;
   asset.pst.hold_s = 1.0 / 7.0;
-  asset.physics = {{"stribeck_friction", "piston", {{"F_s", 1.0 / 3.0}}}};
+  asset.physics = {{"coulomb_friction", "piston", {{"F_c", {1.0 / 3.0, 0.0, 1e5, true}}, {"v_s", {1e-4, 1e-5, 1e-3, false}}}}};
   asset.alert_limits["hold_decay"] = {1.0 / 3.0, 2.0 / 3.0, 1.0};
   const AssetConfig back = load(asset_to_yaml(asset));
   EXPECT_EQ(asset_to_yaml(back), asset_to_yaml(asset));

@@ -18,7 +18,7 @@ Law line_resistance_laminar() {
           .energy = "R >= 0: it always opposes the flow",
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: Hagen-Poiseuille",
           .parameters = {strength("R", "Pa s/m3", "resistance", {.usual = 2e10, .significant = 1e10, .max = 1e13})},
-          .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6},
+          .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6, .settled = true},
           .evaluate = &evaluate};
 }
 

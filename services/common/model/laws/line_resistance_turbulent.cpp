@@ -19,7 +19,7 @@ Law line_resistance_turbulent() {
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: orifices and fittings",
           .parameters = {strength("k", "Pa s2/m6", "drop per square of flow",
                                   {.usual = 3e15, .significant = 1.6e15, .max = 1e18})},
-          .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6},
+          .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6, .settled = true},
           .evaluate = &evaluate};
 }
 

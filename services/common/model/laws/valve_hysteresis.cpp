@@ -25,7 +25,7 @@ Law valve_hysteresis() {
           .parameters = {strength("dp_h", "Pa", "cracking pressure lost once open",
                                   {.usual = 2e4, .significant = 5e3, .max = 5e4}),
                          shape("tau", "s", "time in which the valve settles", {0.1, 0.02, 0.5, 2.0}, 5e-3, 10.0)},
-          .hidden = HiddenState{.name = "open_memory", .unit = "1", .scale = 1.0},
+          .hidden = HiddenState{.name = "open_memory", .unit = "1", .scale = 1.0, .settled = true},
           .evaluate = &evaluate};
 }
 

@@ -21,7 +21,7 @@ Law valve_hysteresis_friction() {
           .parameters = {strength("dp_f", "Pa", "pressure that moves the poppet against friction",
                                   {.usual = 2e4, .significant = 5e3, .max = 5e4}),
                          shape("tau_f", "s", "time in which a change is forgotten", {0.1, 0.02, 0.5}, 5e-3, 10.0)},
-          .hidden = HiddenState{.name = "lagged_drop", .unit = "Pa", .scale = 5e4},
+          .hidden = HiddenState{.name = "lagged_drop", .unit = "Pa", .scale = 5e4, .settled = true},
           .evaluate = &evaluate};
 }
 

@@ -1,0 +1,42 @@
+// Sites: the places in a plant's balances at which laws of the catalogue (model/physics.hpp) add their contribution.
+//
+// A plant's derivatives() takes what is added at each site, `extra[k]`, as its last argument. NoExtra is the plant as
+// it is: its entries are `None`, which adds nothing and costs nothing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "sealwatch/model/physics.hpp"
+
+namespace sealwatch {
+
+/// The absent contribution: x + None = x, x * None = None.
+struct None {
+  template <class T>
+  friend constexpr T operator+(const T& a, None) {
+    return a;
+  }
+  template <class T>
+  friend constexpr T operator-(const T& a, None) {
+    return a;
+  }
+  template <class T>
+  friend constexpr None operator*(const T&, None) {
+    return {};
+  }
+  friend constexpr None operator+(None, None) { return {}; }
+};
+
+struct NoExtra {
+  constexpr None operator[](std::size_t) const { return {}; }
+};
+
+/// One site of a plant. Its index in the plant's table is its place in `extra`.
+struct Site {
+  std::string_view element;  ///< of the plant's description
+  SiteKind kind;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,39 @@
+// Laws that are not in the model, each as a direction in which the simulation would change: the sensitivity of all
+// outputs to the law's strength at strength 0. Hidden states follow the plant's signals beside the simulation.
+#pragma once
+
+#include <vector>
+
+#include "sealwatch/model/simulation.hpp"
+
+namespace sealwatch::mismatch {
+
+/// One strength of a law at an element, its other parameters at given values.
+struct LawColumn {
+  const Law* law = nullptr;
+  std::vector<std::size_t> sites;  ///< of the plant
+  std::vector<double> parameters;  ///< of the law; strengths count as 0
+  std::size_t strength = 0;        ///< which parameter is the strength
+  double unit = 1.0;               ///< the column is the change for this much of it
+  double hidden = 0.0;             ///< initial hidden state
+};
+
+class LawColumns final : public InjectedColumns {
+ public:
+  explicit LawColumns(std::vector<LawColumn> laws);
+  [[nodiscard]] std::size_t columns() const override { return laws_.size(); }
+  [[nodiscard]] std::span<const Entry> entries() const override { return entries_; }
+  void weigh(double t, Signals signals, std::span<double> weights) override;
+
+ private:
+  void advance(std::size_t law, double step_s, Signals signals);
+
+  std::vector<LawColumn> laws_;
+  std::vector<Entry> entries_;
+  std::vector<double> hidden_;
+  std::vector<std::array<double, kSiteSignals>> last_;  ///< signals at the last call
+  double time_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,21 @@
+// Simulation with laws in force and with injected columns: heavy to compile, so each plant does it in a file of its
+// own, as  template class of run_with_physics  (see simulation_eha_physics.cpp).
+#pragma once
+
+#include "services/common/model/plant_simulation.hpp"
+
+namespace sealwatch {
+
+inline constexpr int kPhysicsWidth = 8;
+
+template <class Model>
+Result<SimulatedOutputs> PlantSimulationOf<Model>::run_with_physics(const ModelValues& values,
+                                                                    std::span<const FreeQuantity> free,
+                                                                    const SimulationOptions& options,
+                                                                    InjectedColumns* injected) const {
+  if constexpr (requires { Model::Equations::kSites; })
+    return Run<kPhysicsWidth, true>(*this, values, free, options, injected).simulate(values);
+  return fail("plant " + plant_.name + " has no sites for laws");
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,67 @@
+// Laws of one sensor, applied to its simulated signal s (after the low-pass that the asset gives the sensor):
+//
+//   lag    tau dr/dt = s - r        d r/d tau = q,  tau dq/dt = -(s - r)/tau - q
+//   gain   y = (1 + g) r + b        d y/d g = r,    d y/d b = 1
+//
+// All columns of sensitivities pass through the same linear operations.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/model/physics_terms.hpp"
+#include "services/common/model/sensor_filter.hpp"
+
+namespace sealwatch {
+
+class SensorLaws {
+ public:
+  SensorLaws(const std::vector<SensorTerm>& terms, const std::string& channel, const ModelValues& values,
+             std::span<const FreeQuantity> free, std::size_t columns)
+      : output_(columns, 0.0) {
+    for (const SensorTerm& term : terms) {
+      if (term.channel != channel) continue;
+      Part part{.value = values.parameters[term.parameter]};
+      for (std::size_t k = 0; k < free.size(); ++k)
+        if (free[k].kind == FreeQuantity::Kind::parameter && free[k].index == term.parameter) part.column = 1 + k;
+      if (term.kind == SiteKind::sensor_bias) bias_ = part;
+      if (term.kind == SiteKind::sensor_gain) gain_ = part;
+      if (term.kind == SiteKind::sensor_lag) lag_ = part;
+    }
+    if (lag_.value > 0.0) {
+      filters_.emplace_back(lag_.value, columns);
+      filters_.emplace_back(lag_.value, 1);
+    }
+  }
+
+  void advance(double step_s, const std::vector<double>& signal) {
+    output_ = signal;
+    if (!filters_.empty()) {
+      filters_[0].advance(step_s, signal.data());
+      output_ = filters_[0].output();
+      const double slope = -(signal[0] - output_[0]) / lag_.value;
+      filters_[1].advance(step_s, &slope);
+      if (lag_.column != 0) output_[lag_.column] += filters_[1].output()[0];
+    }
+    const double before = output_[0];
+    for (double& value : output_) value *= 1.0 + gain_.value;
+    output_[0] += bias_.value;
+    if (gain_.column != 0) output_[gain_.column] += before;
+    if (bias_.column != 0) output_[bias_.column] += 1.0;
+  }
+
+  [[nodiscard]] const std::vector<double>& output() const { return output_; }
+
+ private:
+  struct Part {
+    double value = 0.0;
+    std::size_t column = 0;  ///< of the sensitivities; 0: not free
+  };
+  Part bias_, gain_, lag_;
+  std::vector<SensorFilter> filters_;
+  std::vector<double> output_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,12 @@
+// The heavy half of simulation_eha_circuit.cpp: with laws in force and injected columns.
+#include "services/common/model/eha_circuit_model.hpp"
+#include "services/common/model/plant_physics.hpp"
+
+namespace sealwatch {
+
+template Result<SimulatedOutputs> PlantSimulationOf<EhaCircuitModel>::run_with_physics(const ModelValues&,
+                                                                                       std::span<const FreeQuantity>,
+                                                                                       const SimulationOptions&,
+                                                                                       InjectedColumns*) const;
+
+}  // namespace sealwatch

@@ -1,0 +1,12 @@
+// The heavy half of simulation_eha.cpp: with laws in force and injected columns.
+#include "services/common/model/eha_model.hpp"
+#include "services/common/model/plant_physics.hpp"
+
+namespace sealwatch {
+
+template Result<SimulatedOutputs> PlantSimulationOf<EhaModel>::run_with_physics(const ModelValues&,
+                                                                                std::span<const FreeQuantity>,
+                                                                                const SimulationOptions&,
+                                                                                InjectedColumns*) const;
+
+}  // namespace sealwatch

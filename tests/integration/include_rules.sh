@@ -47,7 +47,7 @@ rules() {
   owner '^matio' services/common/recording/ || failed=1
   # Each has a command line of its own; the bench's has nothing in common with that of the layers.
   owner '^CLI/' services/cli/ services/common/runtime/ services/virtual_bench/run_bench || failed=1
-  owner '^nlohmann/' services/common/message/ services/cli/ || failed=1
+  owner '^nlohmann/' services/common/message/ services/common/report/ services/cli/ || failed=1
   return $failed
 }
 

@@ -30,6 +30,7 @@ struct ActuatorFitOptions {
   /// The search ends when an iteration changes the cost by less than this for each recording. 0.25 in cost is the step
   /// of a parameter by 0.7 standard errors; as each Gauss-Newton step is a small fraction of the one before, what is
   /// left after it is hundredths. The integrator's own error moves the cost by some tenths: less cannot be resolved.
+  /// Where the misfit is above the noise, standard errors grow with it: this times the whitened misfit's mean square.
   double cost_tolerance = 0.25;
   double relative_tolerance = 1e-6;  ///< of the integrator
   /// Integrator steps per sample that a simulation may take. The reference plant needs 0.2 to 2.5 at its nominal
@@ -49,7 +50,8 @@ struct ActuatorFitOptions {
 
 /// What belongs to one recording of a joint fit.
 struct RecordingFit {
-  EstimatedParameter load;                        ///< "load_factor", or "phi" where that is the recording's own
+  /// "load_factor", or "phi" where that is the recording's own; without a name where the plant has no load.
+  EstimatedParameter load;
   std::vector<EstimatedParameter> initial_state;  ///< "initial:p_A", ...
   std::vector<ChannelFit> channels;
   TimeSeries simulated;  ///< recorded outputs as simulated, noise_std as used for whitening

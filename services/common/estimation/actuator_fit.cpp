@@ -19,12 +19,18 @@ bool better(const PemOptimum& a, const PemOptimum& b) {
 
 SimulationOptions simulation_options(std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
   constexpr double kFewestSteps = 10000.0;  // short recordings start from rest at high resolution
-  std::size_t samples = 0;
-  for (const TimeSeries& recorded : recordings) samples = std::max(samples, recorded.time_s.size());
   SimulationOptions simulation;
+  std::size_t samples = 0;
+  double fewest_steps = kFewestSteps;
+  for (const TimeSeries& recorded : recordings) {
+    samples = std::max(samples, recorded.time_s.size());
+    if (recorded.time_s.empty()) continue;
+    const double duration_s = recorded.time_s.back() - recorded.time_s.front();
+    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / simulation.maximum_step_s);
+  }
   simulation.relative_tolerance = options.relative_tolerance;
   simulation.maximum_steps =
-      static_cast<std::size_t>(kFewestSteps + options.steps_per_sample * static_cast<double>(samples));
+      static_cast<std::size_t>(fewest_steps + options.steps_per_sample * static_cast<double>(samples));
   return simulation;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sealwatch {
 namespace {
@@ -98,22 +99,28 @@ ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
 }
 
 // Ends the search when an iteration changes the cost, or a rejected one promised to change it, by no more than
-// `tolerance`; gives it up when after several iterations the cost is still above `hopeless_cost`.
+// `tolerance`; gives it up when after several iterations the cost is still above `hopeless_cost`. Where the misfit is
+// above the noise, standard errors grow with it and so does the tolerance: cost / noise_cost is the misfit's mean
+// square.
 class CostResolved final : public ceres::IterationCallback {
  public:
-  CostResolved(double tolerance, double hopeless_cost) : tolerance_(tolerance), hopeless_cost_(hopeless_cost) {}
+  CostResolved(double tolerance, double noise_cost, double hopeless_cost)
+      : tolerance_(tolerance), noise_cost_(noise_cost), hopeless_cost_(hopeless_cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
-    if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;
+    // A step to where nothing can be simulated says nothing of the cost: Ceres tries a shorter one.
+    const bool simulated = iteration.step_is_valid && iteration.cost_change > -std::numeric_limits<double>::max() / 2.0;
+    if (iteration.iteration == 0 || !simulated) return ceres::SOLVER_CONTINUE;
     if (iteration.step_is_successful && ++successful_ >= kIterationsForHope && iteration.cost > hopeless_cost_)
       return ceres::SOLVER_ABORT;
     const double promised = iteration.cost_change / iteration.relative_decrease;  // by the linear model
-    const bool resolved = std::abs(iteration.cost_change) <= tolerance_ || (promised >= 0.0 && promised <= tolerance_);
+    const double tolerance = tolerance_ * std::max(1.0, iteration.cost / noise_cost_);
+    const bool resolved = std::abs(iteration.cost_change) <= tolerance || (promised >= 0.0 && promised <= tolerance);
     return resolved ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
   static constexpr int kIterationsForHope = 6;  // fits that come to something are there by then
-  double tolerance_, hopeless_cost_;
+  double tolerance_, noise_cost_, hopeless_cost_;
   int successful_ = 0;
 };
 
@@ -149,7 +156,7 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   double residuals = 0.0;
   for (const PemRecording& recording : problem.recordings)
     residuals += static_cast<double>(recording.simulation->recorded().size());
-  CostResolved resolved(options.cost_tolerance * static_cast<double>(problem.recordings.size()),
+  CostResolved resolved(options.cost_tolerance * static_cast<double>(problem.recordings.size()), 0.5 * residuals,
                         0.5 * residuals * options.hopeless_rms * options.hopeless_rms);
   ceres::Solver::Options solver = solver_options(options);
   solver.callbacks.push_back(&resolved);

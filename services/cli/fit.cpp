@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "sealwatch/core/text.hpp"
@@ -65,11 +66,18 @@ bool inputs_recorded(const PlantDescription& plant, const std::vector<Recording>
 FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings) {
   std::vector<TimeSeries> samples;
   for (const Recording& recording : recordings) samples.push_back(recording.samples);
-  JointFit joint = fit_actuator(asset, samples);
+  // A seal's leakage means nothing when the model does not come near the recording, and the search is given up. Of a
+  // plant without a seal the question may be just how far its naive model is off.
+  ActuatorFitOptions search;
+  if (!asset.parameters.contains("R_CL")) search.hopeless_rms = std::numeric_limits<double>::infinity();
+  JointFit joint = fit_actuator(asset, samples, search);
   FitResult result{.report = std::move(joint.report), .loads = {}};
-  for (const RecordingFit& recording : joint.recordings) result.loads.push_back(recording.load);
+  for (const RecordingFit& recording : joint.recordings)
+    if (!recording.load.name.empty()) result.loads.push_back(recording.load);
   return result;
 }
+
+bool has_cylinder_circuit(const AssetConfig& asset) { return asset.parameters.contains("A_C"); }
 
 /// The cylinder circuit wants the test as the services see it: cut, aligned, with its phases.
 FitReport fit_cylinder(const AssetConfig& asset, const Recording& recording) {
@@ -183,7 +191,8 @@ void print_text(const AssetConfig& asset, const FitOptions& options, const FitRe
 
 std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConfig& asset,
                                       const PlantDescription& plant, const std::vector<Recording>& recordings) {
-  const std::vector<std::string> known = {asset.model, kCylinderCircuit};
+  std::vector<std::string> known = {asset.model};
+  if (has_cylinder_circuit(asset)) known.emplace_back(kCylinderCircuit);
   if (!options.model.empty() && std::find(known.begin(), known.end(), options.model) == known.end()) {
     complain(Error{.file = {},
                    .place = "--model",
@@ -192,7 +201,8 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
                    .advice = suggest(options.model, known)});
     return std::nullopt;
   }
-  const bool cylinder = options.model.empty() ? !inputs_recorded(plant, recordings) : options.model == kCylinderCircuit;
+  const bool cylinder = options.model.empty() ? has_cylinder_circuit(asset) && !inputs_recorded(plant, recordings)
+                                              : options.model == kCylinderCircuit;
   if (!cylinder) return fit_whole(asset, recordings);
   std::vector<FitReport> fits;
   for (const Recording& recording : recordings) fits.push_back(fit_cylinder(asset, recording));

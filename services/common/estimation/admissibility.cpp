@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sealwatch/model/plant_description.hpp"
 #include "services/common/estimation/words.hpp"
 
 namespace sealwatch {
@@ -32,6 +33,12 @@ void judge_resistance(const EstimatedParameter& parameter, const AdmissibilityOp
   else if (relative > options.largest_relative_std_error)
     reasons.push_back("standard error of " + parameter.name + " is " + in_words(100.0 * relative) +
                       " % of its value (at most " + in_words(100.0 * options.largest_relative_std_error) + " %)");
+}
+
+// Of plants and models that have a seal its leakage resistance is what the fit is for.
+bool has_seal(const std::string& model) {
+  const Result<const PlantDescription*> plant = find_plant(model);
+  return !plant || (*plant)->find_parameter("R_CL") != nullptr;
 }
 
 }  // namespace
@@ -66,7 +73,8 @@ void judge_admissibility(FitReport& report, const AdmissibilityOptions& options)
     has_resistance = true;
     if (!parameter.at_bound) judge_resistance(parameter, options, report.reasons);
   }
-  if (!has_resistance && report.reasons.empty()) report.reasons.emplace_back("R_CL was not estimated");
+  if (!has_resistance && report.reasons.empty() && has_seal(report.model))
+    report.reasons.emplace_back("R_CL was not estimated");
   report.admissible = report.reasons.empty();
 }
 

@@ -177,9 +177,13 @@ EstimatedParameter to_parameter(const Unknown& unknown, double at, double varian
 // Load, initial state and simulated channels of one recording.
 void complete(RecordingFit& fit, const PemRecording& recording, const Linearisation& at, const TimeSeries& recorded,
               const std::vector<double>& own, const Eigen::VectorXd& variance) {
-  fit.load = to_parameter(recording.own.front(), own.front(), variance(0));
-  for (std::size_t k = 1; k < own.size(); ++k)
-    fit.initial_state.push_back(to_parameter(recording.own[k], own[k], variance(static_cast<Eigen::Index>(k))));
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    EstimatedParameter parameter = to_parameter(recording.own[k], own[k], variance(static_cast<Eigen::Index>(k)));
+    if (k == 0 && recording.simulation->plant().has_load())
+      fit.load = std::move(parameter);
+    else
+      fit.initial_state.push_back(std::move(parameter));
+  }
   fit.simulated.time_s = recorded.time_s;
   fit.simulated.input_hold = recorded.input_hold;
   const std::span<const std::string> channels = recording.simulation->channels();

@@ -1,11 +1,20 @@
 #include "services/common/estimation/interpolation_error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sealwatch {
 namespace {
 
 constexpr double kMatters = 0.2;  // of the noise: below it the noise grows by less than 2 %
+
+// Nothing lies between the samples of an input that is held.
+bool all_inputs_held(const PlantDescription& plant, const TimeSeries& recorded) {
+  return recorded.input_hold ||
+         std::all_of(plant.channels.begin(), plant.channels.end(), [&recorded](const ChannelDescription& channel) {
+           return !channel.input || channel.hold || !recorded.has(channel.name);
+         });
+}
 
 TimeSeries every_second_sample(const TimeSeries& samples) {
   const auto thin = [](const std::vector<double>& values) {
@@ -24,7 +33,7 @@ TimeSeries every_second_sample(const TimeSeries& samples) {
 Eigen::VectorXd interpolation_error(const PemProblem& problem, std::size_t recording, const PemOptimum& optimum,
                                     const AssetConfig& asset, const TimeSeries& recorded) {
   Eigen::VectorXd error = Eigen::VectorXd::Zero(problem.recordings[recording].noise_std.size());
-  if (recorded.input_hold) return error;
+  if (all_inputs_held(problem.recordings[recording].simulation->plant(), recorded)) return error;
   const auto thinned = PlantSimulation::create(asset, every_second_sample(recorded));
   if (!thinned) return error;
   const ModelValues values = values_at(problem, recording, optimum.point.shared, optimum.point.own[recording]);

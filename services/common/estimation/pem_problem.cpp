@@ -74,13 +74,15 @@ Result<Unknown> load_unknown(const PlantSimulation& simulation) {
 
 Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation) {
   std::vector<Unknown> unknowns;
-  Result<Unknown> load = load_unknown(simulation);
-  if (!load) return fail(load.error());
-  unknowns.push_back(std::move(*load));
+  if (simulation.plant().has_load()) {
+    Result<Unknown> load = load_unknown(simulation);
+    if (!load) return fail(load.error());
+    unknowns.push_back(std::move(*load));
+  }
   for (const std::string& state : simulation.slow_state_names()) {
     const Result<FreeQuantity> quantity = simulation.find("initial:" + state);
     if (!quantity) return fail(quantity.error());
-    const char* unit = state.starts_with("p") ? "Pa" : "m";
+    const std::string& unit = simulation.plant().find_state(state)->unit;
     unknowns.push_back(own_unknown("initial:" + state, unit, *quantity, quantity->in(simulation.start())));
   }
   return unknowns;

@@ -4,8 +4,10 @@
 
 #include <random>
 
+#include "sealwatch/model/cascaded_tanks.hpp"
 #include "sealwatch/model/eha.hpp"
 #include "sealwatch/model/eha_switched.hpp"
+#include "sealwatch/model/emps.hpp"
 #include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {
@@ -35,7 +37,11 @@ Parameters<Scalar> nominal(const std::string& plant, double load_factor) {
 
 TEST(PlantTables, HaveTheNamesAndOrderOfTheEquationsParameters) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> plants = {
-      {"eha", field_names<EhaParameters<double>>()}, {"eha_switched", field_names<EhaSwitchedParameters<double>>()}};
+      {"eha", field_names<EhaParameters<double>>()},
+      {"eha_switched", field_names<EhaSwitchedParameters<double>>()},
+      {"emps", field_names<EmpsParameters<double>>()},
+      {"cascaded_tanks", field_names<CascadedTanksParameters<double>>()}};
+  ASSERT_EQ(plants.size(), all_plants().size());
   for (const auto& [plant, fields] : plants) {
     const auto& table = find_plant(plant).value()->parameters;
     ASSERT_EQ(table.size() + 1, fields.size()) << plant;

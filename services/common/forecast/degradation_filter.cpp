@@ -15,8 +15,11 @@ constexpr double kOutlierErrors = 5.0;  // times the standard error
 constexpr double kOutlierWidth = 0.05;  // of theta
 constexpr double kSmallestStd = 1e-6;   // rounding of histories in text files
 constexpr double kLargestSurprise = 9.0;
+constexpr double kLargestLogOdds = 60.0;
 constexpr double kCertain = 0.9999;   // the table of a distribution ends here
 constexpr double kNegligible = 1e-7;  // and its rise begins here
+
+constexpr double kFarOut = 6.0;  // standard deviations, 1e-9
 
 enum Entry { tt, tg, tm, gg, gm, mm };
 
@@ -93,7 +96,9 @@ double below_threshold(const SealBelief& belief, const Horizon& h, double thresh
   const double mean = belief.mean[0] - h.A * belief.mean[1] - h.B * belief.mean[2];
   const double variance = P[tt] - 2.0 * h.A * P[tg] - 2.0 * h.B * P[tm] + h.A * h.A * P[gg] + 2.0 * h.A * h.B * P[gm] +
                           h.B * h.B * P[mm] + h.V;
-  return normal_probability((threshold - mean) / std::sqrt(std::max(variance, kSmallestStd * kSmallestStd)));
+  const double z = (threshold - mean) / std::sqrt(std::max(variance, kSmallestStd * kSmallestStd));
+  if (std::abs(z) > kFarOut) return z < 0.0 ? 0.0 : 1.0;  // most months of most lives: no error function needed
+  return normal_probability(z);
 }
 
 }  // namespace
@@ -123,10 +128,12 @@ void observe(SealBelief& belief, double condition, double condition_std) {
   const double innovation = condition - belief.mean[0];
   const double S_good = P[tt] + s * s;
   const double S_outlier = P[tt] + kOutlierErrors * kOutlierErrors * s * s + kOutlierWidth * kOutlierWidth;
-  const double good = (1.0 - kOutlierShare) / std::sqrt(S_good) * std::exp(-0.5 * innovation * innovation / S_good);
-  const double outlier = kOutlierShare / std::sqrt(S_outlier) * std::exp(-0.5 * innovation * innovation / S_outlier);
-  const double sum = std::max(good + outlier, 1e-300);  // a number beyond any seal still has a logarithm
-  const double p = good / sum;
+  const double half_square = 0.5 * innovation * innovation;
+  const double log_odds = half_square * (1.0 / S_good - 1.0 / S_outlier);
+  // Odds of the outlier component; beyond e^60 the other has no say, and nothing overflows.
+  const double odds = kOutlierShare / (1.0 - kOutlierShare) * std::sqrt(S_good / S_outlier) *
+                      std::exp(std::min(log_odds, kLargestLogOdds));
+  const double p = 1.0 / (1.0 + odds);
   const double difference = 1.0 / S_good - 1.0 / S_outlier;
   const double gain = p / S_good + (1.0 - p) / S_outlier;
   const double shrink = gain - p * (1.0 - p) * difference * difference * innovation * innovation;
@@ -138,7 +145,10 @@ void observe(SealBelief& belief, double condition, double condition_std) {
   P[gg] -= shrink * c[1] * c[1];
   P[gm] -= shrink * c[1] * c[2];
   P[mm] -= shrink * c[2] * c[2];
-  belief.log_evidence += std::log(sum);
+  // With odds cut off, the outlier component alone is left.
+  belief.log_evidence += log_odds < kLargestLogOdds
+                             ? std::log((1.0 - kOutlierShare) * (1.0 + odds) / std::sqrt(S_good)) - half_square / S_good
+                             : std::log(kOutlierShare / std::sqrt(S_outlier)) - half_square / S_outlier;
   belief.surprise_squares += std::min(innovation * innovation / S_good, kLargestSurprise);
   ++belief.tests;
 }

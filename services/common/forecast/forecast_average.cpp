@@ -12,12 +12,18 @@
 namespace sealwatch::forecast {
 namespace {
 
-constexpr std::array<double, 4> kMonthsAgo{6.0, 12.0, 18.0, 24.0};  // when the scored forecasts were made
-constexpr double kReach_months = 12.0;                              // how far they are scored
-constexpr double kDependence = 0.5;                                 // eta
+constexpr std::array<double, 3> kMonthsAgo{6.0, 12.0, 24.0};  // when the scored forecasts were made
+constexpr double kReach_months = 12.0;                        // how far they are scored
+constexpr double kPriorOfLaw = 7.0;                           // against 1 of each line
+constexpr double kDependence = 0.5;                           // eta
 constexpr double kJitter_months = 0.25;
 constexpr double kFewestDensity = 1e-12;  // a miss of any size counts as this
 constexpr double kMatters = 0.01;         // weights below are not worth a forecast
+
+/// A law of ageing is believed before a line without one, until tests say otherwise.
+double prior_weight(const ForecasterSettings& member) {
+  return member.method == "state_space" || member.method == "fleet" ? kPriorOfLaw : 1.0;
+}
 
 /// The request as it stood at `then`.
 ForecastRequest as_of(const ForecastRequest& request, UtcTime then) {
@@ -71,7 +77,8 @@ Result<std::unique_ptr<const Forecaster>> AverageForecaster::make(const Forecast
 }
 
 std::vector<double> AverageForecaster::weights(const ForecastRequest& request) const {
-  std::vector<double> log_weights(members_.size(), 0.0);
+  std::vector<double> log_weights;
+  for (const ForecasterSettings& member : settings_) log_weights.push_back(std::log(prior_weight(member)));
   if (request.history.empty()) return std::vector<double>(members_.size(), 1.0 / static_cast<double>(members_.size()));
   for (const double ago : kMonthsAgo) {
     const UtcTime then = add_months(request.history.back().time, kJitter_months - ago);

@@ -20,13 +20,16 @@ constexpr std::array<std::pair<double, double>, 4> kUnknownAges{
     {{1.0, 0.85}, {24.0, 0.05}, {72.0, 0.05}, {144.0, 0.05}}};
 
 // Tests since the change, newest first: finer where a change is young. Older ones are found by their nearest.
-constexpr std::array<std::size_t, 15> kTestsSinceChange{2, 3, 4, 6, 8, 10, 13, 17, 22, 28, 36, 46, 60, 78, 100};
+constexpr std::array<std::size_t, 11> kTestsSinceChange{2, 3, 5, 8, 12, 18, 26, 38, 54, 76, 108};
 constexpr std::size_t kFewestBeforeChange = 6;
+constexpr std::size_t kJumps = 3;           // steps that are looked into
+constexpr double kShortest_months = 0.5;    // between two tests, as far as priors go
 constexpr double kReplacedPerMonth = 1e-4;  // without anybody saying so
-constexpr double kRateChange = 0.5;         // standard deviation of the new rate, of the old one
+constexpr double kRateRise = 0.25;          // mean of the change: what changes a seal's medium mostly harms it
+constexpr double kRateChange = 0.4;         // standard deviation of the new rate, of the old one
 constexpr double kSteepeningChange = 1.0;   // and of the new steepening
 constexpr double kLevelChange = 0.03;       // standard deviation of a step of theta
-constexpr double kSmallestWeight = 1e-5;
+constexpr double kSmallestWeight = 3e-4;
 
 // Standard errors are believed unless the mean squared innovation, 0.97 when they are right, says otherwise.
 constexpr std::size_t kFewestToJudge = 12;
@@ -131,40 +134,40 @@ class Bank {
 
   void add_changes(std::vector<std::pair<double, SealHypothesis>>& all) const {
     const Run& base = best();
+    const auto prior = [&](double per_month, double months) {
+      return base.log_prior + std::log(per_month * std::max(months, kShortest_months));
+    };
     double last_months = tests_.back().months;
-    for (const std::size_t first : first_tests_after_change()) {
+    for (const std::size_t since : kTestsSinceChange) {
+      if (since + kFewestBeforeChange > tests_.size()) break;
+      const std::size_t first = tests_.size() - since;
       const double stands_for = last_months - tests_[first].months;  // months since the candidate before
       last_months = tests_[first].months;
-      const double change = std::log(0.5 * options_.change_per_month * std::max(stands_for, 0.1));
-      const double replaced = std::log(kReplacedPerMonth * std::max(stands_for, 0.1));
-      all.push_back(branch(base, SealChange::rate, first, base.log_prior + change));
-      all.push_back(branch(base, SealChange::level, first, base.log_prior + change));
-      all.push_back(branch(base, SealChange::replaced, first, base.log_prior + replaced));
+      all.push_back(branch(base, SealChange::rate, first, prior(0.5 * options_.change_per_month, stands_for)));
+    }
+    for (const std::size_t first : largest_jumps()) {
+      const double stands_for = tests_[first + 1].months - tests_[first - 1].months + kShortest_months;
+      all.push_back(branch(base, SealChange::level, first, prior(0.5 * options_.change_per_month, stands_for)));
+      all.push_back(branch(base, SealChange::replaced, first, prior(kReplacedPerMonth, stands_for)));
     }
   }
 
-  /// Newest first: at fixed numbers of tests ago, and after the largest jump, whose place matters most.
-  [[nodiscard]] std::vector<std::size_t> first_tests_after_change() const {
-    std::vector<std::size_t> firsts;
-    for (const std::size_t since : kTestsSinceChange)
-      if (since + kFewestBeforeChange <= tests_.size()) firsts.push_back(tests_.size() - since);
-    if (const auto jump = largest_jump(); jump && std::find(firsts.begin(), firsts.end(), *jump) == firsts.end())
-      firsts.insert(std::find_if(firsts.begin(), firsts.end(), [&](std::size_t first) { return first < *jump; }),
-                    *jump);
-    return firsts;
-  }
-
-  /// Where the medians of three tests before and three after are furthest apart.
-  [[nodiscard]] std::optional<std::size_t> largest_jump() const {
-    std::optional<std::size_t> place;
-    double largest = 0.0;
-    for (std::size_t i = kFewestBeforeChange; i + 2 < tests_.size(); ++i) {
-      const double jump = std::abs(middle_of(i) - middle_of(i - 3));
-      if (jump <= largest) continue;
-      largest = jump;
-      place = i;
+  /// Where the medians of three tests before and three after are furthest apart: a step shows there or nowhere.
+  [[nodiscard]] std::vector<std::size_t> largest_jumps() const {
+    std::vector<std::size_t> places;
+    if (tests_.size() < kFewestBeforeChange + 3) return places;
+    std::vector<double> jumps(tests_.size(), 0.0);
+    for (std::size_t i = kFewestBeforeChange; i + 2 < tests_.size(); ++i)
+      jumps[i] = std::abs(middle_of(i) - middle_of(i - 3));
+    while (places.size() < kJumps) {
+      const auto largest = std::max_element(jumps.begin(), jumps.end());
+      if (*largest <= 0.0) break;
+      places.push_back(static_cast<std::size_t>(largest - jumps.begin()));
+      const std::size_t from = places.back() - 2;  // the same step shows in its neighbours too
+      std::fill_n(jumps.begin() + static_cast<std::ptrdiff_t>(from), std::min<std::size_t>(5, jumps.size() - from),
+                  0.0);
     }
-    return place;
+    return places;
   }
 
   [[nodiscard]] double middle_of(std::size_t i) const {
@@ -189,7 +192,8 @@ class Bank {
       const double gap = first > 0 ? tests_[first].months - tests_[first - 1].months : 1.0;
       first_age = 0.5 * gap - tests_[first].months;  // some time since the test before
     } else if (change == SealChange::rate) {
-      belief.covariance[3] += std::pow(kRateChange * belief.mean[1], 2);
+      belief.mean[1] *= 1.0 + kRateRise;
+      belief.covariance[3] += std::pow(kRateChange / (1.0 + kRateRise) * belief.mean[1], 2);
       belief.covariance[5] += std::pow(kSteepeningChange * options_.population.steepening, 2);
     } else {
       belief.covariance[0] += kLevelChange * kLevelChange;

@@ -5,10 +5,10 @@
 //
 // Each life: one test a month until theta <= 0.60, each method after each test from the 12th on, scored by
 // prognostic_metrics.hpp. Months that a scenario leaves out are not scored.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 #include <random>
 #include <string>
@@ -96,6 +96,14 @@ void close(Tally& tally, OneLife& life) {
   }
 }
 
+std::vector<ConditionSample> without_outliers(const std::vector<ConditionSample>& history) {
+  const std::vector<bool> outlier = isolated_outliers(history);
+  std::vector<ConditionSample> kept;
+  for (std::size_t i = 0; i < history.size(); ++i)
+    if (!outlier[i]) kept.push_back(history[i]);
+  return kept;
+}
+
 double mean(const std::vector<Cluster>& clusters) {
   const auto result = clustered_mean(clusters);
   return result ? result->mean : 0.0;
@@ -144,14 +152,17 @@ int main(int argc, char** argv) {
       const double left = life.end_months - month.state.month;
       if (!month.sample || !month.foreseeable || month.state.month < kFirstMonth || left <= 0.0) continue;
       request.now = month.sample->time;
+      const ForecastRequest whole = request;
+      request.history = without_outliers(request.history);  // as the panel does
       for (std::size_t f = 0; f < forecasters.size(); ++f) {
-        const auto begin = std::chrono::steady_clock::now();
+        const std::clock_t begin = std::clock();
         const PredictiveForecast predicted = forecasters[f]->predict(request);
-        tallies[f].seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        tallies[f].seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
         ++tallies[f].forecasts;
         score(tallies[f], of_life[f], scored_month(predicted.forecast, month.state.month, left),
               predicted.distribution ? &*predicted.distribution : nullptr);
       }
+      request.history = whole.history;
       const auto known = oracle_distribution(month.state, kThreshold);
       if (!known) continue;
       score(tallies.back(), of_life.back(),

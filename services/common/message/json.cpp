@@ -1,11 +1,14 @@
 #include "services/common/message/json.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
+#include <utility>
 
 namespace sealwatch {
 namespace {
@@ -16,19 +19,18 @@ static_assert(std::endian::native == std::endian::little, "the exact form stores
 
 constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-std::string to_base64(const std::vector<double>& values) {
+void append_base64(const std::vector<double>& values, std::string& text) {
   const std::size_t size = values.size() * sizeof(double);
-  std::string bytes(size, '\0');
+  std::vector<unsigned char> bytes(size + 2);  // and what fills the last group
   if (size != 0) std::memcpy(bytes.data(), values.data(), size);
-  std::string text;
-  text.reserve((size + 2) / 3 * 4);
-  for (std::size_t k = 0; k < size; k += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t b = 0; b < 3; ++b)
-      group = group << 8U | (k + b < size ? static_cast<unsigned char>(bytes[k + b]) : 0U);
-    for (std::size_t c = 0; c < 4; ++c) text += k + c > size ? '=' : kAlphabet[group >> (18 - 6 * c) & 63U];
+  const std::size_t begin = text.size();
+  text.resize(begin + (size + 2) / 3 * 4);
+  char* to = text.data() + begin;
+  for (std::size_t k = 0; k < size; k += 3, to += 4) {
+    const std::uint32_t group = std::uint32_t{bytes[k]} << 16U | std::uint32_t{bytes[k + 1]} << 8U | bytes[k + 2];
+    for (unsigned c = 0; c < 4; ++c) to[c] = kAlphabet[group >> (18U - 6U * c) & 63U];
   }
-  return text;
+  for (std::size_t filler = (3 - size % 3) % 3; filler != 0; --filler) *(to - filler) = '=';
 }
 
 bool from_base64(const std::string& text, std::vector<double>& values) {
@@ -60,47 +62,97 @@ bool from_base64(const std::string& text, std::vector<double>& values) {
   return true;
 }
 
-template <class T>
-Json encode(const T& value, JsonForm form);
+bool is_plain(char c) { return c >= ' ' && c < '\x7f' && c != '"' && c != '\\'; }
 
-/// Turns each visited field into a member of a JSON object.
-struct Encoder {
-  Json& object;
-  JsonForm form;
+/// Writes values at the end of a text. No document tree: a service journals a thousand blocks of samples a second.
+class Writer {
+ public:
+  Writer(std::string& text, JsonForm form) : text_(text), form_(form) {}
+
   template <class T>
-  void operator()(std::string_view name, const T& value) const {
-    object[std::string(name)] = encode(value, form);
+  void write(const T& value) {
+    if constexpr (Described<T>) {
+      Members members{*this};
+      text_ += '{';
+      T::visit(members, value);
+      text_ += '}';
+    } else if constexpr (std::is_enum_v<T>) {
+      write_string(name_of(value));
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      write_string(value);
+    } else if constexpr (std::is_same_v<T, double>) {
+      write_number(value);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      text_ += value ? "true" : "false";
+    } else if constexpr (std::is_integral_v<T>) {
+      text_ += std::to_string(value);
+    } else {
+      write_list(value);
+    }
   }
+
+ private:
+  /// Writes each visited field as a member of the object.
+  struct Members {
+    Writer& writer;
+    bool first = true;
+    template <class T>
+    void operator()(std::string_view name, const T& value) {
+      if (!std::exchange(first, false)) writer.text_ += ',';
+      writer.text_ += '"';
+      writer.text_ += name;
+      writer.text_ += "\":";
+      writer.write(value);
+    }
+  };
+
+  template <class T>
+  void write_list(const std::vector<T>& values) {
+    if constexpr (std::is_same_v<T, double>) {
+      if (form_ == JsonForm::exact) {
+        text_ += '"';
+        append_base64(values, text_);
+        text_ += '"';
+        return;
+      }
+    }
+    text_ += '[';
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (k != 0) text_ += ',';
+      write(values[k]);
+    }
+    text_ += ']';
+  }
+
+  /// What needs no escape is copied; the rest is left to the library. What is no UTF-8 comes out as U+FFFD.
+  void write_string(std::string_view value) {
+    if (std::ranges::all_of(value, is_plain)) {
+      text_ += '"';
+      text_ += value;
+      text_ += '"';
+    } else {
+      text_ += Json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
+    }
+  }
+
+  void write_number(double value) {
+    if (std::isfinite(value))
+      text_ += Json(value).dump();
+    else if (form_ == JsonForm::readable)
+      text_ += "null";
+    else
+      text_ += std::isnan(value) ? "\"nan\"" : value > 0 ? "\"inf\"" : "\"-inf\"";
+  }
+
+  std::string& text_;
+  JsonForm form_;
 };
 
-Json encode_number(double value, JsonForm form) {
-  if (std::isfinite(value)) return value;
-  if (form == JsonForm::readable) return nullptr;
-  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
-}
-
 template <class T>
-Json encode(const T& value, JsonForm form) {
-  if constexpr (Described<T>) {
-    Json object = Json::object();
-    T::visit(Encoder{object, form}, value);
-    return object;
-  } else if constexpr (std::is_enum_v<T>) {
-    return std::string(name_of(value));
-  } else if constexpr (std::is_same_v<T, double>) {
-    return encode_number(value, form);
-  } else if constexpr (std::is_same_v<T, std::vector<double>>) {
-    if (form == JsonForm::exact) return to_base64(value);
-    Json array = Json::array();
-    for (const double number : value) array.push_back(encode_number(number, form));
-    return array;
-  } else if constexpr (requires { typename T::value_type; } && !std::is_same_v<T, std::string>) {
-    Json array = Json::array();
-    for (const auto& item : value) array.push_back(encode(item, form));
-    return array;
-  } else {
-    return value;
-  }
+std::string write_json(const T& value, JsonForm form) {
+  std::string text;
+  Writer(text, form).write(value);
+  return text;
 }
 
 /// Where a message's text departs from its layout.
@@ -180,10 +232,10 @@ Message blank(Topic topic) {
 }  // namespace
 
 std::string to_json(const Message& message, JsonForm form) {
-  return std::visit([form](const auto& m) { return encode(m, form).dump(); }, message);
+  return std::visit([form](const auto& m) { return write_json(m, form); }, message);
 }
 
-std::string to_json(const ServiceStatus& status) { return encode(status, JsonForm::readable).dump(); }
+std::string to_json(const ServiceStatus& status) { return write_json(status, JsonForm::readable); }
 
 Result<Message> message_from_json(Topic topic, std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);

@@ -60,6 +60,19 @@ TEST(Json, ReadableFormShowsEnumsByNameAndNanAsNull) {
   EXPECT_NE(text.find("\"kind\":\"pump\""), std::string::npos) << text;
 }
 
+TEST(Json, EscapesWhatMustBeAndReplacesWhatIsNoText) {
+  Acknowledgement message;
+  for (const std::string& text : {std::string("plain"), std::string("say \"no\"\\\n\t"), std::string("\x01\x7f"),
+                                  std::string("m\u00b3, \u03b8"), std::string("a\0b", 3)}) {
+    message.remark = text;
+    const Message back = message_from_json(Topic::acknowledgement, to_json(Message(message))).value();
+    EXPECT_EQ(std::get<Acknowledgement>(back).remark, text);
+  }
+  message.remark = "cut\xc3";
+  const Message back = message_from_json(Topic::acknowledgement, to_json(Message(message))).value();
+  EXPECT_EQ(std::get<Acknowledgement>(back).remark, "cut\ufffd");
+}
+
 TEST(Json, PassesOverUnknownFieldsAndKeepsDefaultsOfAbsentOnes) {
   const Message message =
       message_from_json(Topic::health_report, R"({"asset_id": "A", "a_later_field": [1, 2]})").value();

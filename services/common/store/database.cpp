@@ -14,12 +14,11 @@ constexpr std::array kSchema = {
     " sequence BIGINT NOT NULL, message_id TEXT NOT NULL UNIQUE, asset_id TEXT NOT NULL, pst_id TEXT NOT NULL,"
     " received BIGINT NOT NULL, consumed INTEGER NOT NULL, payload TEXT)",
     "CREATE INDEX inputs_open ON inputs(receipt) WHERE consumed = 0",
-    "CREATE INDEX inputs_by_asset ON inputs(topic, asset_id, sequence, receipt)",
+    "CREATE INDEX inputs_of_no_stream ON inputs(topic, asset_id, receipt) WHERE sequence = 0",
     "CREATE TABLE outputs(ordinal BIGINT PRIMARY KEY, topic VARCHAR(64) NOT NULL, sequence BIGINT NOT NULL,"
     " message_id TEXT NOT NULL UNIQUE, asset_id TEXT NOT NULL, pst_id TEXT NOT NULL, published BIGINT NOT NULL,"
     " payload TEXT NOT NULL, UNIQUE(topic, sequence))",
     "CREATE INDEX outputs_by_asset ON outputs(topic, asset_id, sequence)",
-    "CREATE INDEX outputs_by_test ON outputs(pst_id)",
     "CREATE TABLE positions(topic VARCHAR(64) NOT NULL, writer_id TEXT NOT NULL, sequence BIGINT NOT NULL,"
     " PRIMARY KEY(topic, writer_id))",
 };
@@ -67,11 +66,28 @@ void Journal::Database::open(const std::string& connection) {
     if (connection.find("timeout=") == std::string::npos) sql << "PRAGMA busy_timeout = 5000", soci::into(answer);
     sql << "PRAGMA journal_mode = WAL", soci::into(answer);
     sql << "PRAGMA synchronous = NORMAL";
+    sql << "PRAGMA wal_autocheckpoint = 0", soci::into(answer);  // the checkpointer's work
+    checkpointer.emplace(connection);
   }
   if (!has_schema()) create_schema();
   check_schema();
   load_counters();
   statements.emplace(sql);
+}
+
+/// The last few pages of a long log go into the file while nothing is written: then the next batch starts the log from
+/// its beginning. SQLite is told at once that the batch will write: one that began by reading is refused, not made to
+/// wait, if the log was started anew in between.
+void Journal::Database::begin() {
+  if (!checkpointer) {
+    sql.begin();
+    return;
+  }
+  int ignored = 0;
+  std::array<int, 2> pages{};
+  if (checkpointer->nearly_done())
+    sql << "PRAGMA wal_checkpoint(PASSIVE)", soci::into(ignored), soci::into(pages[0]), soci::into(pages[1]);
+  sql << "BEGIN IMMEDIATE";
 }
 
 bool Journal::Database::has_schema() {
@@ -86,7 +102,12 @@ bool Journal::Database::has_schema() {
 
 void Journal::Database::create_schema() {
   soci::transaction transaction(sql);
-  for (const char* statement : kSchema) sql << statement;
+  for (std::string statement : kSchema) {
+    // An INTEGER key, of any size, is SQLite's row number; any other is a second index to be written.
+    const std::size_t key = statement.find("BIGINT PRIMARY KEY");
+    if (checkpointer && key != std::string::npos) statement.replace(key, 6, "INTEGER");
+    sql << statement;
+  }
   const std::string version = std::to_string(kJournalSchemaVersion);
   const std::string writer = make_writer_id(service);
   const std::string insert = "INSERT INTO meta(name, value) VALUES(:name, :value)";

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "services/common/store/checkpointer.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/store/statements.hpp"
 
@@ -25,10 +26,13 @@ struct Journal::Database {
   long long last_receipt = 0;  ///< orders the inputs
   long long last_ordinal = 0;  ///< orders the outputs
   std::uint64_t open_inputs = 0;
+  std::size_t batch_rows = 0;                   ///< changed since the batch began
+  std::optional<Checkpointer> checkpointer;     ///< SQLite's
   std::optional<JournalStatements> statements;  ///< after `sql`, as they must end before it
 
   /// Connects, sets SQLite up, creates or checks the schema. Throws soci::soci_error, std::runtime_error or Error.
   void open(const std::string& connection);
+  void begin();
   /// Reads the counters that are kept in memory.
   void load_counters();
 

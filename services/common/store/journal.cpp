@@ -132,14 +132,8 @@ Result<bool> Journal::has_input(const std::string& message_id) {
 }
 
 Result<std::string> Journal::last_unnumbered_input(Topic topic, const std::string& asset_id) {
-  return database_->guard("looking for the last input", [&] {
-    std::string message_id;
-    const std::string name = topic_name(topic);
-    database_->sql << "SELECT message_id FROM inputs WHERE topic = :topic AND asset_id = :asset AND sequence = 0"
-                      " ORDER BY receipt DESC LIMIT 1",
-        use(name, "topic"), use(asset_id, "asset"), into(message_id);
-    return message_id;
-  });
+  return database_->guard("looking for the last input",
+                          [&] { return database_->statements->last_unnumbered_input(topic, asset_id); });
 }
 
 Result<std::vector<StreamPosition>> Journal::positions() {
@@ -158,11 +152,17 @@ Result<std::vector<StreamPosition>> Journal::positions() {
 }
 
 Status Journal::begin() {
-  return database_->guard("beginning a batch", [&] { database_->sql.begin(); });
+  return database_->guard("beginning a batch", [&] {
+    database_->begin();
+    database_->batch_rows = 0;
+  });
 }
 
 Status Journal::commit() {
-  return database_->guard("committing a batch", [&] { database_->sql.commit(); });
+  return database_->guard("committing a batch", [&] {
+    database_->sql.commit();
+    if (database_->checkpointer) database_->checkpointer->committed(database_->batch_rows);
+  });
 }
 
 void Journal::rollback() {
@@ -176,25 +176,29 @@ void Journal::rollback() {
 Status Journal::add_input(const Message& message, UtcTime received, bool consumed) {
   return database_->guard("keeping an input", [&] {
     database_->statements->add_input(++database_->last_receipt, message, received, consumed);
+    ++database_->batch_rows;
     if (!consumed) ++database_->open_inputs;
   });
 }
 
 Status Journal::consume(const std::string& message_id) {
   return database_->guard("marking an input as consumed", [&] {
-    if (database_->statements->consume(message_id)) --database_->open_inputs;
+    if (!database_->statements->consume(message_id)) return;
+    --database_->open_inputs;
+    ++database_->batch_rows;
   });
 }
 
-Result<std::optional<Message>> Journal::add_output(const Message& message, UtcTime publishing_time) {
+Result<std::optional<Message>> Journal::add_output(Message message, UtcTime publishing_time) {
   return database_->guard("keeping an output", [&]() -> std::optional<Message> {
     const std::uint64_t sequence = database_->written[topic_of(message)] + 1;
-    const Message bare = stamped(message, {}, 0, 0);
-    if (!database_->statements->add_output(database_->last_ordinal + 1, bare, sequence, publishing_time))
+    message = stamped(std::move(message), {}, 0, 0);
+    if (!database_->statements->add_output(database_->last_ordinal + 1, message, sequence, publishing_time))
       return std::nullopt;
     ++database_->last_ordinal;
+    ++database_->batch_rows;
     database_->written[topic_of(message)] = sequence;
-    return stamped(bare, writer_id(), sequence, publishing_time.nanoseconds);
+    return stamped(std::move(message), writer_id(), sequence, publishing_time.nanoseconds);
   });
 }
 

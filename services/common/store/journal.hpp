@@ -66,7 +66,7 @@ class Journal {
   /// Marks an input as not needed again and drops its message; unknown ids are passed over.
   [[nodiscard]] Status consume(const std::string& message_id);
   /// Numbers and keeps an output and returns it stamped, or nothing when this message id was concluded before.
-  [[nodiscard]] Result<std::optional<Message>> add_output(const Message& message, UtcTime publishing_time);
+  [[nodiscard]] Result<std::optional<Message>> add_output(Message message, UtcTime publishing_time);
   [[nodiscard]] Status set_position(const StreamPosition& position);
 
  private:

@@ -7,9 +7,24 @@ namespace sealwatch {
 using soci::into;
 using soci::use;
 
+namespace {
+
+/// Whether there is a row. Reads to the end: a query that is left open holds SQLite's log as it was then, which could
+/// never be emptied.
+bool read_row(soci::statement& query) {
+  const bool found = query.execute(true);
+  while (found && query.fetch()) continue;
+  return found;
+}
+
+}  // namespace
+
 JournalStatements::JournalStatements(soci::session& sql)
     : find_input_((sql.prepare << "SELECT count(*) FROM inputs WHERE message_id = :message", into(count_),
                    use(message_id_, "message"))),
+      find_unnumbered_((sql.prepare << "SELECT message_id FROM inputs WHERE topic = :topic AND asset_id = :asset"
+                                       " AND sequence = 0 ORDER BY receipt DESC LIMIT 1",
+                        into(message_id_), use(topic_, "topic"), use(asset_id_, "asset"))),
       insert_input_((sql.prepare << "INSERT INTO inputs(receipt, topic, writer_id, sequence, message_id, asset_id,"
                                     " pst_id, received, consumed, payload) VALUES(:receipt, :topic, :writer,"
                                     " :sequence, :message, :asset, :pst, :received, :consumed, :payload)",
@@ -33,8 +48,14 @@ JournalStatements::JournalStatements(soci::session& sql)
 
 bool JournalStatements::has_input(const std::string& message_id) {
   message_id_ = message_id;
-  find_input_.execute(true);
+  read_row(find_input_);
   return count_ != 0;
+}
+
+std::string JournalStatements::last_unnumbered_input(Topic topic, const std::string& asset_id) {
+  topic_ = name_of(topic);
+  asset_id_ = asset_id;
+  return read_row(find_unnumbered_) ? message_id_ : std::string();
 }
 
 void JournalStatements::bind_message(const Message& message) {

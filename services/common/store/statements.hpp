@@ -17,6 +17,7 @@ class JournalStatements {
   JournalStatements& operator=(const JournalStatements&) = delete;
 
   [[nodiscard]] bool has_input(const std::string& message_id);
+  [[nodiscard]] std::string last_unnumbered_input(Topic topic, const std::string& asset_id);
   void add_input(long long receipt, const Message& message, UtcTime received, bool consumed);
   /// Whether an open input of that id was there.
   bool consume(const std::string& message_id);
@@ -42,6 +43,7 @@ class JournalStatements {
   long long count_ = 0;
 
   soci::statement find_input_;
+  soci::statement find_unnumbered_;
   soci::statement insert_input_;
   soci::statement consume_input_;
   soci::statement insert_output_;

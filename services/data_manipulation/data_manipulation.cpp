@@ -54,11 +54,14 @@ Conclusion DataManipulation::receive(const Message& input) {
   }
   waiting_[pst_id].push_back(*block);
   if (!ends(*block)) return conclusion;
-  const auto test = waiting_.extract(pst_id);
-  for (const SampleBlock& one : test.mapped()) conclusion.consumed.push_back(one.header.message_id);
-  TestConclusion concluded = conclude_test(test.mapped(), view(block->asset_id), options_);
-  conclusion.outputs.emplace_back(std::move(concluded.window));
-  conclusion.outputs.emplace_back(std::move(concluded.features));
+  conclusion.later = [blocks = waiting_.extract(pst_id).mapped(), asset = view(block->asset_id), options = options_] {
+    Conclusion of_test;
+    for (const SampleBlock& one : blocks) of_test.consumed.push_back(one.header.message_id);
+    TestConclusion concluded = conclude_test(blocks, asset, options);
+    of_test.outputs.emplace_back(std::move(concluded.window));
+    of_test.outputs.emplace_back(std::move(concluded.features));
+    return of_test;
+  };
   concluded_.insert(pst_id);
   return conclusion;
 }

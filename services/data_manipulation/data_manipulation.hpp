@@ -1,7 +1,8 @@
 // Layer 2 (ISO 13374 DM): the sample blocks of one test become its window, cut once, and its features.
 //
-// Blocks are kept, unconsumed, until the one that ends the test comes; then everything is concluded at once and all of
-// them are consumed. Blocks of a test that is concluded already are consumed and change nothing.
+// Blocks are kept, unconsumed, until the one that ends the test comes; then everything is concluded, later, so that the
+// blocks of other assets do not wait for it, and all of them are consumed. Blocks of a test that is concluded already
+// are consumed and change nothing.
 //
 // A test is complete when its begin and its end were recorded, it was not aborted, and the recording does not stop
 // short in the middle of the strokes; abort_reason says what was missing. FAILED channels are left out of the window;

@@ -6,14 +6,21 @@
 //   3. then receive(m) for each new input, at most once for each message id.
 // After each receive the runner stores the conclusion's outputs and marks the consumed inputs in one transaction, and
 // only then publishes. A layer killed anywhere and started again by this contract ends with the same outputs.
+// What a conclusion leaves for later is run in another thread, one after another in the order of receipt, while the
+// layer goes on receiving; what comes of it is stored like any other conclusion. Until then its inputs are not
+// consumed, so that a layer killed meanwhile is given them again.
 //
 // For that a layer keeps no state but (a) what it can rebuild from its own outputs in restore and (b) inputs that it
 // has not consumed yet.
 #pragma once
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/core/time.hpp"
@@ -24,7 +31,20 @@ namespace sealwatch {
 struct Conclusion {
   std::vector<Message> outputs;       ///< headers complete but for writer_id, stream_sequence, publishing_time_ns
   std::vector<std::string> consumed;  ///< message ids of inputs that are not needed again
+  /// What takes long to conclude: owns all that it needs and shares nothing of the layer that changes.
+  std::function<Conclusion()> later = {};
 };
+
+/// The conclusion with what it left for later, done here and now.
+[[nodiscard]] inline Conclusion completed(Conclusion conclusion) {
+  while (const auto later = std::exchange(conclusion.later, {})) {
+    Conclusion rest = later();
+    std::ranges::move(rest.outputs, std::back_inserter(conclusion.outputs));
+    std::ranges::move(rest.consumed, std::back_inserter(conclusion.consumed));
+    conclusion.later = std::move(rest.later);
+  }
+  return conclusion;
+}
 
 class Layer {
  public:

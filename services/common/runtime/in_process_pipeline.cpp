@@ -36,7 +36,7 @@ void InProcessPipeline::deliver(Reader& reader, const Message& message) {
   reader.last_unnumbered[last] = *id;
   Message input = message;
   header_of(input).message_id = *id;
-  for (Message& output : reader.layer->receive(input).outputs) {
+  for (Message& output : completed(reader.layer->receive(input)).outputs) {
     if (!concluded_.insert(header_of(output).message_id).second) continue;
     if (observer_) observer_(output);
     waiting_.push_back(std::move(output));

@@ -15,6 +15,8 @@ using std::chrono::steady_clock;
 
 /// Items taken from the bus at once.
 constexpr std::size_t kBatch = 64;
+/// Tests that may wait to be concluded from: each holds its samples, some hundred kilobytes.
+constexpr std::size_t kMostLater = 4;
 constexpr std::chrono::milliseconds kSecond{1000};
 
 /// Samples come many times a second; what is concluded from whole tests comes once a month.
@@ -32,7 +34,8 @@ LayerRunner::LayerRunner(Layer& layer, Bus& bus, Bus& heartbeat_bus, Journal& jo
       heartbeat_bus_(heartbeat_bus),
       journal_(journal),
       clock_(clock),
-      options_(std::move(options)) {}
+      options_(std::move(options)),
+      later_([&bus] { bus.wake(); }) {}
 
 Status LayerRunner::start() {
   // Subscribed first: what comes while the past is restored waits on the bus.
@@ -70,9 +73,8 @@ Status LayerRunner::restore_past() {
   const std::uint64_t open = journal_.open_inputs();
   const Status inputs = in_batch([&] {
     return journal_.for_each_open_input([&](const Message& input) {
-      const Conclusion conclusion = layer_.receive(without_stamps(input));
       replaying_ = header_of(input).replay;
-      return keep(conclusion, {});
+      return keep(completed(layer_.receive(without_stamps(input))), {});
     });
   });
   if (!inputs) return inputs;
@@ -95,13 +97,17 @@ Status LayerRunner::run(const std::atomic<bool>& stop) {
 
 Status LayerRunner::step(std::chrono::milliseconds timeout) {
   // A slow layer takes no more from the bus than it can soon conclude from, so that the bus holds the writers back.
-  if (ready_.size() < kBatch) {
+  drained_ = false;
+  if (later_.open() >= kMostLater) {
+    later_.wait(timeout);
+  } else if (ready_.size() < kBatch) {
     const bool work_waits = !ready_.empty() || !resends_.empty();
     std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);
     drained_ = items.size() < kBatch;
     for (BusItem& item : items) sort_in(std::move(item));
   }
-  if (!ready_.empty())
+  if (Status status = keep_what_is_done(); !status) return status;
+  if (!ready_.empty() && later_.open() < kMostLater)
     if (Status status = in_batch([this] { return take_ready(); }); !status) return status;
   if (Status status = serve_resends(); !status) return status;
   send_requests();
@@ -136,14 +142,14 @@ Status LayerRunner::take_ready() {
   last_work_ = begin;
   holds_memory_ = true;
   do {
-    const Message message = std::move(ready_.front());
+    Message message = std::move(ready_.front());
     ready_.pop_front();
-    if (Status status = take(message); !status) return status;
-  } while (!ready_.empty() && steady_clock::now() - begin < options_.batch_time);
+    if (Status status = take(std::move(message)); !status) return status;
+  } while (!ready_.empty() && later_.open() < kMostLater && steady_clock::now() - begin < options_.batch_time);
   return {};
 }
 
-Status LayerRunner::take(const Message& message) {
+Status LayerRunner::take(Message message) {
   Error problem;
   const auto value_of_result = [&problem]<class T>(Result<T> result) {
     if (!result) problem = result.error();
@@ -164,19 +170,21 @@ Status LayerRunner::take(const Message& message) {
     uncommitted_[{position.topic, position.writer_id}] = position.sequence;
   }
   if (!id) return {};
-  Message input = message;
-  header_of(input).message_id = *id;
-  replaying_ = header_of(input).replay;
-  log_message(LogLevel::debug, "received", input);
-  const Conclusion conclusion = layer_.receive(without_stamps(input));
+  header_of(message).message_id = *id;
+  replaying_ = header_of(message).replay;
+  log_message(LogLevel::debug, "received", message);
+  const Header stamped = header_of(message);
+  message = without_stamps(std::move(message));
+  Conclusion conclusion = layer_.receive(message);
+  header_of(message) = stamped;
   const bool consumed = std::ranges::find(conclusion.consumed, *id) != conclusion.consumed.end();
-  if (Status status = journal_.add_input(input, clock_.now(), consumed); !status) return status;
-  return keep(conclusion, *id);
+  if (Status status = journal_.add_input(message, clock_.now(), consumed); !status) return status;
+  return keep(std::move(conclusion), *id);
 }
 
-Status LayerRunner::keep(const Conclusion& conclusion, const std::string& input_id) {
-  for (const Message& output : conclusion.outputs) {
-    auto kept = journal_.add_output(output, clock_.now());
+Status LayerRunner::keep(Conclusion conclusion, const std::string& input_id) {
+  for (Message& output : conclusion.outputs) {
+    auto kept = journal_.add_output(std::move(output), clock_.now());
     if (!kept) return fail(kept.error());
     if (*kept) outbox_.push_back(std::move(**kept));
   }
@@ -184,7 +192,20 @@ Status LayerRunner::keep(const Conclusion& conclusion, const std::string& input_
     if (id == input_id) continue;
     if (Status status = journal_.consume(id); !status) return status;
   }
+  if (conclusion.later) later_.add(std::move(conclusion.later));
   return {};
+}
+
+Status LayerRunner::keep_what_is_done() {
+  std::vector<Conclusion> done = later_.take_done();
+  if (done.empty()) return {};
+  last_work_ = steady_clock::now();
+  holds_memory_ = true;
+  return in_batch([&]() -> Status {
+    for (Conclusion& conclusion : done)
+      if (Status status = keep(std::move(conclusion), {}); !status) return status;
+    return {};
+  });
 }
 
 /// After a burst of work an idle service is as small as before it.
@@ -198,11 +219,11 @@ Status LayerRunner::let_time_pass() {
   if (options_.local_inputs)
     for (Message& message : options_.local_inputs()) ready_.push_back(std::move(message));
   // A test is not overdue or lost while messages about it may be on their way.
-  const bool up_to_date = drained_ && ready_.empty() && !reader_->is_behind();
+  const bool up_to_date = drained_ && ready_.empty() && later_.open() == 0 && !reader_->is_behind();
   if (replaying_ || !up_to_date || steady_clock::now() - started_ < options_.settling) return {};
-  const Conclusion conclusion = layer_.tick(clock_.now());
+  Conclusion conclusion = layer_.tick(clock_.now());
   if (conclusion.outputs.empty() && conclusion.consumed.empty()) return {};
-  return in_batch([&] { return keep(conclusion, {}); });
+  return in_batch([&] { return keep(std::move(conclusion), {}); });
 }
 
 bool LayerRunner::publish(const Message& message, std::string_view event) {

@@ -21,6 +21,7 @@
 #include "sealwatch/port/bus.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/common/runtime/heartbeat.hpp"
+#include "services/common/runtime/later_work.hpp"
 #include "services/common/runtime/resend_queue.hpp"
 #include "services/common/runtime/stream_reader.hpp"
 #include "services/common/store/journal.hpp"
@@ -65,9 +66,10 @@ class LayerRunner {
   /// Runs `work` inside a transaction and publishes what it concluded.
   [[nodiscard]] Status in_batch(const std::function<Status()>& work);
   [[nodiscard]] Status take_ready();
-  [[nodiscard]] Status take(const Message& message);
+  [[nodiscard]] Status take(Message message);
   void give_memory_back();
-  [[nodiscard]] Status keep(const Conclusion& conclusion, const std::string& input_id);
+  [[nodiscard]] Status keep(Conclusion conclusion, const std::string& input_id);
+  [[nodiscard]] Status keep_what_is_done();
   [[nodiscard]] Status let_time_pass();
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest(bool all);
@@ -97,6 +99,7 @@ class LayerRunner {
   std::chrono::steady_clock::time_point last_second_{};
   std::chrono::steady_clock::time_point last_work_{};
   bool holds_memory_ = false;  ///< of work done since memory was given back
+  LaterWork later_;
   std::unique_ptr<Heartbeat> heartbeat_;
 };
 

@@ -22,14 +22,14 @@ class StoredRun {
   void receive(const Message& input) {
     if (!received_.insert(header_of(input).message_id).second) return;
     waiting_.push_back(input);
-    keep(layer_->receive(input));
+    keep(completed(layer_->receive(input)));
   }
   /// A new layer, brought back by the contract.
   void restart() {
     layer_ = make_();
     for (const Message& output : outputs_) layer_->restore(output);
     const std::vector<Message> again = waiting_;
-    for (const Message& input : again) keep(layer_->receive(input));
+    for (const Message& input : again) keep(completed(layer_->receive(input)));
   }
   [[nodiscard]] const std::vector<Message>& outputs() const { return outputs_; }
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }

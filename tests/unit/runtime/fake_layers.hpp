@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <map>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "sealwatch/core/text.hpp"
@@ -59,6 +61,42 @@ class CuttingLayer : public Layer {
   static constexpr std::array kOutputs = {Topic::test_features, Topic::state_report};
   std::map<std::string, std::vector<RawSamples>> running_;
   std::map<std::string, std::string> chain_;  ///< hash over all blocks so far
+};
+
+/// raw_samples -> test_features, concluded later from the blocks of one test.
+class PatientLayer : public Layer {
+ public:
+  explicit PatientLayer(std::chrono::milliseconds takes = {}) : takes_(takes) {}
+  [[nodiscard]] std::string_view name() const override { return "data_acquisition"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
+  [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
+  void restore(const Message& own) override { concluded_.insert(header_of(own).pst_id); }
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    const auto& block = std::get<RawSamples>(input);
+    if (concluded_.contains(block.recording_id)) return {{}, {block.header.message_id}};
+    std::vector<RawSamples>& blocks = running_[block.recording_id];
+    blocks.push_back(block);
+    if (block.boundary != BlockBoundary::end) return {};
+    concluded_.insert(block.recording_id);
+    return {{}, {}, [blocks = running_.extract(block.recording_id).mapped(), takes = takes_] {
+              std::this_thread::sleep_for(takes);
+              Conclusion conclusion;
+              TestFeatures features;
+              features.asset_id = blocks.back().asset_id;
+              features.header = header("test_features/" + blocks.back().recording_id, blocks.back().recording_id);
+              for (const RawSamples& one : blocks) conclusion.consumed.push_back(one.header.message_id);
+              for (const std::string& id : conclusion.consumed) features.recording_id += id + ";";
+              conclusion.outputs = {features};
+              return conclusion;
+            }};
+  }
+
+ private:
+  static constexpr std::array kInputs = {Topic::raw_samples};
+  static constexpr std::array kOutputs = {Topic::test_features};
+  std::chrono::milliseconds takes_;
+  std::map<std::string, std::vector<RawSamples>> running_;
+  std::set<std::string> concluded_;
 };
 
 /// test_features + state_report -> health_report when both of a test are there, with the number of the test.

@@ -90,5 +90,45 @@ TEST_P(KillTest, AtAnyStepEndsWithTheSameOutputs) {
   }
 }
 
+/// Like the test above, for a layer that concludes in another thread: killed at every step in turn.
+TEST(KillWhileConcludingLater, AtAnyStepEndsWithTheSameOutputs) {
+  int steps = 0;
+  const auto outputs_after = [&steps](int fatal_step) {
+    const Place place;
+    auto network = std::make_shared<InMemoryNetwork>();
+    Feeder feeder(network, blocks_of_tests(kTests, kAssets));
+    std::unique_ptr<Process> process;
+    int lives = 0;
+    const auto step = [&] {
+      std::this_thread::sleep_for(std::chrono::microseconds(200));  // a step is not to be a mere wait for what is later
+      feeder.send(1);
+      feeder.beat();
+      try {
+        if (!process) {
+          process = std::make_unique<Process>(
+              network, [] { return std::make_unique<PatientLayer>(std::chrono::milliseconds(2)); }, place.connection(),
+              Fate(lives++ == 0 ? fatal_step : -1));
+          process->start();
+        }
+        process->step();
+        if (lives == 1) steps = process->steps();
+      } catch (const Killed&) {
+        process.reset();
+      }
+    };
+    const auto done = [&] {
+      return process && feeder.all_received() && process->journal().open_inputs() == 0 &&
+             process->outputs().size() == kTests * kAssets.size();
+    };
+    EXPECT_TRUE(step_until(done, step)) << "killed at step " << fatal_step;
+    return process->outputs();
+  };
+  const std::vector<Message> undisturbed = outputs_after(-1);
+  const int last = steps;
+  ASSERT_GT(last, 15);
+  for (int fatal_step = 1; fatal_step <= last; ++fatal_step)
+    ASSERT_EQ(outputs_after(fatal_step), undisturbed) << "killed at step " << fatal_step;
+}
+
 }  // namespace
 }  // namespace sealwatch::testing

@@ -287,6 +287,69 @@ TEST_F(RunnerTest, BeatsWhileTheLayerComputesAndClaimsNothingThatIsNotCommitted)
   EXPECT_EQ(listener_.statuses.back().pending_inputs, 1U);
 }
 
+TEST_F(RunnerTest, ReceivesWhileItConcludesLaterAndKeepsTheOrderOfReceipt) {
+  Process process(
+      network_, [] { return std::make_unique<PatientLayer>(milliseconds(50)); }, place_.connection());
+  process.start();
+  Feeder feeder(network_, blocks_of_tests(1, {"A", "B", "C"}));  // A1 B1 C1 A2 B2 C2
+  feeder.send(6);
+  step(process, 2);
+  EXPECT_EQ(process.journal().open_inputs(), 6U) << "all are received before the first is concluded from";
+  EXPECT_THAT(process.outputs(), IsEmpty());
+  ASSERT_TRUE(step_until([&] { return process.outputs().size() == 3; }, [&] { process.step(); }));
+  std::vector<std::string> order;
+  for (const Message& output : process.outputs()) order.push_back(asset_of(output));
+  EXPECT_THAT(order, ElementsAre("A", "B", "C"));
+  EXPECT_EQ(process.journal().open_inputs(), 0U);
+}
+
+TEST_F(RunnerTest, ConcludesAgainWhatAStopLeftForLater) {
+  const auto slow = [] { return std::make_unique<PatientLayer>(milliseconds(50)); };
+  {
+    Process process(network_, slow, place_.connection());
+    process.start();
+    Feeder feeder(network_, blocks_of_tests(1, {"A", "B"}));
+    feeder.send(4);
+    step(process, 2);
+    EXPECT_THAT(process.outputs(), IsEmpty());
+  }
+  Process process(network_, slow, place_.connection());
+  process.start();
+  EXPECT_THAT(process.outputs(), SizeIs(2));
+  EXPECT_EQ(process.journal().open_inputs(), 0U);
+}
+
+TEST_F(RunnerTest, TakesNoMoreThanItCanSoonConcludeFrom) {
+  Process process(
+      network_, [] { return std::make_unique<PatientLayer>(milliseconds(20)); }, place_.connection());
+  process.start();
+  Feeder feeder(network_, blocks_of_tests(10, {"A"}));
+  feeder.send(20);
+  std::uint64_t most = 0;
+  const auto step = [&] {
+    process.step();
+    most = std::max(most, process.journal().open_inputs());
+  };
+  ASSERT_TRUE(step_until([&] { return process.outputs().size() == 10; }, step));
+  EXPECT_LE(most, 8U) << "four tests of two blocks";
+}
+
+/// What goes wrong later goes wrong in the runner's thread, where the daemon sees it.
+TEST_F(RunnerTest, RaisesWhatWasRaisedLater) {
+  class Failing final : public PatientLayer {
+   public:
+    Conclusion receive(const Message& /*input*/) override {
+      return {{}, {}, []() -> Conclusion { throw std::runtime_error("no memory"); }};
+    }
+  };
+  Process process(
+      network_, [] { return std::make_unique<Failing>(); }, place_.connection());
+  process.start();
+  Feeder feeder(network_, blocks_of_tests(1, {"A"}));
+  feeder.send(1);
+  EXPECT_THROW(step_until([] { return false; }, [&] { (void)process.try_step(); }), std::runtime_error);
+}
+
 TEST_F(RunnerTest, SaysHowFarItsStreamsGoAndThatItStops) {
   {
     auto process = cutter();

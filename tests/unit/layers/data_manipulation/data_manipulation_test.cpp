@@ -68,7 +68,7 @@ Result conclude(const std::vector<SampleBlock>& blocks, const AssetConfig& confi
   for (const SampleBlock& block : blocks) {
     EXPECT_TRUE(conclusion.outputs.empty()) << "concluded before the end";
     EXPECT_TRUE(conclusion.consumed.empty());
-    conclusion = layer.receive(block);
+    conclusion = completed(layer.receive(block));
   }
   EXPECT_EQ(conclusion.consumed.size(), blocks.size());
   EXPECT_EQ(conclusion.outputs.size(), 2U);

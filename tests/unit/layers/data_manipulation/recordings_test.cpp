@@ -45,7 +45,7 @@ Result conclude(const Recording& recording, const std::string& model) {
   DataManipulation manipulation({asset});
   Conclusion last;
   for (const RawSamples& raw : blocks_of(recording))
-    for (const Message& block : acquisition.receive(raw).outputs) last = manipulation.receive(block);
+    for (const Message& block : acquisition.receive(raw).outputs) last = completed(manipulation.receive(block));
   return {std::get<TestWindow>(last.outputs.at(0)), std::get<TestFeatures>(last.outputs.at(1))};
 }
 

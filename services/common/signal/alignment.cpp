@@ -10,29 +10,48 @@
 namespace sealwatch::signal {
 namespace {
 
-/// Sums over the overlap of channel and delayed reference.
-struct Moments {
-  double count = 0, r = 0, y = 0, rr = 0, ry = 0, yy = 0;
-  void add(double reference, double channel) {
-    count += 1.0;
-    r += reference;
-    y += channel;
-    rr += reference * reference;
-    ry += reference * channel;
-    yy += channel * channel;
+/// Four sums side by side: one alone would wait for itself at every term.
+double dot(const double* a, const double* b, std::size_t count) {
+  double sums[4] = {};
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4)
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += a[i + k] * b[i + k];
+  for (; i < count; ++i) sums[0] += a[i] * b[i];
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+/// A signal about its mean, with the sums of its values and squares up to every sample.
+struct Summed {
+  std::vector<double> values;
+  std::vector<double> sum = {0.0};
+  std::vector<double> squares = {0.0};
+
+  explicit Summed(std::span<const double> signal) : values(signal.begin(), signal.end()) {
+    const double level = mean(values).value;
+    for (double& value : values) {
+      value -= level;
+      sum.push_back(sum.back() + value);
+      squares.push_back(squares.back() + value * value);
+    }
   }
-  [[nodiscard]] double correlation() const {
-    const double variance = (rr - r * r / count) * (yy - y * y / count);
-    return variance > 0.0 ? (ry - r * y / count) / std::sqrt(variance) : 0.0;
+  /// Sum of squares about the mean over [begin, begin + count).
+  [[nodiscard]] double variation(std::size_t begin, std::size_t count) const {
+    const double s = sum_of(begin, count);
+    return squares[begin + count] - squares[begin] - s * s / static_cast<double>(count);
   }
+  [[nodiscard]] double sum_of(std::size_t begin, std::size_t count) const { return sum[begin + count] - sum[begin]; }
 };
 
-double correlation_at(std::span<const double> reference, std::span<const double> channel, std::ptrdiff_t lag) {
-  Moments moments;
-  const auto count = static_cast<std::ptrdiff_t>(channel.size());
-  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, lag); i < std::min(count, count + lag); ++i)
-    moments.add(reference[i - lag], channel[i]);
-  return moments.correlation();
+/// Over the overlap of channel and reference delayed by `lag` samples.
+double correlation_at(const Summed& reference, const Summed& channel, std::ptrdiff_t lag) {
+  const auto in_channel = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, lag));
+  const auto in_reference = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, -lag));
+  const std::size_t count = channel.values.size() - in_channel - in_reference;
+  const double variance = reference.variation(in_reference, count) * channel.variation(in_channel, count);
+  const double product =
+      dot(&reference.values[in_reference], &channel.values[in_channel], count) -
+      reference.sum_of(in_reference, count) * channel.sum_of(in_channel, count) / static_cast<double>(count);
+  return variance > 0.0 ? product / std::sqrt(variance) : 0.0;
 }
 
 /// Cubic Hermite value and slope (per sample) at a fractional index inside 1..size-3.
@@ -106,8 +125,10 @@ std::optional<OffsetEstimate> estimate_offset(std::span<const double> reference,
   if (count < 16 || largest < 1) return std::nullopt;
   std::ptrdiff_t best = 0;
   double best_correlation = 0.0;
+  const Summed summed_reference(reference);
+  const Summed summed_channel(channel);
   for (std::ptrdiff_t lag = -largest; lag <= largest; ++lag) {
-    const double correlation = std::abs(correlation_at(reference, channel, lag));
+    const double correlation = std::abs(correlation_at(summed_reference, summed_channel, lag));
     if (correlation > best_correlation) best = lag, best_correlation = correlation;
   }
   if (best_correlation <= 0.0 || std::abs(best) == largest) return std::nullopt;

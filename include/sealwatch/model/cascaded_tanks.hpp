@@ -47,9 +47,9 @@ struct CascadedTanks {
   enum SiteIndex { kPumpVoltage, kUpperFlow, kLowerFlow };
 
   /// What laws see at a site (model/physics.hpp). Nothing is upstream of the upper tank.
-  template <class R, class S, class P>
+  template <class R, class S, class P, class Extra>
   [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
-                                                           const CascadedTanksParameters<P>&) {
+                                                           const CascadedTanksParameters<P>&, const Extra&) {
     switch (site) {
       case kPumpVoltage:
         return {R(0.0), R(input.pump_voltage_V), R(0.0), R(0.0)};

@@ -102,17 +102,19 @@ struct Eha {
     return high - low;
   }
 
-  /// Pressure drop and flow of valve k = 1, 2 without what is added: the signals of laws at its line and seat.
-  template <class S, class P>
-  [[nodiscard]] static auto valve_signals(int valve, const State<S>& y, const EhaParameters<P>& p) {
-    const S &port = valve == 1 ? y[kP1] : y[kP2], &chamber = valve == 1 ? y[kPA] : y[kPB];
-    return std::pair(port - chamber, valve_flow(port, chamber, valve == 1 ? y[kP2] : y[kP1], p));
+  /// Pressure drop and flow of valve k = 1, 2: the signals of laws at its line and seat.
+  template <class S, class P, class Extra>
+  [[nodiscard]] static auto valve_signals(int valve, const State<S>& y, const EhaParameters<P>& p, const Extra& extra) {
+    const bool first = valve == 1;
+    const S &port = first ? y[kP1] : y[kP2], &chamber = first ? y[kPA] : y[kPB], &other = first ? y[kP2] : y[kP1];
+    const auto &line_drop = extra[first ? kDrop1 : kDrop2], &crack = extra[first ? kCrack1 : kCrack2];
+    return std::pair(port - chamber - line_drop, valve_flow(port, chamber, other, p, line_drop, crack));
   }
 
-  /// What laws see at a site (model/physics.hpp).
-  template <class R, class S, class P>
+  /// What laws see at a site (model/physics.hpp), with what is added at others.
+  template <class R, class S, class P, class Extra>
   [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
-                                                           const EhaParameters<P>& p) {
+                                                           const EhaParameters<P>& p, const Extra& extra) {
     const auto& [z, i, omega, p_1, p_2, p_A, p_B, v, x] = y;
     switch (site) {
       case kDriverVoltage:
@@ -125,12 +127,12 @@ struct Eha {
         return {R(p_1 - p_2), R(omega), R(0.0), R(0.0)};
       case kDrop1:
       case kDrop2: {
-        const auto [drop, flow] = valve_signals(site == kDrop1 ? 1 : 2, y, p);
+        const auto [drop, flow] = valve_signals(site == kDrop1 ? 1 : 2, y, p, extra);
         return {R(flow), R(drop), R(0.0), R(0.0)};
       }
       case kCrack1:
       case kCrack2: {
-        const auto [drop, flow] = valve_signals(site == kCrack1 ? 1 : 2, y, p);
+        const auto [drop, flow] = valve_signals(site == kCrack1 ? 1 : 2, y, p, extra);
         return {R(drop), R(flow), R(0.0), R(0.0)};
       }
       case kOutflowA:

@@ -34,9 +34,9 @@ struct EhaCircuit {
   enum SiteIndex { kOutflowA, kComplianceA, kSealLeakage, kPistonForce, kModulusA, kViscosity };
 
   /// What laws see at a site (model/physics.hpp). The power that warms the oil is the hydraulic one.
-  template <class R, class S, class P>
+  template <class R, class S, class P, class Extra>
   [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
-                                                           const EhaParameters<P>& p) {
+                                                           const EhaParameters<P>& p, const Extra&) {
     const auto& [p_A, v, x] = y;
     switch (site) {
       case kOutflowA:

@@ -158,9 +158,9 @@ struct EhaSwitched {
   }
 
   /// What laws see at a site (model/physics.hpp).
-  template <class R, class S, class P>
+  template <class R, class S, class P, class Extra>
   [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
-                                                           const EhaSwitchedParameters<P>& p) {
+                                                           const EhaSwitchedParameters<P>& p, const Extra& extra) {
     const auto& [i, omega, theta, p_P, p_A, p_B, p_T, v, x] = y;
     const R none(0.0);
     switch (site) {
@@ -173,9 +173,9 @@ struct EhaSwitched {
       case kPumpSlip:
         return {R(p_P - p_T), R(omega), none, none};
       case kDrop1:
-        return {R(chamber_flow(direction(input), p_A, y, p)), R(p_P - p_A), none, none};
+        return {R(chamber_flow(direction(input), p_A, y, p, extra[kDrop1])), R(p_P - p_A), none, none};
       case kDrop2:
-        return {R(chamber_flow(-direction(input), p_B, y, p)), R(p_P - p_B), none, none};
+        return {R(chamber_flow(-direction(input), p_B, y, p, extra[kDrop2])), R(p_P - p_B), none, none};
       case kOutflowA:
         return {R(p_A), none, none, none};
       case kOutflowB:

@@ -45,9 +45,9 @@ struct Emps {
   enum SiteIndex { kDriverVoltage, kPistonForce };
 
   /// What laws see at a site (model/physics.hpp). There is neither a current nor a pressure.
-  template <class R, class S, class P>
+  template <class R, class S, class P, class Extra>
   [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
-                                                           const EmpsParameters<P>&) {
+                                                           const EmpsParameters<P>&, const Extra&) {
     if (site == kDriverVoltage) return {R(0.0), R(input.voltage_V), R(input.voltage_rate_V_s), R(0.0)};
     return {R(y[kV]), R(y[kX]), R(0.0), R(0.0)};
   }

@@ -103,14 +103,14 @@ class PlantSystem {
       const PlantState<S> plant = plant_state(y);
       for (const ActiveTerm& term : terms_.active)
         for (const std::size_t site : term.sites)
-          sum[site] = sum[site] + contribution<R>(term, site, y, plant, input, values).first;
+          sum[site] = sum[site] + evaluate_law<R>(&LawOutput::contribution, term, site, y, plant, input, values, sum);
     }
     return sum;
   }
 
   template <class S>
   [[nodiscard]] static PlantState<S> plant_state(const State<S>& y) {
-    PlantState<S> plant;
+    PlantState<S> plant{};
     std::copy(y.begin(), y.begin() + kPlantStates, plant.begin());
     return plant;
   }
@@ -136,25 +136,23 @@ class PlantSystem {
     } else {
       std::array<R, kStates> result{};
       const PlantState<S> plant = plant_state(y);
-      std::array<R, kSites> sum{};
+      const std::array<R, kSites> sum = extra<R>(y, input, values);
       for (const ActiveTerm& term : terms_.active)
-        for (const std::size_t site : term.sites) {
-          const auto [added, rate] = contribution<R>(term, site, y, plant, input, values);
-          sum[site] = sum[site] + added;
-          if (term.hidden >= 0) result[kPlantStates + term.hidden] = rate;
-        }
+        if (term.hidden >= 0)
+          result[kPlantStates + term.hidden] =
+              evaluate_law<R>(&LawOutput::rate, term, term.sites.back(), y, plant, input, values, sum);
       const auto of_plant = Equations::derivatives(plant, input, values.plant, sum);
       std::copy(of_plant.begin(), of_plant.end(), result.begin());
       return result;
     }
   }
 
-  /// Contribution and rate of the hidden state of one law at one site.
+  /// Contribution, or rate of the hidden state, of one law at one site.
   template <class R, class S, class P>
-  [[nodiscard]] std::pair<R, R> contribution(const ActiveTerm& term, std::size_t site, const State<S>& y,
-                                             const PlantState<S>& plant, const typename Equations::Input& input,
-                                             const Values<P>& values) const {
-    const std::array<R, kSiteSignals> signals = Equations::template signals<R>(site, plant, input, values.plant);
+  [[nodiscard]] R evaluate_law(LawScalar LawOutput::*what, const ActiveTerm& term, std::size_t site, const State<S>& y,
+                               const PlantState<S>& plant, const typename Equations::Input& input,
+                               const Values<P>& values, const std::array<R, kSites>& added) const {
+    const auto signals = Equations::template signals<R>(site, plant, input, values.plant, added);
     const std::size_t count = term.law->parameters.size();
     const P* parameter = values.laws.data() + (term.first_parameter - kPlantParameters);
     std::array<double, kSiteSignals> signal;
@@ -163,8 +161,7 @@ class PlantSystem {
     for (std::size_t k = 0; k < count; ++k) number[k] = value_of(parameter[k]);
     const S hidden = term.hidden >= 0 ? y[kPlantStates + term.hidden] : S(0.0);
     const LawOutput output = term.law->evaluate(law_input(signal, value_of(hidden), std::span(number).first(count)));
-    return {chain(output.contribution, signals, hidden, parameter, count),
-            chain(output.rate, signals, hidden, parameter, count)};
+    return chain(output.*what, signals, hidden, parameter, count);
   }
 
   // df/dextra w for the injected columns.
@@ -173,10 +170,10 @@ class PlantSystem {
     const PlantState<double> plant = plant_state(y);
     const auto input = input_at(t);
     std::array<std::array<double, kSiteSignals>, kSites> signals;
-    for (std::size_t site = 0; site < kSites; ++site)
-      signals[site] = Equations::template signals<double>(site, plant, input, values_.plant);
-    injected_->weigh(t, signals, weights_);
     const std::array<double, kSites> base = extra<double>(y, input, values_);
+    for (std::size_t site = 0; site < kSites; ++site)
+      signals[site] = Equations::template signals<double>(site, plant, input, values_.plant, base);
+    injected_->weigh(t, signals, weights_);
     std::array<Direction, kSites> sum;
     for (std::size_t site = 0; site < kSites; ++site)
       sum[site] = Direction::variable(base[site], static_cast<int>(site));

@@ -114,7 +114,8 @@ TEST(LawsInForce, HaveSensitivitiesThatAgreeWithDifferences) {
         free.push_back((*simulation)->find(parameter.name).value());
     const ModelValues values = (*simulation)->start();
     const auto outputs = (*simulation)->run(values, free, kTight);
-    ASSERT_TRUE(outputs) << which.law->id;
+    ASSERT_TRUE(outputs) << which.law->id << " " << which.law->form << " at " << which.element << ": "
+                         << outputs.error().describe();
     const Eigen::Index channels = outputs->values.cols();
     for (std::size_t k = 0; k < free.size(); ++k) {
       ModelValues up = values, down = values;

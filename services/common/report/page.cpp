@@ -57,6 +57,11 @@ svg .frame{fill:none;stroke:var(--muted);stroke-width:.8}
 .ink-foreground{--ink:var(--text)}.ink-muted{--ink:var(--muted)}.ink-first{--ink:var(--first)}.ink-second{--ink:var(--second)}
 .ink-third{--ink:var(--third)}.ink-fourth{--ink:var(--fourth)}.ink-bad{--ink:var(--bad)}
 .stroke{fill:none;stroke:var(--ink)}.fill{fill:var(--ink);stroke:none}.area{fill:var(--ink);fill-opacity:.18;stroke:none}
+.part{fill:var(--metal);stroke:var(--muted);stroke-width:1.2}.hot{fill:var(--second);stroke:var(--second);stroke-width:2.2}
+.same{stroke-dasharray:5 3}.symbol{fill:none;stroke:var(--text);stroke-width:1.2;pointer-events:none}.symbol .solid{fill:var(--text)}
+.pipe{fill:none;stroke:var(--first);stroke-width:3;stroke-opacity:.55}.wire{fill:none;stroke:var(--muted);stroke-width:2}
+.rod{fill:var(--metal);stroke:var(--muted)}.lead{fill:none;stroke:var(--muted);stroke-width:.8;stroke-dasharray:2 2}
+svg .share{fill:var(--second);font-weight:700}svg .letters{font-size:10px}
 details{margin:.5rem 0}summary{cursor:pointer;color:var(--first)}
 @media print{:root{color-scheme:light;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
 --second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}

@@ -72,9 +72,9 @@ RecordingComparison recording(const std::string& name, bool holdout, double stro
   RecordingComparison comparison;
   comparison.recording = name;
   comparison.holdout = holdout;
-  comparison.channels = {{"pressure_a", 71.0, 1.02, 12.4, 0.2, 1e-30, 0.3, 1e-12, 0.5},
-                         {"flow", 1.4, 1.01, 2.1, 1.9, 1e-5, 0.2, 0.02, 0.6},
-                         {"position", 6.1, 1.0, 1.2, 0.1, 1e-20, 0.4, 1e-3, 0.7}};
+  comparison.channels = {{"pressure_a", 71.0, 1.02, 31.4, 98.2, 1e-30, 0.3, 1e-12, 0.5},
+                         {"flow", 1.4, 1.01, 95.1, 96.9, 1e-5, 0.2, 0.02, 0.6},
+                         {"position", 6.1, 1.0, 98.8, 99.8, 1e-20, 0.4, 1e-3, 0.7}};
   comparison.likelihood_gain = 5120.0;
   comparison.gain_low = 4870.0;
   comparison.gain_high = 5360.0;

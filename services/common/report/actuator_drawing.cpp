@@ -1,0 +1,85 @@
+#include "services/common/report/actuator_drawing.hpp"
+
+#include "services/common/report/drawing_parts.hpp"
+#include "services/common/report/page.hpp"
+#include "services/common/report/plot_scale.hpp"
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+constexpr double kShown = 0.01;  ///< probability from which on it is written beside the element
+constexpr std::string_view kSensor = "sensor:";
+
+std::string text_at(double x, double y, std::string_view anchor, std::string_view css_class, std::string_view text) {
+  return std::string("<text x=\"")
+      .append(pixel(x))
+      .append("\" y=\"")
+      .append(pixel(y))
+      .append("\" text-anchor=\"")
+      .append(anchor)
+      .append("\" class=\"")
+      .append(css_class)
+      .append("\">")
+      .append(escaped(text))
+      .append("</text>\n");
+}
+
+}  // namespace
+
+double Colouring::probability(std::string_view element) const {
+  for (const mismatch::Location& place : location_)
+    if (place.element == element) return place.probability;
+  return 0.0;
+}
+
+bool Colouring::same_as_most_probable(std::string_view element) const {
+  return !location_.empty() && std::ranges::find(location_.front().indistinguishable_from, element) !=
+                                   location_.front().indistinguishable_from.end();
+}
+
+std::string Colouring::filled(std::string_view element, std::string_view shape) const {
+  std::string title = words_of(element);
+  for (const ElementDescription& description : plant_.elements)
+    if (description.name == element) title.append(": ").append(description.meaning);
+  const double share = probability(element);
+  if (share > 0.0) title.append(" (").append(percent_text(share)).append(")");
+  std::string svg = std::string("<g class=\"part\"><title>").append(escaped(title)).append("</title>");
+  svg.append(shape).append("</g>\n");
+  const bool same = same_as_most_probable(element);
+  if (share >= kShown || same) {
+    svg.append(same ? "<g class=\"hot same\" fill-opacity=\"" : "<g class=\"hot\" fill-opacity=\"");
+    svg.append(number_text(0.1 + 0.75 * std::clamp(share, 0.0, 1.0), 2)).append("\">").append(shape).append("</g>\n");
+  }
+  return svg;
+}
+
+std::string Colouring::part(const Part& part) const {
+  const double share = probability(part.element);
+  std::string svg = filled(part.element, part.shape);
+  svg.append("<g class=\"symbol\">").append(part.symbol).append("</g>\n");
+  svg += text_at(part.label_x, part.label_y, part.anchor, share >= kShown ? "title" : "", words_of(part.element));
+  if (share >= kShown) svg += text_at(part.label_x, part.label_y + 14.0, part.anchor, "share", percent_text(share));
+  return svg;
+}
+
+std::string Colouring::sensor(std::string_view channel, std::string_view letters, double x, double y) const {
+  const std::string element = std::string(kSensor).append(channel);
+  const bool seen = std::ranges::find(recorded_, channel) != recorded_.end();
+  const std::string disc =
+      std::string("<circle cx=\"").append(pixel(x)).append("\" cy=\"").append(pixel(y)).append("\" r=\"12\"/>");
+  std::string svg = seen ? "<g>\n" : "<g opacity=\".35\">\n";
+  svg += filled(element, disc);
+  svg += text_at(x, y + 4.0, "middle", "letters", letters);
+  const double share = probability(element);
+  if (share >= kShown) svg += text_at(x + 16.0, y + 4.0, "start", "share", percent_text(share));
+  return svg.append("</g>\n");
+}
+
+std::string actuator_drawing(const PlantDescription& plant, std::span<const mismatch::Location> location,
+                             const std::vector<std::string>& recorded) {
+  const Colouring colouring(plant, location, recorded);
+  return plant.name == "eha" ? eha_drawing(colouring) : chain_drawing(colouring);
+}
+
+}  // namespace sealwatch::report

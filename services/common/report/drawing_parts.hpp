@@ -1,0 +1,52 @@
+// What both kinds of drawing are made of: elements that show their probability, sensors. Internal to actuator_drawing.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "services/common/report/actuator_drawing.hpp"
+
+namespace sealwatch::report {
+
+/// The shape of an element, and where its name stands. `shape` and `symbol` are SVG; the shape is filled, the symbol
+/// drawn upon it.
+struct Part {
+  std::string_view element;
+  std::string_view shape;
+  std::string_view symbol;
+  double label_x = 0.0, label_y = 0.0;
+  std::string_view anchor = "middle";
+};
+
+class Colouring {
+ public:
+  Colouring(const PlantDescription& plant, std::span<const mismatch::Location> location,
+            const std::vector<std::string>& recorded)
+      : plant_(plant), location_(location), recorded_(recorded) {}
+
+  /// An element with its name and, from 1 % on, its probability.
+  [[nodiscard]] std::string part(const Part& part) const;
+
+  /// A sensor: a disc with `letters` in it and the probability below.
+  [[nodiscard]] std::string sensor(std::string_view channel, std::string_view letters, double x, double y) const;
+
+  [[nodiscard]] const PlantDescription& plant() const { return plant_; }
+
+ private:
+  [[nodiscard]] double probability(std::string_view element) const;
+  [[nodiscard]] bool same_as_most_probable(std::string_view element) const;
+  /// The shape filled by probability, with a title that shows when pointed at.
+  [[nodiscard]] std::string filled(std::string_view element, std::string_view shape) const;
+
+  const PlantDescription& plant_;
+  std::span<const mismatch::Location> location_;
+  const std::vector<std::string>& recorded_;
+};
+
+/// Drawing of plant `eha`.
+[[nodiscard]] std::string eha_drawing(const Colouring& colouring);
+/// Drawing of any plant.
+[[nodiscard]] std::string chain_drawing(const Colouring& colouring);
+
+}  // namespace sealwatch::report

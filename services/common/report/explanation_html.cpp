@@ -1,0 +1,139 @@
+#include "services/common/report/explanation_html.hpp"
+
+#include <cmath>
+
+#include "services/common/report/explanation_sections.hpp"
+#include "services/common/report/page.hpp"
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+using mismatch::Explanation;
+using mismatch::Verdict;
+
+struct VerdictWords {
+  std::string_view css_class;
+  std::string words;
+};
+
+VerdictWords words_of(const Explanation& explanation) {
+  switch (explanation.verdict) {
+    case Verdict::consistent:
+      return {"good", "Consistent: simulation and recordings agree within the noise"};
+    case Verdict::mismatch:
+      return {"bad", "Mismatch found and explained"};
+    case Verdict::undetermined:
+      return {"warn", explanation.statistically_significant ? "Undetermined: a mismatch that is not explained"
+                                                            : "Undetermined: these recordings cannot tell"};
+  }
+  return {"warn", "Undetermined"};
+}
+
+void add_figure(const std::string& value, const std::string& meaning, std::string& html) {
+  html.append("<div><b>")
+      .append(escaped(value))
+      .append("</b><span>")
+      .append(escaped(meaning))
+      .append("</span></div>\n");
+}
+
+std::string arrow(double before, double after) {
+  return number_text(before, 3).append(" → ").append(number_text(after, 3));
+}
+
+std::string figures(const Explanation& explanation) {
+  std::string html = "<div class=\"figures\">\n";
+  add_figure(p_value_text(explanation.p_value), "probability that noise alone differs so much", html);
+  const bool changed = !explanation.effects.empty();
+  const auto add_misfit = [&html, changed](const mismatch::PooledFit& fit, const std::string& where) {
+    const Misfit misfit = overall(fit);
+    if (misfit.known)
+      add_figure(changed ? arrow(misfit.before, misfit.after) : number_text(misfit.before, 3),
+                 std::string("misfit over noise, ").append(where).append(" (1 is the floor)"), html);
+  };
+  add_misfit(explanation.holdout, "recordings kept aside");
+  add_misfit(explanation.fit, "recordings fitted");
+  if (changed) add_figure(percent_text(explanation.explained_share), "of the misfit explained", html);
+  return html.append("</div>\n");
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
+  return text;
+}
+
+}  // namespace
+
+Misfit overall(const mismatch::PooledFit& fit) {
+  Misfit misfit;
+  double count = 0.0;
+  for (const mismatch::ChannelComparison& channel : fit.channels) {
+    if (!std::isfinite(channel.rms_before)) continue;
+    misfit.before += channel.rms_before * channel.rms_before;
+    misfit.after += channel.rms_after * channel.rms_after;
+    ++count;
+  }
+  misfit.known = count > 0.0;
+  if (!misfit.known) return misfit;
+  misfit.before = std::sqrt(misfit.before / count);
+  misfit.after = std::sqrt(misfit.after / count);
+  return misfit;
+}
+
+std::string law_name(const mismatch::LawAt& what) {
+  std::string name = words_of(what.id);
+  if (!what.form.empty()) name.append(" (").append(words_of(what.form)).append(")");
+  return name;
+}
+
+std::string banner(const Explanation& explanation) {
+  const VerdictWords verdict = words_of(explanation);
+  std::string html = "<p class=\"muted small\">";
+  html.append(escaped("Asset " + explanation.asset_id + ", model " + explanation.model +
+                      ". Fitted: " + list_of(explanation.fit_recordings) + ". "));
+  html.append(escaped(explanation.holdout_recordings.empty()
+                          ? std::string("No recording was kept aside: each fitted one was left out in turn.")
+                          : "Kept aside: " + list_of(explanation.holdout_recordings) + "."));
+  html.append("</p>\n<div class=\"banner ").append(verdict.css_class).append("\">\n");
+  html.append(paragraph(verdict.words, "verdict")).append(paragraph(explanation.summary));
+  if (!explanation.next_test.empty()) html.append(paragraph("Next: " + explanation.next_test, "small"));
+  return html.append("</div>\n").append(figures(explanation));
+}
+
+std::string next_section(const Explanation& explanation) {
+  if (explanation.next_test.empty()) return {};
+  return section("What to record next", paragraph(explanation.next_test));
+}
+
+std::string notes_section(const Explanation& explanation) {
+  std::string html = "<ul>\n";
+  for (const std::string& note : explanation.notes) html.append("<li>").append(escaped(note)).append("</li>\n");
+  html +=
+      "<li>Misfit over noise: root mean square of (recording - simulation) / noise of the sensor; 1 is the floor. "
+      "Fit: 100 % is perfect, 0 % no better than a constant.</li>\n"
+      "<li>A recording that was kept aside took no part in any fit or choice, but for its own starting state and "
+      "load.</li>\n</ul>\n";
+  return section("Notes", html);
+}
+
+std::string explanation_to_html(const Explanation& explanation) {
+  std::string body = "<h1>Simulation and recordings of ";
+  body.append(escaped(explanation.asset_id)).append("</h1>\n");
+  body.append(banner(explanation))
+      .append(where_section(explanation))
+      .append(effects_section(explanation))
+      .append(missing_section(explanation))
+      .append(overlays_section(explanation))
+      .append(comparison_section(explanation))
+      .append(parameters_section(explanation))
+      .append(prognosis_section(explanation))
+      .append(alternatives_section(explanation))
+      .append(power_section(explanation))
+      .append(next_section(explanation))
+      .append(notes_section(explanation));
+  return html_page("Mismatch report, " + explanation.asset_id, body);
+}
+
+}  // namespace sealwatch::report

@@ -1,0 +1,34 @@
+// The sections of report.html, each as HTML; "" where there is nothing to say. Internal to explanation_html.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sealwatch/mismatch/explanation.hpp"
+
+namespace sealwatch::report {
+
+/// "piston, stribeck friction", with the form where the law has several.
+[[nodiscard]] std::string law_name(const mismatch::LawAt& what);
+
+/// Root mean square over channels of the noise-normalised rms.
+struct Misfit {
+  double before = 0.0, after = 0.0;
+  bool known = false;
+};
+[[nodiscard]] Misfit overall(const mismatch::PooledFit& fit);
+
+[[nodiscard]] std::string banner(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string where_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string effects_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string missing_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string overlays_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string comparison_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string parameters_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string prognosis_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string alternatives_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string power_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string next_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string notes_section(const mismatch::Explanation& explanation);
+
+}  // namespace sealwatch::report

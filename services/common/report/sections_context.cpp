@@ -1,0 +1,119 @@
+// What had absorbed the effect, what it does to the prognosis, what could have been seen.
+#include <algorithm>
+#include <cmath>
+
+#include "services/common/report/explanation_sections.hpp"
+#include "services/common/report/page.hpp"
+#include "services/common/report/plot.hpp"
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+using mismatch::Explanation;
+using mismatch::ParameterShift;
+using mismatch::Power;
+
+constexpr double kClearShift = 3.0;  ///< standard errors
+constexpr double kAbsorbed = 0.9;    ///< share from which an effect hides behind the free parameters
+
+/// Shift in standard errors of the difference; NaN where neither is known.
+double shift_in_errors(const ParameterShift& shift) {
+  return (shift.after - shift.before) / std::hypot(shift.before_std, shift.after_std);
+}
+
+std::string with_error(double value, double error, std::string_view unit) {
+  const DisplayUnit shown = display_unit(unit, value);
+  std::string text = number_text(value * shown.factor, 4);
+  if (error > 0.0 && std::isfinite(error)) text.append(" ± ").append(number_text(error * shown.factor, 2));
+  return shown.text.empty() ? text : text.append(" ").append(shown.text);
+}
+
+std::string change_text(double from, double to) {
+  if (from == 0.0 || !std::isfinite(to / from)) return "–";
+  const double percent = 100.0 * (to - from) / from;
+  return std::string(percent >= 0.0 ? "+" : "−").append(number_text(std::abs(percent), 2)).append(" %");
+}
+
+/// "55 N", or in words where no size would be seen.
+std::string detectable(const Power& power) {
+  if (!std::isfinite(power.minimum_detectable)) return "no size";
+  return readable(power.minimum_detectable, power.unit, 2);
+}
+
+std::string power_words(const Power& power) {
+  if (!std::isfinite(power.minimum_detectable)) return "these recordings cannot show it";
+  if (power.significant > 0.0 && power.minimum_detectable > power.significant)
+    return "could be there unseen at a size that matters";
+  return power.absorbed_share > kAbsorbed ? "mostly absorbed by the free parameters, yet seen" : "would be seen";
+}
+
+}  // namespace
+
+std::string parameters_section(const Explanation& explanation) {
+  if (explanation.parameters.empty()) return {};
+  const bool changed = !explanation.effects.empty();
+  Table table({"parameter", ">datasheet", ">fitted before", ">fitted after", ">change", ""});
+  for (const ParameterShift& shift : explanation.parameters) {
+    const double errors = shift_in_errors(shift);
+    const bool clear = changed && std::isfinite(errors) && std::abs(errors) > kClearShift;
+    std::string remark;
+    if (clear)
+      remark =
+          std::string("had absorbed part of it: ").append(number_text(std::abs(errors), 2)).append(" standard errors");
+    table.row_of_html({escaped(shift.name), escaped(readable(shift.datasheet, shift.unit, 4)),
+                       escaped(with_error(shift.before, shift.before_std, shift.unit)),
+                       changed ? escaped(with_error(shift.after, shift.after_std, shift.unit)) : std::string(),
+                       changed ? escaped(change_text(shift.before, shift.after)) : std::string(), escaped(remark)},
+                      clear ? "strong" : "");
+  }
+  const char* words = changed ? "A parameter that moves when the missing physics is added had been standing in for it."
+                              : "The parameters as fitted to the recordings.";
+  return section(changed ? "What had absorbed the effect" : "Fitted parameters",
+                 paragraph(words, "small muted").append(table.html()));
+}
+
+std::string prognosis_section(const Explanation& explanation) {
+  const mismatch::PrognosisShift& prognosis = explanation.prognosis;
+  if (!prognosis.known) return {};
+  Table table({"", ">before", ">after", ">change"});
+  table.row({"leakage resistance R_CL", readable(prognosis.R_CL_before, "Pa s/m3"),
+             readable(prognosis.R_CL_after, "Pa s/m3"), change_text(prognosis.R_CL_before, prognosis.R_CL_after)});
+  const auto theta = [](double value) {
+    return std::isfinite(value) ? number_text(100.0 * value, 3).append(" %") : "–";
+  };
+  table.row({"seal condition", theta(prognosis.theta_before), theta(prognosis.theta_after),
+             change_text(prognosis.theta_before, prognosis.theta_after)});
+  return section("What it does to the remaining life", paragraph(prognosis.sentence).append(table.html()));
+}
+
+std::string power_section(const Explanation& explanation) {
+  if (explanation.power.empty()) return {};
+  std::vector<Power> powers = explanation.power;
+  const auto rank = [](const Power& power) {
+    if (!std::isfinite(power.minimum_detectable)) return 0;
+    return power.significant > 0.0 && power.minimum_detectable > power.significant ? 1 : 2;
+  };
+  std::ranges::stable_sort(powers, {}, rank);
+  Table table({"law", "element", ">smallest that shows", ">matters from", ">absorbed", ""});
+  std::size_t blind = 0;
+  for (const Power& power : powers) {
+    if (rank(power) < 2) ++blind;
+    table.row_of_html({escaped(law_name(power.what)), escaped(words_of(power.what.element)), escaped(detectable(power)),
+                       escaped(power.significant > 0.0 ? readable(power.significant, power.unit, 2) : "–"),
+                       escaped(percent_text(power.absorbed_share)), escaped(power_words(power))},
+                      rank(power) < 2 ? "strong" : "");
+  }
+  std::string words = std::string(
+      "The smallest size of each effect that these recordings would show (80 % of the time, with 1 % "
+      "false alarms). ");
+  words.append(std::to_string(powers.size() - blind)).append(" of ").append(std::to_string(powers.size()));
+  words.append(
+      " effects would be seen from the size at which they matter. Absorbed: the share of an effect that the "
+      "fitted parameters would swallow.");
+  return section("What could have been seen",
+                 paragraph(words, "small muted")
+                     .append(folded("All " + std::to_string(powers.size()) + " effects", table.html())));
+}
+
+}  // namespace sealwatch::report

@@ -1,0 +1,135 @@
+// What was found: where it sits, the laws that were added, why not others.
+#include "sealwatch/model/plant_description.hpp"
+#include "services/common/report/actuator_drawing.hpp"
+#include "services/common/report/explanation_sections.hpp"
+#include "services/common/report/page.hpp"
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+using mismatch::Explanation;
+using mismatch::FoundEffect;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(words_of(name));
+  return text;
+}
+
+std::vector<std::string> recorded_channels(const Explanation& explanation) {
+  std::vector<std::string> channels;
+  for (const mismatch::RecordingComparison& recording : explanation.recordings)
+    for (const Series& series : recording.recorded.channels) channels.push_back(series.name);
+  return channels;
+}
+
+std::string law_line(const std::string& law) {
+  return std::string("<p><span class=\"law\">").append(escaped(law)).append("</span></p>\n");
+}
+
+std::string parameter_table(const FoundEffect& effect) {
+  Table table({"parameter", ">value", ">± standard error", "unit", ""});
+  for (const mismatch::FoundParameter& parameter : effect.parameters)
+    table.row({parameter.name, number_text(parameter.value), number_text(parameter.std_error, 2),
+               unit_text(parameter.unit), parameter.at_bound ? "at its bound: the data cannot tell" : ""});
+  return table.empty() ? std::string() : table.html();
+}
+
+std::string same_laws(const FoundEffect& effect) {
+  if (effect.indistinguishable.empty()) return {};
+  std::string html = paragraph("These recordings cannot tell it from:");
+  html += "<ul>\n";
+  for (const mismatch::LawAt& other : effect.indistinguishable)
+    html.append("<li>")
+        .append(escaped(law_name(other)))
+        .append(" of the ")
+        .append(escaped(words_of(other.element)))
+        .append(": <code>")
+        .append(escaped(other.law))
+        .append("</code></li>\n");
+  return html.append("</ul>\n");
+}
+
+/// How large the effect is to an engineer, apart from how sure it is.
+std::string size_words(double share) {
+  if (!(share > 0.0)) return {};
+  if (share < 1.0)
+    return std::string("Its size is ")
+        .append(number_text(share, 2))
+        .append(" of what an engineer would act on: real, but small.");
+  return std::string("Its size is ")
+      .append(number_text(share, 2))
+      .append(" times what an engineer would care about (about 1 % of what the element carries).");
+}
+
+std::string effect_html(const FoundEffect& effect) {
+  std::string title = law_name(effect.what);
+  title.append(" of the ").append(words_of(effect.what.element));
+  std::string html = std::string("<h3>").append(escaped(title)).append("</h3>\n");
+  if (!effect.what.meaning.empty()) html += paragraph(effect.what.meaning);
+  html += law_line(effect.what.law);
+  html += parameter_table(effect);
+  std::string sure = std::string("Probability ")
+                         .append(percent_text(effect.probability))
+                         .append(" among the laws tried; that it sits in this element ");
+  sure.append(percent_text(effect.element_probability)).append(". BIC changes by ");
+  sure.append(number_text(effect.delta_bic, 3))
+      .append(" (negative favours it). ")
+      .append(size_words(effect.engineering_share));
+  html += paragraph(sure);
+  if (!effect.regime.empty()) html += paragraph(std::string("It acts: ").append(effect.regime).append("."));
+  if (!effect.evidence.empty()) html += paragraph(effect.evidence);
+  html += same_laws(effect);
+  if (!effect.same_elements.empty())
+    html += paragraph(std::string("Elements that these recordings cannot tell apart from it: ")
+                          .append(joined(effect.same_elements))
+                          .append("."));
+  return html;
+}
+
+}  // namespace
+
+std::string where_section(const Explanation& explanation) {
+  const Result<const PlantDescription*> plant = find_plant(explanation.model);
+  if (!plant) return {};
+  std::string html = "<div class=\"scroll\">\n";
+  html.append(actuator_drawing(**plant, explanation.location, recorded_channels(explanation))).append("</div>\n");
+  if (explanation.location.empty())
+    return section("Where it sits", html.append(paragraph("No element stands out.", "muted")));
+  Table table({"element", ">probability", "cannot be told from", "evidence"});
+  for (const mismatch::Location& place : explanation.location) {
+    const std::string element = words_of(place.element);
+    table.row({element, percent_text(place.probability), joined(place.indistinguishable_from), place.evidence});
+  }
+  return section("Where it sits", html.append(table.html()));
+}
+
+std::string effects_section(const Explanation& explanation) {
+  if (explanation.effects.empty()) return {};
+  std::string html;
+  for (const FoundEffect& effect : explanation.effects) html += effect_html(effect);
+  return section("What the model lacked", html);
+}
+
+std::string alternatives_section(const Explanation& explanation) {
+  std::string html;
+  for (const FoundEffect& effect : explanation.effects) {
+    if (effect.alternatives.empty()) continue;
+    Table table({"instead of " + law_name(effect.what), "element", ">misfit above the best", "why not"});
+    for (const mismatch::Alternative& alternative : effect.alternatives)
+      table.row({law_name(alternative.what), words_of(alternative.what.element),
+                 number_text(alternative.misfit_above_best), alternative.why_not});
+    html += table.html();
+  }
+  if (!explanation.rejected.empty()) {
+    html += "<h3>Better fits that physics forbids</h3>\n";
+    Table table({"law", "element", "why it is rejected"});
+    for (const mismatch::Rejected& rejected : explanation.rejected)
+      table.row({law_name(rejected.what), words_of(rejected.what.element), rejected.why});
+    html += table.html();
+  }
+  return html.empty() ? std::string() : section("The alternatives, and why not", html);
+}
+
+}  // namespace sealwatch::report

@@ -1,0 +1,146 @@
+// The missing force, flow, torque or voltage: over time, and against the state that it depends on.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "services/common/report/explanation_sections.hpp"
+#include "services/common/report/page.hpp"
+#include "services/common/report/plot.hpp"
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+using mismatch::MissingTerm;
+
+constexpr std::size_t kShownOpen = 2;   ///< terms that are shown open, the others folded
+constexpr std::size_t kMostDots = 900;  ///< of a scatter
+constexpr std::size_t kBins = 60;       ///< of the state's range
+constexpr double kOneValued = 0.1;      ///< of the law's range: the two ways through a state differ by less
+
+std::string title_of(const MissingTerm& term) {
+  return std::string(words_of(term.element)).append(": missing ").append(term.quantity);
+}
+
+bool has_law(const MissingTerm& term) { return term.law.size() == term.time_s.size() && !term.law.empty(); }
+
+Plot over_time(const MissingTerm& term) {
+  Plot plot{.title = std::string("missing ").append(term.quantity),
+            .x = {.label = "time", .unit = "s"},
+            .y = {.unit = term.unit},
+            .height = 240};
+  Band band{.x = term.time_s, .ink = Ink::first, .label = "band"};
+  const std::size_t size = std::min(term.demanded.size(), term.band.size());
+  for (std::size_t k = 0; k < size; ++k) {
+    band.low.push_back(term.demanded[k] - term.band[k]);
+    band.high.push_back(term.demanded[k] + term.band[k]);
+  }
+  plot.marks.emplace_back(Reference{.at = 0.0});
+  if (size > 0) plot.marks.emplace_back(std::move(band));
+  plot.marks.emplace_back(Line{.x = term.time_s, .y = term.demanded, .ink = Ink::first, .label = "data demand"});
+  if (has_law(term))
+    plot.marks.emplace_back(Line{.x = term.time_s, .y = term.law, .ink = Ink::second, .label = "law", .width = 1.8});
+  return plot;
+}
+
+/// Means over bins of the state, of the samples of one way through it.
+struct Branch {
+  std::vector<double> sum = std::vector<double>(kBins, 0.0);
+  std::vector<double> count = std::vector<double>(kBins, 0.0);
+  [[nodiscard]] double mean(std::size_t bin) const {
+    return count[bin] > 0.0 ? sum[bin] / count[bin] : std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+struct Bins {
+  double low = 0.0, step = 1.0;
+  [[nodiscard]] std::size_t of(double state) const {
+    return static_cast<std::size_t>(std::clamp((state - low) / step, 0.0, static_cast<double>(kBins) - 1.0));
+  }
+  [[nodiscard]] double middle(std::size_t bin) const { return low + step * (static_cast<double>(bin) + 0.5); }
+};
+
+/// The law over the bins, separately where the state rises and falls.
+void add_law(const MissingTerm& term, const Bins& bins, Plot& plot) {
+  Branch rising;
+  Branch falling;
+  const std::vector<double>& state = term.state_value;
+  for (std::size_t k = 0; k < state.size(); ++k) {
+    if (!std::isfinite(state[k]) || !std::isfinite(term.law[k])) continue;
+    const double ahead = state[std::min(k + 1, state.size() - 1)] - state[k == 0 ? 0 : k - 1];
+    Branch& branch = ahead >= 0.0 ? rising : falling;
+    branch.sum[bins.of(state[k])] += term.law[k];
+    ++branch.count[bins.of(state[k])];
+  }
+  const auto [least, most] = std::minmax_element(term.law.begin(), term.law.end());
+  double apart = 0.0;
+  Line up{.ink = Ink::second, .width = 1.8};
+  Line down{.ink = Ink::second, .width = 1.8, .dashed = true};
+  Line both{.ink = Ink::second, .label = "law", .width = 1.8};
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    const double total = rising.count[bin] + falling.count[bin];
+    if (total == 0.0) continue;
+    both.x.push_back(bins.middle(bin));
+    both.y.push_back((rising.sum[bin] + falling.sum[bin]) / total);
+    if (rising.count[bin] > 0.0) up.x.push_back(bins.middle(bin)), up.y.push_back(rising.mean(bin));
+    if (falling.count[bin] > 0.0) down.x.push_back(bins.middle(bin)), down.y.push_back(falling.mean(bin));
+    if (rising.count[bin] > 0.0 && falling.count[bin] > 0.0)
+      apart = std::max(apart, std::abs(rising.mean(bin) - falling.mean(bin)));
+  }
+  if (apart <= kOneValued * (*most - *least)) {
+    plot.marks.emplace_back(std::move(both));
+    return;
+  }
+  up.label = "law, rising";
+  down.label = "law, falling";
+  plot.marks.emplace_back(std::move(up));
+  plot.marks.emplace_back(std::move(down));
+}
+
+Plot over_state(const MissingTerm& term) {
+  Plot plot{.title = std::string("missing ").append(term.quantity),
+            .x = {.label = term.state, .unit = term.state_unit},
+            .y = {.unit = term.unit},
+            .height = 240};
+  Scatter dots{.ink = Ink::first, .label = "data demand"};
+  const std::size_t size = std::min(term.state_value.size(), term.demanded.size());
+  const std::size_t step = size / kMostDots + 1;
+  for (std::size_t k = 0; k < size; k += step) {
+    dots.x.push_back(term.state_value[k]);
+    dots.y.push_back(term.demanded[k]);
+  }
+  plot.marks.emplace_back(Reference{.at = 0.0});
+  plot.marks.emplace_back(std::move(dots));
+  const auto [low, high] = std::minmax_element(term.state_value.begin(), term.state_value.end());
+  if (has_law(term) && size == term.law.size() && *high > *low)
+    add_law(term, {.low = *low, .step = (*high - *low) / static_cast<double>(kBins)}, plot);
+  return plot;
+}
+
+std::string plots_of(const MissingTerm& term) {
+  std::string html = "<div class=\"plots\">\n<div>";
+  html.append(to_svg(over_time(term))).append("</div>\n");
+  if (!term.state_value.empty()) html.append("<div>").append(to_svg(over_state(term))).append("</div>\n");
+  return html.append("</div>\n");
+}
+
+}  // namespace
+
+std::string missing_section(const mismatch::Explanation& explanation) {
+  if (explanation.missing.empty()) return {};
+  std::string html = paragraph(
+      "What the data demand is estimated without any law, from the recordings and the balance of the element; its band "
+      "is the 95 % interval. Where the law runs inside the band it says what the data say.",
+      "small muted");
+  for (std::size_t k = 0; k < explanation.missing.size(); ++k) {
+    const MissingTerm& term = explanation.missing[k];
+    const std::string label = title_of(term).append(", recording ").append(term.recording);
+    if (k < kShownOpen)
+      html.append("<h3>").append(escaped(label)).append("</h3>\n").append(plots_of(term));
+    else
+      html += folded(label, plots_of(term));
+  }
+  return section("The missing term", html);
+}
+
+}  // namespace sealwatch::report

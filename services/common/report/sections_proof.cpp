@@ -1,0 +1,160 @@
+// Does it help: recording, old and new simulation over each other, and the figures for each recording and channel.
+#include <algorithm>
+#include <cmath>
+
+#include "services/common/report/explanation_sections.hpp"
+#include "services/common/report/page.hpp"
+#include "services/common/report/plot.hpp"
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+using mismatch::ChannelComparison;
+using mismatch::Explanation;
+using mismatch::RecordingComparison;
+
+/// Plots end here, so that a page of many long recordings can still be sent by mail.
+constexpr std::size_t kMostBytesOfPlots = 2'300'000;
+
+bool kept_aside(const RecordingComparison& recording) { return recording.holdout || recording.left_out; }
+
+std::string kind_of(const RecordingComparison& recording) {
+  return recording.holdout ? "kept aside" : recording.left_out ? "left out in turn" : "fitted";
+}
+
+Plot overlay(const Series& recorded, const Series& before, const Series* after, const RecordingComparison& recording) {
+  Plot plot{.title = words_of(recorded.name),
+            .x = {.unit = "s", .tick_labels = false},
+            .y = {.unit = recorded.unit},
+            .height = 178};
+  plot.marks.emplace_back(
+      Line{.x = recording.recorded.time_s, .y = recorded.values, .ink = Ink::muted, .label = "recorded", .width = 2.6});
+  plot.marks.emplace_back(Line{.x = recording.before.time_s,
+                               .y = before.values,
+                               .ink = Ink::second,
+                               .label = after == nullptr ? "simulated" : "old simulation"});
+  if (after != nullptr)
+    plot.marks.emplace_back(
+        Line{.x = recording.after.time_s, .y = after->values, .ink = Ink::first, .label = "new simulation"});
+  return plot;
+}
+
+std::vector<double> residual(const Series& recorded, const Series& simulated) {
+  const double unit = recorded.noise_std > 0.0 ? recorded.noise_std : 1.0;
+  std::vector<double> difference;
+  for (std::size_t k = 0; k < std::min(recorded.values.size(), simulated.values.size()); ++k)
+    difference.push_back((recorded.values[k] - simulated.values[k]) / unit);
+  return difference;
+}
+
+Plot residual_strip(const Series& recorded, const Series& before, const Series* after,
+                    const RecordingComparison& recording) {
+  const bool in_noise = recorded.noise_std > 0.0;
+  Plot plot{.title = in_noise ? "recorded − simulated, in standard deviations of the noise" : "recorded − simulated",
+            .x = {.label = "time", .unit = "s"},
+            .y = {.unit = in_noise ? "1" : recorded.unit},
+            .height = 124,
+            .legend = false};
+  plot.marks.emplace_back(
+      Line{.x = recording.recorded.time_s, .y = residual(recorded, before), .ink = Ink::second, .width = 1.0});
+  if (after != nullptr)
+    plot.marks.emplace_back(
+        Line{.x = recording.recorded.time_s, .y = residual(recorded, *after), .ink = Ink::first, .width = 1.0});
+  return plot;
+}
+
+/// One pair of plots for each channel that was simulated.
+std::string overlays_of(const RecordingComparison& recording, bool changed) {
+  std::string html;
+  for (const Series& recorded : recording.recorded.channels) {
+    const Series* before = recording.before.find(recorded.name);
+    const Series* after = changed ? recording.after.find(recorded.name) : nullptr;
+    if (before == nullptr) continue;
+    Series with_noise = recorded;
+    if (with_noise.noise_std <= 0.0) with_noise.noise_std = before->noise_std;
+    html.append("<div>").append(to_svg(overlay(with_noise, *before, after, recording)));
+    html.append(to_svg(residual_strip(with_noise, *before, after, recording))).append("</div>\n");
+  }
+  return html.empty() ? html : std::string("<div class=\"plots\">\n").append(html).append("</div>\n");
+}
+
+std::string better_or_worse(double before, double after) {
+  const std::string text = escaped(number_text(after, 3));
+  if (after < 0.98 * before) return std::string("<span class=\"better\">").append(text).append("</span>");
+  if (after > 1.02 * before) return std::string("<span class=\"worse\">").append(text).append("</span>");
+  return text;
+}
+
+void add_rows(const std::string& name, const std::string& kind, const std::vector<ChannelComparison>& channels,
+              Table& table) {
+  bool first = true;
+  for (const ChannelComparison& channel : channels) {
+    table.row_of_html(
+        {first ? escaped(name) : std::string(), first ? escaped(kind) : std::string(),
+         escaped(words_of(channel.channel)), escaped(number_text(channel.rms_before)),
+         better_or_worse(channel.rms_before, channel.rms_after), escaped(number_text(channel.nrmse_before, 4)),
+         escaped(number_text(channel.nrmse_after, 4)), escaped(p_value_text(channel.whiteness_before)),
+         escaped(p_value_text(channel.whiteness_after)), escaped(p_value_text(channel.independence_before)),
+         escaped(p_value_text(channel.independence_after))},
+        first ? "strong" : "");
+    first = false;
+  }
+}
+
+std::string gains(const Explanation& explanation) {
+  Table table({"recording", "", ">likelihood gain", ">95 % interval", ""});
+  for (const RecordingComparison& recording : explanation.recordings) {
+    const bool sure = recording.gain_low > 0.0;
+    table.row({recording.recording, kind_of(recording), number_text(recording.likelihood_gain),
+               number_text(recording.gain_low).append(" to ").append(number_text(recording.gain_high)),
+               sure                        ? "improves"
+               : recording.gain_high < 0.0 ? "gets worse"
+                                           : "cannot be told from no change"});
+  }
+  return table.empty() ? std::string() : std::string("<h3>Gain of each recording</h3>\n").append(table.html());
+}
+
+}  // namespace
+
+std::string overlays_section(const Explanation& explanation) {
+  std::vector<const RecordingComparison*> order;
+  for (const RecordingComparison& recording : explanation.recordings) order.push_back(&recording);
+  std::ranges::stable_sort(order, {}, [](const RecordingComparison* one) { return !kept_aside(*one); });
+  std::string html;
+  std::size_t left_out = 0;
+  bool first = true;
+  for (const RecordingComparison* recording : order) {
+    if (html.size() > kMostBytesOfPlots) {
+      ++left_out;
+      continue;
+    }
+    const std::string plots = overlays_of(*recording, !explanation.effects.empty());
+    if (plots.empty()) continue;
+    const std::string label = recording->recording + ", " + kind_of(*recording);
+    if (first || kept_aside(*recording))
+      html.append("<h3>").append(escaped(label)).append("</h3>\n").append(plots);
+    else
+      html += folded("Plots of " + label, plots);
+    first = false;
+  }
+  if (left_out > 0)
+    html += paragraph("Plots of " + std::to_string(left_out) + " more recordings are left out to keep this page small.",
+                      "muted small");
+  return html.empty() ? std::string() : section("Recording and simulation", html);
+}
+
+std::string comparison_section(const Explanation& explanation) {
+  Table table({"recording", "", "channel", ">misfit/noise before", ">after", ">fit % before", ">after",
+               ">whiteness p before", ">after", ">independence p before", ">after"});
+  add_rows("all kept aside", "", explanation.holdout.channels, table);
+  add_rows("all fitted", "", explanation.fit.channels, table);
+  for (const RecordingComparison& recording : explanation.recordings)
+    add_rows(recording.recording, kind_of(recording), recording.channels, table);
+  if (table.empty()) return {};
+  std::string html = table.html();
+  if (!explanation.effects.empty()) html += gains(explanation);
+  return section("Before and after, in figures", html);
+}
+
+}  // namespace sealwatch::report

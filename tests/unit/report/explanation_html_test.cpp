@@ -1,0 +1,134 @@
+#include "services/common/report/explanation_html.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "services/common/report/actuator_drawing.hpp"
+#include "tests/unit/report/example.hpp"
+#include "tests/unit/report/well_formed.hpp"
+
+namespace sealwatch::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// For looking at: written where SEALWATCH_EXAMPLE_REPORTS says.
+void keep(const std::string& name, const std::string& html) {
+  if (const char* directory = std::getenv("SEALWATCH_EXAMPLE_REPORTS"))
+    std::ofstream(std::string(directory) + "/" + name) << html;
+}
+
+mismatch::Explanation undetermined_example() {
+  mismatch::Explanation explanation = consistent_example();
+  explanation.model = "eha_switched";
+  explanation.verdict = mismatch::Verdict::undetermined;
+  explanation.statistically_significant = true;
+  explanation.location = {{"accumulator", 0.5, {"pump"}, "e"}, {"pump", 0.45, {"accumulator"}, "e"}};
+  explanation.next_test = "Record a stroke under full load.";
+  return explanation;
+}
+
+TEST(ReportHtml, IsWellFormedAndSelfContained) {
+  for (const auto& [name, explanation] : {std::pair{"mismatch.html", example_explanation()},
+                                          {"consistent.html", consistent_example()},
+                                          {"undetermined.html", undetermined_example()},
+                                          {"empty.html", mismatch::Explanation{}}}) {
+    const std::string html = explanation_to_html(explanation);
+    keep(name, html);
+    EXPECT_EQ(what_is_wrong(html), "") << name;
+    EXPECT_EQ(html, explanation_to_html(explanation)) << name << ": the same explanation gives the same page";
+    for (const char* fetched : {"https:", "src=", "href=", "@import", "url("})
+      EXPECT_THAT(html, Not(HasSubstr(fetched))) << name;
+    EXPECT_THAT(html, Not(HasSubstr("nan"))) << name;
+    EXPECT_LT(html.size(), 3'000'000U) << name;
+  }
+}
+
+TEST(ReportHtml, TellsWhatWasFound) {
+  const std::string html = explanation_to_html(example_explanation());
+  for (const char* part :
+       {"Mismatch found and explained", "dry friction of 4.0 kN", "stribeck friction of the piston", "98 %",
+        "(F_c + F_x exp(-(v / v_st)^2)) tanh(v / v_s)", "4010", "old simulation", "new simulation", "holdout_0",
+        "coulomb friction", "misses the rise near standstill", "fits better only with oil flowing", "had absorbed part",
+        "13 % more worn", "these recordings cannot show it", "Record a stroke at 0.2 mm/s", "117 laws were tried"})
+    EXPECT_THAT(html, HasSubstr(part));
+}
+
+TEST(ReportHtml, ConsistentClaimsNothing) {
+  const std::string html = explanation_to_html(consistent_example());
+  EXPECT_THAT(html, HasSubstr("agree within the noise"));
+  EXPECT_THAT(html, Not(HasSubstr("What the model lacked")));
+  EXPECT_THAT(html, Not(HasSubstr("The missing term")));
+}
+
+TEST(ReportHtml, EscapesEveryText) {
+  const std::string evil = "<script>alert('x')</script>";
+  mismatch::Explanation explanation = example_explanation();
+  explanation.asset_id = explanation.summary = explanation.next_test = evil;
+  explanation.fit_recordings = explanation.holdout_recordings = explanation.notes = {evil};
+  for (auto& place : explanation.location) place = {evil, 0.5, {evil}, evil};
+  for (auto& effect : explanation.effects) {
+    effect.what = {evil, evil, evil, evil, evil};
+    effect.regime = effect.evidence = evil;
+    effect.parameters = {{evil, evil, 1.0, 1.0, false}};
+    effect.indistinguishable = {effect.what};
+    effect.same_elements = {evil};
+    effect.alternatives = {{effect.what, 1.0, evil}};
+  }
+  for (auto& term : explanation.missing)
+    term.element = term.quantity = term.unit = term.recording = term.state = term.state_unit = evil;
+  for (auto& recording : explanation.recordings) {
+    recording.recording = evil;
+    for (auto& channel : recording.channels) channel.channel = evil;
+    for (auto* samples : {&recording.recorded, &recording.before, &recording.after})
+      for (auto& series : samples->channels) series.name = series.unit = evil;
+  }
+  for (auto& channel : explanation.fit.channels) channel.channel = evil;
+  for (auto& shift : explanation.parameters) shift.name = shift.unit = evil;
+  for (auto& power : explanation.power) {
+    power.what = {evil, evil, evil, evil, evil};
+    power.unit = evil;
+  }
+  for (auto& rejected : explanation.rejected) rejected = {{evil, evil, evil, evil, evil}, evil};
+  explanation.prognosis.sentence = evil;
+  const std::string html = explanation_to_html(explanation);
+  EXPECT_EQ(what_is_wrong(html), "");
+  EXPECT_THAT(html, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert"));
+}
+
+TEST(ReportHtml, StaysSmallWithManyLongRecordings) {
+  mismatch::Explanation explanation = example_explanation();
+  const mismatch::RecordingComparison one = explanation.recordings.back();
+  for (int k = 0; k < 60; ++k) explanation.recordings.push_back(one);
+  const std::string html = explanation_to_html(explanation);
+  EXPECT_LT(html.size(), 3'000'000U);
+  EXPECT_THAT(html, HasSubstr("more recordings are left out"));
+}
+
+TEST(Drawing, HasAPlaceForEveryElementOfEveryPlant) {
+  for (const PlantDescription& plant : all_plants()) {
+    for (const ElementDescription& element : plant.elements) {
+      const std::vector<mismatch::Location> location = {{element.name, 0.77, {}, ""}};
+      const std::string svg = actuator_drawing(plant, location, {});
+      EXPECT_THAT(svg, HasSubstr("77 %</text>")) << plant.name << ": " << element.name;
+      EXPECT_THAT(svg, HasSubstr("class=\"hot\"")) << plant.name << ": " << element.name;
+      EXPECT_EQ(what_is_wrong(svg), "") << plant.name;
+    }
+    EXPECT_THAT(actuator_drawing(plant, {}, {}), Not(HasSubstr("class=\"hot")));
+  }
+}
+
+TEST(Drawing, OutlinesWhatCannotBeToldApart) {
+  const auto plant = find_plant("eha");
+  ASSERT_TRUE(plant);
+  const std::vector<mismatch::Location> location = {{"piston_seal", 0.6, {"pump"}, ""}};
+  EXPECT_THAT(actuator_drawing(**plant, location, {}), HasSubstr("class=\"hot same\""));
+}
+
+}  // namespace
+}  // namespace sealwatch::report

@@ -50,6 +50,8 @@ struct ConditionForecast {
   double condition = 0.0;
   double condition_std = 0.0;
   int degrees_of_freedom = 0;
+  /// Scatter of estimates that their standard errors do not explain, where the forecaster has found any.
+  double extra_std = 0.0;
 };
 
 /// Pure: the same request gives the same answer.

@@ -23,7 +23,7 @@ struct StateSpaceOptions {
   std::string method = "state_space";
   int window_months = 240;  ///< older tests are passed over; a filter forgets by itself
   FleetPopulation population = {};
-  double spread = 2.0;              ///< widens the population's standard deviations
+  double spread = 1.5;              ///< widens the population's standard deviations
   int fewest_tests = 6;             ///< below: insufficient_history
   double change_per_month = 0.005;  ///< prior probability of a change (rate or level) in a month
   double horizon_months = 600.0;    ///< a median beyond this is no date

@@ -19,6 +19,7 @@ constexpr double kLargestLogOdds = 60.0;
 constexpr double kCertain = 0.9999;   // the table of a distribution ends here
 constexpr double kNegligible = 1e-7;  // and its rise begins here
 
+constexpr double kSteep = 0.03;  // rise of a distribution over one row that calls for points between
 constexpr double kFarOut = 6.0;  // standard deviations, 1e-9
 
 enum Entry { tt, tg, tm, gg, gm, mm };
@@ -53,9 +54,14 @@ class HorizonTable {
  public:
   HorizonTable(double age_months, const DegradationLaw& law) : age_(age_months), law_(law) {}
 
-  const Horizon& at(std::size_t row) {
+  /// The horizon at `share` of the way from the row before to this one: theta goes straight between months.
+  Horizon between(std::size_t row, double share) {
     while (rows_.size() <= row) extend();
-    return rows_[row];
+    const Horizon& to = rows_[row];
+    if (share == 1.0) return to;
+    const Horizon& from = rows_[row - 1];
+    const auto mix = [&](double a, double b) { return a + share * (b - a); };
+    return {mix(from.months, to.months), mix(from.A, to.A), mix(from.B, to.B), mix(from.V, to.V)};
   }
 
  private:
@@ -168,18 +174,26 @@ PredictiveDistribution crossing_distribution(std::span<const WeightedBelief> bel
     ages.push_back(one.belief.age_months);
     tables.emplace_back(one.belief.age_months, law);
   }
-  std::vector<PredictiveDistribution::Point> points;
-  double highest = 0.0;
-  for (std::size_t row = 0;; ++row) {
-    const double months = std::min(tables.front().at(row).months, longest_months);
+  const auto mixture = [&](std::size_t row, double share) {
     double probability = 0.0;
     for (std::size_t k = 0; k < beliefs.size(); ++k)
-      probability +=
-          beliefs[k].weight / total * below_threshold(beliefs[k].belief, tables[table_of[k]].at(row), threshold);
-    highest = std::clamp(probability, highest, 1.0);  // an early rise of theta takes no failure back
-    if (highest < kNegligible && !points.empty()) points.clear();
+      probability += beliefs[k].weight / total *
+                     below_threshold(beliefs[k].belief, tables[table_of[k]].between(row, share), threshold);
+    return probability;
+  };
+  std::vector<PredictiveDistribution::Point> points{{0.0, mixture(0, 1.0)}};
+  const auto add = [&](double months, double probability) {
+    // An early rise of theta takes no failure back.
+    const double highest = std::clamp(probability, points.back().probability, 1.0);
+    if (highest < kNegligible) points.clear();
     points.push_back({months, highest});
-    if (highest >= kCertain || months >= longest_months) break;
+  };
+  for (std::size_t row = 1; points.back().probability < kCertain && points.back().months < longest_months; ++row) {
+    const double probability = mixture(row, 1.0);
+    const bool steep = probability - points.back().probability > kSteep;
+    for (const double share : {0.25, 0.5, 0.75})
+      if (steep) add(std::min(tables.front().between(row, share).months, longest_months), mixture(row, share));
+    add(std::min(tables.front().between(row, 1.0).months, longest_months), probability);
   }
   auto distribution = PredictiveDistribution::make(std::move(points));
   assert(distribution);

@@ -166,6 +166,7 @@ std::vector<ConditionForecast> AverageForecaster::predict_conditions(const Forec
     for (std::size_t k = 0; k < own.size(); ++k) {
       pooled[k].condition += weight[m] * own[k].condition;
       squares[k] += weight[m] * (std::pow(own[k].condition, 2) + condition_variance(own[k]));
+      pooled[k].extra_std = std::max(pooled[k].extra_std, own[k].extra_std);
     }
   }
   for (std::size_t k = 0; k < pooled.size(); ++k) {

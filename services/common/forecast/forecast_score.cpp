@@ -21,7 +21,8 @@ double z_value(double probability) {
 }
 
 double predictive_std(const ConditionForecast& forecast, const ConditionSample& estimate) {
-  return std::max(std::hypot(std::sqrt(condition_variance(forecast)), estimate.condition_std), kSmallestStd);
+  const double of_estimate = std::hypot(estimate.condition_std, forecast.extra_std);
+  return std::max(std::hypot(std::sqrt(condition_variance(forecast)), of_estimate), kSmallestStd);
 }
 
 }  // namespace

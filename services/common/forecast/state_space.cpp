@@ -61,7 +61,10 @@ ConditionForecast condition_of(const SealOpinion& opinion, UtcTime when) {
   for (const SealHypothesis& hypothesis : opinion.hypotheses) mean += hypothesis.weight * hypothesis.belief.mean[0];
   for (const SealHypothesis& hypothesis : opinion.hypotheses)
     square += hypothesis.weight * (hypothesis.belief.covariance[0] + std::pow(hypothesis.belief.mean[0] - mean, 2));
-  return {.time = when, .condition = mean, .condition_std = std::sqrt(std::max(square, 0.0))};
+  return {.time = when,
+          .condition = mean,
+          .condition_std = std::sqrt(std::max(square, 0.0)),
+          .extra_std = opinion.extra_std};
 }
 
 const char* name_of_change(SealChange change) {

@@ -33,6 +33,7 @@ struct RandomLife {
 ///   missing        a month in four has no usable test     rate      from month 72 on it ages 1.5 times as fast
 ///   level          from month 72 on estimates are 0.02 low          errors    true scatter is three times what is told
 ///   late           the first test comes at month 60, the installation is not known
+///   unlike         of another population, that ages twice as fast     line  theta falls straight
 ///   replaced       at month 48 another seal, unannounced  unknown   estimates come without a standard error
 inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, double fixed_std, double threshold) {
   constexpr double kChange = 72.0;
@@ -43,7 +44,10 @@ inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, d
   RandomLife life;
   life.condition_std = fixed_std > 0.0 ? fixed_std : 0.003 * std::pow(0.01 / 0.003, uniform(random));
   life.installation_known = scenario != "late";
-  Degradation seal(seed);
+  DegradationSetting setting;
+  if (scenario == "unlike") setting = {.initial_gamma = {0.06, 0.10}, .steepening_limit = {0.0035, 0.005}};
+  Degradation seal(seed, setting);
+  const double straight_fall = 0.002 + 0.004 * uniform(random);
   double offset = 0.0;  // of the calendar, where an earlier seal was replaced
   if (scenario == "replaced") {
     Degradation first(seed + 1000000);
@@ -59,7 +63,7 @@ inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, d
     const double last = seal.condition();
     seal.advance();
     if (scenario == "rate" && n > kChange) extra_fall += 0.5 * (last - seal.condition());
-    const double condition = seal.condition() - extra_fall;
+    const double condition = scenario == "line" ? 1.0 - straight_fall * n : seal.condition() - extra_fall;
     MonthOfLife now{
         .state = {.month = static_cast<double>(n),
                   .condition = condition,

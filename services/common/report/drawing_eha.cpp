@@ -31,8 +31,7 @@ constexpr auto kParts = std::to_array<Part>({
     {"chamber_a", "<rect x=\"580\" y=\"160\" width=\"130\" height=\"100\"/>", "", 646, 214},
     {"chamber_b", "<path d=\"M740 160H860V202H740ZM740 218H860V260H740Z\"/>", "", 800, 184},
     {"piston", "<rect x=\"710\" y=\"168\" width=\"30\" height=\"84\"/>", "<path d=\"M725 176V128\"/>", 725, 110},
-    {"piston_seal", "<path d=\"M710 160H740V168H710ZM710 252H740V260H710Z\"/>", "<path d=\"M716 256L690 292\"/>", 690,
-     306},
+    {"piston_seal", "<path d=\"M710 160H740V168H710ZM710 252H740V260H710Z\"/>", "<path d=\"M725 256V280\"/>", 725, 292},
     {"fluid", "<path d=\"M290 318c0 -14 16 -22 16 -40c0 18 16 26 16 40a16 16 0 0 1 -32 0\"/>", "", 284, 318, "end"},
 });
 
@@ -48,7 +47,7 @@ constexpr auto kSensors = std::to_array<SensorPlace>({
     {"shaft_speed", "ω", 282, 140, "M282 152V203"},
     {"pressure_a", "pA", 646, 140, "M646 152V160"},
     {"pressure_b", "pB", 786, 140, "M786 152V160"},
-    {"pressure_differential", "Δp", 646, 300, "M646 288V260M658 300H770V260"},
+    {"pressure_differential", "Δp", 616, 296, "M616 284V260M628 296H660V326H790V260"},
     {"flow", "Q", 560, 40, "M560 52V74"},
     {"position", "x", 880, 160, "M880 172V202"},
     {"velocity", "v", 920, 160, "M920 172V202"},
@@ -60,8 +59,8 @@ constexpr auto kSensors = std::to_array<SensorPlace>({
 
 std::string eha_drawing(const Colouring& colouring) {
   std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" class=\"drawing\" width=\"960\" height=\"400\" "
-      "viewBox=\"0 0 960 400\">\n<title>Where the mismatch sits in the actuator</title>\n";
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" class=\"drawing\" width=\"960\" height=\"376\" "
+      "viewBox=\"12 20 940 368\">\n<title>Where the mismatch sits in the actuator</title>\n";
   svg += kPipes;
   for (const SensorPlace& sensor : kSensors)
     svg.append("<path class=\"lead\" d=\"").append(sensor.lead).append("\"/>\n");

@@ -44,16 +44,16 @@ std::string arrow(double before, double after) {
 
 std::string figures(const Explanation& explanation) {
   std::string html = "<div class=\"figures\">\n";
-  add_figure(p_value_text(explanation.p_value), "probability that noise alone differs so much", html);
+  add_figure(p_value_text(explanation.p_value), "probability of noise alone", html);
   const bool changed = !explanation.effects.empty();
   const auto add_misfit = [&html, changed](const mismatch::PooledFit& fit, const std::string& where) {
     const Misfit misfit = overall(fit);
     if (misfit.known)
       add_figure(changed ? arrow(misfit.before, misfit.after) : number_text(misfit.before, 3),
-                 std::string("misfit over noise, ").append(where).append(" (1 is the floor)"), html);
+                 std::string("misfit over noise, ").append(where), html);
   };
-  add_misfit(explanation.holdout, "recordings kept aside");
-  add_misfit(explanation.fit, "recordings fitted");
+  add_misfit(explanation.holdout, "kept aside");
+  add_misfit(explanation.fit, "fitted");
   if (changed) add_figure(percent_text(explanation.explained_share), "of the misfit explained", html);
   return html.append("</div>\n");
 }

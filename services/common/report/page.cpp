@@ -47,7 +47,7 @@ code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
 .figures{display:flex;flex-wrap:wrap;gap:.6rem 2.2rem;margin:.7rem 0}.figures div{min-width:8rem}
 .figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}
 .scroll{overflow-x:auto}table{border-collapse:collapse;margin:.5rem 0 1rem;font-size:.9rem;font-variant-numeric:tabular-nums}
-th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
+td{white-space:nowrap}td.prose{white-space:normal;min-width:15rem}th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
 th{color:var(--muted);font-weight:600;white-space:nowrap}th.n,td.n{text-align:right;white-space:nowrap}
 tr.strong td{font-weight:600}.better{color:var(--good)}.worse{color:var(--bad)}
 .plots{display:flex;flex-wrap:wrap;gap:.4rem 1.2rem}.plots>div{flex:0 0 auto;max-width:100%}
@@ -140,8 +140,11 @@ std::string folded(std::string_view label, std::string_view body) {
 Table::Table(const std::vector<std::string>& headers) {
   for (const std::string& header : headers) {
     const bool right = header.starts_with(">");
-    right_.push_back(right);
-    head_.append(right ? "<th class=\"n\">" : "<th>").append(escaped(header.substr(right ? 1 : 0))).append("</th>");
+    const bool prose = header.starts_with("~");
+    classes_.emplace_back(right ? " class=\"n\"" : prose ? " class=\"prose\"" : "");
+    head_.append(right ? "<th class=\"n\">" : "<th>")
+        .append(escaped(header.substr(right || prose ? 1 : 0)))
+        .append("</th>");
   }
 }
 
@@ -157,7 +160,7 @@ void Table::row_of_html(const std::vector<std::string>& cells, std::string_view 
   if (!css_class.empty()) rows_.append(" class=\"").append(css_class).append("\"");
   rows_ += ">";
   for (std::size_t k = 0; k < cells.size(); ++k)
-    rows_.append(k < right_.size() && right_[k] ? "<td class=\"n\">" : "<td>").append(cells[k]).append("</td>");
+    rows_.append("<td").append(k < classes_.size() ? classes_[k] : "").append(">").append(cells[k]).append("</td>");
   rows_ += "</tr>\n";
 }
 

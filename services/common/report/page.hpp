@@ -26,7 +26,8 @@ namespace sealwatch::report {
 /// A table. Cells are escaped unless given as html.
 class Table {
  public:
-  /// Columns whose header begins with '>' are numbers, right-aligned (the sign is not shown).
+  /// Columns whose header begins with '>' are numbers, right-aligned; with '~' prose, which wraps (the signs are not
+  /// shown).
   explicit Table(const std::vector<std::string>& headers);
   void row(const std::vector<std::string>& cells);
   void row_of_html(const std::vector<std::string>& cells, std::string_view css_class = {});
@@ -34,7 +35,7 @@ class Table {
   [[nodiscard]] std::string html() const;
 
  private:
-  std::vector<bool> right_;
+  std::vector<std::string> classes_;
   std::string head_, rows_;
 };
 

@@ -42,6 +42,10 @@ std::string superscript(int exponent) {
   return text;
 }
 
+std::string with_minus(const std::string& digits) {
+  return digits.starts_with("-") ? std::string("−").append(digits, 1) : digits;
+}
+
 std::string power_of_ten(int exponent) { return std::string("10").append(superscript(exponent)); }
 
 }  // namespace
@@ -83,9 +87,10 @@ std::string number_text(double value, int digits) {
   const std::string scientific = buffer;  // rounding may carry into the next decade: the exponent is taken afterwards
   const std::size_t split = scientific.find('e');
   const int exponent = std::atoi(scientific.c_str() + split + 1);
-  if (exponent < -3 || exponent >= 6) return scientific.substr(0, split).append("·").append(power_of_ten(exponent));
+  if (exponent < -3 || exponent >= 6)
+    return with_minus(scientific.substr(0, split)).append("·").append(power_of_ten(exponent));
   std::snprintf(buffer, sizeof buffer, "%.*f", std::max(digits - 1 - exponent, 0), value);
-  return buffer;
+  return with_minus(buffer);
 }
 
 std::string readable(double value, std::string_view si_unit, int digits) {
@@ -95,6 +100,18 @@ std::string readable(double value, std::string_view si_unit, int digits) {
   const std::string name = power ? unit_text(si_unit) : unit.text;
   if (!name.empty()) text.append(" ").append(name);
   return text;
+}
+
+std::string readable_with_error(double value, double error, std::string_view si_unit) {
+  if (!(error > 0.0) || !std::isfinite(error) || !std::isfinite(value)) return readable(value, si_unit, 4);
+  const DisplayUnit unit = display_unit(si_unit, value);
+  const double shown_error = error * unit.factor;
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(shown_error))), 0, 6);
+  char buffer[96];
+  std::snprintf(buffer, sizeof buffer, "%.*f ± %.*f", decimals, value * unit.factor, decimals, shown_error);
+  std::string text = with_minus(buffer);
+  if (unit.text.starts_with("10")) return std::string("(").append(text).append(")·").append(unit.text);
+  return unit.text.empty() ? text : text.append(" ").append(unit.text);
 }
 
 std::string percent_text(double share) {

@@ -22,13 +22,6 @@ double shift_in_errors(const ParameterShift& shift) {
   return (shift.after - shift.before) / std::hypot(shift.before_std, shift.after_std);
 }
 
-std::string with_error(double value, double error, std::string_view unit) {
-  const DisplayUnit shown = display_unit(unit, value);
-  std::string text = number_text(value * shown.factor, 4);
-  if (error > 0.0 && std::isfinite(error)) text.append(" ± ").append(number_text(error * shown.factor, 2));
-  return shown.text.empty() ? text : text.append(" ").append(shown.text);
-}
-
 std::string change_text(double from, double to) {
   if (from == 0.0 || !std::isfinite(to / from)) return "–";
   const double percent = 100.0 * (to - from) / from;
@@ -53,18 +46,17 @@ std::string power_words(const Power& power) {
 std::string parameters_section(const Explanation& explanation) {
   if (explanation.parameters.empty()) return {};
   const bool changed = !explanation.effects.empty();
-  Table table({"parameter", ">datasheet", ">fitted before", ">fitted after", ">change", ""});
+  Table table({"parameter", ">datasheet", ">fitted before", ">fitted after", ">change", ">in standard errors", ""});
   for (const ParameterShift& shift : explanation.parameters) {
     const double errors = shift_in_errors(shift);
     const bool clear = changed && std::isfinite(errors) && std::abs(errors) > kClearShift;
     std::string remark;
-    if (clear)
-      remark =
-          std::string("had absorbed part of it: ").append(number_text(std::abs(errors), 2)).append(" standard errors");
+    if (clear) remark = "had absorbed part of it";
     table.row_of_html({escaped(shift.name), escaped(readable(shift.datasheet, shift.unit, 4)),
-                       escaped(with_error(shift.before, shift.before_std, shift.unit)),
-                       changed ? escaped(with_error(shift.after, shift.after_std, shift.unit)) : std::string(),
-                       changed ? escaped(change_text(shift.before, shift.after)) : std::string(), escaped(remark)},
+                       escaped(readable_with_error(shift.before, shift.before_std, shift.unit)),
+                       changed ? escaped(readable_with_error(shift.after, shift.after_std, shift.unit)) : std::string(),
+                       changed ? escaped(change_text(shift.before, shift.after)) : std::string(),
+                       changed ? escaped(number_text(std::abs(errors), 2)) : std::string(), escaped(remark)},
                       clear ? "strong" : "");
   }
   const char* words = changed ? "A parameter that moves when the missing physics is added had been standing in for it."

@@ -1,4 +1,6 @@
 // What was found: where it sits, the laws that were added, why not others.
+#include <cctype>
+
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/report/actuator_drawing.hpp"
 #include "services/common/report/explanation_sections.hpp"
@@ -65,6 +67,7 @@ std::string size_words(double share) {
 
 std::string effect_html(const FoundEffect& effect) {
   std::string title = law_name(effect.what);
+  if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   title.append(" of the ").append(words_of(effect.what.element));
   std::string html = std::string("<h3>").append(escaped(title)).append("</h3>\n");
   if (!effect.what.meaning.empty()) html += paragraph(effect.what.meaning);
@@ -97,7 +100,7 @@ std::string where_section(const Explanation& explanation) {
   html.append(actuator_drawing(**plant, explanation.location, recorded_channels(explanation))).append("</div>\n");
   if (explanation.location.empty())
     return section("Where it sits", html.append(paragraph("No element stands out.", "muted")));
-  Table table({"element", ">probability", "cannot be told from", "evidence"});
+  Table table({"element", ">probability", "cannot be told from", "~evidence"});
   for (const mismatch::Location& place : explanation.location) {
     const std::string element = words_of(place.element);
     table.row({element, percent_text(place.probability), joined(place.indistinguishable_from), place.evidence});
@@ -116,7 +119,7 @@ std::string alternatives_section(const Explanation& explanation) {
   std::string html;
   for (const FoundEffect& effect : explanation.effects) {
     if (effect.alternatives.empty()) continue;
-    Table table({"instead of " + law_name(effect.what), "element", ">misfit above the best", "why not"});
+    Table table({"instead of " + law_name(effect.what), "element", ">misfit above the best", "~why not"});
     for (const mismatch::Alternative& alternative : effect.alternatives)
       table.row({law_name(alternative.what), words_of(alternative.what.element),
                  number_text(alternative.misfit_above_best), alternative.why_not});
@@ -124,7 +127,7 @@ std::string alternatives_section(const Explanation& explanation) {
   }
   if (!explanation.rejected.empty()) {
     html += "<h3>Better fits that physics forbids</h3>\n";
-    Table table({"law", "element", "why it is rejected"});
+    Table table({"law", "element", "~why it is rejected"});
     for (const mismatch::Rejected& rejected : explanation.rejected)
       table.row({law_name(rejected.what), words_of(rejected.what.element), rejected.why});
     html += table.html();

@@ -79,25 +79,32 @@ std::string overlays_of(const RecordingComparison& recording, bool changed) {
   return html.empty() ? html : std::string("<div class=\"plots\">\n").append(html).append("</div>\n");
 }
 
-std::string better_or_worse(double before, double after) {
-  const std::string text = escaped(number_text(after, 3));
-  if (after < 0.98 * before) return std::string("<span class=\"better\">").append(text).append("</span>");
-  if (after > 1.02 * before) return std::string("<span class=\"worse\">").append(text).append("</span>");
-  return text;
+std::string change(const std::string& before, const std::string& after, bool changed) {
+  return changed ? before + " → " + after : before;
+}
+
+/// "71.0 → 1.02", coloured where the change is more than 2 %.
+std::string misfit_cell(const ChannelComparison& channel, bool changed) {
+  const std::string text = escaped(change(number_text(channel.rms_before), number_text(channel.rms_after), changed));
+  const bool better = channel.rms_after < 0.98 * channel.rms_before;
+  const bool worse = channel.rms_after > 1.02 * channel.rms_before;
+  if (!changed || (!better && !worse)) return text;
+  return std::string("<span class=\"").append(better ? "better" : "worse").append("\">").append(text).append("</span>");
 }
 
 void add_rows(const std::string& name, const std::string& kind, const std::vector<ChannelComparison>& channels,
-              Table& table) {
+              bool changed, Table& table) {
   bool first = true;
   for (const ChannelComparison& channel : channels) {
+    const auto p = [changed](double before, double after) {
+      return escaped(change(p_value_text(before), p_value_text(after), changed));
+    };
     table.row_of_html(
-        {first ? escaped(name) : std::string(), first ? escaped(kind) : std::string(),
-         escaped(words_of(channel.channel)), escaped(number_text(channel.rms_before)),
-         better_or_worse(channel.rms_before, channel.rms_after), escaped(number_text(channel.nrmse_before, 4)),
-         escaped(number_text(channel.nrmse_after, 4)), escaped(p_value_text(channel.whiteness_before)),
-         escaped(p_value_text(channel.whiteness_after)), escaped(p_value_text(channel.independence_before)),
-         escaped(p_value_text(channel.independence_after))},
-        first ? "strong" : "");
+        {first ? std::string("<b>").append(escaped(name)).append("</b>") : std::string(),
+         first ? escaped(kind) : std::string(), escaped(words_of(channel.channel)), misfit_cell(channel, changed),
+         escaped(change(number_text(channel.nrmse_before, 4), number_text(channel.nrmse_after, 4), changed)),
+         p(channel.whiteness_before, channel.whiteness_after),
+         p(channel.independence_before, channel.independence_after)});
     first = false;
   }
 }
@@ -145,16 +152,16 @@ std::string overlays_section(const Explanation& explanation) {
 }
 
 std::string comparison_section(const Explanation& explanation) {
-  Table table({"recording", "", "channel", ">misfit/noise before", ">after", ">fit % before", ">after",
-               ">whiteness p before", ">after", ">independence p before", ">after"});
-  add_rows("all kept aside", "", explanation.holdout.channels, table);
-  add_rows("all fitted", "", explanation.fit.channels, table);
+  const bool changed = !explanation.effects.empty();
+  Table table({"recording", "", "channel", ">misfit / noise", ">fit, %", ">white, p", ">independent of input, p"});
+  add_rows("all kept aside", "", explanation.holdout.channels, changed, table);
+  add_rows("all fitted", "", explanation.fit.channels, changed, table);
   for (const RecordingComparison& recording : explanation.recordings)
-    add_rows(recording.recording, kind_of(recording), recording.channels, table);
+    add_rows(recording.recording, kind_of(recording), recording.channels, changed, table);
   if (table.empty()) return {};
   std::string html = table.html();
-  if (!explanation.effects.empty()) html += gains(explanation);
-  return section("Before and after, in figures", html);
+  if (changed) html += gains(explanation);
+  return section(changed ? "Before and after, in figures" : "The fit, in figures", html);
 }
 
 }  // namespace sealwatch::report

@@ -12,7 +12,7 @@ TEST(Readable, EverydayUnits) {
   EXPECT_EQ(readable(250.0, "Pa"), "2.50 mbar");
   EXPECT_EQ(readable(1.33e-3, "m/s"), "1.33 mm/s");
   EXPECT_EQ(readable(7.85e-6, "m3/s"), "0.471 L/min");
-  EXPECT_EQ(readable(-5.0e-6, "m", 2), "-5.0 µm");
+  EXPECT_EQ(readable(-5.0e-6, "m", 2), "−5.0 µm");
   EXPECT_EQ(readable(4010.0, "N"), "4.01 kN");
   EXPECT_EQ(readable(104.72, "rad/s", 4), "1000 rpm");
 }
@@ -30,6 +30,13 @@ TEST(Readable, DigitsCarryIntoTheNextDecade) {
   EXPECT_EQ(number_text(999999.9, 3), "1.00·10⁶");
   EXPECT_EQ(number_text(0.0), "0");
   EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "–");
+}
+
+TEST(Readable, WithItsError) {
+  EXPECT_EQ(readable_with_error(2.58e13, 3e11, "Pa s/m3"), "(25.80 ± 0.30)·10¹² Pa·s/m³");
+  EXPECT_EQ(readable_with_error(-4010.0, 60.0, "N"), "−4.010 ± 0.060 kN");
+  EXPECT_EQ(readable_with_error(0.5, 0.0, "ohm"), "0.5000 ohm");
+  EXPECT_EQ(readable_with_error(0.5, 12.0, "1"), "0 ± 12");
 }
 
 TEST(Readable, ASharePretendsNoCertainty) {

@@ -8,17 +8,13 @@
 #include "services/virtual_bench/random.hpp"
 
 namespace sealwatch::bench {
-namespace {
 
-/// Shortens a recording to the first `share` of its samples (at least one).
 void cut(TimeSeries& samples, double share) {
   const auto kept =
       std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(samples.time_s.size())));
   samples.time_s.resize(kept);
   for (Series& channel : samples.channels) channel.values.resize(kept);
 }
-
-}  // namespace
 
 Result<std::vector<PlannedTest>> plan_life(const AssetConfig& asset, const LifeSetting& setting) {
   if (!asset.seal)

@@ -39,6 +39,9 @@ struct PlannedTest {
 /// The months of a life up to failure. An Error when the asset has no seal resistances.
 [[nodiscard]] Result<std::vector<PlannedTest>> plan_life(const AssetConfig& asset, const LifeSetting& setting);
 
+/// Shortens a recording to the first `share` of its samples (at least one).
+void cut(TimeSeries& samples, double share);
+
 /// Runs the asset's partial stroke test as planned; recording_id is "2031-04-12-PST-<asset>". Not for missing months.
 [[nodiscard]] Result<Recording> simulate_planned(const AssetConfig& asset, const LifeSetting& life,
                                                  const PlannedTest& test, const TestSetting& setting);

@@ -1,0 +1,156 @@
+#include "services/common/verification/life_simulator.hpp"
+
+#include <cassert>
+#include <string>
+#include <utility>
+
+#include "services/common/verification/estimate_test.hpp"
+#include "services/virtual_bench/random.hpp"
+
+namespace sealwatch::verification {
+namespace {
+
+constexpr int kLongestLife_months = 2400;
+// Of 1/R_CL at 50 Hz, whatever R_CL is: what the estimator reports on recordings of the cylinder circuit.
+constexpr double kConductanceStd_m3_Pa_s = 1.04e-16;
+
+/// A seal's state month by month up to its failure; element n is month n.
+struct SealLife {
+  std::vector<forecast::TrueState> months;
+  double end_of_life_months = 0.0;
+};
+
+SealLife age(std::uint64_t life_seed, const forecast::DegradationSetting& setting, double threshold) {
+  forecast::Degradation seal(bench::sub_seed(life_seed, "seal"), setting);  // the stream that plan_life takes
+  SealLife life;
+  const auto state = [&seal] {
+    return forecast::TrueState{static_cast<double>(seal.month()), seal.condition(), seal.gamma(),
+                               seal.steepening_limit()};
+  };
+  life.months.push_back(state());
+  while (seal.condition() > threshold && seal.month() < kLongestLife_months) {
+    seal.advance();
+    life.months.push_back(state());
+  }
+  const std::size_t last = life.months.size() - 1;
+  const double before = life.months[last - 1].condition;
+  const double after = life.months[last].condition;
+  // Between two months the condition falls straight.
+  life.end_of_life_months = static_cast<double>(last - 1) + (before - threshold) / (before - after);
+  return life;
+}
+
+RecordedAnswer recorded(const Forecast& forecast, const std::optional<forecast::PredictiveDistribution>& distribution,
+                        double true_rul_months) {
+  RecordedAnswer answer{.state = forecast.state};
+  if (forecast.state == ForecastState::past_threshold) {
+    answer.pit = 1.0F;
+    answer.crps = static_cast<float>(true_rul_months);
+  }
+  if (forecast.state != ForecastState::ok || !distribution) return answer;
+  answer.rul = static_cast<float>(forecast.rul_months);
+  answer.interval_95_low = static_cast<float>(forecast.interval_95_low_months);
+  answer.interval_95_high = static_cast<float>(forecast.interval_95_high_months);
+  answer.p10 = static_cast<float>(forecast.rul_p10_months);
+  answer.p90 = static_cast<float>(forecast.rul_p90_months);
+  answer.pit = static_cast<float>(distribution->cdf(true_rul_months));
+  answer.crps = static_cast<float>(distribution->crps(true_rul_months));
+  return answer;
+}
+
+RecordedAnswer oracle_answer(const forecast::TrueState& state, const VerificationSetting& setting,
+                             double true_rul_months) {
+  const auto distribution = forecast::oracle_distribution(state, setting.asset.seal->threshold, setting.degradation);
+  if (!distribution) return {};
+  Forecast forecast;
+  forecast.state = ForecastState::ok;
+  forecast.rul_months = distribution->quantile(0.5);
+  forecast.interval_95_low_months = distribution->quantile(0.025);
+  forecast.interval_95_high_months = distribution->quantile(0.975);
+  forecast.rul_p10_months = distribution->quantile(0.10);
+  forecast.rul_p90_months = distribution->quantile(0.90);
+  return recorded(forecast, *distribution, true_rul_months);
+}
+
+}  // namespace
+
+Result<LifeSimulator> LifeSimulator::make(VerificationSetting setting) {
+  if (const Status ok = validate(setting); !ok) return fail(ok.error());
+  auto truth = CircuitTruth::make(setting.asset, setting.sample_rate_Hz);  // checks the asset for every kind of truth
+  if (!truth) return fail(truth.error());
+  // What is known of the fleet beforehand: its constants.
+  for (forecast::ForecasterSettings& forecaster : setting.forecasters)
+    forecaster.population = forecast::reference_population(setting.degradation);
+  auto panel = forecast::ForecastPanel::make(setting.forecasters);
+  if (!panel) return fail(panel.error());
+  return LifeSimulator(std::move(setting), std::move(*truth), std::move(*panel));
+}
+
+Result<std::optional<forecast::ConditionSample>> LifeSimulator::estimate(const bench::LifeSetting& life,
+                                                                         const bench::PlannedTest& test) const {
+  const AssetConfig& asset = setting_.asset;
+  if (setting_.truth == TruthKind::condition) {
+    const double resistance_std = kConductanceStd_m3_Pa_s * test.resistance_Pa_s_m3 * test.resistance_Pa_s_m3;
+    const double condition_std = asset.seal->condition_std(resistance_std);
+    bench::NormalRandom noise(test.seed);
+    return forecast::ConditionSample{test.start_time, test.condition + condition_std * noise.next(), condition_std};
+  }
+  TimeSeries samples;
+  if (setting_.truth == TruthKind::circuit) {
+    samples = truth_.simulate(test.resistance_Pa_s_m3, test.load_factor, test.seed);
+    bench::cut(samples, test.recorded_share);
+  } else {
+    auto recording = bench::simulate_planned(
+        asset, life, test, {.sample_rate_Hz = setting_.sample_rate_Hz, .channels = circuit_channels()});
+    if (!recording) return fail(recording.error());
+    samples = std::move(recording->samples);
+  }
+  return setting_.through_layers ? estimate_through_layers(asset, samples, test.start_time)
+                                 : estimate_condition(asset, samples, test.start_time);
+}
+
+void LifeSimulator::add_answers(const forecast::ForecastRequest& request, const forecast::TrueState& state,
+                                LifeRecord& record) const {
+  const double true_rul_months = record.true_rul_months(record.tests.size() - 1);
+  const forecast::ForecastPanel::Answer answer = panel_.forecast(request);
+  for (std::size_t k = 0; k < answer.forecasts.size(); ++k)
+    record.answers[k].push_back(recorded(answer.forecasts[k], answer.distributions[k], true_rul_months));
+  record.answers.back().push_back(oracle_answer(state, setting_, true_rul_months));
+}
+
+Result<LifeRecord> LifeSimulator::run(std::uint32_t number) const {
+  const bench::LifeSetting life{.seed = bench::sub_seed(setting_.seed, "life " + std::to_string(number)),
+                                .months = setting_.months,
+                                .day_scatter = 0.0,
+                                .load_range = setting_.load_range,
+                                .missing_share = setting_.missing_share,
+                                .cut_share = setting_.cut_share,
+                                .degradation = setting_.degradation};
+  const auto plan = bench::plan_life(setting_.asset, life);
+  if (!plan) return fail(plan.error());
+  const SealLife seal = age(life.seed, setting_.degradation, setting_.asset.seal->threshold);
+  LifeRecord record;
+  record.life = number;
+  record.end_of_life_months = seal.end_of_life_months;
+  record.censored = seal.end_of_life_months > setting_.months;
+  record.answers.resize(setting_.forecasters.size() + 1);
+  forecast::ForecastRequest request{.threshold = setting_.asset.seal->threshold, .installed = life.installed};
+  for (const bench::PlannedTest& test : *plan) {
+    const double time_months = months_between(life.installed, test.start_time);
+    if (test.recorded_share <= 0.0 || time_months >= seal.end_of_life_months) continue;
+    const auto estimated = estimate(life, test);
+    if (!estimated) return fail(estimated.error());
+    RecordedTest& kept = record.tests.emplace_back(
+        RecordedTest{.time_months = time_months, .condition = test.condition, .usable = estimated->has_value()});
+    if (*estimated) {
+      kept.estimate = (*estimated)->condition;
+      kept.estimate_std = (*estimated)->condition_std;
+      request.history.push_back(**estimated);
+    }
+    request.now = test.start_time;
+    add_answers(request, seal.months[static_cast<std::size_t>(test.month)], record);
+  }
+  return record;
+}
+
+}  // namespace sealwatch::verification

@@ -85,11 +85,12 @@ void read_sites(YamlMap& root, Configuration& configuration) {
     YamlMap map = root.inside(node, "sites", index++);
     SiteConfig site;
     if (!map.read("site", site.site) && !map.has("site")) map.fault("site", {}, "must be given");
-    if (configuration.find_site(site.site)) map.fault("site", site.site, "is there twice", "name each site once");
+    const bool twice = configuration.find_site(site.site) != nullptr;
+    if (twice) map.fault("site", site.site, "is there twice", "name each site once");
     map.read("booking_lead_time_months", site.booking_lead_time_months, kNotNegative);
     read_campaigns(map, site);
     map.finish();
-    configuration.sites.push_back(std::move(site));
+    if (!twice && !site.site.empty()) configuration.sites.push_back(std::move(site));
   }
 }
 

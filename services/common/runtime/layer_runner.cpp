@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
@@ -65,6 +66,7 @@ Status LayerRunner::restore_past() {
   std::size_t restored = 0;
   const Status outputs = journal_.for_each_output([&](const Message& output) {
     layer_.restore(output);
+    admission_.note(output);
     replaying_ = header_of(output).replay;
     ++restored;
     return Status();
@@ -74,6 +76,7 @@ Status LayerRunner::restore_past() {
   const Status inputs = in_batch([&] {
     return journal_.for_each_open_input([&](const Message& input) {
       replaying_ = header_of(input).replay;
+      admission_.note(input);
       return keep(completed(layer_.receive(without_stamps(input))), {});
     });
   });
@@ -97,6 +100,7 @@ Status LayerRunner::run(const std::atomic<bool>& stop) {
 
 Status LayerRunner::step(std::chrono::milliseconds timeout) {
   // A slow layer takes no more from the bus than it can soon conclude from, so that the bus holds the writers back.
+  std::this_thread::sleep_until(last_work_ + options_.batch_pause);
   drained_ = false;
   if (later_.open() >= kMostLater) {
     later_.wait(timeout);
@@ -171,6 +175,12 @@ Status LayerRunner::take(Message message) {
   }
   if (!id) return {};
   header_of(message).message_id = *id;
+  if (const auto refused = admission_.refusal(message, clock_.now())) {
+    last_error_ = std::string(name_of(topic_of(message))) + " refused: " + *refused;
+    log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
+    return journal_.add_input(message, clock_.now(), true);
+  }
+  admission_.note(message);
   replaying_ = header_of(message).replay;
   log_message(LogLevel::debug, "received", message);
   const Header stamped = header_of(message);

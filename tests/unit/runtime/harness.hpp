@@ -94,6 +94,7 @@ inline RunnerOptions fast_options() {
   options.heartbeat.interval = std::chrono::milliseconds(5);
   options.heartbeat.shortest = std::chrono::milliseconds(1);
   options.settling = std::chrono::milliseconds(0);
+  options.batch_pause = std::chrono::milliseconds(0);
   options.streams.patience_s = 0.003;
   options.streams.retry_s = 0.01;
   return options;

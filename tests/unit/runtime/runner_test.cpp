@@ -287,6 +287,65 @@ TEST_F(RunnerTest, BeatsWhileTheLayerComputesAndClaimsNothingThatIsNotCommitted)
   EXPECT_EQ(listener_.statuses.back().pending_inputs, 1U);
 }
 
+/// Counts the replacements that reach it.
+class EventLayer final : public Layer {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "state_detection"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
+  [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
+  void restore(const Message& /*own*/) override {}
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    Conclusion conclusion{{}, {header_of(input).message_id}};
+    if (!std::holds_alternative<MaintenanceEvent>(input)) return conclusion;
+    StateReport report;
+    report.asset_id = asset_of(input);
+    report.header = header("state_report/" + header_of(input).message_id, "");
+    conclusion.outputs = {report};
+    return conclusion;
+  }
+
+ private:
+  static constexpr std::array kInputs = {Topic::maintenance_event, Topic::test_features};
+  static constexpr std::array kOutputs = {Topic::state_report};
+};
+
+TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo) {
+  const auto layer = [] { return std::make_unique<EventLayer>(); };
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  const auto event = [](const std::string& id, std::int64_t time_ns) {
+    MaintenanceEvent report;
+    report.asset_id = "A";
+    report.header = header("maintenance_event/" + id, "");
+    report.header.event_time_known = true;
+    report.header.event_time_ns = time_ns;
+    return report;
+  };
+  auto process = std::make_unique<Process>(network_, layer, place_.connection());
+  process->start();
+  const std::int64_t now_ns = process->clock().now().nanoseconds;
+  InMemoryBus sender(network_);
+  ASSERT_TRUE(sender.publish(Message(event("slip of the year", now_ns + 365 * kDay_ns))));
+  ASSERT_TRUE(sender.publish(Message(event("clock ahead", now_ns + kDay_ns / 2))));
+  step(*process, 3);
+  ASSERT_THAT(process->outputs(), SizeIs(1));
+  EXPECT_EQ(header_of(process->outputs()[0]).message_id, "state_report/maintenance_event/clock ahead");
+
+  TestFeatures simulated;
+  simulated.asset_id = "A";
+  simulated.header = header("test_features/a", "a");
+  simulated.header.event_time_known = true;
+  simulated.header.event_time_ns = now_ns + 1000 * kDay_ns;
+  ASSERT_TRUE(sender.publish(Message(simulated)));
+  ASSERT_TRUE(sender.publish(Message(event("in that life", now_ns + 1000 * kDay_ns))));
+  step(*process, 3);
+  EXPECT_THAT(process->outputs(), SizeIs(2));
+  process.reset();
+  process = std::make_unique<Process>(network_, layer, place_.connection());
+  process->start();
+  step(*process, 3);
+  EXPECT_THAT(process->outputs(), SizeIs(2)) << "refused once is refused for good";
+}
+
 TEST_F(RunnerTest, ReceivesWhileItConcludesLaterAndKeepsTheOrderOfReceipt) {
   Process process(
       network_, [] { return std::make_unique<PatientLayer>(milliseconds(50)); }, place_.connection());

@@ -1,5 +1,8 @@
 #include "services/advisory_generation/reasons.hpp"
 
+#include <algorithm>
+#include <cstdio>
+
 #include "sealwatch/forecast/words.hpp"
 #include "services/advisory_generation/assessment.hpp"
 
@@ -11,12 +14,21 @@ using forecast::in_months;
 using forecast::in_percent;
 using forecast::three_digits;
 
+/// Below this a fault is proposed only because some fault must come first.
+constexpr double kWorthNaming = 0.10;
+
+std::string in_words(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
 void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) {
   if (life.forecasts.empty()) return;
   const Forecast& forecast = life.forecasts.front();
   const std::string name = "forecast " + forecast.method + ", " + std::to_string(forecast.window_months) + " months: ";
   if (forecast.state != ForecastState::ok) {
-    reasons.push_back(name + std::string(name_of(forecast.state)) + ", " + forecast.explanation);
+    reasons.push_back(name + in_words(name_of(forecast.state)) + ", " + forecast.explanation);
   } else {
     reasons.push_back(name + in_months(forecast.rul_p50_months) + " left (80 %: " + in_months(forecast.rul_p10_months) +
                       " to " + in_months(forecast.rul_p90_months) + "), end of life " +
@@ -33,10 +45,9 @@ void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) 
 void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& leakage, const RemainingLife& life) {
   if (leakage.estimated) {
     std::string text = "R_CL = " + three_digits(leakage.resistance_Pa_s_m3) + " +- " +
-                       three_digits(leakage.resistance_std_Pa_s_m3) + " Pa s/m3";
+                       three_digits(leakage.resistance_std_Pa_s_m3) + " Pa s/m3 (by sensor noise alone)";
     if (leakage.condition_known)
-      text = "seal condition " + forecast::condition_with_std(leakage.condition, leakage.condition_std) + " (limit " +
-             as_condition(life.threshold) + "), " + text;
+      text = "seal condition " + seal_condition(leakage.condition) + limit_of(life) + ", " + text;
     reasons.push_back(text);
   }
   if (!leakage.used_for_forecast) reasons.push_back("left out of the forecast: " + joined(leakage.reasons));
@@ -47,16 +58,22 @@ void add_health(std::vector<std::string>& reasons, const HealthReport& health) {
   if (health.trend_known)
     text += ", " + as_condition(health.health_trend_per_year) + " +- " +
             as_condition(health.health_trend_std_per_year) + " a year";
-  if (!health.ambiguity_group.empty()) text += "; most likely fault: " + describe(health.ambiguity_group.front());
+  if (!health.ambiguity_group.empty()) {
+    const ProposedFault& first = health.ambiguity_group.front();
+    if (first.likelihood < kWorthNaming)
+      text += "; no fault stands out";
+    else
+      text += (first.likelihood > 0.5 ? "; most likely fault: " : "; possible fault: ") + describe(first);
+  }
   reasons.push_back(text);
 }
 
 void add_state(std::vector<std::string>& reasons, const StateReport& state) {
   for (const RegionJudgement& judgement : state.judgements)
     if (judgement.region == AlertRegion::alarm || judgement.region == AlertRegion::warning)
-      reasons.push_back(judgement.quantity + " is in region " + std::string(name_of(judgement.region)) + " against " +
-                        std::string(name_of(judgement.reference)) + ": " + three_digits(judgement.value) + " " +
-                        judgement.unit + " (warning " + three_digits(judgement.warning_limit) + ", alarm " +
+      reasons.push_back(in_words(judgement.quantity) + " is in region " + std::string(name_of(judgement.region)) +
+                        " against " + std::string(name_of(judgement.reference)) + ": " + three_digits(judgement.value) +
+                        " " + judgement.unit + " (warning " + three_digits(judgement.warning_limit) + ", alarm " +
                         three_digits(judgement.alarm_limit) + ")");
   if (state.verdict != PstVerdict::passed)
     reasons.push_back("partial stroke test " + std::string(name_of(state.verdict)) +
@@ -75,9 +92,19 @@ std::vector<std::string> reasons_of(const Evidence& evidence) {
   return reasons;
 }
 
+std::string seal_condition(double condition) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", 100.0 * condition);
+  return text;
+}
+
+std::string limit_of(const RemainingLife& life) {
+  return life.threshold > 0.0 ? " (limit " + seal_condition(life.threshold) + ")" : "";
+}
+
 std::string describe(const ProposedFault& fault) {
-  return std::string(name_of(fault.kind)) + " of " + fault.element + ", likelihood " + as_condition(fault.likelihood) +
-         (fault.iso14224_code.empty() ? "" : " (ISO 14224 " + fault.iso14224_code + ")");
+  return in_words(name_of(fault.kind)) + " of " + in_words(fault.element) + ", likelihood " +
+         in_percent(fault.likelihood) + (fault.iso14224_code.empty() ? "" : " (ISO 14224 " + fault.iso14224_code + ")");
 }
 
 std::string joined(const std::vector<std::string>& parts) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sealwatch/message/health_assessment.hpp"
+#include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch::advisory_generation {
 
@@ -13,7 +14,12 @@ struct Evidence;
 /// Forecast, failure probabilities, seal condition, health, alert regions, verdict of the test; in this order.
 [[nodiscard]] std::vector<std::string> reasons_of(const Evidence& evidence);
 
-/// "internal_leakage of piston_seal, likelihood 0.81 (ISO 14224 INL)"
+/// Seal condition as everywhere on operators' screens: 0.667 -> "66.7 %", of the elastic modulus when new.
+[[nodiscard]] std::string seal_condition(double condition);
+/// " (limit 60.0 %)", or nothing where the message knows of none.
+[[nodiscard]] std::string limit_of(const RemainingLife& life);
+
+/// "internal leakage of piston seal, likelihood 81 % (ISO 14224 INL)"
 [[nodiscard]] std::string describe(const ProposedFault& fault);
 
 /// "a, b, c"

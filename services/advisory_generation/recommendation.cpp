@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sealwatch/forecast/words.hpp"
+#include "services/advisory_generation/reasons.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -12,12 +13,10 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// "Seal condition is 0.760 (limit 0.600); its end of life is expected on 2018-05-02, with 80 % between ... and ...".
+/// "Seal condition is 76.0 % (limit 60.0 %); its end of life is expected on 2018-05-02, with 80 % between ... and ...".
 std::string outlook(const RemainingLife& life) {
   std::string text;
-  if (life.condition_known)
-    text = "Seal condition is " + forecast::as_condition(life.condition) + " (limit " +
-           forecast::as_condition(life.threshold) + ")";
+  if (life.condition_known) text = "Seal condition is " + seal_condition(life.condition) + limit_of(life);
   if (life.forecasts.empty()) return text.empty() ? text : text + ".";
   const Forecast& forecast = life.forecasts.front();
   const std::string join = text.empty() ? "" : text + "; ";

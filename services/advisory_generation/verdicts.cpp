@@ -1,15 +1,21 @@
 #include "services/advisory_generation/verdicts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <sstream>
+#include <string_view>
 
 namespace sealwatch::advisory_generation {
 namespace {
 
-constexpr const char* kStart = "judged by itself this test says: ";
-constexpr const char* kMiddle = "; in force: ";
+constexpr const char* kStart = "this test alone calls for: ";
+constexpr const char* kMiddle = "; all tests so far call for: ";
+constexpr const char* kNotJudged = "nothing, it says nothing about the wear";
+/// In the order of WearLevel.
+constexpr std::array<const char*, 5> kWear = {"no work", "planning", "booking a vessel", "booking a vessel at once",
+                                              "replacement now"};
+static_assert(kWear.size() == EnumNames<WearLevel>::kNames.size());
 constexpr std::size_t kMostRemembered = 60;  // five years of tests: more than any sensible confirmation
 
 template <class T>
@@ -43,30 +49,38 @@ bool raised(const std::vector<TestVerdict>& last, bool TestVerdict::*flag, bool 
 }
 
 std::string words(const std::string& wear, const std::optional<UtcTime>& replace_by, bool doubted, bool failed) {
-  return "wear " + wear + ", replace by " + (replace_by ? format_date(*replace_by) : "open") + ", instruments " +
+  return wear + ", " + (replace_by ? "replacement by " + format_date(*replace_by) : "no date yet") + ", instruments " +
          (doubted ? "doubted" : "trusted") + ", stroke " + (failed ? "failed" : "done");
 }
 
 struct Words {
-  std::string wear;
+  std::optional<WearLevel> wear;
   std::optional<UtcTime> replace_by;
   bool doubted = false;
   bool failed = false;
 };
 
+/// What words() wrote, from its end: "WEAR, DATE, INSTRUMENTS, STROKE".
 std::optional<Words> read(std::string text) {
-  std::erase(text, ',');
-  std::istringstream stream(text);
-  std::string skip;
-  std::string date;
-  std::string instruments;
-  std::string stroke;
+  const auto take_last = [&text] {
+    const std::size_t comma = text.rfind(", ");
+    std::string last = comma == std::string::npos ? "" : text.substr(comma + 2);
+    text.resize(comma == std::string::npos ? 0 : comma);
+    return last;
+  };
   Words read;
-  stream >> skip >> read.wear >> skip >> skip >> date >> skip >> instruments >> skip >> stroke;
-  if (!stream) return std::nullopt;
-  if (const auto time = parse_utc(date)) read.replace_by = *time;
-  read.doubted = instruments == "doubted";
-  read.failed = stroke == "failed";
+  const std::string stroke = take_last();
+  const std::string instruments = take_last();
+  std::string date = take_last();
+  constexpr std::string_view kBy = "replacement by ";
+  if (date.starts_with(kBy)) {
+    if (const auto time = parse_utc(date.substr(kBy.size()))) read.replace_by = *time;
+  }
+  for (std::size_t level = 0; level < kWear.size(); ++level)
+    if (text == kWear[level]) read.wear = static_cast<WearLevel>(level);
+  if (stroke.empty() || instruments.empty() || (!read.wear && text != kNotJudged)) return std::nullopt;
+  read.doubted = instruments == "instruments doubted";
+  read.failed = stroke == "stroke failed";
   return read;
 }
 
@@ -135,10 +149,11 @@ void VerdictMemory::remember(const TestVerdict& verdict) {
 }
 
 std::string in_words(const TestVerdict& verdict, const InForce& in_force) {
-  const std::string wear = verdict.wear ? std::string(name_of(*verdict.wear)) : "not_judged";
-  return kStart + words(wear, verdict.replace_by, verdict.instruments_doubted, verdict.failed) + kMiddle +
-         words(std::string(name_of(in_force.wear)), in_force.replace_by, in_force.instruments_doubted,
-               in_force.failing);
+  const auto wear = [](WearLevel level) { return std::string(kWear.at(static_cast<std::size_t>(level))); };
+  return kStart +
+         words(verdict.wear ? wear(*verdict.wear) : kNotJudged, verdict.replace_by, verdict.instruments_doubted,
+               verdict.failed) +
+         kMiddle + words(wear(in_force.wear), in_force.replace_by, in_force.instruments_doubted, in_force.failing);
 }
 
 std::optional<VerdictRecord> from_words(const std::string& line) {
@@ -149,11 +164,9 @@ std::optional<VerdictRecord> from_words(const std::string& line) {
   const auto force = read(line.substr(middle + std::string(kMiddle).size()));
   if (!test || !force) return std::nullopt;
   VerdictRecord record;
-  record.verdict = {.wear = value_of<WearLevel>(test->wear),
-                    .replace_by = test->replace_by,
-                    .instruments_doubted = test->doubted,
-                    .failed = test->failed};
-  record.in_force = {.wear = value_of<WearLevel>(force->wear).value_or(WearLevel::none),
+  record.verdict = {
+      .wear = test->wear, .replace_by = test->replace_by, .instruments_doubted = test->doubted, .failed = test->failed};
+  record.in_force = {.wear = force->wear.value_or(WearLevel::none),
                      .replace_by = force->replace_by,
                      .instruments_doubted = force->doubted,
                      .failing = force->failed};

@@ -61,8 +61,8 @@ class VerdictMemory {
 };
 
 /// Both in one line that stands as the last reason of every advisory, for people and for restore():
-/// "judged by itself this test says: wear book, replace by 2017-06-01, instruments trusted, stroke done; in force:
-/// ...".
+/// "this test alone calls for: booking a vessel, replacement by 2017-06-01, instruments trusted, stroke done; all
+/// tests so far call for: ...".
 [[nodiscard]] std::string in_words(const TestVerdict& verdict, const InForce& in_force);
 struct VerdictRecord {
   TestVerdict verdict;

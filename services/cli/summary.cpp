@@ -33,6 +33,19 @@ std::string words(std::string_view name) {
   return text;
 }
 
+/// Below this a fault is proposed only because some fault must come first.
+constexpr double kWorthNaming = 0.10;
+
+/// "most likely internal leakage (81 %)", "possibly pump (30 %)", "no fault stands out".
+std::string fault_words(const std::vector<ProposedFault>& group) {
+  const ProposedFault& first = group.front();
+  if (first.likelihood < kWorthNaming) return "no fault stands out";
+  return (first.likelihood > 0.5 ? "most likely " : "possibly ") + words(name_of(first.kind)) + " (" +
+         percent(first.likelihood, 0) + ")";
+}
+
+std::string samples_words(std::size_t count) { return count == 0 ? "no samples" : std::to_string(count) + " samples"; }
+
 std::string forecast_words(const Forecast& forecast) {
   if (forecast.state != ForecastState::ok) return words(name_of(forecast.state));
   return number(forecast.rul_months, 3) + " months, 95 % within " + number(forecast.interval_95_low_months, 3) +
@@ -41,15 +54,15 @@ std::string forecast_words(const Forecast& forecast) {
 
 std::string content(const RawSamples& m) {
   return m.source_id + " block " + std::to_string(m.block_number) + " (" + std::string(name_of(m.boundary)) + "), " +
-         std::to_string(m.samples.time_s.size()) + " samples of " + std::to_string(m.samples.channels.size()) +
-         " channels";
+         samples_words(m.samples.time_s.size()) + " of " + std::to_string(m.samples.channels.size()) + " channels";
 }
 std::string content(const SampleBlock& m) {
   return "block " + std::to_string(m.block_number) + " (" + std::string(name_of(m.boundary)) + "), " +
-         std::to_string(m.samples.time_s.size()) + " samples";
+         samples_words(m.samples.time_s.size());
 }
 std::string content(const TestWindow& m) {
-  return std::to_string(m.samples.time_s.size()) + " samples at " + number(m.sample_rate_Hz, 3) + " Hz, " +
+  if (m.samples.time_s.empty()) return "no samples" + (m.abort_reason.empty() ? "" : ": " + m.abort_reason);
+  return samples_words(m.samples.time_s.size()) + " at " + number(m.sample_rate_Hz, 3) + " Hz, " +
          std::to_string(m.samples.channels.size()) + " channels" + (m.complete ? "" : ", incomplete");
 }
 std::string content(const TestFeatures& m) {
@@ -68,9 +81,7 @@ std::string content(const StateReport& m) {
 std::string content(const HealthReport& m) {
   std::string text = "grade " + number(m.health_grade, 2);
   if (m.trend_known) text += " (" + number(m.health_trend_per_year, 2) + " a year)";
-  if (!m.ambiguity_group.empty())
-    text +=
-        ", " + words(name_of(m.ambiguity_group.front().kind)) + " " + percent(m.ambiguity_group.front().likelihood, 0);
+  if (!m.ambiguity_group.empty()) text += ", " + fault_words(m.ambiguity_group);
   if (!m.admissible_for_prognosis) text += ", not for prognosis: " + join(m.inadmissible_reasons);
   return text;
 }
@@ -78,8 +89,7 @@ std::string content(const LeakageEstimate& m) {
   if (!m.estimated) return "no estimate: " + join(m.reasons);
   std::string text =
       "R_CL " + number(m.resistance_Pa_s_m3, 3) + " +- " + number(m.resistance_std_Pa_s_m3, 2) + " Pa s/m3";
-  if (m.condition_known)
-    text += ", seal condition " + percent(m.condition) + " +- " + number(100.0 * m.condition_std, 2) + " %";
+  if (m.condition_known) text += ", seal condition " + percent(m.condition);
   if (!m.used_for_forecast) text += ", left out: " + join(m.reasons);
   return text;
 }
@@ -162,31 +172,46 @@ void keep_latest(std::optional<T>& kept, const T& next) {
 void AssetView::take(const Message& message) {
   asset_id_ = asset_of(message);
   if (const auto* estimate = std::get_if<LeakageEstimate>(&message)) estimates_[estimate->header.pst_id] = *estimate;
-  if (const auto* life = std::get_if<RemainingLife>(&message)) keep_latest(life_, *life);
+  if (const auto* life = std::get_if<RemainingLife>(&message)) {
+    keep_latest(life_, *life);
+    // A remaining life of no test is the answer to a replacement.
+    if (life->header.pst_id.empty() && life->header.event_time_known)
+      replaced_ns_ = std::max(replaced_ns_.value_or(life->header.event_time_ns), life->header.event_time_ns);
+  }
   if (const auto* health = std::get_if<HealthReport>(&message)) keep_latest(health_, *health);
   if (const auto* state = std::get_if<StateReport>(&message)) keep_latest(state_, *state);
   if (const auto* advisory = std::get_if<Advisory>(&message))
     if (advisory->state != AdvisoryState::superseded) advisory_ = *advisory;
 }
 
+bool AssetView::is_of_now(const Header& header) const {
+  return !replaced_ns_ || !header.event_time_known || header.event_time_ns >= *replaced_ns_;
+}
+
+std::vector<const LeakageEstimate*> AssetView::estimates_of_now() const {
+  std::vector<const LeakageEstimate*> estimates;
+  for (const auto& [id, estimate] : estimates_)
+    if (is_of_now(estimate.header)) estimates.push_back(&estimate);
+  return estimates;
+}
+
 std::string AssetView::seal_lines() const {
   std::string text;
   if (life_ && life_->condition_known)
-    text += "  seal condition   " + percent(life_->condition) + " +- " + number(100.0 * life_->condition_std, 2) +
-            " %" + " of its elastic modulus when new (fails at " + percent(life_->threshold, 0) + ")\n";
+    text += "  seal condition   " + percent(life_->condition) + " of its elastic modulus when new (fails at " +
+            percent(life_->threshold, 0) + ")\n";
   const LeakageEstimate* latest = nullptr;
-  for (const auto& [id, estimate] : estimates_)
-    if (estimate.estimated && (latest == nullptr || estimate.header.event_time_ns >= latest->header.event_time_ns))
-      latest = &estimate;
+  for (const LeakageEstimate* estimate : estimates_of_now())
+    if (estimate->estimated && (latest == nullptr || estimate->header.event_time_ns >= latest->header.event_time_ns))
+      latest = estimate;
   if (latest != nullptr)
     text += "  leakage          R_CL " + number(latest->resistance_Pa_s_m3, 4) + " +- " +
-            number(latest->resistance_std_Pa_s_m3, 2) + " Pa s/m3, from the " + latest->chosen_model + " model\n";
-  if (health_) {
+            number(latest->resistance_std_Pa_s_m3, 2) + " Pa s/m3 by sensor noise alone, from the " +
+            latest->chosen_model + " model\n";
+  if (health_ && is_of_now(health_->header)) {
     text += "  health           grade " + number(health_->health_grade, 2) + " (1 as new, 0 failed)";
     if (health_->trend_known) text += ", " + number(health_->health_trend_per_year, 2) + " a year";
-    if (!health_->ambiguity_group.empty())
-      text += "; most likely " + words(name_of(health_->ambiguity_group.front().kind)) + " (" +
-              percent(health_->ambiguity_group.front().likelihood, 0) + ")";
+    if (!health_->ambiguity_group.empty()) text += "; " + fault_words(health_->ambiguity_group);
     text += "\n";
   }
   return text;
@@ -198,29 +223,31 @@ std::string AssetView::history_chart() const {
   std::int64_t last = 0;
   double lowest = 1.0;
   double highest = 0.0;
-  for (const auto& [id, estimate] : estimates_) {
+  for (const LeakageEstimate* one : estimates_of_now()) {
+    const LeakageEstimate& estimate = *one;
     if (!estimate.used_for_forecast || !estimate.condition_known || !estimate.header.event_time_known) continue;
     const std::int64_t time = estimate.header.event_time_ns;
     if (points.empty() || time < first) first = time;
     if (points.empty() || time > last) last = time;
-    points.push_back({static_cast<double>(time), estimate.condition});
+    points.push_back({static_cast<double>(time), 100.0 * estimate.condition});
     lowest = std::min(lowest, estimate.condition);
     highest = std::max(highest, estimate.condition);
   }
   if (points.size() < 3 || !life_) return {};
   ChartOptions options;
-  options.threshold = life_->threshold;
+  options.threshold = 100.0 * life_->threshold;
   options.threshold_label = "fails";
-  options.y_low = std::floor(20.0 * std::min(lowest, life_->threshold)) / 20.0 - 0.05;
-  options.y_high = std::ceil(20.0 * highest) / 20.0;
-  options.height = 1 + static_cast<int>(std::lround((options.y_high - options.y_low) / 0.025));
+  options.y_low = 5.0 * std::floor(20.0 * std::min(lowest, life_->threshold)) - 5.0;
+  options.y_high = 5.0 * std::ceil(20.0 * highest);
+  options.height = 1 + static_cast<int>(std::lround((options.y_high - options.y_low) / 2.5));
   options.x_low_label = date(first);
   options.x_high_label = date(last);
-  return "\n  seal condition over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
+  return "\n  seal condition in % over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
 }
 
 std::string AssetView::forecast_lines() const {
   if (!life_ || life_->forecasts.empty()) return {};
+  if (life_->header.pst_id.empty()) return "  remaining life   " + life_->forecasts.front().explanation + "\n";
   // The one in charge and the straight lines beside it; the others are in the message.
   std::vector<Forecast> shown = {life_->forecasts.front()};
   for (std::size_t k = 1; k < life_->forecasts.size(); ++k)
@@ -242,7 +269,9 @@ std::string AssetView::advisory_lines() const {
 
 std::string AssetView::left_out_lines() const {
   std::string text;
-  for (const auto& [id, estimate] : estimates_) {
+  for (const LeakageEstimate* one : estimates_of_now()) {
+    const LeakageEstimate& estimate = *one;
+    const std::string& id = estimate.header.pst_id;
     if (estimate.used_for_forecast || estimate.reasons.empty()) continue;
     const std::size_t more = estimate.reasons.size() - 1;
     const std::string rest =
@@ -266,8 +295,12 @@ std::string AssetView::json() const {
 
 std::string AssetView::screen() const {
   std::string text = "== " + asset_id_;
-  if (life_ && life_->header.event_time_known) text += ", last test " + date(life_->header.event_time_ns);
-  text += ", " + std::to_string(estimates_.size()) + " tests in view\n";
+  const std::size_t tests = estimates_of_now().size();
+  if (replaced_ns_) text += ", replaced on " + date(*replaced_ns_) + ": its history begins anew";
+  if (life_ && !life_->header.pst_id.empty() && life_->header.event_time_known)
+    text += ", last test " + date(life_->header.event_time_ns);
+  text += tests == 0 && replaced_ns_ ? ", no test since\n"
+                                     : ", " + std::to_string(tests) + (tests == 1 ? " test" : " tests") + " in view\n";
   return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines() + left_out_lines();
 }
 

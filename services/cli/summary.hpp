@@ -35,10 +35,15 @@ class AssetView {
   [[nodiscard]] std::string forecast_lines() const;
   [[nodiscard]] std::string advisory_lines() const;
   [[nodiscard]] std::string left_out_lines() const;
+  /// Whether this is about the actuator or seal that is there now.
+  [[nodiscard]] bool is_of_now(const Header& header) const;
+  /// Tests since the last replacement.
+  [[nodiscard]] std::vector<const LeakageEstimate*> estimates_of_now() const;
 
   std::string asset_id_;
   std::map<std::string, LeakageEstimate> estimates_;  ///< by PST id
   std::optional<RemainingLife> life_;
+  std::optional<std::int64_t> replaced_ns_;  ///< when actuator or seal was replaced, as far as is known
   std::optional<HealthReport> health_;
   std::optional<StateReport> state_;
   std::optional<Advisory> advisory_;

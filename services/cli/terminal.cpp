@@ -110,7 +110,7 @@ std::string chart(const std::vector<ChartPoint>& points, const ChartOptions& opt
   for (int row = 0; row < options.height; ++row) {
     const double y = options.y_high - (options.y_high - options.y_low) * row / (options.height - 1);
     char label[16];
-    std::snprintf(label, sizeof label, "%6.2f |", y);
+    std::snprintf(label, sizeof label, "%6.1f |", y);
     text += label + rows[static_cast<std::size_t>(row)];
     if (row == threshold_row) text.append("  ").append(options.threshold_label);
     text += '\n';

@@ -121,7 +121,9 @@ TestConclusion conclude_test(const std::vector<SampleBlock>& blocks, const Asset
   note(window.abort_reason, cut_at_gap(recorded, options.longest_gap_s));
   const std::size_t rows = recorded.time_s.size();
   if (rows < options.least_samples)
-    note(window.abort_reason, "only " + std::to_string(rows) + " samples were recorded");
+    note(window.abort_reason,
+         rows == 0 ? "no sample was recorded"
+                   : "only " + std::to_string(rows) + (rows == 1 ? " sample was" : " samples were") + " recorded");
   else
     cut_window(recorded, asset, options, window);
 

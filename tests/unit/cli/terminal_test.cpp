@@ -34,7 +34,7 @@ TEST(Terminal, ChartShowsEachPointAndTheThreshold) {
   options.x_low_label = "a";
   options.x_high_label = "b";
   EXPECT_EQ(chart({{0.0, 1.0}, {4.0, 0.5}}, options),
-            "  1.00 |o    \n  0.50 |    o\n  0.00 |- - -  fails\n       +-----\n        a   b\n");
+            "   1.0 |o    \n   0.5 |    o\n   0.0 |- - -  fails\n       +-----\n        a   b\n");
   EXPECT_EQ(chart({}, options), "");
 }
 

@@ -108,7 +108,7 @@ TEST(VerdictWords, RoundTripOfEveryField) {
 TEST(VerdictWords, OtherReasonsAreNoRecord) {
   EXPECT_FALSE(from_words(""));
   EXPECT_FALSE(from_words("health grade 0.7"));
-  EXPECT_FALSE(from_words("judged by itself this test says: ; in force: "));
+  EXPECT_FALSE(from_words("this test alone calls for: ; all tests so far call for: "));
 }
 
 }  // namespace

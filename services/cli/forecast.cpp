@@ -52,6 +52,9 @@ std::optional<forecast::ForecastRequest> request_of(const ForecastOptions& optio
       complain(before.error());
       return std::nullopt;
     }
+    if (!request.history.empty() && *before <= request.now)
+      std::fprintf(stderr, "sealwatch: --before %s: passed over, as it is not after the last test (%s)\n", text.c_str(),
+                   format_date(request.now).c_str());
     request.horizons.push_back({.label = text, .before = *before});
   }
   return request;

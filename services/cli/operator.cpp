@@ -1,4 +1,6 @@
 // `sealwatch acknowledge` and `sealwatch replaced`: what people tell the system.
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <functional>
@@ -6,21 +8,26 @@
 #include "sealwatch/core/time.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
 /// The reader's heartbeat confirms receipt; without it after this time the command says so and fails.
 constexpr std::chrono::seconds kPatience{10};
+/// The answer follows the receipt within the same batch.
+constexpr std::chrono::seconds kPatienceForAnswer{2};
+constexpr std::array kAdvisory = {Topic::advisory};
 
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
 }
 
-/// Publishes one message as a stream of its own and waits until every one of `readers` has journaled it.
-int send(const std::string& config, Message message, std::vector<std::string> readers) {
-  std::optional<Session> session = open_session(config);
+/// Publishes one message as a stream of its own and waits until every one of `readers` has journaled it. What else
+/// comes on the bus meanwhile goes to `look`.
+int send(std::optional<Session>& session, const std::string& config, Message message, std::vector<std::string> readers,
+         const std::function<void(const Message&)>& look = {}) {
   if (!session) return kBadInput;
   if (session->configuration.find_asset(asset_of(message)) == nullptr) {
     complain(Error{.file = config,
@@ -46,16 +53,14 @@ int send(const std::string& config, Message message, std::vector<std::string> re
       if (const auto* status = std::get_if<ServiceStatus>(&item))
         for (const StreamPosition& position : status->received)
           if (position.writer_id == header.writer_id) std::erase(readers, status->service);
+      if (const auto* other = std::get_if<Message>(&item); other != nullptr && look) look(*other);
     }
   }
   if (!done) {
     complain(done.error());
     return kInternalFailure;
   }
-  if (readers.empty()) {
-    std::printf("received\n");
-    return kOk;
-  }
+  if (readers.empty()) return kOk;
   complain(Error{.file = {},
                  .place = topic,
                  .value = {},
@@ -63,6 +68,42 @@ int send(const std::string& config, Message message, std::vector<std::string> re
                  .advice = "is it running? see `sealwatch status`"});
   return kAnswerIsNo;
 }
+
+/// What the advisories say about an acknowledgement.
+class Answer {
+ public:
+  explicit Answer(const Acknowledgement& question) : question_(question) {}
+
+  void look(const Message& message) {
+    const auto* advisory = std::get_if<Advisory>(&message);
+    if (advisory == nullptr || advisory->asset_id != question_.asset_id) return;
+    const auto& causes = advisory->header.source_ids;
+    if (std::find(causes.begin(), causes.end(), question_.header.message_id) != causes.end()) answer_ = *advisory;
+    if (advisory->state != AdvisoryState::superseded) current_ = *advisory;
+  }
+  [[nodiscard]] bool given() const { return answer_.has_value(); }
+
+  /// Prints what became of it.
+  [[nodiscard]] int conclude() const {
+    if (current_ && current_->advisory_id == question_.advisory_id && current_->state == AdvisoryState::acknowledged) {
+      std::printf("acknowledged by %s\n", current_->acknowledged_by.c_str());
+      return kOk;
+    }
+    const bool other = current_ && current_->advisory_id != question_.advisory_id;
+    complain(Error{.file = {},
+                   .place = "advisory",
+                   .value = question_.advisory_id,
+                   .rule = current_ ? (other ? "is not the advisory in force for this asset" : "was not acknowledged")
+                                    : "is not known: there is no advisory for asset " + question_.asset_id,
+                   .advice = other ? "the one in force is " + current_->advisory_id : "see `sealwatch status`"});
+    return kAnswerIsNo;
+  }
+
+ private:
+  Acknowledgement question_;
+  std::optional<Advisory> current_;
+  std::optional<Advisory> answer_;
+};
 
 }  // namespace
 
@@ -76,7 +117,21 @@ int run_acknowledge(const AcknowledgeOptions& options) {
   message.header.event_time_ns = now_ns();
   message.header.message_id =
       "acknowledgement/" + options.advisory_id + "/" + std::to_string(message.header.event_time_ns);
-  return send(options.config, message, {"advisory_generation"});
+  std::optional<Session> session = open_session(options.config);
+  if (session)
+    if (const Status joined = session->bus->subscribe(kAdvisory); !joined) {
+      complain(joined.error());
+      return kInternalFailure;
+    }
+  Answer answer(message);
+  const auto look = [&answer](const Message& other) { answer.look(other); };
+  if (const int sent = send(session, options.config, message, {"advisory_generation"}, look); sent != kOk) return sent;
+  // One that is acknowledged already, or of an asset without advice, gets no answer.
+  const auto end = std::chrono::steady_clock::now() + kPatienceForAnswer;
+  while (!answer.given() && std::chrono::steady_clock::now() < end)
+    for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100)))
+      if (const auto* other = std::get_if<Message>(&item)) look(*other);
+  return answer.conclude();
 }
 
 int run_replaced(const ReplacedOptions& options) {
@@ -102,7 +157,13 @@ int run_replaced(const ReplacedOptions& options) {
   message.header.event_time_known = true;
   message.header.event_time_ns = at->nanoseconds;
   message.header.message_id = "maintenance_event/" + options.asset_id + "/" + format_utc(*at);
-  return send(options.config, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  std::optional<Session> session = open_session(options.config);
+  const int sent =
+      send(session, options.config, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  if (sent == kOk)
+    std::printf("received: the history of %s begins anew on %s\n", options.asset_id.c_str(),
+                date(at->nanoseconds).c_str());
+  return sent;
 }
 
 }  // namespace sealwatch::cli

@@ -177,7 +177,9 @@ int replay_live(const ReplayOptions& options, const LayerSet& layers, ReplaySour
   if (!session) return kBadInput;
   std::optional<Supervisor> supervisor;
   if (options.with_services) {
-    supervisor.emplace(service_programs(options.config, options.state_directory, session->configuration));
+    const auto programs = service_programs(options.config, options.state_directory, session->configuration);
+    if (!free_to_start(*session, names_of(programs))) return kBadInput;
+    supervisor.emplace(programs);
     if (const Status started = supervisor->start(); !started) {
       complain(started.error());
       return kInternalFailure;

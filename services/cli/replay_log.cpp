@@ -75,6 +75,12 @@ void ReplayLog::finish() {
       std::printf("\n%s", view.screen().c_str());
   }
   if (assets_.empty()) std::printf("no test has been concluded\n");
+  if (!options_.results_directory.empty() && results_.empty())
+    std::fprintf(
+        stderr,
+        "sealwatch: nothing was written to %s: the services had concluded from all these tests before, and say "
+        "nothing twice; replay --offline, or with another --state, writes everything\n",
+        options_.results_directory.c_str());
 }
 
 }  // namespace sealwatch::cli

@@ -1,10 +1,13 @@
 #include "services/cli/session.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <random>
 #include <utility>
 
@@ -50,6 +53,32 @@ std::optional<Session> open_session(const std::string& config) {
     return std::nullopt;
   }
   return Session{std::move(*configuration), std::move(*bus)};
+}
+
+std::string running_services(Session& session, const std::vector<std::string>& wanted) {
+  constexpr std::chrono::milliseconds kTwoHeartbeats{2000};
+  if (const Status joined = session.bus->subscribe_service_topics(); !joined) return {};
+  std::map<std::string, std::string> running;
+  const auto end = std::chrono::steady_clock::now() + kTwoHeartbeats;
+  while (running.empty() && !interrupted() && std::chrono::steady_clock::now() < end)
+    for (const BusItem& item : session.bus->receive(std::chrono::milliseconds(100)))
+      if (const auto* status = std::get_if<ServiceStatus>(&item))
+        if (status->state == "running" && std::ranges::find(wanted, status->service) != wanted.end())
+          running[status->service] = status->service + " (process " + std::to_string(status->process_id) + ")";
+  std::string text;
+  for (const auto& [service, words] : running) text += (text.empty() ? "" : ", ") + words;
+  return text;
+}
+
+bool free_to_start(Session& session, const std::vector<std::string>& wanted) {
+  const std::string running = running_services(session, wanted);
+  if (running.empty()) return true;
+  complain(Error{.file = {},
+                 .place = "DDS domain " + std::to_string(session.configuration.domain),
+                 .value = running,
+                 .rule = "runs here already: two sets of services would answer each other's messages",
+                 .advice = "use those that run, stop them first, or give this set another domain or discovery tag"});
+  return false;
 }
 
 void catch_interrupts() {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/port/bus.hpp"
@@ -23,6 +24,13 @@ struct Session {
 
 /// Loads the configuration and joins the bus; says on standard error what went wrong.
 [[nodiscard]] std::optional<Session> open_session(const std::string& config);
+
+/// The services of `wanted` that run in the session's domain already, in words: "state_detection (process 4711)"; ""
+/// when there are none. Listens for a heartbeat's time.
+[[nodiscard]] std::string running_services(Session& session, const std::vector<std::string>& wanted);
+
+/// Whether none of `wanted` runs already; says on standard error which do, and what to do.
+[[nodiscard]] bool free_to_start(Session& session, const std::vector<std::string>& wanted);
 
 /// "sealwatch: " and the error, on standard error.
 void complain(const Error& error);

@@ -59,6 +59,12 @@ std::vector<ServiceProgram> service_programs(const std::string& config, const st
   return programs;
 }
 
+std::vector<std::string> names_of(const std::vector<ServiceProgram>& programs) {
+  std::vector<std::string> names;
+  for (const ServiceProgram& program : programs) names.push_back(program.name);
+  return names;
+}
+
 Supervisor::Supervisor(std::vector<ServiceProgram> programs, std::chrono::milliseconds restart_pause)
     : restart_pause_(restart_pause) {
   for (ServiceProgram& program : programs)

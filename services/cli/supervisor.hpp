@@ -23,6 +23,7 @@ struct ServiceProgram {
 [[nodiscard]] std::vector<ServiceProgram> service_programs(const std::string& config,
                                                            const std::string& state_directory,
                                                            const Configuration& configuration = {});
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<ServiceProgram>& programs);
 /// Whether this machine is to run the service: `services.NAME.enabled`, true where nothing is said.
 [[nodiscard]] bool enabled(const Configuration& configuration, const std::string& service);
 

@@ -10,12 +10,14 @@
 namespace sealwatch::cli {
 
 int run_up(const UpOptions& options) {
-  const std::optional<Configuration> configuration = load_or_explain(options.config);
-  if (!configuration) return kBadInput;
+  std::optional<Session> session = open_session(options.config);
+  if (!session) return kBadInput;
   const std::vector<ServiceProgram> programs =
-      service_programs(options.config, options.state_directory, *configuration);
-  Supervisor supervisor(programs);
+      service_programs(options.config, options.state_directory, session->configuration);
   catch_interrupts();
+  if (!free_to_start(*session, names_of(programs))) return kBadInput;
+  session.reset();
+  Supervisor supervisor(programs);
   if (const Status started = supervisor.start(); !started) {
     complain(started.error());
     return kInternalFailure;

@@ -25,7 +25,7 @@ struct StateSpaceOptions {
   FleetPopulation population = {};
   double spread = 1.5;              ///< widens the population's standard deviations
   int fewest_tests = 6;             ///< below: insufficient_history
-  double change_per_month = 0.005;  ///< prior probability of a change (rate or level) in a month
+  double change_per_month = 0.002;  ///< prior probability of a change (rate or level) in a month
   double horizon_months = 600.0;    ///< a median beyond this is no date
 
   [[nodiscard]] Status validate() const;

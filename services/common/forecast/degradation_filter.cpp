@@ -9,8 +9,8 @@
 namespace sealwatch::forecast {
 namespace {
 
-// Of the outlier component: one test in fifty, and so far off that any gross error finds a place in it.
-constexpr double kOutlierShare = 0.02;
+// Of the outlier component: one test in a hundred, and so far off that any gross error finds a place in it.
+constexpr double kOutlierShare = 0.01;
 constexpr double kOutlierErrors = 5.0;  // times the standard error
 constexpr double kOutlierWidth = 0.05;  // of theta
 constexpr double kSmallestStd = 1e-6;   // rounding of histories in text files

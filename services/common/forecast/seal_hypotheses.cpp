@@ -9,8 +9,8 @@
 namespace sealwatch::forecast {
 namespace {
 
-// A seal that is not of the population: one in twenty, its rate anything between standing still and three times usual.
-constexpr double kStrangerShare = 0.05;
+// A seal that is not of the population: three in a hundred, its rate anything between standing still and three times usual.
+constexpr double kStrangerShare = 0.03;
 constexpr double kStrangerInitialStd = 0.05;
 constexpr double kStrangerRateStd = 0.06;
 constexpr double kStrangerSteepeningStd = 0.003;

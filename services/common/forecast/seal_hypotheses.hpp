@@ -28,7 +28,7 @@ struct SealHypothesis {
 struct HypothesisOptions {
   FleetPopulation population;
   double spread = 1.0;
-  double change_per_month = 0.005;
+  double change_per_month = 0.002;
   std::optional<double> age_at_first_test;  ///< [months]; none: not known
 };
 

@@ -35,6 +35,17 @@ struct FitOptions {
 };
 int run_fit(const FitOptions& options);
 
+struct ExplainOptions {
+  std::string asset_file;
+  std::vector<std::string> fit;
+  std::vector<std::string> holdout;
+  std::string directory;   ///< for report.json, report.html and asset.explained.yaml
+  std::uint64_t seed = 1;  ///< the same seed gives the same report
+  int threads = 2;
+  bool json = false;
+};
+int run_explain(const ExplainOptions& options);
+
 struct ForecastOptions {
   std::string history_file;
   std::string asset_file;

@@ -10,9 +10,9 @@
 #include "sealwatch/estimation/cylinder_circuit.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
-#include "services/common/recording/recording_file.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
 #include "services/data_acquisition/data_acquisition.hpp"
 #include "services/data_acquisition/recording_blocks.hpp"
@@ -30,30 +30,6 @@ struct FitResult {
   FitReport report;
   std::vector<EstimatedParameter> loads;
 };
-
-std::optional<std::vector<Recording>> read_all(const FitOptions& options, const AssetConfig& asset,
-                                               const PlantDescription& plant) {
-  std::vector<Recording> recordings;
-  for (const std::string& file : options.recordings) {
-    Result<Recording> recording = read_recording(file, plant);
-    if (!recording) {
-      complain(recording.error());
-      return std::nullopt;
-    }
-    if (!recording->asset_id.empty() && recording->asset_id != asset.asset_id) {
-      complain(Error{.file = file,
-                     .place = "asset_id",
-                     .value = recording->asset_id,
-                     .rule = "is not the asset " + asset.asset_id,
-                     .advice = "one fit is about one asset"});
-      return std::nullopt;
-    }
-    recording->asset_id =
-        asset.asset_id;  // without a sidecar too: cutting and aligning a test takes the asset's settings
-    recordings.push_back(std::move(*recording));
-  }
-  return recordings;
-}
 
 bool inputs_recorded(const PlantDescription& plant, const std::vector<Recording>& recordings) {
   return std::all_of(recordings.begin(), recordings.end(), [&plant](const Recording& recording) {
@@ -219,7 +195,7 @@ int run_fit(const FitOptions& options) {
     complain(plant.error());
     return kBadInput;
   }
-  const auto recordings = read_all(options, *asset, **plant);
+  const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
   const std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);
   if (!fit) return kBadInput;

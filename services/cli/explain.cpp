@@ -1,0 +1,11 @@
+// `sealwatch explain`: where simulation and recordings differ, by what physics, and whether adding it helps
+// (INTERFACES sections 3 and 4).
+#include "sealwatch/mismatch/explain.hpp"
+
+#include "services/cli/explain_command.hpp"
+
+namespace sealwatch::cli {
+
+int run_explain(const ExplainOptions& options) { return explain_with(mismatch::explain, options); }
+
+}  // namespace sealwatch::cli

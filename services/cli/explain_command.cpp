@@ -1,0 +1,165 @@
+#include "services/cli/explain_command.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/cli/recordings.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/common/report/explanation_html.hpp"
+#include "services/common/report/explanation_json.hpp"
+#include "services/common/report/readable.hpp"
+#include "services/common/runtime/asset_file.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using mismatch::Explanation;
+using mismatch::FoundEffect;
+using mismatch::FoundParameter;
+
+constexpr std::size_t kWidth = 110;
+
+struct Files {
+  std::string json, html, asset;
+};
+
+Files files_in(const std::string& directory) {
+  const std::filesystem::path place(directory);
+  return {(place / "report.json").string(), (place / "report.html").string(),
+          (place / "asset.explained.yaml").string()};
+}
+
+/// The same bytes twice are no second test; a recording that took part in the fit proves nothing.
+Status all_different(const std::vector<Recording>& fit, const std::vector<Recording>& holdout) {
+  std::map<std::string, const Recording*> seen;
+  for (const std::vector<Recording>* list : {&fit, &holdout})
+    for (const Recording& recording : *list) {
+      const auto [other, is_new] = seen.emplace(recording.content_hash, &recording);
+      if (is_new) continue;
+      const bool crossed = list == &holdout && other->second >= fit.data() && other->second < fit.data() + fit.size();
+      return fail(Error{
+          .file = recording.file,
+          .place = {},
+          .value = {},
+          .rule = (crossed ? "is kept aside, but has the same content as the fitted " : "has the same content as ") +
+                  other->second->file,
+          .advice = "give each recording once"});
+    }
+  return {};
+}
+
+/// Made before the analysis, so that a place that cannot be written to costs no waiting.
+Status make_directory(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (!std::filesystem::is_directory(directory))
+    return fail(Error{.file = directory,
+                      .place = "--out",
+                      .value = {},
+                      .rule = "is no directory and cannot be made",
+                      .advice = error.message()});
+  return {};
+}
+
+Status write_file(const std::string& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) return fail(Error{.file = file, .place = {}, .value = {}, .rule = "cannot be written", .advice = {}});
+  return {};
+}
+
+Status write_all(const Explanation& explanation, const std::string& json, const Files& files) {
+  if (Status status = write_file(files.json, json); !status) return status;
+  if (Status status = write_file(files.html, report::explanation_to_html(explanation)); !status) return status;
+  return save_asset(explanation.explained, files.asset);
+}
+
+std::string parameter_text(const FoundParameter& parameter) {
+  return parameter.name + " = " + report::readable_with_error(parameter.value, parameter.std_error, parameter.unit);
+}
+
+void print_effect(const FoundEffect& effect) {
+  std::printf("\n  %s of %s (%s)\n", report::words_of(effect.what.id).c_str(),
+              report::words_of(effect.what.element).c_str(), report::percent_text(effect.probability).c_str());
+  std::printf("    %s\n", wrapped(effect.what.law, kWidth, 4).c_str());
+  for (const FoundParameter& parameter : effect.parameters) std::printf("    %s\n", parameter_text(parameter).c_str());
+  std::string others;
+  for (const mismatch::LawAt& other : effect.indistinguishable)
+    others += (others.empty() ? "" : ", ") + report::words_of(other.id) + " of " + report::words_of(other.element);
+  if (!others.empty()) std::printf("    %s\n", wrapped("cannot be told from: " + others, kWidth, 4).c_str());
+}
+
+void print_channels(const char* which, const mismatch::PooledFit& fit, bool changed) {
+  if (fit.channels.empty()) return;
+  std::printf("\n  %-24s %14s %14s %12s %12s\n", which, "misfit/noise", changed ? "after" : "", "fit %",
+              changed ? "after" : "");
+  for (const mismatch::ChannelComparison& channel : fit.channels) {
+    std::printf("  %-24s %14s ", channel.channel.c_str(), number(channel.rms_before).c_str());
+    std::printf("%14s %12.2f", changed ? number(channel.rms_after).c_str() : "", channel.nrmse_before);
+    changed ? std::printf(" %12.2f\n", channel.nrmse_after) : std::printf("\n");
+  }
+}
+
+void print_text(const Explanation& explanation, const Files& files) {
+  std::printf("%s: %s\n  %s\n", explanation.asset_id.c_str(), std::string(name_of(explanation.verdict)).c_str(),
+              wrapped(explanation.summary, kWidth, 2).c_str());
+  for (const FoundEffect& effect : explanation.effects) print_effect(effect);
+  const bool changed = !explanation.effects.empty();
+  print_channels("kept aside", explanation.holdout, changed);
+  print_channels("fitted", explanation.fit, changed);
+  if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());
+  std::printf("\n  look at %s\n  scripts read %s\n  the asset with what was found: %s\n", files.html.c_str(),
+              files.json.c_str(), files.asset.c_str());
+}
+
+Result<Explanation> analyse(const ExplainEngine& engine, const ExplainOptions& options, const AssetConfig& asset,
+                            const std::vector<Recording>& fit, const std::vector<Recording>& holdout) {
+  mismatch::ExplainOptions settings;
+  settings.seed = options.seed;
+  settings.threads = options.threads;
+  Progress progress("explain", 100);
+  return engine(asset, fit, holdout, settings, [&progress](std::string_view step, double share) {
+    progress.show(static_cast<std::size_t>(std::lround(100.0 * share)), step);
+  });
+}
+
+/// Whether `status` is good; says on standard error why not.
+bool good(const Status& status) {
+  if (!status) complain(status.error());
+  return status.has_value();
+}
+
+}  // namespace
+
+int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
+  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  if (!asset) return kBadInput;
+  const Result<const PlantDescription*> plant = find_plant(asset->model);
+  if (!plant) {
+    complain(plant.error());
+    return kBadInput;
+  }
+  const auto fit = read_recordings(options.fit, *asset, **plant);
+  if (!fit) return kBadInput;
+  const auto holdout = read_recordings(options.holdout, *asset, **plant);
+  if (!holdout || !good(all_different(*fit, *holdout)) || !good(make_directory(options.directory))) return kBadInput;
+
+  const Result<Explanation> explanation = analyse(engine, options, *asset, *fit, *holdout);
+  if (!explanation) {
+    complain(explanation.error());
+    return kBadInput;
+  }
+  const std::string json = report::explanation_to_json(*explanation);
+  const Files files = files_in(options.directory);
+  if (!good(write_all(*explanation, json, files))) return kBadInput;
+  options.json ? static_cast<void>(std::fputs(json.c_str(), stdout)) : print_text(*explanation, files);
+  return explanation->verdict == mismatch::Verdict::undetermined ? kAnswerIsNo : kOk;
+}
+
+}  // namespace sealwatch::cli

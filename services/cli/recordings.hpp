@@ -1,0 +1,20 @@
+// Reading the recordings that a command line names.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/recording.hpp"
+#include "sealwatch/model/plant_description.hpp"
+
+namespace sealwatch::cli {
+
+/// The recordings in `files`, each with the asset's id. A file that cannot be read, or that is of another asset, is
+/// told on standard error.
+[[nodiscard]] std::optional<std::vector<Recording>> read_recordings(const std::vector<std::string>& files,
+                                                                    const AssetConfig& asset,
+                                                                    const PlantDescription& plant);
+
+}  // namespace sealwatch::cli

@@ -59,16 +59,17 @@ std::string Colouring::part(const Part& part) const {
   std::string svg = filled(part.element, part.shape);
   svg.append("<g class=\"symbol\">").append(part.symbol).append("</g>\n");
   svg += text_at(part.label_x, part.label_y, part.anchor, share >= kShown ? "title" : "", words_of(part.element));
-  if (share >= kShown) svg += text_at(part.label_x, part.label_y + 14.0, part.anchor, "share", percent_text(share));
+  if (share >= kShown)
+    svg +=
+        text_at(part.label_x, part.label_y + 14.0, part.anchor, part.inside ? "title" : "share", percent_text(share));
   return svg;
 }
 
 std::string Colouring::sensor(std::string_view channel, std::string_view letters, double x, double y) const {
   const std::string element = std::string(kSensor).append(channel);
-  const bool seen = std::ranges::find(recorded_, channel) != recorded_.end();
   const std::string disc =
       std::string("<circle cx=\"").append(pixel(x)).append("\" cy=\"").append(pixel(y)).append("\" r=\"12\"/>");
-  std::string svg = seen ? "<g>\n" : "<g opacity=\".35\">\n";
+  std::string svg = is_recorded(channel) ? "<g>\n" : "<g opacity=\".35\">\n";
   svg += filled(element, disc);
   svg += text_at(x, y + 4.0, "middle", "letters", letters);
   const double share = probability(element);

@@ -8,11 +8,13 @@ namespace {
 constexpr std::size_t kPerRow = 5;
 constexpr double kBoxWidth = 150.0;
 constexpr double kBoxHeight = 56.0;
+constexpr double kPillHeight = 38.0;
+constexpr double kPillStepY = 50.0;
 constexpr double kStepX = 190.0;
 constexpr double kStepY = 84.0;
 constexpr std::string_view kSensor = "sensor:";
 
-std::string box(double x, double y) {
+std::string rectangle(double x, double y, double height, double corner) {
   return std::string("<rect x=\"")
       .append(pixel(x))
       .append("\" y=\"")
@@ -20,8 +22,10 @@ std::string box(double x, double y) {
       .append("\" width=\"")
       .append(pixel(kBoxWidth))
       .append("\" height=\"")
-      .append(pixel(kBoxHeight))
-      .append("\" rx=\"5\"/>");
+      .append(pixel(height))
+      .append("\" rx=\"")
+      .append(pixel(corner))
+      .append("\"/>");
 }
 
 /// From one box to the next in its row.
@@ -38,15 +42,18 @@ std::string arrow(double x, double y) {
       .append("\"/>\n");
 }
 
-/// "pressure_a" as "pa": first letters of the words.
-std::string initials(std::string_view channel) {
-  std::string letters;
-  bool first = true;
-  for (const char letter : channel) {
-    if (first) letters += letter;
-    first = letter == '_';
-  }
-  return letters.substr(0, 3);
+/// A sensor: a box with round ends, faint where the channel is not recorded.
+std::string pill(const Colouring& colouring, const std::string& element, double x, double y) {
+  const std::string shape = rectangle(x, y, kPillHeight, kPillHeight / 2.0);
+  const bool seen = colouring.is_recorded(std::string_view(element).substr(kSensor.size()));
+  return std::string(seen ? "<g>\n" : "<g opacity=\".4\">\n")
+      .append(colouring.part({.element = element,
+                              .shape = shape,
+                              .symbol = {},
+                              .label_x = x + kBoxWidth / 2.0,
+                              .label_y = y + 17.0,
+                              .inside = true}))
+      .append("</g>\n");
 }
 
 }  // namespace
@@ -58,25 +65,28 @@ std::string chain_drawing(const Colouring& colouring) {
   std::vector<std::string> sensors;
   for (const ElementDescription& element : colouring.plant().elements) {
     if (element.name.starts_with(kSensor)) {
-      sensors.push_back(element.name.substr(kSensor.size()));
+      sensors.push_back(element.name);
       continue;
     }
     const double x = 10.0 + kStepX * static_cast<double>(count % kPerRow);
     const double y = 10.0 + kStepY * static_cast<double>(count / kPerRow);
     if (count % kPerRow != 0) wires += arrow(x - kStepX, y);
-    const std::string shape = box(x, y);
-    boxes += colouring.part(
-        {.element = element.name, .shape = shape, .symbol = {}, .label_x = x + kBoxWidth / 2.0, .label_y = y + 26.0});
+    const std::string shape = rectangle(x, y, kBoxHeight, 5.0);
+    boxes += colouring.part({.element = element.name,
+                             .shape = shape,
+                             .symbol = {},
+                             .label_x = x + kBoxWidth / 2.0,
+                             .label_y = y + 26.0,
+                             .inside = true});
     ++count;
   }
   const double rows = static_cast<double>((count + kPerRow - 1) / kPerRow);
-  const double sensor_y = 10.0 + kStepY * rows + 12.0;
-  double x = 28.0;
-  for (const std::string& channel : sensors) {
-    boxes += colouring.sensor(channel, initials(channel), x, sensor_y);
-    x += 80.0;
-  }
-  const std::string height = pixel(sensor_y + 26.0);
+  const double sensors_y = 10.0 + kStepY * rows;
+  for (std::size_t k = 0; k < sensors.size(); ++k)
+    boxes += pill(colouring, sensors[k], 10.0 + kStepX * static_cast<double>(k % kPerRow),
+                  sensors_y + kPillStepY * static_cast<double>(k / kPerRow));
+  const std::string height =
+      pixel(sensors_y + kPillStepY * static_cast<double>((sensors.size() + kPerRow - 1) / kPerRow));
   return std::string("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" class=\"drawing\" width=\"960\" height=\"")
       .append(height)
       .append("\" viewBox=\"0 0 960 ")

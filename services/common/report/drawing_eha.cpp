@@ -28,8 +28,8 @@ constexpr auto kParts = std::to_array<Part>({
      "<path d=\"M436 346H462M484 346H514M484 332L470 346L484 360\"/>"
      "<circle class=\"solid\" cx=\"466\" cy=\"346\" r=\"5\"/>",
      475, 382},
-    {"chamber_a", "<rect x=\"580\" y=\"160\" width=\"130\" height=\"100\"/>", "", 646, 214},
-    {"chamber_b", "<path d=\"M740 160H860V202H740ZM740 218H860V260H740Z\"/>", "", 800, 184},
+    {"chamber_a", "<rect x=\"580\" y=\"160\" width=\"130\" height=\"100\"/>", "", 646, 214, "middle", true},
+    {"chamber_b", "<path d=\"M740 160H860V202H740ZM740 218H860V260H740Z\"/>", "", 800, 180, "middle", true},
     {"piston", "<rect x=\"710\" y=\"168\" width=\"30\" height=\"84\"/>", "<path d=\"M725 176V128\"/>", 725, 110},
     {"piston_seal", "<path d=\"M710 160H740V168H710ZM710 252H740V260H710Z\"/>", "<path d=\"M725 256V280\"/>", 725, 292},
     {"fluid", "<path d=\"M290 318c0 -14 16 -22 16 -40c0 18 16 26 16 40a16 16 0 0 1 -32 0\"/>", "", 284, 318, "end"},

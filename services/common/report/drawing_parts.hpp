@@ -17,6 +17,7 @@ struct Part {
   std::string_view symbol;
   double label_x = 0.0, label_y = 0.0;
   std::string_view anchor = "middle";
+  bool inside = false;  ///< the name stands in the shape, whose colour may be strong
 };
 
 class Colouring {
@@ -31,6 +32,9 @@ class Colouring {
   /// A sensor: a disc with `letters` in it and the probability below.
   [[nodiscard]] std::string sensor(std::string_view channel, std::string_view letters, double x, double y) const;
 
+  [[nodiscard]] bool is_recorded(std::string_view channel) const {
+    return std::ranges::find(recorded_, channel) != recorded_.end();
+  }
   [[nodiscard]] const PlantDescription& plant() const { return plant_; }
 
  private:

@@ -93,9 +93,11 @@ std::string banner(const Explanation& explanation) {
   std::string html = "<p class=\"muted small\">";
   html.append(escaped("Asset " + explanation.asset_id + ", model " + explanation.model +
                       ". Fitted: " + list_of(explanation.fit_recordings) + ". "));
-  html.append(escaped(explanation.holdout_recordings.empty()
-                          ? std::string("No recording was kept aside: each fitted one was left out in turn.")
-                          : "Kept aside: " + list_of(explanation.holdout_recordings) + "."));
+  std::string aside = "Kept aside: " + list_of(explanation.holdout_recordings) + ".";
+  if (explanation.holdout_recordings.empty())
+    aside = explanation.fit_recordings.size() > 1 ? "No recording was kept aside: each was left out in turn."
+                                                  : "No recording was kept aside.";
+  html.append(escaped(aside));
   html.append("</p>\n<div class=\"banner ").append(verdict.css_class).append("\">\n");
   html.append(paragraph(verdict.words, "verdict")).append(paragraph(explanation.summary));
   if (!explanation.next_test.empty()) html.append(paragraph("Next: " + explanation.next_test, "small"));

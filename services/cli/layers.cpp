@@ -1,6 +1,7 @@
 #include "services/cli/layers.hpp"
 
 #include "sealwatch/estimation/pem_estimator.hpp"
+#include "sealwatch/forecast/configured.hpp"
 #include "services/advisory_generation/advisory_generation.hpp"
 #include "services/common/model/model_simulator.hpp"
 #include "services/data_acquisition/data_acquisition.hpp"
@@ -19,10 +20,11 @@ Result<LayerSet> LayerSet::make(const Configuration& configuration) {
   set.layers_.push_back(std::make_unique<DataManipulation>(configuration.assets));
   set.layers_.push_back(std::make_unique<StateDetection>(configuration.assets, set.simulator_));
   set.layers_.push_back(std::make_unique<HealthAssessment>(configuration.assets));
-  auto prognostic = prognostic_assessment::PrognosticAssessment::make(configuration, *set.estimator_);
+  auto prognostic = prognostic_assessment::PrognosticAssessment::make(
+      configuration, *set.estimator_, {.forecasters = forecast::configured_forecasters(configuration)});
   if (!prognostic) return fail(prognostic.error());
   set.layers_.push_back(std::move(*prognostic));
-  auto advisory = advisory_generation::AdvisoryGeneration::make(configuration);
+  auto advisory = advisory_generation::AdvisoryGeneration::make(configuration, configuration.advice);
   if (!advisory) return fail(advisory.error());
   set.layers_.push_back(std::move(*advisory));
   return set;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/config/advice.hpp"
 #include "sealwatch/config/asset.hpp"
 
 namespace sealwatch {
@@ -30,13 +31,22 @@ struct ServiceConfig {
   std::string recordings_directory;  ///< data_acquisition only: recordings dropped here are taken in; "" none
 };
 
+/// One of the forecasters that judge every history side by side; what the methods are: forecast/forecaster.hpp.
+struct ForecasterConfig {
+  std::string method = "ols";
+  std::int32_t window_months = 36;
+  std::vector<ForecasterConfig> members = {};  ///< of method average; none: its default members
+};
+
 struct Configuration {
   std::int32_t domain = 0;
   std::string state_directory = "state";
   std::string cyclonedds_uri;  ///< passed on as CYCLONEDDS_URI where the environment has none
   LoggingConfig logging;
   std::map<std::string, ServiceConfig> services;  ///< by service name
-  std::map<std::string, TopicQos> topics;         ///< by topic name
+  std::vector<ForecasterConfig> forecasters;      ///< the one in charge first; none: the default ones
+  AdviceOptions advice;
+  std::map<std::string, TopicQos> topics;  ///< by topic name
   std::vector<SiteConfig> sites;
   std::vector<AssetConfig> assets;
 

@@ -6,6 +6,7 @@
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/message/topics.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/common/runtime/service_options.hpp"
 #include "services/common/runtime/yaml_map.hpp"
 
 namespace sealwatch {
@@ -46,6 +47,7 @@ void read_services(YamlMap& root, Configuration& configuration) {
       map->fault("journal", config.journal, "must be a connection string",
                  "write sqlite3://FILE or postgresql://dbname=NAME");
     if (service == "data_acquisition") map->read("recordings_directory", config.recordings_directory);
+    read_service_options(service, *map, configuration);
     map->finish();
   }
   services->finish();

@@ -63,6 +63,24 @@ const BadCase kBadCases[] = {
     {"recordings_of_another_service", "services: {state_detection: {recordings_directory: in}}\n",
      "sealwatch.yaml: line 1, key services.state_detection.recordings_directory: 'recordings_directory': is not a "
      "known key; known are: enabled, journal"},
+    {"forecast_method", "services:\n  prognostic_assessment:\n    forecasters:\n      - {method: ols_drifft}\n",
+     "sealwatch.yaml: line 4, key services.prognostic_assessment.forecasters[0].method: 'ols_drifft': is not known; "
+     "did "
+     "you mean 'ols_drift'?"},
+    {"forecaster_without_method", "services: {prognostic_assessment: {forecasters: [{window_months: 36}]}}\n",
+     "sealwatch.yaml: line 1, key services.prognostic_assessment.forecasters[0].method: must be given"},
+    {"forecast_window", "services: {prognostic_assessment: {forecasters: [{method: ols, window_months: 0}]}}\n",
+     "sealwatch.yaml: line 1, key services.prognostic_assessment.forecasters[0].window_months: '0': must be a whole "
+     "number of months from 2 to 600"},
+    {"advice_key", "services: {advisory_generation: {advice: {easing_test: 3}}}\n",
+     "sealwatch.yaml: line 1, key services.advisory_generation.advice.easing_test: 'easing_test': is not a known key; "
+     "did you mean 'easing_tests'?"},
+    {"advice_value", "services:\n  advisory_generation:\n    advice: {largest_failure_probability: 0.9}\n",
+     "sealwatch.yaml: line 3, key services.advisory_generation.advice.largest_failure_probability: '0.900000': must be "
+     "above 0, at most 0.5"},
+    {"advice_of_another_service", "services: {state_detection: {advice: {}}}\n",
+     "sealwatch.yaml: line 1, key services.state_detection.advice: 'advice': is not a known key; known are: enabled, "
+     "journal"},
     {"site_twice", "sites:\n  - site: a\n  - site: a\n",
      "sealwatch.yaml: line 3, key sites[1].site: 'a': is there twice; name each site once"},
     {"site_without_name", "sites:\n  - booking_lead_time_months: 3\n",
@@ -174,6 +192,36 @@ assets: [mine/a.yaml]
   EXPECT_NE(configuration->find_asset("A"), nullptr);
 }
 
+TEST(ConfigurationTest, ForecastersAndAdviceAreThoseOfTheirServices) {
+  const YamlPlace place;
+  const auto configuration = load_configuration(place.write("sealwatch.yaml", R"(
+services:
+  prognostic_assessment:
+    forecasters:
+      - {method: ols, window_months: 24}
+      - {method: average, members: [{method: ols_drift}, {method: ols_log_time, window_months: 48}]}
+  advisory_generation:
+    advice: {largest_failure_probability: 0.05, easing_tests: 6}
+)"));
+  ASSERT_TRUE(configuration.has_value()) << combine(configuration.error()).describe();
+  ASSERT_EQ(configuration->forecasters.size(), 2U);
+  EXPECT_EQ(configuration->forecasters[0].method, "ols");
+  EXPECT_EQ(configuration->forecasters[0].window_months, 24);
+  ASSERT_EQ(configuration->forecasters[1].members.size(), 2U);
+  EXPECT_EQ(configuration->forecasters[1].members[1].window_months, 48);
+  EXPECT_EQ(configuration->advice.largest_failure_probability, 0.05);
+  EXPECT_EQ(configuration->advice.easing_tests, 6U);
+  EXPECT_EQ(configuration->advice.confirming_tests, AdviceOptions{}.confirming_tests);
+}
+
+TEST(ConfigurationTest, ASiteThatIsThereTwiceIsSuggestedOnce) {
+  const YamlPlace place;
+  place.write("assets/a.yaml", "asset_id: A\nsite: quite_another\n");
+  const auto found = faults(place, place.write("sealwatch.yaml", "sites:\n  - site: north\n  - site: north\n"));
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_THAT(found[1], ::testing::EndsWith("known are: north"));
+}
+
 TEST(ConfigurationTest, TheCommandLineWinsOverTheFile) {
   const YamlPlace place;
   const auto configuration = load_configuration(place.write("sealwatch.yaml", "domain: 7\nlogging: {directory: log}\n"),
@@ -187,6 +235,10 @@ TEST(ConfigurationTest, TheCommandLineWinsOverTheFile) {
 TEST(ConfigurationTest, TheOneThatComesWithSealwatchIsValid) {
   const auto configuration = load_configuration(SEALWATCH_SOURCE_DIR "/config");
   ASSERT_TRUE(configuration.has_value()) << combine(configuration.error()).describe();
+  const auto same_as_default = [](std::string_view name, auto written, auto standard) {
+    EXPECT_EQ(written, standard) << name << ": the file says that it shows the defaults";
+  };
+  AdviceOptions::visit_pair(same_as_default, configuration->advice, AdviceOptions{});
   const AssetConfig* asset = configuration->find_asset("XT03-MV2");
   ASSERT_NE(asset, nullptr);
   EXPECT_TRUE(asset->seal.has_value());

@@ -59,12 +59,15 @@ std::string running_services(Session& session, const std::vector<std::string>& w
   constexpr std::chrono::milliseconds kTwoHeartbeats{2000};
   if (const Status joined = session.bus->subscribe_service_topics(); !joined) return {};
   std::map<std::string, std::string> running;
-  const auto end = std::chrono::steady_clock::now() + kTwoHeartbeats;
-  while (running.empty() && !interrupted() && std::chrono::steady_clock::now() < end)
+  const auto begin = std::chrono::steady_clock::now();
+  auto end = begin + kTwoHeartbeats;
+  while (!interrupted() && std::chrono::steady_clock::now() < end) {
+    if (!running.empty()) end = std::min(end, begin + kTwoHeartbeats / 2);  // the others are heard as soon
     for (const BusItem& item : session.bus->receive(std::chrono::milliseconds(100)))
       if (const auto* status = std::get_if<ServiceStatus>(&item))
         if (status->state == "running" && std::ranges::find(wanted, status->service) != wanted.end())
           running[status->service] = status->service + " (process " + std::to_string(status->process_id) + ")";
+  }
   std::string text;
   for (const auto& [service, words] : running) text += (text.empty() ? "" : ", ") + words;
   return text;

@@ -104,6 +104,12 @@ TEST_F(Commands, ForecastOfASteadyDeclineMeetsItsEnd) {
   EXPECT_EQ(windows, 3);
 }
 
+TEST_F(Commands, ForecastSaysWhichDateItPassesOver) {
+  const Finished forecast = run({"sealwatch", "forecast", "--history", history(48, 0.005), "--before", "2020-06-01"});
+  EXPECT_EQ(forecast.status, 0);
+  EXPECT_THAT(forecast.output, HasSubstr("--before 2020-06-01: passed over, as it is not after the last test"));
+}
+
 TEST_F(Commands, ForecastSaysWhenItCannotTell) {
   const Finished few = run({"sealwatch", "forecast", "--history", history(5, 0.005), "--json"});
   EXPECT_EQ(few.status, 1) << few.output;
@@ -168,6 +174,20 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
   EXPECT_EQ(check.status, 2);
   EXPECT_THAT(check.output, ::testing::AllOf(HasSubstr("line 1"), HasSubstr("900"), HasSubstr("line 2"),
                                              HasSubstr("did you mean 'services'?")));
+  const std::string places =
+      write("places.yaml", "state_directory: " + folder_.string() +
+                               "\ncyclonedds_uri: \"<CycloneDDS><Domain "
+                               "Id='any'><Nonsense/></Domain></CycloneDDS>\"\n"
+                               "services: {state_detection: {journal: \"sqlite3:///nowhere/at/all.db\"}}\n");
+  const Finished surroundings = run({"sealwatch", "config", "check", "--config", places});
+  EXPECT_EQ(surroundings.status, 2);
+  EXPECT_THAT(surroundings.output,
+              ::testing::AllOf(HasSubstr("key cyclonedds_uri"), HasSubstr("services.state_detection.journal"),
+                               HasSubstr("mkdir -p /nowhere/at"), HasSubstr("2 faults found")));
+  const Finished empty = run({"sealwatch", "config", "check", "--config",
+                              write("empty.yaml", "assets: []\nstate_directory: " + folder_.string() + "\n")});
+  EXPECT_EQ(empty.status, 0);
+  EXPECT_THAT(empty.output, HasSubstr("no asset is configured"));
 }
 
 }  // namespace

@@ -27,6 +27,8 @@ class Journal {
   /// Opens or creates the journal of `service`. The writer id is made at creation and stays with the journal: a deleted
   /// journal comes back as a new writer, whose streams start at 1 again.
   [[nodiscard]] static Result<Journal> open(const std::string& connection, const std::string& service);
+  /// Whether a journal could be opened there, without making one: the file's directory, the server's answer.
+  [[nodiscard]] static Status check(const std::string& connection);
   ~Journal();
   Journal(Journal&& other) noexcept;
   Journal& operator=(Journal&& other) noexcept;

@@ -104,6 +104,17 @@ Result<std::unique_ptr<DdsBus>> open_dds_bus(const Configuration& configuration,
   return bus;
 }
 
+Status check_dds_settings(const std::string& cyclonedds_uri) {
+  if (cyclonedds_uri.empty()) return {};
+  constexpr dds_domainid_t kUnused = 231;  // made and deleted: nobody is met there
+  const dds_entity_t domain = dds_create_domain(kUnused, cyclonedds_uri.c_str());
+  if (domain < 0)
+    return transport::dds_failure("key cyclonedds_uri", domain,
+                                  "an unknown XML element is fatal; what is wrong stands above, by Cyclone DDS itself");
+  dds_delete(domain);
+  return {};
+}
+
 Result<std::unique_ptr<Bus>> make_dds_bus(const Configuration& configuration) {
   return open_dds_bus(configuration).map([](std::unique_ptr<DdsBus>&& bus) {
     return std::unique_ptr<Bus>(std::move(bus));

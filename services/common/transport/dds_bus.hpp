@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <string>
 
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/core/result.hpp"
@@ -31,6 +32,10 @@ class DdsBus : public Bus {
 /// a process that share a domain share the first one's settings.
 [[nodiscard]] Result<std::unique_ptr<DdsBus>> open_dds_bus(const Configuration& configuration,
                                                            SlowReader slow_reader = SlowReader::stops_publishers);
+
+/// Whether Cyclone DDS takes these settings (configuration.cyclonedds_uri); what it has against them it says on
+/// standard error.
+[[nodiscard]] Status check_dds_settings(const std::string& cyclonedds_uri);
 
 /// The same as the plain port.
 [[nodiscard]] Result<std::unique_ptr<Bus>> make_dds_bus(const Configuration& configuration);

@@ -1,0 +1,50 @@
+// Whether a journal could be opened at a place, without leaving anything there.
+#include <soci/soci.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "services/common/store/database.hpp"
+
+namespace sealwatch {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// FILE of "sqlite3://FILE" or "sqlite3://dbname=FILE timeout=5".
+fs::path file_of(std::string text) {
+  if (const std::size_t name = text.find("dbname="); name != std::string::npos) {
+    text = text.substr(name + 7);
+    const bool quoted = !text.empty() && text.front() == '"';
+    return quoted ? text.substr(1, text.find('"', 1) - 1) : text.substr(0, text.find(' '));
+  }
+  return text;
+}
+
+Status check_file(const std::string& connection, const fs::path& file) {
+  const auto refuse = [&](std::string rule, std::string advice) {
+    return fail(Error{connection, "journal", file.string(), std::move(rule), std::move(advice)});
+  };
+  std::error_code none;
+  if (file.empty() || fs::is_directory(file, none)) return refuse("is no file", "name one: sqlite3://FILE");
+  if (fs::exists(file, none))
+    return ::access(file.c_str(), R_OK | W_OK) == 0 ? Status()
+                                                    : refuse("may not be written", "let this user write there");
+  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(directory, none))
+    return refuse("its directory does not exist", "make it: mkdir -p " + directory.string());
+  return ::access(directory.c_str(), W_OK) == 0 ? Status()
+                                                : refuse("cannot be made there", "let this user write there");
+}
+
+}  // namespace
+
+Status Journal::check(const std::string& connection) {
+  constexpr std::string_view kFile = "sqlite3://";
+  if (connection.starts_with(kFile)) return check_file(connection, file_of(connection.substr(kFile.size())));
+  Database database;
+  database.name = connection.substr(0, connection.find("://"));
+  return database.guard("connecting", [&] { database.sql.open(connection); });
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,83 @@
+// What people tell the running services, and what they are told back.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/integration/six_services.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The six services with three tests behind them.
+class Operator : public SixServices {
+ protected:
+  void SetUp() override {
+    up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
+                folder_ / "up.log");
+    for (int attempt = 0; attempt < 30; ++attempt) {
+      const Finished played = replay();
+      if (played.status == 0) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    FAIL() << "the services never took the recordings";
+  }
+  void TearDown() override {
+    kill(up_, SIGTERM);
+    waitpid(up_, nullptr, 0);
+  }
+  [[nodiscard]] Finished replay(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"sealwatch", "replay", "--config", config(), "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), recordings().begin(), recordings().begin() + 3);
+    return run(arguments);
+  }
+  [[nodiscard]] Finished acknowledge(const std::string& advisory_id) const {
+    return run({"sealwatch", "acknowledge", "--config", config(), "XT03-MV2", advisory_id, "--by", "operator"});
+  }
+  [[nodiscard]] std::string advisory_in_force() const {
+    const json status = json::parse(run({"sealwatch", "status", "--config", config(), "--json"}).output);
+    return status["assets"]["XT03-MV2"]["advisory"]["advisory_id"];
+  }
+
+  pid_t up_ = -1;
+};
+
+TEST_F(Operator, IsToldWhatBecameOfIt) {
+  const Finished again = replay({"--results", (folder_ / "again").string()});
+  EXPECT_EQ(again.status, 0) << again.output;
+  EXPECT_THAT(again.output, AllOf(HasSubstr("nothing was written to"), HasSubstr("replay --offline")));
+
+  const Finished second = run({"sealwatch", "up", "--config", config(), "--state", state_directory("other").string()});
+  EXPECT_EQ(second.status, 2) << second.output;
+  EXPECT_THAT(second.output, AllOf(HasSubstr(" (process "), HasSubstr("runs here already")));
+  EXPECT_EQ(replay({"--with-services", "--state", state_directory("other").string()}).status, 2);
+
+  const std::string advisory = advisory_in_force();
+  const Finished unknown = acknowledge("recommendation/XT03-MV2-never-given");
+  EXPECT_EQ(unknown.status, 1) << unknown.output;
+  EXPECT_THAT(unknown.output, AllOf(HasSubstr("is not the advisory in force"), HasSubstr(advisory)));
+  const Finished known = acknowledge(advisory);
+  EXPECT_EQ(known.status, 0) << known.output;
+  EXPECT_THAT(known.output, HasSubstr("acknowledged by operator"));
+  EXPECT_EQ(acknowledge(advisory).status, 0) << "twice is as once";
+
+  EXPECT_THAT(run({"sealwatch", "status", "--config", config()}).output, HasSubstr("R_CL"));
+  const Finished replaced =
+      run({"sealwatch", "replaced", "--config", config(), "XT03-MV2", "--at", "2020-01-01", "--by", "operator"});
+  EXPECT_EQ(replaced.status, 0) << replaced.output;
+  const Finished status = run({"sealwatch", "status", "--config", config()});
+  EXPECT_THAT(status.output, AllOf(HasSubstr("replaced on 2020-01-01: its history begins anew, no test since"),
+                                   Not(HasSubstr("R_CL")), Not(HasSubstr("grade")), Not(HasSubstr("last test"))));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

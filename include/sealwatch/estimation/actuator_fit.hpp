@@ -43,6 +43,7 @@ struct ActuatorFitOptions {
   /// Where the first search ends badly, the shared parameters are started again at these multiples of the asset's
   /// values.
   std::vector<double> restart_factors = {0.5, 2.0};
+  int threads = 1;  ///< recordings that are simulated at once
   AdmissibilityOptions admissibility;
 
   [[nodiscard]] Status validate() const;

@@ -17,23 +17,6 @@ bool better(const PemOptimum& a, const PemOptimum& b) {
   return a.converged != b.converged ? a.converged : a.cost < b.cost;
 }
 
-SimulationOptions simulation_options(std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
-  constexpr double kFewestSteps = 10000.0;  // short recordings start from rest at high resolution
-  SimulationOptions simulation;
-  std::size_t samples = 0;
-  double fewest_steps = kFewestSteps;
-  for (const TimeSeries& recorded : recordings) {
-    samples = std::max(samples, recorded.time_s.size());
-    if (recorded.time_s.empty()) continue;
-    const double duration_s = recorded.time_s.back() - recorded.time_s.front();
-    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / simulation.maximum_step_s);
-  }
-  simulation.relative_tolerance = options.relative_tolerance;
-  simulation.maximum_steps =
-      static_cast<std::size_t>(fewest_steps + options.steps_per_sample * static_cast<double>(samples));
-  return simulation;
-}
-
 // Seal leakage and bulk modulus from the cylinder circuit, where it can be fitted: one linear regression instead of a
 // step from the asset's value, which overshoots where the seal is worn.
 void start_from_cylinder_circuit(PemProblem& problem, const AssetConfig& asset,
@@ -63,6 +46,29 @@ Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const A
 
 }  // namespace
 
+SimulationOptions simulation_options(std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
+  constexpr double kFewestSteps = 10000.0;  // short recordings start from rest at high resolution
+  SimulationOptions simulation;
+  std::size_t samples = 0;
+  double fewest_steps = kFewestSteps;
+  for (const TimeSeries& recorded : recordings) {
+    samples = std::max(samples, recorded.time_s.size());
+    if (recorded.time_s.empty()) continue;
+    const double duration_s = recorded.time_s.back() - recorded.time_s.front();
+    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / simulation.maximum_step_s);
+  }
+  simulation.relative_tolerance = options.relative_tolerance;
+  simulation.maximum_steps =
+      static_cast<std::size_t>(fewest_steps + options.steps_per_sample * static_cast<double>(samples));
+  return simulation;
+}
+
+Result<PemOptimum> search_from_asset(PemProblem& problem, const AssetConfig& asset,
+                                     std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
+  start_from_cylinder_circuit(problem, asset, recordings);
+  return search_from_several_starts(problem, options);
+}
+
 Status ActuatorFitOptions::validate() const {
   if (maximum_iterations < 1)
     return fail("maximum_iterations must be at least 1, is " + std::to_string(maximum_iterations));
@@ -86,8 +92,7 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   Result<PemProblem> problem = make_pem_problem(asset, recordings);
   if (!problem) return failed(problem.error());
   problem->simulation_options = simulation_options(recordings, options);
-  start_from_cylinder_circuit(*problem, asset, recordings);
-  Result<PemOptimum> optimum = search_from_several_starts(*problem, options);
+  Result<PemOptimum> optimum = search_from_asset(*problem, asset, recordings, options);
   if (optimum && !optimum->hopeless && add_interpolation_error(*problem, *optimum, asset, recordings)) {
     const int iterations = optimum->iterations;
     optimum = search(*problem, optimum->point, options);

@@ -34,6 +34,21 @@ Unknown shared_unknown(const ParameterDescription& parameter, const ParameterSet
           .max = setting.max};
 }
 
+// A strength may pass through 0; a shape is a scale where it is positive.
+Unknown law_unknown(const PhysicsParameter& parameter, FreeQuantity quantity) {
+  const ParameterSetting& setting = parameter.setting;
+  const bool logarithmic = !parameter.parameter->strength && setting.min > 0.0;
+  const double usual = std::abs(parameter.parameter->start.front());
+  return {.name = parameter.name,
+          .unit = std::string(parameter.parameter->unit),
+          .quantity = quantity,
+          .logarithmic = logarithmic,
+          .scale = logarithmic ? setting.value : (usual > 0.0 ? usual : 1.0),
+          .start = setting.value,
+          .min = setting.min,
+          .max = setting.max};
+}
+
 Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const PlantSimulation& simulation) {
   std::vector<Unknown> unknowns;
   for (const ParameterDescription& parameter : simulation.plant().parameters) {
@@ -42,6 +57,12 @@ Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const Pla
     const Result<FreeQuantity> quantity = simulation.find(parameter.name);
     if (!quantity) return fail(quantity.error());
     unknowns.push_back(shared_unknown(parameter, setting->second, *quantity));
+  }
+  for (const PhysicsParameter& parameter : simulation.physics_parameters()) {
+    if (!parameter.setting.estimate) continue;
+    const Result<FreeQuantity> quantity = simulation.find(parameter.name);
+    if (!quantity) return fail(quantity.error());
+    unknowns.push_back(law_unknown(parameter, *quantity));
   }
   return unknowns;
 }
@@ -82,7 +103,8 @@ Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation) {
   for (const std::string& state : simulation.slow_state_names()) {
     const Result<FreeQuantity> quantity = simulation.find("initial:" + state);
     if (!quantity) return fail(quantity.error());
-    const std::string& unit = simulation.plant().find_state(state)->unit;
+    const StateDescription* description = simulation.plant().find_state(state);
+    const std::string unit = description == nullptr ? "1" : description->unit;  // of a law: an angle in rad
     unknowns.push_back(own_unknown("initial:" + state, unit, *quantity, quantity->in(simulation.start())));
   }
   return unknowns;
@@ -92,7 +114,8 @@ Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& 
   if (const Status usable = check_values(recorded); !usable) return fail(usable.error());
   Result<std::unique_ptr<PlantSimulation>> simulation = PlantSimulation::create(asset, recorded);
   if (!simulation) return fail(simulation.error());
-  PemRecording recording{.simulation = std::move(*simulation), .noise_std = {}, .own = {}};
+  PemRecording recording{
+      .simulation = std::move(*simulation), .noise_std = {}, .time_s = recorded.time_s, .own = {}};
   const std::span<const std::string> channels = recording.simulation->channels();
   recording.noise_std.resize(static_cast<Eigen::Index>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -135,6 +158,28 @@ ModelValues values_at(const PemProblem& problem, std::size_t recording, const st
   return values;
 }
 
+// r_t - sum_j a_j r_(t-j) over the innovation's standard deviation (1 for white noise); the first samples, whose past
+// is not known, are taken as they are.
+void whiten(const NoiseColour& colour, Linearisation& at) {
+  if (colour.empty()) return;
+  const Eigen::Index channels = at.simulated.cols(), samples = at.simulated.rows();
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    const auto& [coefficients, innovation] = colour[static_cast<std::size_t>(c)];
+    const auto order = static_cast<Eigen::Index>(coefficients.size());
+    if (order == 0) continue;
+    for (Eigen::Index row = samples - 1; row >= order; --row) {
+      const Eigen::Index here = row * channels + c;
+      for (Eigen::Index j = 1; j <= order; ++j) {
+        const double a = coefficients[static_cast<std::size_t>(j - 1)];
+        at.residual(here) -= a * at.residual(here - j * channels);
+        at.jacobian.row(here) -= a * at.jacobian.row(here - j * channels);
+      }
+      at.residual(here) /= innovation;
+      at.jacobian.row(here) /= innovation;
+    }
+  }
+}
+
 Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                 const std::vector<double>& own) {
   const PemRecording& part = problem.recordings[recording];
@@ -162,6 +207,7 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
   const RowMatrix scale = -weight.transpose() * Eigen::Map<const Eigen::RowVectorXd>(slope.data(), unknowns);
   Eigen::Map<RowMatrix>(result.jacobian.data(), samples, channels * unknowns).array().rowwise() *=
       Eigen::Map<const Eigen::RowVectorXd>(scale.data(), scale.size()).array();
+  whiten(part.colour, result);
   if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");
   return result;
 }

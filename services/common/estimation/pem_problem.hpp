@@ -24,10 +24,20 @@ struct Unknown {
   [[nodiscard]] double slope(double unknown) const;  ///< d value / d unknown
 };
 
+/// Autoregressive noise of one channel, in units of its standard deviation: e_t = sum_j a_j e_(t-j) + innovation.
+struct ChannelColour {
+  std::vector<double> coefficients;  ///< a_1, a_2, ...; empty: white
+  double innovation_std = 1.0;
+};
+/// Per channel; empty: all white.
+using NoiseColour = std::vector<ChannelColour>;
+
 /// One recording: its simulation, the noise of its channels and its own unknowns.
 struct PemRecording {
   std::unique_ptr<PlantSimulation> simulation;
   Eigen::VectorXd noise_std;  ///< per channel; infinite: the channel is left out
+  std::vector<double> time_s;
+  NoiseColour colour = {};    ///< by which residuals are whitened beside their standard deviation
   std::vector<Unknown> own;   ///< load, slow initial states
 };
 
@@ -48,6 +58,9 @@ struct Linearisation {
 
 [[nodiscard]] ModelValues values_at(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                     const std::vector<double>& own);
+
+/// Whitens residual and Jacobian of coloured noise, in place.
+void whiten(const NoiseColour& colour, Linearisation& at);
 
 /// An Error when the simulation fails there.
 [[nodiscard]] Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording,

@@ -94,7 +94,7 @@ ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
   solver.function_tolerance = 0.0;     // CostResolved decides
   solver.parameter_tolerance = 1e-12;  // unknowns are of the order of one
   solver.logging_type = ceres::SILENT;
-  solver.num_threads = 1;
+  solver.num_threads = options.threads;
   return solver;
 }
 

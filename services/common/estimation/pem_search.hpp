@@ -28,6 +28,16 @@ struct PemOptimum {
 /// The shared unknowns at `factor` times the asset's values, the recordings' own where their simulations say.
 [[nodiscard]] PemPoint start_point(const PemProblem& problem, double factor);
 
+/// Integrator settings for recordings of this length.
+[[nodiscard]] SimulationOptions simulation_options(std::span<const TimeSeries> recordings,
+                                                   const ActuatorFitOptions& options);
+
+/// From the asset's values, leakage and bulk modulus from the cylinder circuit where that can be fitted; from other
+/// values where that does not converge.
+[[nodiscard]] Result<PemOptimum> search_from_asset(PemProblem& problem, const AssetConfig& asset,
+                                                   std::span<const TimeSeries> recordings,
+                                                   const ActuatorFitOptions& options);
+
 /// An Error when the simulation cannot even be run at the start.
 [[nodiscard]] Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options);
 

@@ -1,0 +1,95 @@
+#include "services/common/mismatch/candidates.hpp"
+
+#include <algorithm>
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr std::size_t kLargestGrid = 12;
+constexpr double kBiasShare = 0.01;  // usual bias of a sensor, of the range of its channel in the recording
+
+// All combinations of the start values; for many, the first values of each parameter with the usual ones of the others.
+std::vector<std::vector<double>> shape_grid(const Law& law) {
+  std::vector<std::vector<double>> grid(1);
+  for (const LawParameter& parameter : law.parameters) {
+    const std::size_t choices = parameter.strength ? 1 : parameter.start.size();
+    std::vector<std::vector<double>> next;
+    for (std::size_t k = 0; k < choices && next.size() < kLargestGrid; ++k)
+      for (const std::vector<double>& point : grid) {
+        next.push_back(point);
+        next.back().push_back(parameter.start[k]);
+      }
+    grid = std::move(next);
+  }
+  if (grid.size() > kLargestGrid) grid.resize(kLargestGrid);
+  return grid;
+}
+
+bool allowed(const Law& law, std::string_view element) {
+  return law.elements.empty() || std::ranges::find(law.elements, element) != law.elements.end();
+}
+
+bool present_already(const std::vector<PhysicsTerm>& present, const Law& law, std::string_view element) {
+  return std::ranges::any_of(present,
+                             [&](const PhysicsTerm& term) { return term.id == law.id && term.element == element; });
+}
+
+// With a load of each recording's own, a constant force is no mismatch.
+bool pointless(const Law& law, const PlantSimulation& simulation) {
+  return law.id == "constant_force" && simulation.plant().has_load();
+}
+
+void add_at_sites(const Law& law, const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
+                  std::vector<Candidate>& candidates) {
+  std::vector<Candidate> found;
+  for (std::size_t k = 0; k < simulation.sites().size(); ++k) {
+    const Site& site = simulation.sites()[k];
+    if (site.kind != law.kind || !allowed(law, site.element)) continue;
+    if (!found.empty() && found.back().element == site.element) {
+      found.back().sites.push_back(k);
+      continue;
+    }
+    if (present_already(present, law, site.element) || pointless(law, simulation)) continue;
+    found.push_back(
+        {.law = &law, .element = std::string(site.element), .sites = {k}, .channel = {}, .grid = shape_grid(law)});
+  }
+  candidates.insert(candidates.end(), found.begin(), found.end());
+}
+
+void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
+                    std::vector<Candidate>& candidates) {
+  for (std::size_t c = 0; c < simulation.channels().size(); ++c) {
+    const std::string element = "sensor:" + simulation.channels()[c];
+    if (present_already(present, law, element)) continue;
+    Candidate candidate{
+        .law = &law, .element = element, .sites = {}, .channel = simulation.channels()[c], .grid = shape_grid(law)};
+    if (law.kind == SiteKind::sensor_bias) {
+      const auto column = simulation.recorded().col(static_cast<Eigen::Index>(c));
+      const double size = std::max(column.maxCoeff() - column.minCoeff(), 1e-12);
+      candidate.strength_scale = kBiasShare * size / law.parameters.front().start.front();
+    }
+    candidates.push_back(std::move(candidate));
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present) {
+  std::vector<Candidate> candidates;
+  for (const Law& law : all_laws()) {
+    if (law.evaluate == nullptr)
+      add_at_sensors(law, simulation, present, candidates);
+    else
+      add_at_sites(law, simulation, present, candidates);
+  }
+  return candidates;
+}
+
+std::vector<std::size_t> strengths_of(const Law& law) {
+  std::vector<std::size_t> strengths;
+  for (std::size_t k = 0; k < law.parameters.size(); ++k)
+    if (law.parameters[k].strength) strengths.push_back(k);
+  return strengths;
+}
+
+}  // namespace sealwatch::mismatch

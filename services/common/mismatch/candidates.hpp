@@ -1,0 +1,28 @@
+// What may be missing: every law of the catalogue at every place of this plant where it could act.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sealwatch/model/simulation.hpp"
+
+namespace sealwatch::mismatch {
+
+/// A law at an element, with the points of its shape grid (all parameters of the law, strengths at their usual size).
+struct Candidate {
+  const Law* law = nullptr;
+  std::string element;
+  std::vector<std::size_t> sites;  ///< empty for a sensor's law
+  std::string channel;             ///< of a sensor's law
+  std::vector<std::vector<double>> grid;
+  double strength_scale = 1.0;  ///< usual sizes are multiplied by it (a sensor's bias goes by its channel's range)
+};
+
+/// All candidates for a simulation's plant and recorded channels; those in `present` (element and id) are left out.
+[[nodiscard]] std::vector<Candidate> find_candidates(const PlantSimulation& simulation,
+                                                     const std::vector<PhysicsTerm>& present);
+
+/// Indices of the law's strengths.
+[[nodiscard]] std::vector<std::size_t> strengths_of(const Law& law);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,104 @@
+#include "services/common/mismatch/fitted_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sealwatch::mismatch {
+namespace {
+
+ActuatorFitOptions search_options(int threads) {
+  ActuatorFitOptions options;
+  options.maximum_iterations = 30;
+  options.hopeless_rms = 1e9;  // a bad fit is what is looked at here
+  options.steps_per_sample = 20.0;
+  options.restart_factors = {0.5, 2.0, 0.25};
+  options.threads = threads;
+  return options;
+}
+
+bool at_bound(const Unknown& unknown, double at) {
+  constexpr double kNear = 1e-6;
+  return at - unknown.to_unknown(unknown.min) < kNear || unknown.to_unknown(unknown.max) - at < kNear;
+}
+
+void set_value(AssetConfig& asset, const std::string& name, double value) {
+  if (const auto parameter = asset.parameters.find(name); parameter != asset.parameters.end())
+    parameter->second.value = value;
+  for (PhysicsTerm& term : asset.physics)
+    for (auto& [parameter, setting] : term.parameters)
+      if (physics_parameter_name(term.element, term.id, parameter) == name) setting.value = value;
+}
+
+// Where another fit of the same recordings ended.
+void continue_from(const FittedModel& start, const PemProblem& problem, PemPoint& point) {
+  for (std::size_t k = 0; k < problem.shared.size(); ++k)
+    if (const auto value = estimate_of(start, problem.shared[k].name))
+      point.shared[k] = problem.shared[k].to_unknown(*value);
+  for (std::size_t r = 0; r < problem.recordings.size() && r < start.problem.recordings.size(); ++r)
+    for (std::size_t k = 0; k < problem.recordings[r].own.size(); ++k)
+      for (std::size_t j = 0; j < start.problem.recordings[r].own.size(); ++j) {
+        const Unknown& from = start.problem.recordings[r].own[j];
+        if (from.name == problem.recordings[r].own[k].name)
+          point.own[r][k] = problem.recordings[r].own[k].to_unknown(from.to_value(start.optimum.point.own[r][j]));
+      }
+}
+
+}  // namespace
+
+Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads) {
+  const ActuatorFitOptions options = search_options(threads);
+  Result<PemProblem> problem = make_pem_problem(asset, data.samples);
+  if (!problem) return fail(problem.error());
+  for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
+  problem->simulation_options = simulation_options(data.samples, options);
+  Result<PemOptimum> optimum = fail("not searched");
+  if (start == nullptr) {
+    optimum = search_from_asset(*problem, asset, data.samples, options);
+  } else {
+    PemPoint point = start_point(*problem, 1.0);
+    continue_from(*start, *problem, point);
+    optimum = search(*problem, std::move(point), options);
+  }
+  if (!optimum) return fail(optimum.error());
+  FittedModel model{.asset = asset, .problem = std::move(*problem), .optimum = std::move(*optimum)};
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const Unknown& unknown = model.problem.shared[k];
+    set_value(model.asset, unknown.name, unknown.to_value(model.optimum.point.shared[k]));
+    if (!at_bound(unknown, model.optimum.point.shared[k])) ++model.free_shared;
+  }
+  for (const Linearisation& at : model.optimum.at_optimum) {
+    model.misfit += at.residual.squaredNorm();
+    model.residuals += static_cast<double>(at.residual.size());
+  }
+  return model;
+}
+
+AssetConfig with_fixed_parameters(AssetConfig asset) {
+  for (auto& [name, setting] : asset.parameters) setting.estimate = false;
+  for (PhysicsTerm& term : asset.physics)
+    for (auto& [name, setting] : term.parameters) setting.estimate = false;
+  return asset;
+}
+
+AssetConfig with_law(AssetConfig asset, const Law& law, const std::string& element,
+                     std::span<const double> parameters) {
+  PhysicsTerm term{.id = std::string(law.id), .element = element, .parameters = {}};
+  for (std::size_t k = 0; k < law.parameters.size(); ++k) {
+    const LawParameter& parameter = law.parameters[k];
+    const bool whole = parameter.unit == "1/rev" || (law.hidden && law.hidden->free_initial && !parameter.strength);
+    term.parameters[std::string(parameter.name)] = {.value = std::clamp(parameters[k], parameter.min, parameter.max),
+                                                    .min = parameter.min,
+                                                    .max = parameter.max,
+                                                    .estimate = !whole};
+  }
+  asset.physics.push_back(std::move(term));
+  return asset;
+}
+
+std::optional<double> estimate_of(const FittedModel& model, const std::string& name) {
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k)
+    if (model.problem.shared[k].name == name) return model.problem.shared[k].to_value(model.optimum.point.shared[k]);
+  return std::nullopt;
+}
+
+}  // namespace sealwatch::mismatch

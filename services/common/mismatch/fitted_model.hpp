@@ -1,0 +1,44 @@
+// A model fitted to recordings, and what changes when its asset does: the working unit of the mismatch analysis.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "services/common/estimation/pem_search.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Recordings of one asset with their noise.
+struct Data {
+  std::vector<std::string> names;
+  std::vector<TimeSeries> samples;
+  std::vector<NoiseColour> colour;  ///< per recording
+};
+
+struct FittedModel {
+  AssetConfig asset;  ///< parameters and laws at their estimates
+  PemProblem problem;
+  PemOptimum optimum;
+  double misfit = 0.0;          ///< sum of the squares of all whitened residuals
+  double residuals = 0.0;       ///< how many
+  std::size_t free_shared = 0;  ///< shared unknowns that are not at a bound
+};
+
+/// Fits the asset's free parameters and every recording's own. `start`: a fit of the same data, from whose values the
+/// search sets out. `threads`: recordings that are simulated at once.
+[[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
+                                            int threads);
+
+/// As it is, but every shared parameter stays what it is: only load and initial state of each recording are fitted.
+[[nodiscard]] AssetConfig with_fixed_parameters(AssetConfig asset);
+
+/// The asset with another law; strengths and shapes are free, whole numbers are not.
+[[nodiscard]] AssetConfig with_law(AssetConfig asset, const Law& law, const std::string& element,
+                                   std::span<const double> parameters);
+
+/// Value of a shared unknown by its name, in its own unit; nothing when it is not among them.
+[[nodiscard]] std::optional<double> estimate_of(const FittedModel& model, const std::string& name);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,206 @@
+#include "services/common/mismatch/naming.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr std::size_t kSingles = 8;     // refits of single laws
+constexpr std::size_t kPairs = 4;       // refits of pairs
+constexpr double kWorthAnother = 12.0;  // criterion by which another law must improve: it then is e^6 times likelier
+constexpr double kPairAhead =
+    0.02;  // of the misfit: a pair that promises less more than the best single is passed over
+constexpr double kSmallestStart = 0.02, kLargestStart = 50.0;  // of a strength's usual size
+
+bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
+
+LawStart start_of(const Screening& screening, const Variant& variant) {
+  const Candidate& candidate = screening.candidates[variant.candidate];
+  LawStart start{.effect = {candidate.law, candidate.element}, .parameters = candidate.grid[variant.point]};
+  const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
+  for (std::size_t k = 0; k < strengths.size(); ++k) {
+    double& value = start.parameters[strengths[k]];
+    const double usual = std::abs(candidate.strength_scale * value);
+    // The strength of a free angle comes as sine and cosine.
+    const double linear = variant.strength.size() == strengths.size()
+                              ? variant.strength[k]
+                              : std::hypot(variant.strength[0], variant.strength[1]);
+    const double size = std::clamp(std::abs(linear), kSmallestStart * usual, kLargestStart * usual);
+    value = linear < 0.0 && candidate.law->parameters[strengths[k]].min < 0.0 ? -size : size;
+  }
+  return start;
+}
+
+std::vector<const Variant*> by_gain(const Screening& screening) {
+  std::vector<const Variant*> order;
+  for (const Variant& variant : screening.variants)
+    if (variant.gain > 0.0) order.push_back(&variant);
+  std::ranges::stable_sort(order, std::greater<>(), [](const Variant* variant) { return variant->gain; });
+  return order;
+}
+
+// Of each law at each element its best variant, best first.
+std::vector<const Variant*> best_of_each(const Screening& screening) {
+  std::vector<const Variant*> best;
+  for (const Variant* variant : by_gain(screening)) {
+    const Candidate& candidate = screening.candidates[variant->candidate];
+    const bool known = std::ranges::any_of(best, [&](const Variant* other) {
+      const Candidate& taken = screening.candidates[other->candidate];
+      return taken.law == candidate.law && taken.element == candidate.element;
+    });
+    if (!known) best.push_back(variant);
+  }
+  return best;
+}
+
+// The best pairs of different laws that promise clearly more than the best single law.
+std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit) {
+  struct Pair {
+    const Variant *a, *b;
+    double gain;
+  };
+  const std::vector<const Variant*> singles = best_of_each(screening);
+  std::vector<Pair> pairs;
+  for (std::size_t j = 0; j < singles.size(); ++j)
+    for (std::size_t k = j + 1; k < singles.size(); ++k) {
+      const Candidate &a = screening.candidates[singles[j]->candidate],
+                      &b = screening.candidates[singles[k]->candidate];
+      if (a.law->id == b.law->id && a.element == b.element) continue;
+      pairs.push_back({singles[j], singles[k], pair_gain(screening, *singles[j], *singles[k])});
+    }
+  std::ranges::stable_sort(pairs, std::greater<>(), &Pair::gain);
+  std::vector<std::vector<LawStart>> starts;
+  for (const Pair& pair : pairs) {
+    if (starts.size() == kPairs || pair.gain < singles.front()->gain + std::max(kWorthAnother, kPairAhead * misfit))
+      break;
+    starts.push_back({start_of(screening, *pair.a), start_of(screening, *pair.b)});
+  }
+  return starts;
+}
+
+const Trial* best_of(const std::vector<Trial>& trials, double phi) {
+  const Trial* best = nullptr;
+  for (const Trial& trial : trials)
+    if (best == nullptr || criterion(*trial.model, phi) < criterion(*best->model, phi)) best = &trial;
+  return best;
+}
+
+double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model) {
+  double phi = dispersion(model);
+  for (const Trial& trial : trials) phi = std::min(phi, dispersion(*trial.model));
+  return phi;
+}
+
+std::vector<Forbidden> forbidden_by_physics(const Screening& screening) {
+  std::vector<Forbidden> found;
+  const double best_gain = by_gain(screening).empty() ? 0.0 : by_gain(screening).front()->gain;
+  for (const Variant& variant : screening.variants) {
+    const Candidate& candidate = screening.candidates[variant.candidate];
+    if (variant.physical || variant.columns.size() != 1) continue;
+    const Eigen::Index column = variant.columns.front();
+    const double gradient = screening.gradient(column), gram = screening.gram(column, column);
+    if (gradient * gradient / gram < std::max(0.5 * best_gain, 27.0)) continue;
+    const Effect effect{candidate.law, candidate.element};
+    if (std::ranges::any_of(found, [&](const Forbidden& other) { return same(other.effect, effect); })) continue;
+    found.push_back({effect, gradient / gram * screening.unit[static_cast<std::size_t>(column)], variant.score});
+  }
+  return found;
+}
+
+// Laws whose removal does not cost what another law must bring are taken out again.
+void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
+  for (bool dropped = true; dropped && naming.best.effects.size() > 1;) {
+    dropped = false;
+    for (std::size_t out = 0; out < naming.best.effects.size() && !dropped; ++out) {
+      Trial fewer{.effects = naming.best.effects, .model = nullptr};
+      fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(out));
+      AssetConfig asset = naming.best.model->asset;
+      asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(naming.best.effects.size() - out));
+      Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
+      if (!model) continue;
+      fewer.model = std::make_shared<const FittedModel>(std::move(*model));
+      naming.trials.push_back(fewer);
+      const double phi = dispersion(*naming.best.model);
+      if (criterion(*fewer.model, phi) < criterion(*naming.best.model, phi) + kWorthAnother) {
+        naming.best = fewer;
+        dropped = true;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double dispersion(const FittedModel& best) { return std::max(1.0, best.misfit / best.residuals); }
+
+double criterion(const FittedModel& model, double dispersion) {
+  return model.misfit / dispersion + static_cast<double>(model.free_shared) * std::log(model.residuals / dispersion);
+}
+
+std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most) {
+  std::vector<LawStart> starts;
+  for (const Variant* variant : best_of_each(screening)) {
+    if (starts.size() == most) break;
+    starts.push_back(start_of(screening, *variant));
+  }
+  return starts;
+}
+
+std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
+                         int threads) {
+  const auto one = [&](const std::vector<LawStart>& added) -> Trial {
+    Trial trial{.effects = from.effects, .model = nullptr};
+    AssetConfig asset = from.model->asset;
+    for (const LawStart& start : added) {
+      trial.effects.push_back(start.effect);
+      asset = with_law(std::move(asset), *start.effect.law, start.effect.element, start.parameters);
+    }
+    Result<FittedModel> model = fit_model(asset, data, from.model.get(), 1);
+    if (model) trial.model = std::make_shared<const FittedModel>(std::move(*model));
+    return trial;
+  };
+  std::vector<Trial> trials;
+  for (std::size_t first = 0; first < laws.size(); first += static_cast<std::size_t>(threads)) {
+    std::vector<std::future<Trial>> running;
+    for (std::size_t k = first; k < std::min(laws.size(), first + static_cast<std::size_t>(threads)); ++k)
+      running.push_back(std::async(std::launch::async, [&, k] { return one(laws[k]); }));
+    for (auto& trial : running)
+      if (Trial done = trial.get(); done.model) trials.push_back(std::move(done));
+  }
+  return trials;
+}
+
+Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
+                            const ExplainOptions& options, const Progress& progress) {
+  const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
+  Result<Screening> first = screen(*baseline, data, screening);
+  if (!first) return fail(first.error());
+  Naming naming{
+      .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
+  naming.forbidden = forbidden_by_physics(naming.first);
+  while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
+    if (naming.last.p_value > options.false_alarm_rate) break;
+    const std::size_t level = naming.best.effects.size();
+    if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
+    std::vector<std::vector<LawStart>> starts;
+    for (LawStart& start : ranked_laws(naming.last, level == 0 ? kSingles : kSingles / 2 + 1))
+      starts.push_back({std::move(start)});
+    if (static_cast<int>(level) + 2 <= options.maximum_laws)
+      for (auto& pair : ranked_pairs(naming.last, naming.best.model->misfit)) starts.push_back(std::move(pair));
+    const std::vector<Trial> trials = refit(naming.best, starts, data, options.threads);
+    naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
+    const double phi = smallest_dispersion(trials, *naming.best.model);
+    const Trial* best = best_of(trials, phi);
+    if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) break;
+    naming.best = *best;
+    Result<Screening> next = screen(*naming.best.model, data, screening);
+    if (!next) return fail(next.error());
+    naming.last = std::move(*next);
+  }
+  drop_what_is_not_needed(naming, data, options.threads);
+  return naming;
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,335 @@
+#include "services/common/mismatch/screening.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <random>
+
+#include "services/common/mismatch/sensitivity_pass.hpp"
+#include "services/common/mismatch/tail.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kDetectable = 27.0;  // lambda: noncentrality that is seen with 80 % power at 1 % over the catalogue
+constexpr double kRidge = 1e-10;      // of a normal matrix with unit diagonal: directions that the data do not show
+
+// X (X'X)^-1 X'Y taken off Y, in place.
+class Projection {
+ public:
+  explicit Projection(const RowMatrix& x) : x_(x), gram_(x.transpose() * x) { prepare(); }
+  Projection(const RowMatrix& x, Eigen::MatrixXd gram) : x_(x), gram_(std::move(gram)) { prepare(); }
+  template <class Y>
+  [[nodiscard]] Eigen::MatrixXd coefficients(const Y& cross) const {
+    return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * cross);
+  }
+  template <class Y>
+  void remove_from(Y& y) const {
+    if (x_.cols() > 0) y.noalias() -= x_ * coefficients(x_.transpose() * y);
+  }
+
+ private:
+  void prepare() {
+    scale_ = gram_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd scaled = scale_.asDiagonal() * gram_ * scale_.asDiagonal();
+    scaled.diagonal().array() += kRidge;
+    factor_.compute(scaled);
+  }
+  const RowMatrix& x_;
+  Eigen::MatrixXd gram_;
+  Eigen::VectorXd scale_;
+  Eigen::LDLT<Eigen::MatrixXd> factor_;
+};
+
+// One recording with its own unknowns taken off.
+struct Reduced {
+  RowMatrix shared, laws;
+  Eigen::VectorXd residual;
+  Eigen::VectorXd raw_norm;  ///< |s_j|^2 before anything was taken off
+  Eigen::Index channels = 0;
+};
+
+Result<Reduced> reduce(const FittedModel& model, std::size_t recording, const std::vector<Candidate>& candidates,
+                       const std::vector<PassColumn>& columns) {
+  Result<Pass> pass = sensitivity_pass(model, recording, candidates, columns);
+  if (!pass) return fail(pass.error());
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  const RowMatrix own = pass->free.rightCols(pass->free.cols() - shared);
+  Reduced reduced{.shared = pass->free.leftCols(shared),
+                  .laws = std::move(pass->laws),
+                  .residual = std::move(pass->residual),
+                  .raw_norm = {},
+                  .channels = pass->channels};
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {  // what is held at a bound does not swallow anything
+    const Unknown& unknown = model.problem.shared[k];
+    const double at = model.optimum.point.shared[k];
+    if (at - unknown.to_unknown(unknown.min) < 1e-6 || unknown.to_unknown(unknown.max) - at < 1e-6)
+      reduced.shared.col(static_cast<Eigen::Index>(k)).setZero();
+  }
+  reduced.raw_norm = reduced.laws.colwise().squaredNorm();
+  const Projection projection(own);
+  projection.remove_from(reduced.shared);
+  projection.remove_from(reduced.laws);
+  projection.remove_from(reduced.residual);
+  return reduced;
+}
+
+// Columns of all recordings: those of a recording's own come once for each.
+struct Layout {
+  std::vector<std::vector<Eigen::Index>> of_pass;  ///< per pass column: one index, or one for each recording
+  Eigen::Index size = 0;
+};
+
+Layout lay_out(const std::vector<PassColumn>& columns, std::size_t recordings) {
+  Layout layout;
+  for (const PassColumn& column : columns) {
+    std::vector<Eigen::Index>& of = layout.of_pass.emplace_back();
+    for (std::size_t k = 0; k < (column.own ? recordings : 1); ++k) of.push_back(layout.size++);
+  }
+  return layout;
+}
+
+RowMatrix spread(const RowMatrix& laws, const Layout& layout, std::size_t recording) {
+  RowMatrix wide = RowMatrix::Zero(laws.rows(), layout.size);
+  for (std::size_t k = 0; k < layout.of_pass.size(); ++k) {
+    const auto& of = layout.of_pass[k];
+    wide.col(of.size() == 1 ? of.front() : of[recording]) = laws.col(static_cast<Eigen::Index>(k));
+  }
+  return wide;
+}
+
+Eigen::MatrixXd block_sums(const RowMatrix& laws, const Eigen::VectorXd& residual, Eigen::Index rows_per_block) {
+  const Eigen::Index blocks = std::max<Eigen::Index>(1, laws.rows() / rows_per_block);
+  Eigen::MatrixXd sums(blocks, laws.cols());
+  for (Eigen::Index b = 0; b < blocks; ++b) {
+    const Eigen::Index begin = b * rows_per_block;
+    const Eigen::Index count = b + 1 == blocks ? laws.rows() - begin : rows_per_block;
+    sums.row(b) = laws.middleRows(begin, count).transpose() * residual.segment(begin, count);
+  }
+  return sums;
+}
+
+Eigen::MatrixXd submatrix(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& at) {
+  const auto n = static_cast<Eigen::Index>(at.size());
+  Eigen::MatrixXd sub(n, n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index k = 0; k < n; ++k)
+      sub(j, k) = matrix(at[static_cast<std::size_t>(j)], at[static_cast<std::size_t>(k)]);
+  return sub;
+}
+
+Eigen::VectorXd subvector(const Eigen::VectorXd& vector, const std::vector<Eigen::Index>& at) {
+  Eigen::VectorXd sub(static_cast<Eigen::Index>(at.size()));
+  for (Eigen::Index k = 0; k < sub.size(); ++k) sub(k) = vector(at[static_cast<std::size_t>(k)]);
+  return sub;
+}
+
+struct LinearStep {
+  Eigen::VectorXd strength;
+  double gain = 0.0;
+  bool free = true;  ///< no bound was in the way
+};
+
+// max over strengths of 2 g'k - k'G k, those with a lower bound of 0 kept at or above it.
+LinearStep bounded_step(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient,
+                        const std::vector<bool>& positive) {
+  LinearStep step;
+  std::vector<bool> held(positive.size(), false);
+  for (std::size_t round = 0; round <= positive.size(); ++round) {
+    Eigen::MatrixXd g = gram;
+    Eigen::VectorXd right = gradient;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      const double diagonal = std::max(gram(row, row), 1e-300);
+      if (held[k]) g.row(row).setZero(), g.col(row).setZero(), right(row) = 0.0;
+      g(row, row) = held[k] ? 1.0 : diagonal * (1.0 + kRidge);
+    }
+    step.strength = g.ldlt().solve(right);
+    step.gain = right.dot(step.strength);
+    bool violated = false;
+    for (std::size_t k = 0; k < held.size(); ++k)
+      if (positive[k] && !held[k] && step.strength(static_cast<Eigen::Index>(k)) < 0.0) held[k] = violated = true;
+    if (!violated) return step;
+    step.free = false;
+  }
+  step.gain = 0.0;
+  return step;
+}
+
+std::vector<bool> sign_bounds(const Screening& screening, const Variant& variant) {
+  const Candidate& candidate = screening.candidates[variant.candidate];
+  const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
+  std::vector<bool> positive(variant.columns.size(), false);
+  if (positive.size() == strengths.size())  // else a free angle: sine and cosine of either sign
+    for (std::size_t k = 0; k < strengths.size(); ++k) positive[k] = candidate.law->parameters[strengths[k]].min >= 0.0;
+  return positive;
+}
+
+double quadratic(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& vector) {
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-9;
+  const Eigen::VectorXd right = scale.asDiagonal() * vector;
+  return right.dot(scaled.ldlt().solve(right));
+}
+
+void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& variance) {
+  for (Variant& variant : screening.variants) {
+    const Eigen::VectorXd gradient = subvector(screening.gradient, variant.columns);
+    const Eigen::MatrixXd gram = submatrix(screening.gram, variant.columns);
+    variant.score = quadratic(submatrix(variance, variant.columns), gradient);
+    variant.p_value = chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
+    const LinearStep step = bounded_step(gram, gradient, sign_bounds(screening, variant));
+    variant.gain = step.gain;
+    variant.physical = step.free;
+    for (Eigen::Index k = 0; k < step.strength.size(); ++k)
+      variant.strength.push_back(
+          step.strength(k) * screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
+    const Eigen::Index first = variant.columns.front();
+    variant.absorbed = raw_norm(first) > 0.0 ? 1.0 - gram(0, 0) / raw_norm(first) : 1.0;
+    variant.minimum_detectable = gram(0, 0) > 0.0 ? std::sqrt(kDetectable / gram(0, 0)) *
+                                                        std::abs(screening.unit[static_cast<std::size_t>(first)])
+                                                  : std::numeric_limits<double>::infinity();
+  }
+}
+
+// Smallest p-value under random signs of the blocks; how many independent tests it stands for.
+void calibrate(Screening& screening, const Eigen::MatrixXd& centred, const Eigen::MatrixXd& variance,
+               const ScreeningOptions& options) {
+  std::mt19937_64 random(options.seed);
+  std::vector<double> smallest;
+  std::vector<Eigen::MatrixXd> inverse;
+  for (const Variant& variant : screening.variants) {
+    Eigen::MatrixXd v = submatrix(variance, variant.columns);
+    v.diagonal() *= 1.0 + 1e-9;
+    v.diagonal().array() += 1e-300;
+    inverse.push_back(v.inverse());
+  }
+  for (int draw = 0; draw < options.draws; ++draw) {
+    Eigen::VectorXd signs(centred.rows());
+    for (double& sign : signs) sign = (random() >> 63) != 0 ? 1.0 : -1.0;
+    const Eigen::VectorXd drawn = centred.transpose() * signs;
+    double least = 1.0;
+    for (std::size_t k = 0; k < screening.variants.size(); ++k) {
+      const Variant& variant = screening.variants[k];
+      const Eigen::VectorXd g = subvector(drawn, variant.columns);
+      least = std::min(least, chi_squared_tail(g.dot(inverse[k] * g), static_cast<double>(g.size())));
+    }
+    smallest.push_back(least);
+  }
+  // Of n independent tests the smallest p-value has the 1 - 0.5^(1/n) as its median; the tail matters more: 5 %.
+  std::ranges::sort(smallest);
+  const double at_5_percent = smallest[smallest.size() / 20];
+  screening.effective_number = std::max(1.0, std::log1p(-0.05) / std::log1p(-std::min(at_5_percent, 0.049999)));
+  const auto best = std::ranges::min_element(screening.variants, {}, &Variant::p_value);
+  screening.best = static_cast<std::size_t>(best - screening.variants.begin());
+  screening.p_value = -std::expm1(screening.effective_number * std::log1p(-std::min(best->p_value, 1.0 - 1e-16)));
+}
+
+std::vector<Variant> make_variants(const std::vector<PassColumn>& columns, const Layout& layout) {
+  std::vector<Variant> variants;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (variants.empty() || variants.back().candidate != columns[k].candidate ||
+        variants.back().point != columns[k].point)
+      variants.push_back({.candidate = columns[k].candidate, .point = columns[k].point, .columns = {}, .strength = {}});
+    variants.back().columns.insert(variants.back().columns.end(), layout.of_pass[k].begin(), layout.of_pass[k].end());
+  }
+  return variants;
+}
+
+Result<std::vector<Reduced>> reduce_all(const FittedModel& model, const std::vector<Candidate>& candidates,
+                                        const std::vector<PassColumn>& columns, int threads) {
+  std::vector<Reduced> all;
+  const std::size_t count = model.problem.recordings.size();
+  for (std::size_t first = 0; first < count; first += static_cast<std::size_t>(threads)) {
+    std::vector<std::future<Result<Reduced>>> running;
+    for (std::size_t k = first; k < std::min(count, first + static_cast<std::size_t>(threads)); ++k)
+      running.push_back(std::async(std::launch::async, [&, k] { return reduce(model, k, candidates, columns); }));
+    for (auto& one : running) {
+      Result<Reduced> reduced = one.get();
+      if (!reduced) return fail(reduced.error());
+      all.push_back(std::move(*reduced));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
+  Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics)};
+  const std::vector<PassColumn> columns = pass_columns(screening.candidates);
+  const Layout layout = lay_out(columns, data.samples.size());
+  screening.variants = make_variants(columns, layout);
+  screening.unit.resize(static_cast<std::size_t>(layout.size));
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    for (const Eigen::Index index : layout.of_pass[k])
+      screening.unit[static_cast<std::size_t>(index)] = columns[k].unit;
+  Result<std::vector<Reduced>> parts = reduce_all(model, screening.candidates, columns, options.threads);
+  if (!parts) return fail(parts.error());
+
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(shared, shared), cross = Eigen::MatrixXd::Zero(shared, layout.size);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(shared), raw_norm = Eigen::VectorXd::Zero(layout.size);
+  for (std::size_t k = 0; k < parts->size(); ++k) {
+    Reduced& part = (*parts)[k];
+    part.laws = spread(part.laws, layout, k);
+    gram += part.shared.transpose() * part.shared;
+    cross += part.shared.transpose() * part.laws;
+    right += part.shared.transpose() * part.residual;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      for (std::size_t j = 0; j < layout.of_pass[c].size(); ++j)
+        if (layout.of_pass[c].size() == 1 || j == k)
+          raw_norm(layout.of_pass[c][j]) += part.raw_norm(static_cast<Eigen::Index>(c));
+  }
+  screening.gram = Eigen::MatrixXd::Zero(layout.size, layout.size);
+  std::vector<Eigen::MatrixXd> sums;
+  Eigen::Index blocks = 0;
+  for (std::size_t k = 0; k < parts->size(); ++k) {
+    Reduced& part = (*parts)[k];
+    if (shared > 0) {
+      const Projection projection(part.shared, gram);
+      part.laws.noalias() -= part.shared * projection.coefficients(cross);
+      part.residual.noalias() -= part.shared * projection.coefficients(right);
+    }
+    screening.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.laws.transpose());
+    const double rate = static_cast<double>(data.samples[k].time_s.size()) /
+                        (data.samples[k].time_s.back() - data.samples[k].time_s.front());
+    const auto rows = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(options.block_s * rate)) * part.channels;
+    sums.push_back(block_sums(part.laws, part.residual, rows));
+    blocks += sums.back().rows();
+    part.laws.resize(0, 0);
+  }
+  screening.gram.triangularView<Eigen::StrictlyUpper>() = screening.gram.transpose();
+  screening.block_scores.resize(blocks, layout.size);
+  Eigen::Index at = 0;
+  for (const Eigen::MatrixXd& part : sums) {
+    screening.block_scores.middleRows(at, part.rows()) = part;
+    at += part.rows();
+  }
+  screening.gradient = screening.block_scores.colwise().sum();
+  const Eigen::MatrixXd centred = screening.block_scores.rowwise() - screening.block_scores.colwise().mean();
+  const Eigen::MatrixXd variance = centred.transpose() * centred;
+  evaluate(screening, raw_norm, variance);
+  calibrate(screening, centred, variance, options);
+  return screening;
+}
+
+double pair_gain(const Screening& screening, const Variant& a, const Variant& b) {
+  std::vector<Eigen::Index> columns = a.columns;
+  columns.insert(columns.end(), b.columns.begin(), b.columns.end());
+  std::vector<bool> positive = sign_bounds(screening, a);
+  const std::vector<bool> other = sign_bounds(screening, b);
+  positive.insert(positive.end(), other.begin(), other.end());
+  return bounded_step(submatrix(screening.gram, columns), subvector(screening.gradient, columns), positive).gain;
+}
+
+double similarity(const Screening& screening, const Variant& a, const Variant& b) {
+  const Eigen::Index j = a.columns.front(), k = b.columns.front();
+  const double size = std::sqrt(screening.gram(j, j) * screening.gram(k, k));
+  return size > 0.0 ? std::abs(screening.gram(j, k)) / size : 0.0;
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,68 @@
+// One sensitivity pass over a fitted model: what every absent law would change, how much of that the free parameters
+// swallow, and how strongly the residual asks for it.
+//
+//   s_j    whitened change of all outputs by law j at strength 0 (for its usual size)
+//   s~_j   = P s_j, with the columns of all free parameters, loads and initial states projected off
+//   g = S~' r,  G = S~' S~,  U_b = S~_b' r_b   per block b of time, V = sum_b (U_b - U_mean)(U_b - U_mean)'
+//   score of a law with strengths I   T = g_I' V_I^-1 g_I                (chi-squared of |I| under noise alone)
+//   gain of a law, if added           d = g_I' G_I^-1 g_I                (drop of the whitened misfit, linearised)
+//   absorbed share                    a = 1 - |s~|^2/|s|^2
+//   minimum detectable strength       sqrt(lambda / |s~|^2), lambda = 27 (80 % power at 1 % over the whole catalogue)
+//
+// p-value: the largest of all scores against its distribution when the blocks' signs are drawn at random (block
+// multiplier bootstrap: no refit), which keeps the noise's colour and the laws' correlation.
+// Source: docs/mismatch.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+/// One candidate at one point of its shape grid.
+struct Variant {
+  std::size_t candidate = 0;
+  std::size_t point = 0;              ///< of the candidate's grid
+  std::vector<Eigen::Index> columns;  ///< of the screening's matrices, one for each strength
+  double score = 0.0;                 ///< T
+  double p_value = 1.0;               ///< of T alone
+  double gain = 0.0;                  ///< d with strengths kept within their bounds
+  std::vector<double> strength;       ///< linear estimate of each strength, in the law's unit
+  bool physical = true;               ///< the unconstrained estimate is within its bounds
+  double absorbed = 0.0;
+  double minimum_detectable = 0.0;  ///< of the first strength, in the law's unit
+};
+
+struct Screening {
+  std::vector<Candidate> candidates = {};
+  std::vector<Variant> variants = {};
+  Eigen::MatrixXd gram = {};           ///< G, in usual sizes
+  Eigen::VectorXd gradient = {};       ///< g
+  Eigen::MatrixXd block_scores = {};   ///< blocks x columns: U_b
+  std::vector<double> unit = {};       ///< usual size of each column, in the law's unit
+  double p_value = 1.0;           ///< that there is nothing but noise
+  double effective_number = 1.0;  ///< of independent laws in the catalogue
+  std::size_t best = 0;           ///< variant with the largest score
+};
+
+struct ScreeningOptions {
+  double block_s = 0.5;
+  int draws = 999;
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+/// An Error when the model cannot be simulated at its estimates.
+[[nodiscard]] Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options);
+
+/// Linearised gain of two variants together; strengths within bounds.
+[[nodiscard]] double pair_gain(const Screening& screening, const Variant& a, const Variant& b);
+
+/// Cosine between two variants' projected columns: 1 means that this data cannot tell them apart.
+[[nodiscard]] double similarity(const Screening& screening, const Variant& a, const Variant& b);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,123 @@
+#include "services/common/mismatch/sensitivity_pass.hpp"
+
+#include <numbers>
+
+#include "services/common/mismatch/law_columns.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+// A torque that turns with the shaft needs steps that resolve it.
+constexpr double kTurningStep_s = 0.02;
+
+std::vector<LawColumn> law_columns(const std::vector<Candidate>& candidates, const std::vector<PassColumn>& columns) {
+  std::vector<LawColumn> laws;
+  for (const PassColumn& column : columns) {
+    const Candidate& candidate = candidates[column.candidate];
+    if (candidate.sites.empty()) continue;
+    laws.push_back({.law = candidate.law,
+                    .sites = candidate.sites,
+                    .parameters = candidate.grid[column.point],
+                    .strength = column.strength,
+                    .unit = column.unit,
+                    .hidden = column.hidden});
+  }
+  return laws;
+}
+
+// d(channel)/d(strength) of a sensor's law: 1, the channel, or minus its slope.
+void fill_sensor_column(const Candidate& candidate, const PassColumn& column, const RowMatrix& simulated,
+                        const std::vector<double>& time_s, Eigen::Index channel, Eigen::Ref<Eigen::VectorXd> result) {
+  const Eigen::Index last = simulated.rows() - 1;
+  for (Eigen::Index row = 0; row <= last; ++row) {
+    double slope = 1.0;
+    if (candidate.law->kind == SiteKind::sensor_gain) slope = simulated(row, channel);
+    if (candidate.law->kind == SiteKind::sensor_lag) {
+      const Eigen::Index before = std::max<Eigen::Index>(row - 1, 0), after = std::min(row + 1, last);
+      slope = -(simulated(after, channel) - simulated(before, channel)) /
+              (time_s[static_cast<std::size_t>(after)] - time_s[static_cast<std::size_t>(before)]);
+    }
+    result(row) = column.unit * slope;
+  }
+}
+
+}  // namespace
+
+std::vector<PassColumn> pass_columns(const std::vector<Candidate>& candidates) {
+  std::vector<PassColumn> columns;
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    for (std::size_t point = 0; point < candidates[c].grid.size(); ++point)
+      for (const std::size_t strength : strengths_of(*candidates[c].law)) {
+        PassColumn column{.candidate = c,
+                          .point = point,
+                          .strength = strength,
+                          .unit = candidates[c].strength_scale * candidates[c].grid[point][strength]};
+        if (candidates[c].law->hidden && candidates[c].law->hidden->free_initial) {
+          column.own = true;
+          columns.push_back(column);
+          column.hidden = std::numbers::pi / (2.0 * candidates[c].grid[point][1]);  // a quarter of a period further
+        }
+        columns.push_back(column);
+      }
+  return columns;
+}
+
+Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, const std::vector<Candidate>& candidates,
+                              const std::vector<PassColumn>& columns) {
+  const PemRecording& part = model.problem.recordings[recording];
+  const std::vector<double>&shared = model.optimum.point.shared, &own = model.optimum.point.own[recording];
+  std::vector<FreeQuantity> free;
+  std::vector<double> slope;
+  for (std::size_t k = 0; k < shared.size(); ++k) {
+    free.push_back(model.problem.shared[k].quantity);
+    slope.push_back(model.problem.shared[k].slope(shared[k]));
+  }
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    free.push_back(part.own[k].quantity);
+    slope.push_back(part.own[k].slope(own[k]));
+  }
+  LawColumns injected(law_columns(candidates, columns));
+  SimulationOptions options = model.problem.simulation_options;
+  options.maximum_step_s = std::min(options.maximum_step_s, kTurningStep_s);
+  auto outputs = part.simulation->run(values_at(model.problem, recording, shared, own), free, options, &injected);
+  if (!outputs) return fail(outputs.error());
+
+  const Eigen::Index samples = outputs->values.rows(), channels = outputs->values.cols();
+  const auto unknowns = static_cast<Eigen::Index>(free.size()), laws = static_cast<Eigen::Index>(columns.size());
+  Linearisation all{.simulated = outputs->values,
+                    .residual = Eigen::VectorXd(samples * channels),
+                    .jacobian = RowMatrix(samples * channels, unknowns + laws)};
+  for (Eigen::Index row = 0; row < samples * channels; ++row) {
+    const Eigen::Index channel = row % channels, sample = row / channels;
+    const double weight = 1.0 / part.noise_std(channel);
+    all.residual(row) = weight * (part.simulation->recorded()(sample, channel) - outputs->values(sample, channel));
+    for (Eigen::Index k = 0; k < unknowns; ++k)
+      all.jacobian(row, k) = weight * slope[static_cast<std::size_t>(k)] * outputs->sensitivities(row, k);
+    Eigen::Index site_column = unknowns;
+    for (Eigen::Index k = 0; k < laws; ++k)
+      all.jacobian(row, unknowns + k) = candidates[columns[static_cast<std::size_t>(k)].candidate].sites.empty()
+                                            ? 0.0
+                                            : weight * outputs->sensitivities(row, site_column++);
+  }
+  outputs->sensitivities.resize(0, 0);
+  const std::vector<double>& time_s = part.time_s;
+  Eigen::VectorXd values(samples);
+  for (Eigen::Index k = 0; k < laws; ++k) {
+    const PassColumn& column = columns[static_cast<std::size_t>(k)];
+    const Candidate& candidate = candidates[column.candidate];
+    if (!candidate.sites.empty()) continue;
+    for (Eigen::Index c = 0; c < channels; ++c) {
+      if (part.simulation->channels()[static_cast<std::size_t>(c)] != candidate.channel) continue;
+      fill_sensor_column(candidate, column, all.simulated, time_s, c, values);
+      for (Eigen::Index sample = 0; sample < samples; ++sample)
+        all.jacobian(sample * channels + c, unknowns + k) = values(sample) / part.noise_std(c);
+    }
+  }
+  whiten(part.colour, all);
+  return Pass{.free = all.jacobian.leftCols(unknowns),
+              .laws = all.jacobian.rightCols(laws),
+              .residual = std::move(all.residual),
+              .channels = channels};
+}
+
+}  // namespace sealwatch::mismatch

@@ -66,7 +66,7 @@ details{margin:.5rem 0}summary{cursor:pointer;color:var(--first)}
 @media print{:root{color-scheme:light;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
 --second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
 body{max-width:none;padding:0;font-size:10.5pt}section,.plots>div,tr,.banner{break-inside:avoid}section.long{break-inside:auto}
-h2,h3{break-after:avoid}}
+h2,h3{break-after:avoid}.plots{gap:.2rem .8rem}.plots>div{width:48%}}
 )css";
 
 /// Closed parts would be missing on paper.

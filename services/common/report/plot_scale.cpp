@@ -176,7 +176,9 @@ std::vector<Tick> ticks_of(const Scale& scale, const Axis& axis, int about) {
     for (const double value : logarithmic_ticks(std::pow(10.0, scale.low), std::pow(10.0, scale.high)))
       ticks.push_back({at(std::log10(value)), number_text(value, 1)});
   } else {
-    const std::vector<double> values = nice_ticks(scale.low, scale.high, about);
+    std::vector<double> values = nice_ticks(scale.low, scale.high, about);
+    for (int more = about + 1; values.size() < 2 && more < 3 * about; ++more)  // one label says nothing of the scale
+      values = nice_ticks(scale.low, scale.high, more);
     const double step = values.size() > 1 ? values[1] - values[0] : 1.0;
     for (const double value : values) ticks.push_back({at(value), tick_label(value, step)});
   }

@@ -33,10 +33,10 @@ Plot overlay(const Series& recorded, const Series& before, const Series* after, 
   plot.marks.emplace_back(Line{.x = recording.before.time_s,
                                .y = before.values,
                                .ink = Ink::second,
-                               .label = after == nullptr ? "simulated" : "old simulation"});
+                               .label = after == nullptr ? "model" : "old model"});
   if (after != nullptr)
     plot.marks.emplace_back(
-        Line{.x = recording.after.time_s, .y = after->values, .ink = Ink::first, .label = "new simulation"});
+        Line{.x = recording.after.time_s, .y = after->values, .ink = Ink::first, .label = "new model"});
   return plot;
 }
 

@@ -124,6 +124,14 @@ TEST(Plot, LongRecordingsStaySmall) {
   EXPECT_LT(to_svg(plot).size(), 16000U);
 }
 
+TEST(Plot, AFlatStripStillShowsItsScale) {
+  Plot strip{.height = 110};
+  strip.marks = {Line{.x = {0.0, 1.0}, .y = {-21.0, 44.0}}};
+  const std::string svg = to_svg(strip);
+  EXPECT_THAT(svg, HasSubstr(">0<"));
+  EXPECT_THAT(svg, testing::AnyOf(HasSubstr(">20<"), HasSubstr(">40<")));
+}
+
 TEST(Plot, CategoriesNameThePlaces) {
   Plot plot{.x = {.categories = {"ols", "bank & fleet"}}, .y = {.label = "error", .unit = "1"}};
   plot.marks = {Intervals{.x = {0.0, 1.0}, .y = {1.0, 2.0}, .low = {0.5, 1.0}, .high = {2.0, 3.0}}};

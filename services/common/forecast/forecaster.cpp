@@ -63,7 +63,7 @@ Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettin
     return StateSpaceForecaster::make({.method = settings.method,
                                        .window_months = settings.window_months,
                                        .population = settings.population,
-                                       .spread = 1.0,
+                                       .relative_share = 0.0,
                                        .fewest_tests = kFewestTestsWithFleet});
   OlsOptions options{.method = settings.method, .window_months = settings.window_months};
   if (settings.method == "ols_log_time")

@@ -9,8 +9,11 @@
 namespace sealwatch::forecast {
 namespace {
 
-// A seal that is not of the population: three in a hundred, its rate anything between standing still and three times usual.
+// A seal that is not of the population: three in a hundred, its rate anything between standing still and three times
+// usual.
 constexpr double kStrangerShare = 0.03;
+// A relative: its constants spread so many times as widely about the population's.
+constexpr double kRelativeSpread = 3.0;
 constexpr double kStrangerInitialStd = 0.05;
 constexpr double kStrangerRateStd = 0.06;
 constexpr double kStrangerSteepeningStd = 0.003;
@@ -94,10 +97,16 @@ class Bank {
   void run_unchanged() {
     std::vector<std::pair<double, double>> ages(kUnknownAges.begin(), kUnknownAges.end());
     if (options_.age_at_first_test) ages = {{*options_.age_at_first_test, 1.0}};
-    for (const auto& [age, probability] : ages) {
-      runs_.push_back(run(age, false, std::log(probability * (1.0 - kStrangerShare))));
-      runs_.push_back(run(age, true, std::log(probability * kStrangerShare)));
-    }
+    for (const auto& [age, probability] : ages)
+      for (const auto& [kin, share] : kinships())
+        if (share > 0.0) runs_.push_back(run(age, kin, std::log(probability * share)));
+  }
+
+  [[nodiscard]] std::array<std::pair<Kinship, double>, 3> kinships() const {
+    const double related = 1.0 - kStrangerShare;
+    return {{{Kinship::member, related * (1.0 - options_.relative_share)},
+             {Kinship::relative, related * options_.relative_share},
+             {Kinship::stranger, kStrangerShare}}};
   }
 
   [[nodiscard]] const Run& best() const {
@@ -105,19 +114,17 @@ class Bank {
                              [](const Run& a, const Run& b) { return a.log_posterior() < b.log_posterior(); });
   }
 
-  [[nodiscard]] SealBelief prior(bool stranger) const {
-    SealBelief belief = new_seal(options_.population, options_.spread);
-    if (!stranger) return belief;
+  [[nodiscard]] SealBelief prior(Kinship kin) const {
+    SealBelief belief = new_seal(options_.population, kin == Kinship::relative ? kRelativeSpread : 1.0);
+    if (kin != Kinship::stranger) return belief;
     belief.covariance = {
         kStrangerInitialStd * kStrangerInitialStd, 0.0, 0.0,
         kStrangerRateStd * kStrangerRateStd,       0.0, kStrangerSteepeningStd * kStrangerSteepeningStd};
     return belief;
   }
 
-  [[nodiscard]] Run run(double first_age, bool stranger, double log_prior) const {
-    Run run{.hypothesis = {.belief = prior(stranger), .stranger = stranger},
-            .first_age = first_age,
-            .log_prior = log_prior};
+  [[nodiscard]] Run run(double first_age, Kinship kin, double log_prior) const {
+    Run run{.hypothesis = {.belief = prior(kin), .kin = kin}, .first_age = first_age, .log_prior = log_prior};
     SealBelief& belief = run.hypothesis.belief;
     run.before.reserve(tests_.size());
     for (const DatedTest& test : tests_) {
@@ -182,12 +189,12 @@ class Bank {
     SealHypothesis hypothesis{.belief = base.before[first],
                               .change = change,
                               .changed_months = tests_[first].months,
-                              .stranger = base.hypothesis.stranger};
+                              .kin = base.hypothesis.kin};
     SealBelief& belief = hypothesis.belief;
     double first_age = base.first_age;
     if (change == SealChange::replaced) {
       const double evidence = belief.log_evidence;
-      belief = prior(false);
+      belief = prior(base.hypothesis.kin);
       belief.log_evidence = evidence;
       const double gap = first > 0 ? tests_[first].months - tests_[first - 1].months : 1.0;
       first_age = 0.5 * gap - tests_[first].months;  // some time since the test before

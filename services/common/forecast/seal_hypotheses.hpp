@@ -15,6 +15,7 @@ struct DatedTest {
   double condition_std = 0.0;
 };
 
+enum class Kinship { member, relative, stranger };
 enum class SealChange { none, rate, level, replaced };
 
 struct SealHypothesis {
@@ -22,12 +23,12 @@ struct SealHypothesis {
   double weight = 0.0;  ///< posterior probability
   SealChange change = SealChange::none;
   double changed_months = 0.0;  ///< since the first test
-  bool stranger = false;        ///< not of the population
+  Kinship kin = Kinship::member;
 };
 
 struct HypothesisOptions {
   FleetPopulation population;
-  double spread = 1.0;
+  double relative_share = 0.0;  ///< prior probability of a relative
   double change_per_month = 0.002;
   std::optional<double> age_at_first_test;  ///< [months]; none: not known
 };

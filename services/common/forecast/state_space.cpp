@@ -34,7 +34,7 @@ Opened open_history(const ForecastRequest& request, int window_months) {
 SealOpinion opinion_of(const StateSpaceOptions& options, const ForecastRequest& request, const Opened& opened,
                        UtcTime when) {
   HypothesisOptions hypotheses{.population = options.population,
-                               .spread = options.spread,
+                               .relative_share = options.relative_share,
                                .change_per_month = options.change_per_month,
                                .age_at_first_test = std::nullopt};
   if (request.installed) hypotheses.age_at_first_test = months_between(*request.installed, opened.first);
@@ -104,7 +104,8 @@ std::string describe_ok(const SealOpinion& opinion, const Opened& opened, const 
   const ConditionForecast now = condition_of(opinion, request.now);
   text += condition_with_std(now.condition, now.condition_std);
   double stranger = 0.0;
-  for (const SealHypothesis& hypothesis : opinion.hypotheses) stranger += hypothesis.stranger * hypothesis.weight;
+  for (const SealHypothesis& hypothesis : opinion.hypotheses)
+    stranger += (hypothesis.kin == Kinship::stranger) * hypothesis.weight;
   if (stranger > kWorthSaying) text += "; it ages unlike the population";
   if (const std::string change = describe_change(opinion, opened.first); !change.empty()) text += "; " + change;
   if (opinion.extra_std > 0.0)
@@ -123,10 +124,8 @@ Status StateSpaceOptions::validate() const {
   if (auto s = check(window_months >= 6 && window_months <= 600, "window_months", window_months, "must be 6 to 600");
       !s)
     return s;
-  if (auto s = check(spread >= 0.1 && spread <= 10.0, "spread", spread, "must be 0.1 to 10"); !s) return s;
-  if (auto s = check(fewest_tests >= 1, "fewest_tests", fewest_tests, "must be at least 1"); !s) return s;
-  if (auto s = check(change_per_month > 0.0 && change_per_month <= 0.1, "change_per_month", change_per_month,
-                     "must be above 0, at most 0.1");
+  if (auto s = check(relative_share >= 0.0 && relative_share < 1.0, "relative_share", relative_share,
+                     "must be at least 0, below 1");
       !s)
     return s;
   if (auto s = check(horizon_months > 0.0 && horizon_months <= kLongestMonths, "horizon_months", horizon_months,

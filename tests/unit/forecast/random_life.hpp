@@ -34,6 +34,7 @@ struct RandomLife {
 ///   level          from month 72 on estimates are 0.02 low          errors    true scatter is three times what is told
 ///   late           the first test comes at month 60, the installation is not known
 ///   unlike         of another population, that ages twice as fast     line  theta falls straight
+///   starting       of the constants that the reference model starts from, before its calibration
 ///   replaced       at month 48 another seal, unannounced  unknown   estimates come without a standard error
 inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, double fixed_std, double threshold) {
   constexpr double kChange = 72.0;
@@ -46,6 +47,7 @@ inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, d
   life.installation_known = scenario != "late";
   DegradationSetting setting;
   if (scenario == "unlike") setting = {.initial_gamma = {0.06, 0.10}, .steepening_limit = {0.0035, 0.005}};
+  if (scenario == "starting") setting = {.steepening_limit = {0.0016, 0.005}, .irregularity = {-0.05, 0.10}};
   Degradation seal(seed, setting);
   const double straight_fall = 0.002 + 0.004 * uniform(random);
   double offset = 0.0;  // of the calendar, where an earlier seal was replaced

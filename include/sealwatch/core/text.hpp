@@ -1,6 +1,7 @@
 // Small helpers for messages that people read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -8,6 +9,9 @@
 #include <vector>
 
 namespace sealwatch {
+
+/// Damerau-Levenshtein distance (optimal string alignment); upper and lower case count as the same letter.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours), or "" when none
 /// is closer than half the word's length.

@@ -66,22 +66,24 @@ class Forecaster {
 };
 
 /// Which forecaster, by name:
-///   ols           straight line of theta over t                        ols_log_time  the same over ln t
-///   ols_drift     as ols, and carries that the slope will change       ols_fieller   as ols, with Fieller's interval
 ///   state_space   the degradation law as a state-space model           fleet         the same, pooled with the fleet
 ///   average       average of `members` by their past scores
+///   ols           straight line of theta over t                        ols_log_time  the same over ln t
+///   ols_drift     as ols, and carries that the slope will change       ols_fieller   as ols, with Fieller's interval
 struct ForecasterSettings {
   std::string method = "ols";
-  int window_months = 36;
-  FleetPopulation population = {};               ///< of state_space and fleet
+  int window_months = 36;           ///< tests older than this are passed over; the laws take kWholeLife_months
+  FleetPopulation population = {};  ///< of state_space, fleet and average
+  double change_per_month = 0.002;  ///< of the same: prior probability of a change of rate or level
   std::vector<ForecasterSettings> members = {};  ///< of average; none: its default members
 };
+inline constexpr int kWholeLife_months = 240;  ///< 20 years of service
 
 [[nodiscard]] const std::vector<std::string>& forecast_methods();
 [[nodiscard]] Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings);
 
-/// The one in charge first: ols_drift over 36 months, whose point forecast is that of ols and whose interval holds when
-/// the rate of ageing changes, as it does (docs/forecast.md); then the forecasters of MODEL section 6.
+/// The one in charge first: state_space, by the comparison in docs/forecast.md; then the lines of MODEL section 6, and
+/// the others for comparison.
 [[nodiscard]] std::vector<ForecasterSettings> default_forecasters();
 
 /// Several forecasters that judge the same history.
@@ -96,9 +98,10 @@ class ForecastPanel {
     bool windows_disagree = false;  ///< 95 % intervals of two windows of one method do not overlap
     std::string disagreement;
     std::vector<ConditionSample> used;      ///< in the order of time
-    std::vector<ConditionSample> left_out;  ///< isolated outliers (condition_history.hpp)
+    std::vector<ConditionSample> left_out;  ///< isolated outliers (condition_history.hpp), and what is no number
   };
-  /// Sorts the history by time and leaves isolated outliers out first.
+  /// Sorts the history by time and leaves out first: isolated outliers, samples that are not finite or have a negative
+  /// standard error, and all but one of equal samples (a test that was delivered twice).
   [[nodiscard]] Answer forecast(ForecastRequest request) const;
 
  private:

@@ -10,7 +10,8 @@ namespace {
 
 char lower(char letter) { return static_cast<char>(std::tolower(static_cast<unsigned char>(letter))); }
 
-/// Damerau-Levenshtein distance (optimal string alignment); upper and lower case count as the same letter.
+}  // namespace
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   const std::size_t width = b.size() + 1;
   std::vector<std::size_t> table((a.size() + 1) * width);
@@ -27,8 +28,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   }
   return at(a.size(), b.size());
 }
-
-}  // namespace
 
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
   std::string best;

@@ -33,8 +33,7 @@ ForecastRequest as_of(const ForecastRequest& request, UtcTime then) {
   return earlier;
 }
 
-/// Sum of the logarithms of the densities that the member gave to tests after each earlier date; where it could not
-/// say anything, of the worst that any other member gave (`missing` counts them).
+/// Logarithms of the densities that the member gave to later tests; empty when it could not say anything then.
 std::vector<double> log_densities(const Forecaster& member, const ForecastRequest& earlier,
                                   std::span<const ConditionSample> later) {
   std::vector<UtcTime> times;
@@ -54,7 +53,10 @@ std::vector<ForecasterSettings> AverageForecaster::default_members(const Forecas
                                           {"ols_drift", 24},
                                           {"ols_drift", 36},
                                           {"ols_drift", 48}};
-  for (ForecasterSettings& member : members) member.population = settings.population;
+  for (ForecasterSettings& member : members) {
+    member.population = settings.population;
+    member.change_per_month = settings.change_per_month;
+  }
   return members;
 }
 

@@ -1,6 +1,7 @@
 #include "sealwatch/forecast/forecaster.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/forecast/forecast_average.hpp"
@@ -12,6 +13,7 @@ namespace sealwatch::forecast {
 namespace {
 
 // Of the lives of MODEL section 5: see docs/forecast.md, "Why the line's own interval is too narrow".
+constexpr const char* kStraightLine = "ols";
 constexpr double kSlopeDrift = 0.20;
 constexpr int kFewestTestsWithFleet = 3;  // the fleet says the rest
 
@@ -24,9 +26,22 @@ std::vector<ConditionSample> take_outliers(std::vector<ConditionSample>& history
   return left_out;
 }
 
+/// Sorts, drops what was delivered twice, and takes out what is no number.
+std::vector<ConditionSample> take_unusable(std::vector<ConditionSample>& history) {
+  std::stable_sort(history.begin(), history.end(),
+                   [](const ConditionSample& a, const ConditionSample& b) { return a.time < b.time; });
+  history.erase(std::unique(history.begin(), history.end()), history.end());
+  const auto unusable = std::stable_partition(history.begin(), history.end(), [](const ConditionSample& sample) {
+    return std::isfinite(sample.condition) && std::isfinite(sample.condition_std) && sample.condition_std >= 0.0;
+  });
+  std::vector<ConditionSample> taken(unusable, history.end());
+  history.erase(unusable, history.end());
+  return taken;
+}
+
 std::string describe(const Forecast& forecast) {
-  return std::to_string(forecast.window_months) + " months give " + in_months(forecast.rul_p50_months) +
-         " (95 %: " + in_months(forecast.interval_95_low_months) + " to " +
+  return "by its last " + std::to_string(forecast.window_months) + " months " + in_months(forecast.rul_p50_months) +
+         " are left (95 %: " + in_months(forecast.interval_95_low_months) + " to " +
          in_months(forecast.interval_95_high_months) + ")";
 }
 
@@ -34,23 +49,28 @@ bool apart(const Forecast& a, const Forecast& b) {
   return a.interval_95_high_months < b.interval_95_low_months || b.interval_95_high_months < a.interval_95_low_months;
 }
 
+/// Of the straight lines in time alone: they follow the rate of ageing as it is. A line over ln t bends away from any
+/// straight history, so that its windows always differ.
 std::string disagreement(const std::vector<Forecast>& forecasts) {
-  for (std::size_t i = 0; i < forecasts.size(); ++i)
-    for (std::size_t j = i + 1; j < forecasts.size(); ++j) {
-      const bool comparable = forecasts[i].state == ForecastState::ok && forecasts[j].state == ForecastState::ok &&
-                              forecasts[i].method == forecasts[j].method;
-      if (comparable && apart(forecasts[i], forecasts[j]))
-        return forecasts[i].method + ": " + describe(forecasts[i]) + ", " + describe(forecasts[j]) +
-               ": the rate of degradation has changed";
-    }
-  return {};
+  const Forecast* shortest = nullptr;
+  const Forecast* longest = nullptr;
+  for (const Forecast& forecast : forecasts) {
+    if (forecast.method != kStraightLine || forecast.state != ForecastState::ok) continue;
+    if (!shortest || forecast.window_months < shortest->window_months) shortest = &forecast;
+    if (!longest || forecast.window_months > longest->window_months) longest = &forecast;
+  }
+  if (!shortest || !apart(*shortest, *longest)) return {};
+  const bool faster = shortest->rul_p50_months < longest->rul_p50_months;
+  return std::string(faster ? "the seal has been ageing faster of late: "
+                            : "the seal has been ageing more slowly of late: ") +
+         describe(*shortest) + ", " + describe(*longest);
 }
 
 }  // namespace
 
 const std::vector<std::string>& forecast_methods() {
-  static const std::vector<std::string> methods{"ols",         "ols_log_time", "ols_drift",
-                                                "ols_fieller", "state_space",  "fleet"};
+  static const std::vector<std::string> methods{"ols",         "ols_log_time", "ols_drift", "ols_fieller",
+                                                "state_space", "fleet",        "average"};
   return methods;
 }
 
@@ -64,7 +84,8 @@ Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettin
                                        .window_months = settings.window_months,
                                        .population = settings.population,
                                        .relative_share = 0.0,
-                                       .fewest_tests = kFewestTestsWithFleet});
+                                       .fewest_tests = kFewestTestsWithFleet,
+                                       .change_per_month = settings.change_per_month});
   OlsOptions options{.method = settings.method, .window_months = settings.window_months};
   if (settings.method == "ols_log_time")
     options.time = DegradationTime::log_months;
@@ -82,8 +103,14 @@ Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettin
 }
 
 std::vector<ForecasterSettings> default_forecasters() {
-  return {{"ols_drift", 36},    {"ols", 36},          {"ols", 24},       {"ols", 48},      {"ols_log_time", 36},
-          {"ols_log_time", 24}, {"ols_log_time", 48}, {"ols_drift", 24}, {"ols_drift", 48}};
+  return {{"state_space", kWholeLife_months},
+          {"ols", 36},
+          {"ols", 24},
+          {"ols", 48},
+          {"ols_drift", 36},
+          {"ols_log_time", 36},
+          {"fleet", kWholeLife_months},
+          {"average", kWholeLife_months}};
 }
 
 Result<ForecastPanel> ForecastPanel::make(const std::vector<ForecasterSettings>& settings) {
@@ -98,10 +125,9 @@ Result<ForecastPanel> ForecastPanel::make(const std::vector<ForecasterSettings>&
 }
 
 ForecastPanel::Answer ForecastPanel::forecast(ForecastRequest request) const {
-  std::stable_sort(request.history.begin(), request.history.end(),
-                   [](const ConditionSample& a, const ConditionSample& b) { return a.time < b.time; });
   Answer answer;
-  answer.left_out = take_outliers(request.history);
+  answer.left_out = take_unusable(request.history);
+  for (const ConditionSample& outlier : take_outliers(request.history)) answer.left_out.push_back(outlier);
   for (const auto& forecaster : forecasters_) {
     PredictiveForecast predicted = forecaster->predict(request);
     answer.forecasts.push_back(std::move(predicted.forecast));

@@ -33,6 +33,22 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
+const std::vector<std::string> kColumns{"time[iso8601]", "theta[1]", "theta_std[1]", "R_CL[Pa s/m3]",
+                                        "R_CL_std[Pa s/m3]"};
+constexpr std::size_t kSlip = 2;  // letters: other columns are passed over, a misspelt one must not be
+
+/// The column that `name` nearly is; "" for one that is spelt right or is something else altogether.
+std::string misspelt(const std::string& name) {
+  std::string meant;
+  std::size_t least = kSlip + 1;
+  for (const std::string& column : kColumns)
+    if (const std::size_t distance = edit_distance(name, column); distance < least) {
+      least = distance;
+      meant = column;
+    }
+  return meant == name ? std::string() : meant;
+}
+
 struct Columns {
   std::size_t time = 0;
   std::size_t value = 0;
@@ -82,8 +98,11 @@ class HistoryParser {
         if (columns_.header[i] == name) return i;
       return std::nullopt;
     };
-    for (std::size_t i = 0; i < columns_.header.size(); ++i)
+    for (std::size_t i = 0; i < columns_.header.size(); ++i) {
       if (find(columns_.header[i]) != i) return fail(at(columns_.header[i], {}, "stands twice", {}));
+      if (const std::string meant = misspelt(columns_.header[i]); !meant.empty())
+        return fail(at({}, columns_.header[i], "is not a column of a history", "did you mean '" + meant + "'?"));
+    }
     const auto time = find("time[iso8601]");
     if (!time) return fail(at({}, line, "has no column time[iso8601]", suggest("time[iso8601]", columns_.header)));
     const auto theta = find("theta[1]");

@@ -4,7 +4,8 @@
 //   time[iso8601],R_CL[Pa s/m3],R_CL_std[Pa s/m3]           leakage resistance: needs the asset's seal resistances
 //
 // The standard-error column may be absent as a whole (then the scatter about the line alone tells the uncertainty), but
-// not in single rows. Times must increase. Other columns are passed over. Errors name file, row (the header is row 1)
+// not in single rows. Times must increase. Other columns are passed over, unless they are a slip of the pen away
+// from one of these. Errors name file, row (the header is row 1)
 // and column.
 #pragma once
 

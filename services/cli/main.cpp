@@ -12,6 +12,7 @@
 #include "services/cli/completion.hpp"
 #include "services/cli/manual.hpp"
 #include "services/cli/session.hpp"
+#include "services/cli/verify.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -30,6 +31,7 @@ class CommandLine {
     app_.footer(std::string("First steps: sealwatch replay --with-services RECORDING.csv...\n") + kExitStatus);
     add_recordings();
     add_estimation();
+    add_verification();
     add_live();
     add_operator();
     add_configuration();
@@ -133,6 +135,48 @@ class CommandLine {
     forecast->add_flag("--json", forecast_.json, "machine-readable result (schema sealwatch.forecast/1)");
   }
 
+  void add_verification() {
+    CLI::App* verify = app_.add_subcommand("verify", "verify estimates and forecasts on simulated lives");
+    verify->require_subcommand(1);
+    const auto part = [&](const char* name, const char* meaning, const char* example, std::function<int()> run) {
+      CLI::App* subcommand = verify->add_subcommand(name, meaning);
+      subcommand->footer(std::string("Example:\n  ") + example + "\n" + kExitStatus);
+      subcommand->callback([this, run = std::move(run)] { chosen_ = run; });
+      return subcommand;
+    };
+    add_verify_rul(part("rul", "Monte Carlo: random lives, monthly tests, estimates, forecasts until failure",
+                        "sealwatch verify rul --asset config/assets/xt03-mv2.yaml --lives 1000 --out verification",
+                        [this] { return run_verify_rul(verify_rul_); }));
+    CLI::App* merge = part("merge", "put the shards of one run together: the same results as of a run in one piece",
+                           "sealwatch verify merge shard1 shard2 --out verification",
+                           [this] { return run_verify_merge(verify_merge_); });
+    merge->add_option("directories", verify_merge_.directories, "the --out of each shard")->required();
+    merge->add_option("--out", verify_merge_.directory, "directory for the results (made if absent)")->required();
+    merge->add_flag("--json", verify_merge_.json, "machine-readable result (schema sealwatch.verification/1)");
+  }
+
+  void add_verify_rul(CLI::App* rul) {
+    VerifyRulOptions& o = verify_rul_;
+    rul->add_option("--asset", o.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    rul->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
+    rul->add_option("--lives", o.lives, "number of random lives")->capture_default_str();
+    rul->add_option("--seed", o.seed, "same seed, same results")->check(not_negative)->capture_default_str();
+    rul->add_option("--months", o.months, "months of service")->capture_default_str();
+    rul->add_option("--rate", o.sample_rate_Hz, "samples a second")->capture_default_str();
+    rul->add_option("--threads", o.threads, "0: one for each core")->check(CLI::Range(0, 256))->capture_default_str();
+    rul->add_option("--shard", o.shard, "k/n: only this part of the lives, for `verify merge`")->capture_default_str();
+    rul->add_option("--truth", o.truth, "circuit, actuator (nine-state bench) or condition (no test is simulated)")
+        ->capture_default_str();
+    rul->add_option("--forecaster", o.forecasters, "METHOD or METHOD:MONTHS, several times (default: all)");
+    rul->add_option("--degradation", o.degradation,
+                    "published_ln_t (default), published_t, bench, or NAME=NUMBER; several");
+    rul->add_option("--missing", o.missing_share, "share of the months without a test")->capture_default_str();
+    rul->add_option("--cut", o.cut_share, "share of the tests that are cut short")->capture_default_str();
+    rul->add_flag("--direct", o.direct, "recordings go to the estimator directly, not through the first two layers");
+    rul->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
+    rul->add_flag("--json", o.json, "machine-readable result (schema sealwatch.verification/1)");
+  }
+
   void add_live() {
     CLI::App* replay =
         command("replay", "play recorded tests through the six services, or --offline in process",
@@ -232,6 +276,8 @@ class CommandLine {
   SimulateOptions simulate_;
   FitOptions fit_;
   ForecastOptions forecast_;
+  VerifyRulOptions verify_rul_;
+  VerifyMergeOptions verify_merge_;
   ReplayOptions replay_;
   WatchOptions watch_;
   UpOptions up_;

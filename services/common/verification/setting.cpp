@@ -66,6 +66,22 @@ std::uint64_t fingerprint(const std::string& text) {  // FNV-1a
 
 }  // namespace
 
+forecast::DegradationSetting published_ln_t() {
+  return {.initial_condition = 1.0,
+          .n_0 = 6.0,
+          .initial_gamma = {0.03, 0.06},
+          .steepening_limit = {0.0022, 0.0036},
+          .irregularity = {-0.26, 0.28}};
+}
+
+forecast::DegradationSetting published_t() {
+  return {.initial_condition = 1.0,
+          .n_0 = 17.0,
+          .initial_gamma = {0.003, 0.015},
+          .steepening_limit = {0.0037, 0.0067},
+          .irregularity = {-0.62, 0.70}};
+}
+
 std::string_view name_of(TruthKind kind) {
   for (const auto& [truth, name] : kTruths)
     if (truth == kind) return name;
@@ -144,9 +160,17 @@ std::vector<std::string> method_labels(const VerificationSetting& setting) {
 }
 
 Status set_constant(forecast::DegradationSetting& degradation, const std::string& assignment) {
+  std::vector<std::string> known;
+  for (const auto& [name, set] : {std::pair{"published_ln_t", published_ln_t()},
+                                  {"published_t", published_t()},
+                                  {"bench", forecast::DegradationSetting{}}}) {
+    known.emplace_back(name);
+    if (assignment != name) continue;
+    degradation = set;
+    return {};
+  }
   const std::size_t equals = assignment.find('=');
   const std::string name = assignment.substr(0, equals);
-  std::vector<std::string> known;
   for (auto& [constant, value] : constants(degradation)) {
     known.emplace_back(constant);
     if (name != constant) continue;

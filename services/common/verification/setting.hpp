@@ -18,6 +18,11 @@ namespace sealwatch::verification {
 /// calibration of the degradation's constants, which needs thousands of runs.
 enum class TruthKind { circuit, actuator, condition };
 
+/// Constants of the degradation, calibrated on lifetimes and on window 36 alone so that a line over ln t, or over t,
+/// does what the source reports of its window 36 (docs/verification.md, "Calibration"). Frozen.
+[[nodiscard]] forecast::DegradationSetting published_ln_t();
+[[nodiscard]] forecast::DegradationSetting published_t();
+
 struct VerificationSetting {
   AssetConfig asset;
   int lives = 1000;
@@ -29,7 +34,7 @@ struct VerificationSetting {
   double load_range = 0.2;      ///< Phi of each test is uniform in +- this
   double missing_share = 0.0;   ///< of the months: no test
   double cut_share = 0.0;       ///< of the tests: recording cut short
-  forecast::DegradationSetting degradation = {};
+  forecast::DegradationSetting degradation = published_ln_t();
   std::vector<forecast::ForecasterSettings> forecasters = {};
 };
 
@@ -47,7 +52,8 @@ struct VerificationSetting {
 /// Labels of the forecasters in their order, the oracle last: the columns of a record.
 [[nodiscard]] std::vector<std::string> method_labels(const VerificationSetting& setting);
 
-/// Sets one constant of the degradation, "steepening_limit_max=0.004". Names: docs/verification.md.
+/// Sets one constant of the degradation, "steepening_limit_max=0.004", or all by the name of a set: "published_ln_t",
+/// "published_t", or "bench", the constants that the virtual bench's lives have. Names: docs/verification.md.
 [[nodiscard]] Status set_constant(forecast::DegradationSetting& degradation, const std::string& assignment);
 
 /// All that results depend on, a line each, "key = value"; two settings are the same when their texts are.

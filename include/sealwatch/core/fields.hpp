@@ -27,7 +27,7 @@
 
 #define SEALWATCH_VISIT_ONE(field) visitor(std::string_view(#field), self.field);
 #define SEALWATCH_VISIT_TWO(field) visitor(std::string_view(#field), self.field, other.field);
-#define SEALWATCH_COUNT_ONE(field) +1
+#define SEALWATCH_COUNT_ONE(field) +1  // NOLINT(bugprone-macro-parentheses): a term of a sum
 
 #define SEALWATCH_FIELDS(Type, ...)                                                                  \
   static constexpr std::string_view kTypeName = #Type;                                               \

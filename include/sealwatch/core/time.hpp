@@ -13,7 +13,7 @@ namespace sealwatch {
 /// UTC time in nanoseconds since the Unix epoch. Unknown times are std::optional<UtcTime>, never a sentinel.
 struct UtcTime {
   std::int64_t nanoseconds = 0;
-  friend auto operator<=>(const UtcTime&, const UtcTime&) = default;
+  friend auto operator<=>(const UtcTime&, const UtcTime&) = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14
 };
 
 inline constexpr double kSecondsPerDay = 86400.0;

@@ -61,7 +61,7 @@ bool take_zone(std::string_view& text, std::int64_t& seconds) {
   take(text, ':');
   if (!text.empty() && !take_number(text, 2, minutes)) return false;
   if (hours > 14 || minutes > 59) return false;
-  seconds = sign * (hours * 3600 + minutes * 60);
+  seconds = std::int64_t{sign} * (hours * std::int64_t{3600} + minutes * std::int64_t{60});
   return true;
 }
 
@@ -96,7 +96,8 @@ Result<UtcTime> parse_utc(std::string_view text) {
     if (hour > 23 || minute > 59 || second > 59) return not_a_time(text);
   }
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  const std::int64_t seconds = days * 86400 + hour * 3600 + minute * 60 + second - zone_seconds;
+  const std::int64_t seconds =
+      days * 86400 + hour * std::int64_t{3600} + minute * std::int64_t{60} + second - zone_seconds;
   return UtcTime{seconds * kNanosecondsPerSecond + nanoseconds};
 }
 

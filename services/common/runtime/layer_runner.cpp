@@ -64,7 +64,7 @@ Status LayerRunner::start() {
 
 Status LayerRunner::restore_past() {
   std::size_t restored = 0;
-  const Status outputs = journal_.for_each_output([&](const Message& output) {
+  Status outputs = journal_.for_each_output([&](const Message& output) {
     layer_.restore(output);
     admission_.note(output);
     replaying_ = header_of(output).replay;
@@ -73,7 +73,7 @@ Status LayerRunner::restore_past() {
   });
   if (!outputs) return outputs;
   const std::uint64_t open = journal_.open_inputs();
-  const Status inputs = in_batch([&] {
+  Status inputs = in_batch([&] {
     return journal_.for_each_open_input([&](const Message& input) {
       replaying_ = header_of(input).replay;
       admission_.note(input);

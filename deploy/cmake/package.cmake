@@ -15,6 +15,17 @@ set(debian ${PROJECT_SOURCE_DIR}/deploy/debian)
 install(FILES ${debian}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/sealwatch COMPONENT services)
 install(FILES ${debian}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/sealwatch-dev COMPONENT client)
 
+# Debian's own changelog, compressed as its policy asks; CHANGELOG.md is for people.
+add_custom_command(OUTPUT changelog.gz COMMAND gzip -9nc ${debian}/changelog > changelog.gz
+  DEPENDS ${debian}/changelog VERBATIM)
+add_custom_target(sealwatch_changelog ALL DEPENDS changelog.gz)
+foreach(package sealwatch/services sealwatch-dev/client)
+  get_filename_component(component ${package} NAME)
+  get_filename_component(name ${package} DIRECTORY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name}
+          COMPONENT ${component})
+endforeach()
+
 # Every file below /etc is a conffile: an upgrade asks before it replaces one that was changed.
 file(GLOB_RECURSE files RELATIVE ${PROJECT_SOURCE_DIR}/config CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/config/*.yaml)
 list(TRANSFORM files PREPEND /etc/sealwatch/)

@@ -34,7 +34,7 @@ make_packages() {
 check_contents() {
   local path
   for path in bin/sealwatch bin/sealwatch-virtual-bench "${services[@]/#/bin/sealwatch-}" lib/sysusers.d/sealwatch.conf \
-    lib/systemd/system/sealwatch.target share/doc/sealwatch/{copyright,README.md,CHANGELOG.md,LICENSE}; do
+    lib/systemd/system/sealwatch.target share/doc/sealwatch/{copyright,changelog.gz,README.md,CHANGELOG.md,LICENSE}; do
     [ -s "$root/usr/$path" ] || fail "/usr/$path is not in sealwatch"
   done
   for path in libsealwatch_client.a sealwatchConfig.cmake sealwatch/client/subscriber.hpp idl/advisory_generation.idl; do
@@ -74,7 +74,7 @@ check_units() {
 
 check_page() {
   have man "the manual page" || return 0
-  LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -E UTF-8 -l "$root/usr/share/man/man1/sealwatch.1" \
+  LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -E UTF-8 -l "$root/usr/share/man/man1/sealwatch.1.gz" \
     >"$scratch/page" 2>"$scratch/page_warnings" || fail "man cannot show the page" "$scratch/page_warnings"
   [ ! -s "$scratch/page_warnings" ] || fail "the manual page has faults" "$scratch/page_warnings"
   grep -q 'sealwatch replay' "$scratch/page" || fail "the manual page does not tell of replay" "$scratch/page"
@@ -115,6 +115,13 @@ check_services() {
   [ ! -e "$scratch/home/state/advisory_generation.db" ] || fail "a disabled service was started"
 }
 
+# Errors only: what lintian merely warns of are this package's own ways (one man page for all services, no tests in it).
+check_lint() {
+  have lintian "what Debian's policy asks for" || return 0
+  lintian --fail-on error --tag-display-limit 0 "$scratch"/packages/*.deb >"$scratch/lintian" 2>&1 ||
+    fail "lintian finds errors in the packages" "$scratch/lintian"
+}
+
 # The prefix is chosen when installing: units must name it, and what an operator changed must survive a second time.
 check_other_prefix() {
   local prefix=$scratch/prefix turn
@@ -145,6 +152,7 @@ check_contents
 check_control
 check_units
 check_page
+check_lint
 check_completion
 check_programs
 check_services

@@ -3,11 +3,10 @@
 //
 //   p_L = p_A - r p_B            load pressure [Pa]; r = A_B / A_A, 1 for a piston of equal areas; where only the
 //                                differential pressure is recorded, p_L is that
-//   q_leak = q - A_A v - (V_A/beta) dp_A/dt     flow that neither moves the piston nor compresses the oil [m3/s], by
-//   the
-//                                mass balance of chamber A (MODEL section 2); positive from A to B
+//   q_leak = q - A_A v - (V_A/beta) dp_A/dt     flow that neither moves the piston nor compresses the oil [m3/s],
+//                                by the mass balance of chamber A (docs/model.md); positive from A to B
 //
-// Signs: x, v, q and p_L as in MODEL.md; features that say "drop", "decay" or "resistance" are positive as a rule.
+// Signs: x, v, q and p_L as in docs/model.md; features that say "drop", "decay" or "resistance" are positive as a rule.
 // A feature that this recording cannot give is absent. Standard errors hold for the noise in the data, not for errors
 // of the asset's parameters.
 #pragma once

@@ -25,6 +25,7 @@ constexpr std::array<std::pair<double, double>, 4> kUnknownAges{
 // Tests since the change, newest first: finer where a change is young. Older ones are found by their nearest.
 constexpr std::array<std::size_t, 11> kTestsSinceChange{2, 3, 5, 8, 12, 18, 26, 38, 54, 76, 108};
 constexpr std::size_t kFewestBeforeChange = 6;
+constexpr std::size_t kTestsOfJump = 3;     // after a step that shows among them all
 constexpr std::size_t kJumps = 3;           // steps that are looked into
 constexpr double kShortest_months = 0.5;    // between two tests, as far as priors go
 constexpr double kReplacedPerMonth = 1e-4;  // without anybody saying so
@@ -151,6 +152,8 @@ class Bank {
       const double stands_for = last_months - tests_[first].months;  // months since the candidate before
       last_months = tests_[first].months;
       all.push_back(branch(base, SealChange::rate, first, prior(0.5 * options_.change_per_month, stands_for)));
+      if (since < kTestsOfJump)  // two tests that confirm each other count at once
+        all.push_back(branch(base, SealChange::level, first, prior(0.5 * options_.change_per_month, stands_for)));
     }
     for (const std::size_t first : largest_jumps()) {
       const double stands_for = tests_[first + 1].months - tests_[first - 1].months + kShortest_months;

@@ -11,7 +11,8 @@ namespace sealwatch::verification {
 namespace {
 
 constexpr int kLongestLife_months = 2400;
-// Of 1/R_CL at 50 Hz, whatever R_CL is: what the estimator reports on recordings of the cylinder circuit.
+// Of 1/R_CL at 50 Hz and the mean load, whatever R_CL is: what the estimator reports on the cylinder circuit. The
+// pressure difference that the leak has to show itself against is proportional to the load.
 constexpr double kConductanceStd_m3_Pa_s = 1.04e-16;
 
 /// A seal's state month by month up to its failure; element n is month n.
@@ -90,7 +91,8 @@ Result<std::optional<forecast::ConditionSample>> LifeSimulator::estimate(const b
                                                                          const bench::PlannedTest& test) const {
   const AssetConfig& asset = setting_.asset;
   if (setting_.truth == TruthKind::condition) {
-    const double resistance_std = kConductanceStd_m3_Pa_s * test.resistance_Pa_s_m3 * test.resistance_Pa_s_m3;
+    const double conductance_std = kConductanceStd_m3_Pa_s / (1.0 + test.load_factor);
+    const double resistance_std = conductance_std * test.resistance_Pa_s_m3 * test.resistance_Pa_s_m3;
     const double condition_std = asset.seal->condition_std(resistance_std);
     bench::NormalRandom noise(test.seed);
     return forecast::ConditionSample{test.start_time, test.condition + condition_std * noise.next(), condition_std};

@@ -124,10 +124,15 @@ Status validate(const VerificationSetting& setting) {
 
 std::vector<forecast::ForecasterSettings> all_forecasters() {
   std::vector<forecast::ForecasterSettings> all = forecast::default_forecasters();
+  const auto add = [&all](const std::string& method, int window_months) {
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const auto& known) { return known.method == method && known.window_months == window_months; }))
+      all.push_back({.method = method, .window_months = window_months});
+  };
+  for (const std::string method : {"ols", "ols_log_time", "ols_drift"})
+    for (const int window_months : {24, 36, 48}) add(method, window_months);
   for (const std::string& method : forecast::forecast_methods())
-    if (std::none_of(all.begin(), all.end(), [&](const auto& known) { return known.method == method; }))
-      all.push_back(
-          {.method = method, .window_months = method.starts_with("ols") ? kLineWindow_months : kWholeLife_months});
+    add(method, method.starts_with("ols") ? kLineWindow_months : kWholeLife_months);
   return all;
 }
 

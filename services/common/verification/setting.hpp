@@ -43,7 +43,7 @@ struct VerificationSetting {
 
 [[nodiscard]] Status validate(const VerificationSetting& setting);
 
-/// Every known method: the default panel, then the other lines over 36 months and the laws over the whole life.
+/// Every known method: the default panel first, lines over 24, 36 and 48 months, the laws over the whole life.
 [[nodiscard]] std::vector<forecast::ForecasterSettings> all_forecasters();
 /// "ols:24", or "state_space" with the window that all_forecasters() has for it first.
 [[nodiscard]] Result<forecast::ForecasterSettings> forecaster_named(const std::string& text);

@@ -34,21 +34,47 @@ const std::map<std::string, std::size_t> kDissipate = {
     {"external_leakage (laminar)", 0},
     {"external_leakage (turbulent)", 0},
     {"linear_outflow", 0},
+    {"unlisted (speed_power)", 0},
+    {"unlisted (directional_friction)", 0},
+    {"unlisted (pressure_friction)", 0},
+    {"unlisted (tight_spot)", 0},
+    {"unlisted (position_drag)", 0},
+    {"unlisted (pressure_drag)", 0},
+    {"unlisted (leakage_power)", 0},
+    {"unlisted (local_leakage)", 0},
+    {"unlisted (moving_leakage)", 0},
+    {"unlisted (slip_power)", 0},
+    {"unlisted (turning_slip)", 0},
+    {"unlisted (torque_power)", 0},
+    {"unlisted (pressure_torque)", 0},
+    {"unlisted (resistance_power)", 0},
+    {"unlisted (command_power)", 1},
+    {"unlisted (outflow_power)", 0},
 };
 
 /// Laws without memory whose contribution has one sign: +1 or -1, for levels that are positive.
 const std::map<std::string, double> kOneSign = {
-    {"hose_compliance (constant)", 1.0}, {"hose_compliance (stiffening)", 1.0},
-    {"entrained_air (isothermal)", 1.0}, {"entrained_air (polytropic)", 1.0},
-    {"entrained_air (dissolving)", 1.0}, {"tank_overflow", 1.0},
-    {"outflow_exponent", 1.0},           {"outlet_level_offset", 1.0},
-    {"overflow_inflow", -1.0},           {"linear_inflow", -1.0},
+    {"hose_compliance (constant)", 1.0},
+    {"hose_compliance (stiffening)", 1.0},
+    {"entrained_air (isothermal)", 1.0},
+    {"entrained_air (polytropic)", 1.0},
+    {"entrained_air (dissolving)", 1.0},
+    {"tank_overflow", 1.0},
+    {"outflow_exponent", 1.0},
+    {"outlet_level_offset", 1.0},
+    {"overflow_inflow", -1.0},
+    {"linear_inflow", -1.0},
+    {"unlisted (compliance_power)", 1.0},
 };
 
 /// Forces of position alone: the same work both ways, whatever their sign.
-const std::set<std::string> kOfPositionAlone = {"spring_load", "position_dependent_load (bump)",
-                                                "position_dependent_load (quadratic)", "position_dependent_load (step)",
-                                                "constant_force"};
+const std::set<std::string> kOfPositionAlone = {"spring_load",
+                                                "position_dependent_load (bump)",
+                                                "position_dependent_load (quadratic)",
+                                                "position_dependent_load (step)",
+                                                "constant_force",
+                                                "unlisted (periodic_load)",
+                                                "unlisted (decaying_load)"};
 
 void expect_energy_condition(const Law& law, const Point& point) {
   const std::string name = name_of(law);
@@ -129,6 +155,19 @@ TEST(PhysicsLaws, LineResistanceDissipatesWithItsLag) {
   const auto flow = [](double phase) { return std::array{8e-6 * std::cos(phase), 0.0, 0.0, 0.0}; };
   EXPECT_NEAR(run_cycles(law_of("line_resistance", {"R"}), std::array{2e10}, flow).work, 0.5 * 2e10 * 6.4e-11, 1e-3);
   EXPECT_GT(run_cycles(law_of("line_resistance", {"k"}), std::array{3e15}, flow).work, 0.0);
+  EXPECT_GT(run_cycles(law_of("unlisted", {"D_q", "a_q"}), std::array{2e5, 1.5}, flow).work, 0.0);
+}
+
+TEST(PhysicsLaws, FrictionThatWearsOffCostsItsForceTimesTheWayOverWhichItDoes) {
+  const Law& law = law_of("unlisted", {"F_r", "s_r", "v_r"});
+  const std::array parameters{2e3, 1e-3, 1e-4};
+  const auto onward = [](double) {
+    return std::array{1e-3, 0.05, 0.0, 0.0};
+  };  // 3 mm in all, the last in the last second
+  const Cycle cycle = run_cycles(law, parameters, onward);
+  EXPECT_NEAR(cycle.highest, 1.0 - std::exp(-3.0), 1e-3);
+  const double last_mm = 2e3 * 1e-3 * (std::exp(-2.0) - std::exp(-3.0));
+  EXPECT_NEAR(cycle.work, last_mm, 1e-3 * last_mm);
 }
 
 TEST(PhysicsLaws, BacklashLosesTheLoadOnlyWhileTheClearanceIsCrossed) {

@@ -1,0 +1,47 @@
+// Closed forms for what no listed law describes: products of powers of signals over fixed reference sizes, so that
+// every strength has the unit of what it scales and every exponent is a plain number. All forms share the id
+// `unlisted`; their grids start away from the exponents of listed laws.
+//
+//   signed power     sgn(s) |s / S|^a  ~  (s / S) ((s / S)^2 + w^2)^((a - 1) / 2)
+//   even power       |s / S|^b         ~          ((s / S)^2 + w^2)^(b / 2)
+//
+// S: reference size of the signal s; w: share of it over which the corner at 0 is rounded, so that both are finite and
+// differentiable there for any exponent.
+#pragma once
+
+#include <string_view>
+
+#include "services/common/model/laws/law_files.hpp"
+
+namespace sealwatch::laws {
+
+inline constexpr std::string_view kUnlisted = "unlisted";
+inline constexpr std::string_view kUnlistedSource = "closed form, dimensionally consistent, for what no law describes";
+
+// Reference sizes, S.
+inline constexpr double kSpeed_m_s = 1e-3;
+inline constexpr double kPosition_m = 0.05;
+inline constexpr double kPressure_Pa = 1e7;
+inline constexpr double kShaftSpeed_rad_s = 100.0;
+inline constexpr double kFlow_m3_s = 1e-5;
+inline constexpr double kCommand_V = 10.0;
+inline constexpr double kCurrent_A = 1.0;
+
+/// Share of the reference size over which corners are rounded, w.
+inline constexpr double kCorner = 0.02;
+
+[[nodiscard]] inline LawScalar even_power(const LawScalar& signal, double reference, const LawScalar& exponent) {
+  const LawScalar ratio = signal / reference;
+  return exp(0.5 * exponent * log(ratio * ratio + kCorner * kCorner));
+}
+
+[[nodiscard]] inline LawScalar signed_power(const LawScalar& signal, double reference, const LawScalar& exponent) {
+  return signal / reference * even_power(signal, reference, exponent - 1.0);
+}
+
+/// A free exponent, searched on a grid.
+[[nodiscard]] inline LawParameter exponent(std::string_view name, std::vector<double> grid, double min, double max) {
+  return shape(name, "1", "exponent", std::move(grid), min, max);
+}
+
+}  // namespace sealwatch::laws

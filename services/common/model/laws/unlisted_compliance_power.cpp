@@ -1,0 +1,25 @@
+#include "services/common/model/laws/power_law.hpp"
+
+namespace sealwatch::laws {
+
+// dV/dp = C_p (p / 10 MPa)^-b_h, p kept positive
+static LawOutput evaluate(const LawInput& in) {
+  return {.contribution = in.parameter[0] * exp(-in.parameter[1] * log(above_vacuum(in.signal[0]) / kPressure_Pa)),
+          .rate = {}};
+}
+
+Law unlisted_compliance_power() {
+  return {.id = kUnlisted,
+          .form = "compliance_power",
+          .kind = SiteKind::compliance,
+          .equation = "C_p (p / 10 MPa)^-b_h",
+          .meaning = "a volume that gives way by a power of pressure",
+          .energy = "C_p >= 0: it widens with pressure",
+          .source = kUnlistedSource,
+          .parameters = {strength("C_p", "m3/Pa", "volume per pressure at 10 MPa",
+                                  {.usual = 2e-14, .significant = 4e-15, .max = 1e-10}),
+                         exponent("b_h", {0.5, 1.5, -1.0}, -2.0, 3.0)},
+          .evaluate = &evaluate};
+}
+
+}  // namespace sealwatch::laws

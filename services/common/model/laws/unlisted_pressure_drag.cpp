@@ -1,0 +1,25 @@
+#include "services/common/model/laws/power_law.hpp"
+
+namespace sealwatch::laws {
+
+// F = c_p v |(p_A - p_B) / 10 MPa|^b_d
+static LawOutput evaluate(const LawInput& in) {
+  const auto& [v, x, p_A, p_B] = in.signal;
+  return {.contribution = in.parameter[0] * v * even_power(p_A - p_B, kPressure_Pa, in.parameter[1]), .rate = {}};
+}
+
+Law unlisted_pressure_drag() {
+  return {
+      .id = kUnlisted,
+      .form = "pressure_drag",
+      .kind = SiteKind::piston_force,
+      .equation = "c_p v abs((p_A - p_B) / 10 MPa)^b_d",
+      .meaning = "viscous friction that changes with the pressure across the piston",
+      .energy = "c_p >= 0: it always opposes the motion",
+      .source = kUnlistedSource,
+      .parameters = {strength("c_p", "N s/m", "friction at 10 MPa", {.usual = 1e6, .significant = 4.5e5, .max = 1e8}),
+                     exponent("b_d", {1.0, 2.0, -1.0}, -2.0, 4.0)},
+      .evaluate = &evaluate};
+}
+
+}  // namespace sealwatch::laws

@@ -1,0 +1,23 @@
+#include "services/common/model/laws/power_law.hpp"
+
+namespace sealwatch::laws {
+
+// F = k_v sgn(v) |v / 1 mm/s|^a_v
+static LawOutput evaluate(const LawInput& in) {
+  return {.contribution = in.parameter[0] * signed_power(in.signal[0], kSpeed_m_s, in.parameter[1]), .rate = {}};
+}
+
+Law unlisted_speed_power() {
+  return {.id = kUnlisted,
+          .form = "speed_power",
+          .kind = SiteKind::piston_force,
+          .equation = "k_v sgn(v) abs(v / 1 mm/s)^a_v",
+          .meaning = "force against the motion that follows a power of speed",
+          .energy = "k_v >= 0: it always opposes the motion",
+          .source = kUnlistedSource,
+          .parameters = {strength("k_v", "N", "force at 1 mm/s", {.usual = 1e3, .significant = 400.0, .max = 1e5}),
+                         exponent("a_v", {1.5, 0.5, 3.0}, 0.2, 5.0)},
+          .evaluate = &evaluate};
+}
+
+}  // namespace sealwatch::laws

@@ -46,6 +46,15 @@ struct ExplainOptions {
 };
 int run_explain(const ExplainOptions& options);
 
+struct ValidateOptions {
+  std::string asset_file;
+  std::vector<std::string> recordings;
+  std::string directory;  ///< for report.html and validation.json
+  bool fit = false;       ///< estimate the asset's free parameters first
+  bool json = false;
+};
+int run_validate(const ValidateOptions& options);
+
 struct ForecastOptions {
   std::string history_file;
   std::string asset_file;

@@ -118,6 +118,16 @@ class CommandLine {
                     "cylinder_circuit, or the asset's whole model (default: the best the channels allow)");
     fit->add_flag("--json", fit_.json, "machine-readable result (schema sealwatch.fit/1)");
 
+    CLI::App* validate =
+        command("validate", "compare the model's simulation with recordings, channel by channel",
+                "sealwatch validate --asset config/assets/bench_eha.yaml stroke1.csv stroke2.csv --out validation",
+                [this] { return run_validate(validate_); });
+    validate->add_option("--asset", validate_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    validate->add_option("recordings", validate_.recordings, "recordings (CSV or MAT)")->required();
+    validate->add_option("--out", validate_.directory, "directory for the report (made if absent)")->required();
+    validate->add_flag("--fit", validate_.fit, "estimate the asset's free parameters from these recordings first");
+    validate->add_flag("--json", validate_.json, "machine-readable result (schema sealwatch.validation/1)");
+
     CLI::App* forecast = command("forecast", "remaining useful life from a history of estimates",
                                  "sealwatch forecast --history history.csv --before 2019-06-01 --json",
                                  [this] { return run_forecast(forecast_); });
@@ -276,6 +286,7 @@ class CommandLine {
   SimulateOptions simulate_;
   FitOptions fit_;
   ForecastOptions forecast_;
+  ValidateOptions validate_;
   VerifyRulOptions verify_rul_;
   VerifyMergeOptions verify_merge_;
   ReplayOptions replay_;

@@ -103,9 +103,18 @@ Plot convergence(const Summary& summary, const std::string& title, const std::ve
   return plot;
 }
 
+/// "ols_log_time 36" as "log 36", "state_space 240" as "state space": so that all stand beside each other.
+std::string short_label(std::string label) {
+  if (label.starts_with("ols_log_time")) return "log" + label.substr(12);
+  if (label.starts_with("ols_")) return label.substr(4);
+  if (const std::size_t whole_life = label.find(" 240"); whole_life != std::string::npos) label.resize(whole_life);
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
 std::vector<std::string> labels_of(const Summary& summary) {
   std::vector<std::string> labels;
-  for (const MethodSummary& method : summary.methods) labels.push_back(method.label);
+  for (const MethodSummary& method : summary.methods) labels.push_back(short_label(method.label));
   return labels;
 }
 
@@ -287,7 +296,12 @@ Result<std::string> verification_page(const LifeCollection& lives, const Summary
   std::vector<Plot> truth = estimates(*first);
   truth.insert(truth.begin(), *first_lives);
   std::string body = report::section("The fleet", overview(summary) + setting_part(lives) + in_row(truth));
-  body += report::section("Methods", main_table(summary) + alarm_table(summary));
+  body += report::section(
+      "Methods",
+      main_table(summary) + alarm_table(summary) +
+          report::paragraph("In plots: log is ols_log_time, drift ols_drift, fieller ols_fieller; forecasters "
+                            "without a number take the whole life.",
+                            "muted"));
   body += report::section("Convergence",
                           in_row({convergence(summary, "Lines over time", {"ols"}),
                                   convergence(summary, "Lines over ln time", {"ols_log_time"}),

@@ -1,0 +1,113 @@
+// `sealwatch validate`: the model's simulation beside recordings (docs/verification.md).
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "services/cli/commands.hpp"
+#include "services/cli/recordings.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/cli/validate_page.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using verification::ChannelValidation;
+using verification::ModelValidation;
+using verification::RecordingValidation;
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json channel_json(const ChannelValidation& channel) {
+  const bool noise_known = channel.noise_std > 0.0;
+  return {{"nrmse_percent", number_or_null(channel.fit.nrmse_percent)},
+          {"noise_std", noise_known ? Json(channel.noise_std) : Json(nullptr)},
+          {"noise_normalised_rms", noise_known ? number_or_null(channel.fit.noise_normalised_rms) : Json(nullptr)},
+          {"whiteness_p", number_or_null(channel.fit.whiteness_p)},
+          {"independence_p", number_or_null(channel.fit.independence_p)},
+          {"unit", channel.unit}};
+}
+
+std::string to_json(const AssetConfig& asset, const ModelValidation& validation) {
+  Json json = {
+      {"schema", "sealwatch.validation/1"}, {"asset_id", asset.asset_id},          {"model", asset.model},
+      {"fitted", validation.fitted},        {"valid", validation.reasons.empty()}, {"reasons", validation.reasons},
+      {"parameters", Json::array()},        {"recordings", Json::array()}};
+  for (const EstimatedParameter& parameter : validation.parameters)
+    json["parameters"].push_back({{"name", parameter.name},
+                                  {"value", number_or_null(parameter.value)},
+                                  {"std_error", number_or_null(parameter.std_error)},
+                                  {"unit", parameter.unit},
+                                  {"at_bound", parameter.at_bound}});
+  for (const RecordingValidation& recording : validation.recordings) {
+    Json one = {{"recording", recording.recording}, {"channels", Json::object()}};
+    for (const ChannelValidation& channel : recording.channels)
+      one["channels"][channel.fit.channel] = channel_json(channel);
+    json["recordings"].push_back(std::move(one));
+  }
+  return json.dump(1) + "\n";
+}
+
+void print_text(const AssetConfig& asset, const ModelValidation& validation, const std::string& directory) {
+  std::printf("%s, model %s, %s: %s\n", asset.asset_id.c_str(), asset.model.c_str(),
+              validation.fitted ? "parameters fitted to these recordings" : "parameters as in the asset file",
+              validation.reasons.empty() ? "the simulation agrees with the recordings within their noise"
+                                         : "the simulation is not what was recorded");
+  for (const std::string& reason : validation.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
+  std::printf("  %-34s %-22s %9s %10s %12s %14s\n", "recording", "channel", "NRMSE %", "rms/noise", "whiteness p",
+              "independence p");
+  for (const RecordingValidation& recording : validation.recordings)
+    for (const ChannelValidation& channel : recording.channels)
+      std::printf("  %-34s %-22s %9.2f %10.3g %12.3g %14.3g\n",
+                  std::filesystem::path(recording.recording).filename().string().c_str(), channel.fit.channel.c_str(),
+                  channel.fit.nrmse_percent, channel.fit.noise_normalised_rms, channel.fit.whiteness_p,
+                  channel.fit.independence_p);
+  std::printf("in %s: report.html, validation.json\n", directory.c_str());
+}
+
+Status write_text(const std::filesystem::path& file, const std::string& text) {
+  std::error_code problem;
+  std::filesystem::create_directories(file.parent_path(), problem);
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << text;
+  stream.close();
+  if (stream) return {};
+  return fail(Error{.file = file.string(), .place = {}, .value = {}, .rule = "cannot be written", .advice = {}});
+}
+
+}  // namespace
+
+int run_validate(const ValidateOptions& options) {
+  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  if (!asset) return kBadInput;
+  const Result<const PlantDescription*> plant = find_plant(asset->model);
+  if (!plant) {
+    complain(plant.error());
+    return kBadInput;
+  }
+  const auto recordings = read_recordings(options.recordings, *asset, **plant);
+  if (!recordings) return kBadInput;
+  const auto validation = verification::validate_model(*asset, *recordings, options.recordings, options.fit);
+  if (!validation) {
+    complain(validation.error());
+    return kBadInput;
+  }
+  const std::string json = to_json(*asset, *validation);
+  const std::filesystem::path folder = options.directory;
+  for (const auto& [name, text] :
+       {std::pair{"validation.json", json}, {"report.html", validation_page(*asset, *validation)}})
+    if (const Status written = write_text(folder / name, text); !written) {
+      complain(written.error());
+      return kBadInput;
+    }
+  if (options.json)
+    std::printf("%s", json.c_str());
+  else
+    print_text(*asset, *validation, options.directory);
+  return validation->reasons.empty() ? kOk : kAnswerIsNo;
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,121 @@
+#include "services/cli/validate_page.hpp"
+
+#include <cmath>
+
+#include "services/common/report/page.hpp"
+#include "services/common/report/plot.hpp"
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using report::Ink;
+using report::Plot;
+using verification::ChannelValidation;
+using verification::ModelValidation;
+using verification::RecordingValidation;
+
+constexpr double kNormal97_5 = 1.959963984540054;
+
+Plot course(const RecordingValidation& recording, const ChannelValidation& channel) {
+  return {
+      .title =
+          report::words_of(channel.fit.channel) + ", NRMSE " + report::number_text(channel.fit.nrmse_percent, 4) + " %",
+      .x = {.label = "time", .unit = "s"},
+      .y = {.label = report::words_of(channel.fit.channel), .unit = channel.unit},
+      .marks =
+          {report::Line{.x = recording.time_s, .y = channel.recorded, .ink = Ink::foreground, .label = "recorded"},
+           report::Line{
+               .x = recording.time_s, .y = channel.simulated, .ink = Ink::first, .label = "simulated", .width = 1.2}},
+      .height = 170};
+}
+
+Plot residual(const RecordingValidation& recording, const ChannelValidation& channel) {
+  const bool noise_known = channel.noise_std > 0.0;
+  const double scale = noise_known ? channel.noise_std : 1.0;
+  report::Line line{.x = recording.time_s, .y = {}, .ink = Ink::second, .label = {}, .width = 0.9};
+  for (std::size_t k = 0; k < channel.recorded.size(); ++k)
+    line.y.push_back((channel.recorded[k] - channel.simulated[k]) / scale);
+  Plot plot{.title = noise_known ? "residual in noise standard deviations" : "residual",
+            .x = {.label = "time", .unit = "s"},
+            .y = {.label = "residual", .unit = noise_known ? "1" : channel.unit},
+            .marks = {line},
+            .height = 170,
+            .legend = false};
+  if (noise_known)
+    for (const double limit : {-kNormal97_5, kNormal97_5}) plot.marks.emplace_back(report::Reference{.at = limit});
+  return plot;
+}
+
+Plot autocorrelation(const ChannelValidation& channel) {
+  report::Bars bars{.edges = {}, .heights = channel.autocorrelation, .ink = Ink::third, .label = {}};
+  for (std::size_t lag = 0; lag <= bars.heights.size(); ++lag) bars.edges.push_back(static_cast<double>(lag) - 0.5);
+  const double limit = kNormal97_5 / std::sqrt(static_cast<double>(channel.recorded.size()));
+  return {.title = "autocorrelation of the residual",
+          .x = {.label = "lag, samples", .unit = "1"},
+          .y = {.label = "rho", .unit = "1", .range = std::pair{-0.5, 1.0}},
+          .marks = {bars, report::Reference{.at = limit, .label = "95 %"}, report::Reference{.at = -limit}},
+          .height = 170,
+          .legend = false};
+}
+
+std::string channel_table(const RecordingValidation& recording) {
+  report::Table table(
+      {"channel", ">NRMSE %", ">noise of one sample", ">residual rms / noise", ">whiteness p", ">independence p"});
+  for (const ChannelValidation& channel : recording.channels) {
+    const bool noise_known = channel.noise_std > 0.0;
+    table.row({report::words_of(channel.fit.channel), report::number_text(channel.fit.nrmse_percent, 4),
+               noise_known ? report::readable(channel.noise_std, channel.unit) : "not known",
+               noise_known ? report::number_text(channel.fit.noise_normalised_rms) : "–",
+               report::p_value_text(channel.fit.whiteness_p), report::p_value_text(channel.fit.independence_p)});
+  }
+  return table.html();
+}
+
+std::string recording_part(const RecordingValidation& recording) {
+  std::string plots = "<div class=\"plots\">";
+  for (const ChannelValidation& channel : recording.channels)
+    for (const Plot& plot : {course(recording, channel), residual(recording, channel), autocorrelation(channel)})
+      plots.append("<div>").append(report::to_svg(plot)).append("</div>");
+  return report::section(recording.recording, channel_table(recording) + plots + "</div>");
+}
+
+std::string parameter_table(const ModelValidation& validation) {
+  report::Table table({"parameter", ">value", ">standard error", "unit", "remark"});
+  for (const EstimatedParameter& parameter : validation.parameters)
+    table.row({parameter.name, report::number_text(parameter.value, 4), report::number_text(parameter.std_error, 2),
+               report::unit_text(parameter.unit), parameter.at_bound ? "at its bound" : ""});
+  return table.html();
+}
+
+std::string verdict(const ModelValidation& validation) {
+  if (validation.reasons.empty())
+    return "<div class=\"banner good\"><p class=\"verdict\">The simulation agrees with the recordings within their "
+           "noise.</p></div>";
+  std::string html = "<div class=\"banner bad\"><p class=\"verdict\">The simulation is not what was recorded.</p><ul>";
+  for (const std::string& reason : validation.reasons)
+    html.append("<li>").append(report::escaped(reason)).append("</li>");
+  return html + "</ul></div>";
+}
+
+}  // namespace
+
+std::string validation_page(const AssetConfig& asset, const ModelValidation& validation) {
+  std::string body = "<h1>Model " + report::escaped(asset.model) + " against recordings of " +
+                     report::escaped(asset.asset_id) + "</h1>" + verdict(validation);
+  body += report::paragraph(validation.fitted
+                                ? "Parameters were estimated from these recordings, all together."
+                                : "Parameters are those of the asset file; of each recording only the load and the "
+                                  "initial state were estimated.");
+  body += report::paragraph(
+      "NRMSE 100 % is perfect, 0 no better than the mean. The residual's root mean square over the noise of one sample "
+      "is "
+      "1 when only noise is left; small p-values say that the residual is not white, or that it depends on the input.",
+      "muted");
+  if (!validation.parameters.empty())
+    body += report::section("Parameters", parameter_table(validation) + report::paragraph(validation.termination));
+  for (const RecordingValidation& recording : validation.recordings) body += recording_part(recording);
+  return report::html_page("Model against recordings", body);
+}
+
+}  // namespace sealwatch::cli

@@ -76,16 +76,17 @@ const std::vector<std::string>& forecast_methods() {
 
 Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings) {
   if (settings.method == "average") return AverageForecaster::make(settings);
-  if (settings.method == "state_space")
-    return StateSpaceForecaster::make(
-        {.method = settings.method, .window_months = settings.window_months, .population = settings.population});
-  if (settings.method == "fleet")
-    return StateSpaceForecaster::make({.method = settings.method,
-                                       .window_months = settings.window_months,
-                                       .population = settings.population,
-                                       .relative_share = 0.0,
-                                       .fewest_tests = kFewestTestsWithFleet,
-                                       .change_per_month = settings.change_per_month});
+  if (settings.method == "state_space" || settings.method == "fleet") {
+    StateSpaceOptions options{.method = settings.method,
+                              .window_months = settings.window_months,
+                              .population = settings.population,
+                              .change_per_month = settings.change_per_month};
+    if (settings.method == "fleet") {
+      options.relative_share = 0.0;
+      options.fewest_tests = kFewestTestsWithFleet;
+    }
+    return StateSpaceForecaster::make(options);
+  }
   OlsOptions options{.method = settings.method, .window_months = settings.window_months};
   if (settings.method == "ols_log_time")
     options.time = DegradationTime::log_months;

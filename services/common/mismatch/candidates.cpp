@@ -74,9 +74,11 @@ void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std
 
 }  // namespace
 
-std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present) {
+std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
+                                       bool unlisted) {
   std::vector<Candidate> candidates;
   for (const Law& law : all_laws()) {
+    if ((law.id == kUnlisted) != unlisted) continue;
     if (law.evaluate == nullptr)
       add_at_sensors(law, simulation, present, candidates);
     else

@@ -19,8 +19,11 @@ struct Candidate {
 };
 
 /// All candidates for a simulation's plant and recorded channels; those in `present` (element and id) are left out.
+/// Either the laws that have a name, or the closed forms that have none (id `unlisted`).
 [[nodiscard]] std::vector<Candidate> find_candidates(const PlantSimulation& simulation,
-                                                     const std::vector<PhysicsTerm>& present);
+                                                     const std::vector<PhysicsTerm>& present, bool unlisted);
+
+inline constexpr std::string_view kUnlisted = "unlisted";
 
 /// Indices of the law's strengths.
 [[nodiscard]] std::vector<std::size_t> strengths_of(const Law& law);

@@ -6,9 +6,9 @@
 namespace sealwatch::mismatch {
 namespace {
 
-ActuatorFitOptions search_options(int threads) {
+ActuatorFitOptions search_options(int threads, int iterations) {
   ActuatorFitOptions options;
-  options.maximum_iterations = 30;
+  options.maximum_iterations = iterations;
   options.hopeless_rms = 1e9;  // a bad fit is what is looked at here
   options.steps_per_sample = 20.0;
   options.restart_factors = {0.5, 2.0, 0.25};
@@ -45,8 +45,9 @@ void continue_from(const FittedModel& start, const PemProblem& problem, PemPoint
 
 }  // namespace
 
-Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads) {
-  const ActuatorFitOptions options = search_options(threads);
+Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
+                              int iterations) {
+  const ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = make_pem_problem(asset, data.samples);
   if (!problem) return fail(problem.error());
   for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
@@ -66,9 +67,11 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
     set_value(model.asset, unknown.name, unknown.to_value(model.optimum.point.shared[k]));
     if (!at_bound(unknown, model.optimum.point.shared[k])) ++model.free_shared;
   }
-  for (const Linearisation& at : model.optimum.at_optimum) {
+  for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k) {
+    const Linearisation& at = model.optimum.at_optimum[k];
+    const auto known = model.problem.recordings[k].noise_std.array().isFinite().count();
     model.misfit += at.residual.squaredNorm();
-    model.residuals += static_cast<double>(at.residual.size());
+    model.residuals += static_cast<double>(at.simulated.rows() * known);
   }
   return model;
 }

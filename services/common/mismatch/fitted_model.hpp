@@ -29,7 +29,7 @@ struct FittedModel {
 /// Fits the asset's free parameters and every recording's own. `start`: a fit of the same data, from whose values the
 /// search sets out. `threads`: recordings that are simulated at once.
 [[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
-                                            int threads);
+                                            int threads, int iterations = 30);
 
 /// As it is, but every shared parameter stays what it is: only load and initial state of each recording are fitted.
 [[nodiscard]] AssetConfig with_fixed_parameters(AssetConfig asset);

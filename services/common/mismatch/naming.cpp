@@ -1,15 +1,20 @@
 #include "services/common/mismatch/naming.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <future>
+#include <thread>
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr std::size_t kSingles = 8;     // refits of single laws
-constexpr std::size_t kPairs = 4;       // refits of pairs
-constexpr double kWorthAnother = 12.0;  // criterion by which another law must improve: it then is e^6 times likelier
+constexpr std::size_t kSingles = 8;        // refits of single laws
+constexpr std::size_t kPairs = 4;          // refits of pairs
+constexpr int kFirstRound = 8;             // iterations of every refit
+constexpr std::size_t kSecondRound = 5;    // refits that go on
+constexpr double kHopeful = 10.0;          // times the best misfit: further off a refit does not go on
+constexpr std::size_t kUnlistedForms = 5;  // refits of closed forms
+constexpr double kWorthAnother = 12.0;     // criterion by which another law must improve: it then is e^6 times likelier
 constexpr double kPairAhead =
     0.02;  // of the misfit: a pair that promises less more than the best single is passed over
 constexpr double kSmallestStart = 0.02, kLargestStart = 50.0;  // of a strength's usual size
@@ -31,6 +36,31 @@ LawStart start_of(const Screening& screening, const Variant& variant) {
     value = linear < 0.0 && candidate.law->parameters[strengths[k]].min < 0.0 ? -size : size;
   }
   return start;
+}
+
+// A search that ran out of iterations goes on from where it is.
+Trial polished(Trial trial, const Data& data, int threads) {
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds && !trial.model->optimum.converged; ++round) {
+    Result<FittedModel> further = fit_model(trial.model->asset, data, trial.model.get(), threads);
+    if (!further || further->misfit > trial.model->misfit) break;
+    trial.model = std::make_shared<const FittedModel>(std::move(*further));
+  }
+  return trial;
+}
+
+// f(0), f(1), ... on several threads, in this order.
+template <class F>
+std::vector<Trial> in_parallel(std::size_t count, int threads, const F& f) {
+  std::vector<Trial> results(count);
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::jthread> workers;
+  for (int worker = 0; worker < threads; ++worker)
+    workers.emplace_back([&] {
+      for (std::size_t k = next++; k < count; k = next++) results[k] = f(k);
+    });
+  workers.clear();
+  return results;
 }
 
 std::vector<const Variant*> by_gain(const Screening& screening) {
@@ -131,6 +161,38 @@ void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
   }
 }
 
+// Whether the best law of a screening promises, on the linearised model, what another law must bring.
+bool promising(const Screening& screening, const FittedModel& model) {
+  const std::vector<const Variant*> order = by_gain(screening);
+  const double penalty = std::log(model.residuals);  // of one more parameter
+  return !order.empty() && order.front()->gain / dispersion(model) > kWorthAnother + penalty;
+}
+
+// Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
+Status try_unlisted(Naming& naming, const Data& data, const ExplainOptions& options) {
+  const ScreeningOptions forms{.seed = options.seed, .threads = options.threads, .unlisted = true};
+  std::vector<Trial> trials;
+  for (const Trial& from : {Trial{{}, naming.baseline}, naming.best}) {
+    if (static_cast<int>(from.effects.size()) == options.maximum_laws) continue;
+    const auto screening = screen(*from.model, data, forms);
+    if (!screening) return fail(screening.error());
+    if (!promising(*screening, *from.model)) continue;
+    std::vector<std::vector<LawStart>> starts;
+    for (LawStart& start : ranked_laws(*screening, kUnlistedForms)) starts.push_back({std::move(start)});
+    for (Trial& trial : refit(from, starts, data, options.threads)) trials.push_back(std::move(trial));
+    if (naming.best.effects.empty()) break;
+  }
+  naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
+  const double phi = smallest_dispersion(trials, *naming.best.model);
+  const Trial* best = best_of(trials, phi);
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) return {};
+  naming.best = polished(*best, data, options.threads);
+  const auto next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});
+  if (!next) return fail(next.error());
+  naming.last = *next;
+  return {};
+}
+
 }  // namespace
 
 double dispersion(const FittedModel& best) { return std::max(1.0, best.misfit / best.residuals); }
@@ -157,18 +219,21 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       trial.effects.push_back(start.effect);
       asset = with_law(std::move(asset), *start.effect.law, start.effect.element, start.parameters);
     }
-    Result<FittedModel> model = fit_model(asset, data, from.model.get(), 1);
+    Result<FittedModel> model = fit_model(asset, data, from.model.get(), 1, kFirstRound);
     if (model) trial.model = std::make_shared<const FittedModel>(std::move(*model));
     return trial;
   };
   std::vector<Trial> trials;
-  for (std::size_t first = 0; first < laws.size(); first += static_cast<std::size_t>(threads)) {
-    std::vector<std::future<Trial>> running;
-    for (std::size_t k = first; k < std::min(laws.size(), first + static_cast<std::size_t>(threads)); ++k)
-      running.push_back(std::async(std::launch::async, [&, k] { return one(laws[k]); }));
-    for (auto& trial : running)
-      if (Trial done = trial.get(); done.model) trials.push_back(std::move(done));
-  }
+  for (Trial& trial : in_parallel(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); }))
+    if (trial.model) trials.push_back(std::move(trial));
+  if (trials.empty()) return trials;
+  // Those that are not far from the best go on until they have converged.
+  std::ranges::stable_sort(trials, {}, [](const Trial& trial) { return trial.model->misfit; });
+  const double best = trials.front().model->misfit;
+  const auto hopeful = std::ranges::find_if(trials, [&](const Trial& t) { return t.model->misfit > kHopeful * best; });
+  const auto count = std::min(static_cast<std::size_t>(hopeful - trials.begin()), kSecondRound);
+  std::vector<Trial> further = in_parallel(count, threads, [&](std::size_t k) { return polished(trials[k], data, 1); });
+  std::ranges::move(further, trials.begin());
   return trials;
 }
 
@@ -181,7 +246,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
   naming.forbidden = forbidden_by_physics(naming.first);
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
-    if (naming.last.p_value > options.false_alarm_rate) break;
+    if (naming.last.p_value > options.false_alarm_rate || !promising(naming.last, *naming.best.model)) break;
     const std::size_t level = naming.best.effects.size();
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
     std::vector<std::vector<LawStart>> starts;
@@ -194,12 +259,15 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const double phi = smallest_dispersion(trials, *naming.best.model);
     const Trial* best = best_of(trials, phi);
     if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) break;
-    naming.best = *best;
+    naming.best = polished(*best, data, options.threads);
+    naming.trials.push_back(naming.best);
     Result<Screening> next = screen(*naming.best.model, data, screening);
     if (!next) return fail(next.error());
     naming.last = std::move(*next);
   }
   drop_what_is_not_needed(naming, data, options.threads);
+  if (naming.last.p_value <= options.false_alarm_rate)
+    if (const Status status = try_unlisted(naming, data, options); !status) return fail(status.error());
   return naming;
 }
 

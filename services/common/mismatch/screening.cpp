@@ -259,7 +259,8 @@ Result<std::vector<Reduced>> reduce_all(const FittedModel& model, const std::vec
 }  // namespace
 
 Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
-  Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics)};
+  Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
+                                                    options.unlisted)};
   const std::vector<PassColumn> columns = pass_columns(screening.candidates);
   const Layout layout = lay_out(columns, data.samples.size());
   screening.variants = make_variants(columns, layout);

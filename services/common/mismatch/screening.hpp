@@ -40,13 +40,13 @@ struct Variant {
 struct Screening {
   std::vector<Candidate> candidates = {};
   std::vector<Variant> variants = {};
-  Eigen::MatrixXd gram = {};           ///< G, in usual sizes
-  Eigen::VectorXd gradient = {};       ///< g
-  Eigen::MatrixXd block_scores = {};   ///< blocks x columns: U_b
-  std::vector<double> unit = {};       ///< usual size of each column, in the law's unit
-  double p_value = 1.0;           ///< that there is nothing but noise
-  double effective_number = 1.0;  ///< of independent laws in the catalogue
-  std::size_t best = 0;           ///< variant with the largest score
+  Eigen::MatrixXd gram = {};          ///< G, in usual sizes
+  Eigen::VectorXd gradient = {};      ///< g
+  Eigen::MatrixXd block_scores = {};  ///< blocks x columns: U_b
+  std::vector<double> unit = {};      ///< usual size of each column, in the law's unit
+  double p_value = 1.0;               ///< that there is nothing but noise
+  double effective_number = 1.0;      ///< of independent laws in the catalogue
+  std::size_t best = 0;               ///< variant with the largest score
 };
 
 struct ScreeningOptions {
@@ -54,6 +54,7 @@ struct ScreeningOptions {
   int draws = 999;
   std::uint64_t seed = 1;
   int threads = 2;
+  bool unlisted = false;  ///< closed forms without a name instead of the listed laws
 };
 
 /// An Error when the model cannot be simulated at its estimates.

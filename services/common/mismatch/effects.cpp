@@ -1,0 +1,243 @@
+#include "services/common/mismatch/effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "services/common/estimation/fit_report.hpp"
+#include "services/common/mismatch/telling.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kCannotTell = 6.0;       // criterion within which two laws are not told apart
+constexpr std::size_t kAlternatives = 5;  // refits in the place of an effect
+
+bool same(const Effect& a, const Effect& b) { return a.law == b.law && a.element == b.element; }
+
+// Trials that differ from `best` in the effect `slot` alone.
+std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std::size_t slot, const Data& data,
+                                   const ExplainOptions& options) {
+  std::vector<Effect> others = best.effects;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(slot));
+  std::vector<Trial> found;
+  for (const Trial& trial : naming.trials) {
+    if (trial.effects.size() != best.effects.size() || trial.model == best.model) continue;
+    std::vector<Effect> first(trial.effects.begin(), trial.effects.end() - 1);
+    if (same_effects(first, others)) found.push_back(trial);
+  }
+  if (best.effects.size() == 1) return found;
+  AssetConfig asset = best.model->asset;
+  const std::size_t laws_before = asset.physics.size() - best.effects.size();
+  asset.physics.erase(asset.physics.begin() + static_cast<std::ptrdiff_t>(laws_before + slot));
+  Result<FittedModel> fewer = fit_model(asset, data, best.model.get(), options.threads);
+  if (!fewer) return found;
+  const Trial from{others, std::make_shared<const FittedModel>(std::move(*fewer))};
+  const auto screening = screen(*from.model, data, {.seed = options.seed, .threads = options.threads});
+  if (!screening) return found;
+  std::vector<std::vector<LawStart>> starts;
+  for (LawStart& start : ranked_laws(*screening, kAlternatives))
+    if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
+  for (Trial& trial : refit(from, starts, data, options.threads)) found.push_back(std::move(trial));
+  return found;
+}
+
+std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedModel& model, const JointFit& fit) {
+  std::vector<FoundParameter> parameters;
+  for (const LawParameter& parameter : effect.law->parameters) {
+    const std::string name = physics_parameter_name(effect.element, effect.law->id, parameter.name);
+    FoundParameter found{.name = std::string(parameter.name), .unit = std::string(parameter.unit)};
+    if (found.unit == "channel") {
+      const std::string channel = effect.element.substr(effect.element.find(':') + 1);
+      found.unit = model.problem.recordings.front().simulation->plant().find_channel(channel)->unit;
+    }
+    for (const PhysicsTerm& term : model.asset.physics)
+      if (term.id == effect.law->id && term.element == effect.element)
+        if (const auto setting = term.parameters.find(found.name); setting != term.parameters.end())
+          found.value = setting->second.value;
+    for (const EstimatedParameter& estimate : fit.report.parameters) {
+      if (estimate.name != name) continue;
+      found.std_error = estimate.std_error;
+      found.at_bound = estimate.at_bound;
+    }
+    parameters.push_back(std::move(found));
+  }
+  return parameters;
+}
+
+double engineering_share(const FoundEffect& effect, const Law& law) {
+  for (std::size_t k = 0; k < law.parameters.size(); ++k)
+    if (law.parameters[k].strength && law.parameters[k].significant > 0.0)
+      return std::abs(effect.parameters[k].value) / law.parameters[k].significant;
+  return 0.0;
+}
+
+// Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place.
+void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& alternatives, double best_criterion,
+           double phi) {
+  std::map<std::pair<std::string, std::string>, double> weight;  // by id and element
+  weight[{effect.what.id, effect.what.element}] = 1.0;
+  std::map<std::pair<std::string, std::string>, double> nearest;
+  for (const Trial& trial : alternatives) {
+    const Effect& other = trial.effects.back();
+    const double behind = criterion(*trial.model, phi) - best_criterion;
+    const std::pair key{std::string(other.law->id), other.element};
+    if (key.first == effect.what.id && key.second == effect.what.element) {
+      if (other.law != chosen.law && behind < kCannotTell) effect.indistinguishable.push_back(law_at(other));
+      continue;
+    }
+    weight[key] += std::exp(-0.5 * std::clamp(behind, 0.0, 1400.0));
+    if (!nearest.contains(key) || behind < nearest[key]) nearest[key] = behind;
+    if (behind < kCannotTell) {
+      effect.indistinguishable.push_back(law_at(other));
+      if (other.element != effect.what.element) effect.same_elements.push_back(other.element);
+    }
+    effect.alternatives.push_back({.what = law_at(other),
+                                   .misfit_above_best = std::max(behind, 0.0),
+                                   .why_not = behind < kCannotTell
+                                                  ? "These recordings cannot tell it from the law that was chosen."
+                                                  : "Refitted in its place it leaves " + number(behind) +
+                                                        " more (misfit with penalty; 12 counts as decisive)."});
+  }
+  double all = 0.0, element = 0.0;
+  for (const auto& [key, share] : weight) {
+    all += share;
+    if (key.second == effect.what.element) element += share;
+  }
+  constexpr double kNeverCertain = 0.999;
+  effect.probability = std::min(1.0 / all, kNeverCertain);
+  effect.element_probability = std::min(element / all, kNeverCertain);
+  std::ranges::stable_sort(effect.alternatives, {}, &Alternative::misfit_above_best);
+  std::ranges::sort(effect.same_elements);
+  effect.same_elements.erase(std::unique(effect.same_elements.begin(), effect.same_elements.end()),
+                             effect.same_elements.end());
+}
+
+}  // namespace
+
+LawAt law_at(const Effect& effect) {
+  return {.id = std::string(effect.law->id),
+          .form = std::string(effect.law->form),
+          .element = effect.element,
+          .law = std::string(effect.law->equation),
+          .meaning = std::string(effect.law->meaning)};
+}
+
+bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b) {
+  return a.size() == b.size() && std::ranges::all_of(a, [&](const Effect& one) {
+           return std::ranges::any_of(b, [&](const Effect& other) { return same(one, other); });
+         });
+}
+
+std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
+                                          const ExplainOptions& options) {
+  const JointFit fit = report_fit(best.model->asset, best.model->problem, best.model->optimum, data.samples);
+  std::vector<FoundEffect> effects;
+  for (std::size_t slot = 0; slot < best.effects.size(); ++slot) {
+    const std::vector<Trial> alternatives = alternatives_of(naming, best, slot, data, options);
+    double phi = dispersion(*best.model);
+    for (const Trial& trial : alternatives) phi = std::min(phi, dispersion(*trial.model));
+    FoundEffect effect;
+    effect.what = law_at(best.effects[slot]);
+    effect.parameters = parameters_of(best.effects[slot], *best.model, fit);
+    effect.engineering_share = engineering_share(effect, *best.effects[slot].law);
+    weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), phi);
+    const FittedModel* fewer = naming.baseline.get();
+    for (const Trial& trial : naming.trials) {
+      std::vector<Effect> rest = best.effects;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(slot));
+      if (same_effects(trial.effects, rest)) fewer = trial.model.get();
+    }
+    effect.delta_bic = criterion(*best.model, phi) - criterion(*fewer, phi);
+    effects.push_back(std::move(effect));
+  }
+  std::ranges::stable_sort(effects, std::greater<>(), &FoundEffect::probability);
+  return effects;
+}
+
+std::vector<Location> locate(const std::vector<FoundEffect>& effects) {
+  std::vector<Location> places;
+  for (const FoundEffect& effect : effects) {
+    if (std::ranges::find(places, effect.what.element, &Location::element) != places.end()) continue;
+    places.push_back({.element = effect.what.element,
+                      .probability = effect.element_probability,
+                      .indistinguishable_from = effect.same_elements,
+                      .evidence = "The best law that sits elsewhere fits worse; see the alternatives."});
+  }
+  for (const FoundEffect& effect : effects)
+    for (const Alternative& other : effect.alternatives) {
+      if (std::ranges::find(places, other.what.element, &Location::element) != places.end()) continue;
+      places.push_back({.element = other.what.element,
+                        .probability = std::exp(-0.5 * std::min(other.misfit_above_best, 1400.0)) * effect.probability,
+                        .indistinguishable_from = {},
+                        .evidence = other.what.id + " there: " + other.why_not});
+    }
+  std::ranges::stable_sort(places, std::greater<>(), &Location::probability);
+  return places;
+}
+
+std::vector<Location> locate_without_law(const Screening& screening) {
+  std::map<std::string, double> gain;
+  double all = 0.0;
+  for (const Variant& variant : screening.variants) {
+    double& best = gain[screening.candidates[variant.candidate].element];
+    best = std::max(best, variant.gain);
+  }
+  for (const auto& [element, best] : gain) all += best;
+  std::vector<Location> places;
+  for (const auto& [element, best] : gain)
+    if (all > 0.0 && best > 0.05 * all)
+      places.push_back(
+          {.element = element,
+           .probability = best / all,
+           .indistinguishable_from = {},
+           .evidence = "Share of the misfit that laws of this element could take, on the linearised model."});
+  std::ranges::stable_sort(places, std::greater<>(), &Location::probability);
+  return places;
+}
+
+Rejected describe(const Forbidden& forbidden) {
+  const LawParameter& strength = forbidden.effect.law->parameters[strengths_of(*forbidden.effect.law).front()];
+  std::string why = "The data would want ";
+  why.append(strength.name).append(" = ").append(number(forbidden.strength)).append(" ").append(strength.unit);
+  why.append("; physics demands: ").append(forbidden.effect.law->energy).append(".");
+  return {.what = law_at(forbidden.effect), .why = std::move(why)};
+}
+
+std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const FittedModel& before,
+                                             const FittedModel& after, const Data& data) {
+  const JointFit a = report_fit(before.asset, before.problem, before.optimum, data.samples);
+  const JointFit b = report_fit(after.asset, after.problem, after.optimum, data.samples);
+  std::vector<ParameterShift> shifts;
+  for (const EstimatedParameter& old_value : a.report.parameters)
+    for (const EstimatedParameter& new_value : b.report.parameters) {
+      const auto sheet = datasheet.parameters.find(old_value.name);
+      if (old_value.name != new_value.name || sheet == datasheet.parameters.end()) continue;
+      shifts.push_back({.name = old_value.name,
+                        .unit = old_value.unit,
+                        .before = old_value.value,
+                        .before_std = old_value.std_error,
+                        .after = new_value.value,
+                        .after_std = new_value.std_error,
+                        .datasheet = sheet->second.value});
+    }
+  return shifts;
+}
+
+PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<ParameterShift>& parameters) {
+  PrognosisShift shift;
+  const auto leakage = std::ranges::find(parameters, "R_CL", &ParameterShift::name);
+  if (!asset.seal || leakage == parameters.end()) return shift;
+  shift.known = true;
+  shift.R_CL_before = leakage->before;
+  shift.R_CL_after = leakage->after;
+  shift.theta_before = asset.seal->condition(leakage->before);
+  shift.theta_after = asset.seal->condition(leakage->after);
+  shift.sentence = "The seal's condition is " + number(100.0 * shift.theta_after, 4) + " % instead of " +
+                   number(100.0 * shift.theta_before, 4) +
+                   " %; the remaining life follows in that proportion of what is left above " +
+                   number(100.0 * asset.seal->threshold) + " %.";
+  return shift;
+}
+
+}  // namespace sealwatch::mismatch

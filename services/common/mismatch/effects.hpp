@@ -1,0 +1,27 @@
+// From refits to what is said of each effect: parameters with standard errors, probabilities, alternatives, places.
+#pragma once
+
+#include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/naming.hpp"
+
+namespace sealwatch::mismatch {
+
+[[nodiscard]] LawAt law_at(const Effect& effect);
+[[nodiscard]] bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b);
+
+/// Effects of the best model, most probable first. For each its alternatives are refitted in its place.
+[[nodiscard]] std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
+                                                        const ExplainOptions& options);
+
+[[nodiscard]] std::vector<Location> locate(const std::vector<FoundEffect>& effects);
+/// Where the residual asks for something that no law gives: elements by the gain of their best law.
+[[nodiscard]] std::vector<Location> locate_without_law(const Screening& screening);
+
+[[nodiscard]] Rejected describe(const Forbidden& forbidden);
+
+[[nodiscard]] std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const FittedModel& before,
+                                                           const FittedModel& after, const Data& data);
+
+[[nodiscard]] PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<ParameterShift>& parameters);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,326 @@
+#include "sealwatch/mismatch/explain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/naming.hpp"
+#include "services/common/mismatch/noise.hpp"
+#include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/telling.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+// Laws that hide in free parameters, and how much larger than an engineer's limit they would have to be to show, before
+// the data is said to be too poor.
+constexpr double kConcealed = 0.5;
+constexpr double kTooLarge = 3.0;
+constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
+constexpr double kRest = 5.0;              // a channel moves if it spans more than this many noise standard deviations
+
+Data data_of(std::span<const Recording> recordings) {
+  Data data;
+  for (const Recording& recording : recordings) {
+    data.names.push_back(recording.recording_id.empty() ? recording.file : recording.recording_id);
+    data.samples.push_back(recording.samples);
+  }
+  return data;
+}
+
+Data without(const Data& data, std::size_t left_out) {
+  Data rest = data;
+  const auto at = static_cast<std::ptrdiff_t>(left_out);
+  rest.names.erase(rest.names.begin() + at);
+  rest.samples.erase(rest.samples.begin() + at);
+  if (!rest.colour.empty()) rest.colour.erase(rest.colour.begin() + at);
+  return rest;
+}
+
+Data only(const Data& data, std::size_t one) {
+  Data single{.names = {data.names[one]}, .samples = {data.samples[one]}, .colour = {}};
+  if (!data.colour.empty()) single.colour = {data.colour[one]};
+  return single;
+}
+
+Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span<const Recording> holdout) {
+  if (fit.empty()) return fail("there is no recording to fit", "give at least one");
+  for (const auto& list : {fit, holdout})
+    for (const Recording& recording : list) {
+      if (!recording.asset_id.empty() && recording.asset_id != asset.asset_id)
+        return fail(Error{.file = recording.file,
+                          .place = "asset_id",
+                          .value = recording.asset_id,
+                          .rule = "is not the asset " + asset.asset_id,
+                          .advice = "one analysis is about one asset"});
+      const auto simulation = PlantSimulation::create(asset, recording.samples);
+      if (!simulation) {
+        Error error = simulation.error();
+        if (error.file.empty()) error.file = recording.file;
+        return fail(std::move(error));
+      }
+    }
+  for (const Recording& one : holdout)
+    for (const Recording& other : fit)
+      if (!one.content_hash.empty() && one.content_hash == other.content_hash)
+        return fail(Error{.file = one.file,
+                          .place = {},
+                          .value = {},
+                          .rule = "is held out and fitted at once: it has the same content as " + other.file,
+                          .advice = "a recording that took part in the fit proves nothing"});
+  return {};
+}
+
+bool at_rest(const FittedModel& model, const Data& data) {
+  for (std::size_t k = 0; k < data.samples.size(); ++k) {
+    const PemRecording& part = model.problem.recordings[k];
+    for (Eigen::Index c = 0; c < part.noise_std.size(); ++c) {
+      const std::string& name = part.simulation->channels()[static_cast<std::size_t>(c)];
+      if (name != "position" && name != "level_voltage") continue;
+      const auto column = part.simulation->recorded().col(c);
+      if (column.maxCoeff() - column.minCoeff() > 2.0 * kRest * part.noise_std(c)) return false;
+    }
+  }
+  return std::ranges::any_of(model.problem.recordings.front().simulation->channels(),
+                             [](const std::string& name) { return name == "position" || name == "level_voltage"; });
+}
+
+std::vector<Power> power_of(const Screening& screening) {
+  std::vector<Power> power;
+  for (const Variant& variant : screening.variants) {
+    const Candidate& candidate = screening.candidates[variant.candidate];
+    if (variant.point != 0) continue;
+    const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
+    const bool bias = candidate.law->kind == SiteKind::sensor_bias;
+    power.push_back({.what = law_at({candidate.law, candidate.element}),
+                     .minimum_detectable = variant.minimum_detectable,
+                     .unit = std::string(strength.unit),
+                     .absorbed_share = std::clamp(variant.absorbed, 0.0, 1.0),
+                     .significant = bias ? candidate.strength_scale * strength.start.front() : strength.significant});
+  }
+  std::ranges::stable_sort(power, {}, [](const Power& one) { return one.what.id; });
+  return power;
+}
+
+std::vector<const Power*> could_not_show(const std::vector<Power>& power) {
+  std::vector<const Power*> blind;
+  for (const Power& one : power)
+    if (one.absorbed_share > kConcealed && one.minimum_detectable > kTooLarge * one.significant &&
+        one.significant > 0.0)
+      blind.push_back(&one);
+  return blind;
+}
+
+// The analysis of one asset, step by step; everything it learns goes into `result`.
+class Analysis {
+ public:
+  Analysis(const AssetConfig& asset, Data fit, Data holdout, const ExplainOptions& options, const Progress& progress)
+      : asset_(asset), fit_(std::move(fit)), holdout_(std::move(holdout)), options_(options), progress_(progress) {}
+
+  [[nodiscard]] Result<Explanation> run() {
+    result_.asset_id = asset_.asset_id;
+    result_.model = asset_.model;
+    result_.fit_recordings = fit_.names;
+    result_.holdout_recordings = holdout_.names;
+    if (const Status status = fit_baseline(); !status) return fail(status.error());
+    tell("looking for what is missing", 0.15);
+    Result<Naming> naming = name_effects(baseline_, fit_, options_, progress_);
+    if (!naming) return fail(naming.error());
+    naming_ = std::move(*naming);
+    best_ = naming_.best;
+    result_.p_value = naming_.first.p_value;
+    result_.statistically_significant = result_.p_value <= options_.false_alarm_rate;
+    if (!best_.effects.empty()) {
+      tell("proving on recordings that took no part", 0.75);
+      if (const Status status = prove(); !status) return fail(status.error());
+    }
+    if (const Status status = finish(); !status) return fail(status.error());
+    tell("done", 1.0);
+    return std::move(result_);
+  }
+
+ private:
+  void tell(std::string_view step, double share) const {
+    if (progress_) progress_(step, share);
+  }
+
+  Status fit_baseline() {
+    tell("fitting the model as it is", 0.02);
+    const auto simulation = PlantSimulation::create(asset_, fit_.samples.front());
+    if (!simulation) return fail(simulation.error());
+    const std::vector<std::string> channels((*simulation)->channels().begin(), (*simulation)->channels().end());
+    result_.notes = find_noise(fit_, channels);
+    static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
+    holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
+    Result<FittedModel> model = fit_model(asset_, fit_, nullptr, options_.threads);
+    if (!model) {
+      Error error = model.error();
+      error.advice =
+          "the model cannot be simulated at the start values: check the asset's parameters against the recording";
+      return fail(std::move(error));
+    }
+    baseline_ = std::make_shared<const FittedModel>(std::move(*model));
+    return {};
+  }
+
+  // Held-out blocks of the model `after` against `before`; what is held out is left out in turn where nothing is given.
+  Result<BlockGains> held_out_gains(const Trial& before, const Trial& after, bool keep) {
+    BlockGains blocks;
+    const bool in_turn = holdout_.samples.empty();
+    const Data& data = in_turn ? fit_ : holdout_;
+    if (in_turn && fit_.samples.size() < 2) return blocks;
+    for (std::size_t k = 0; k < data.samples.size(); ++k) {
+      Result<FittedModel> old_model = predict(before, data, k, in_turn), new_model = predict(after, data, k, in_turn);
+      if (!old_model) return fail(old_model.error());
+      if (!new_model) return fail(new_model.error());
+      const BlockGains own = block_gains(*old_model, *new_model, 0);
+      blocks.gain.insert(blocks.gain.end(), own.gain.begin(), own.gain.end());
+      if (!keep) continue;
+      RecordingComparison comparison = compare(*old_model, *new_model, only(data, k), 0);
+      (in_turn ? comparison.left_out : comparison.holdout) = true;
+      add_gain(comparison, own);
+      result_.recordings.push_back(std::move(comparison));
+    }
+    return blocks;
+  }
+
+  Result<FittedModel> predict(const Trial& trial, const Data& data, std::size_t recording, bool in_turn) {
+    AssetConfig asset = trial.model->asset;
+    if (in_turn) {
+      Result<FittedModel> rest = fit_model(asset, without(data, recording), nullptr, options_.threads);
+      if (!rest) return fail(rest.error());
+      asset = rest->asset;
+    }
+    return fit_model(with_fixed_parameters(asset), only(data, recording), nullptr, 1);
+  }
+
+  void add_gain(RecordingComparison& comparison, const BlockGains& blocks) const {
+    const GainInterval interval = gain_interval(blocks, dispersion(*best_.model), options_.seed);
+    comparison.likelihood_gain = interval.gain;
+    comparison.gain_low = interval.low;
+    comparison.gain_high = interval.high;
+  }
+
+  // Effects that do not help on held-out recordings are taken back, the last first.
+  Status prove() {
+    while (!best_.effects.empty()) {
+      Trial fewer = without_last(best_);
+      Result<BlockGains> blocks = held_out_gains(fewer, best_, false);
+      if (!blocks) return fail(blocks.error());
+      const GainInterval interval = gain_interval(*blocks, dispersion(*best_.model), options_.seed);
+      if (blocks->gain.empty()) {
+        result_.notes.emplace_back("With one recording nothing can be held out: what fits it is not claimed.");
+      } else if (interval.low > 0.0) {
+        proven_ = true;
+        return {};
+      } else {
+        result_.notes.push_back("A law that fits better (" + law_at(best_.effects.back()).id + " at " +
+                                best_.effects.back().element +
+                                ") does not improve the recordings that took no part: it is not claimed.");
+      }
+      best_ = std::move(fewer);
+    }
+    return {};
+  }
+
+  Trial without_last(const Trial& trial) {
+    Trial fewer{.effects = {trial.effects.begin(), trial.effects.end() - 1}, .model = baseline_};
+    if (fewer.effects.empty()) return fewer;
+    for (const Trial& known : naming_.trials)
+      if (same_effects(known.effects, fewer.effects)) fewer.model = known.model;
+    if (fewer.model != baseline_) return fewer;
+    AssetConfig asset = trial.model->asset;
+    asset.physics.pop_back();
+    Result<FittedModel> model = fit_model(asset, fit_, trial.model.get(), options_.threads);
+    if (model) fewer.model = std::make_shared<const FittedModel>(std::move(*model));
+    return fewer;
+  }
+
+  Status finish() {
+    tell("writing down what was found", 0.9);
+    const Trial before{{}, baseline_};
+    for (std::size_t k = 0; k < fit_.samples.size(); ++k) {
+      RecordingComparison comparison = compare(*baseline_, *best_.model, fit_, k);
+      add_gain(comparison, block_gains(*baseline_, *best_.model, k));
+      result_.recordings.push_back(std::move(comparison));
+    }
+    if (const auto blocks = held_out_gains(before, best_, true); !blocks) return fail(blocks.error());
+    result_.fit = pool(result_.recordings, false);
+    result_.holdout = pool(result_.recordings, true);
+    const double excess_before = baseline_->misfit / baseline_->residuals - 1.0;
+    const double excess_after = best_.model->misfit / best_.model->residuals - 1.0;
+    result_.explained_share =
+        excess_before > 0.0 ? std::clamp(1.0 - std::max(excess_after, 0.0) / excess_before, 0.0, 1.0) : 0.0;
+    result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last);
+    if (!best_.effects.empty()) {
+      result_.effects = describe_effects(naming_, best_, fit_, options_);
+      result_.location = locate(result_.effects);
+    } else if (result_.statistically_significant) {
+      result_.location = locate_without_law(naming_.first);
+    }
+    for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
+    result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model, fit_);
+    result_.prognosis = prognosis_shift(asset_, result_.parameters);
+    result_.explained = best_.model->asset;
+    decide();
+    for (FoundEffect& effect : result_.effects)
+      effect.evidence = evidence_of(effect, excess_before + 1.0, excess_after + 1.0);
+    result_.next_test = next_test_of(result_);
+    result_.summary = summary_of(result_);
+    return {};
+  }
+
+  void decide() {
+    if (at_rest(*baseline_, fit_)) {
+      result_.verdict = Verdict::undetermined;
+      result_.effects.clear();
+      result_.explained = baseline_->asset;
+      result_.notes.emplace_back("The actuator does not move in these recordings: there is nothing to see.");
+      return;
+    }
+    if (!result_.statistically_significant) {
+      const std::vector<const Power*> blind = could_not_show(result_.power);
+      result_.verdict = blind.empty() ? Verdict::consistent : Verdict::undetermined;
+      for (const Power* one : blind)
+        result_.notes.push_back("These recordings would show " + one->what.id + " at " + one->what.element +
+                                " only from " + number(one->minimum_detectable) + " " + one->unit +
+                                "; an engineer would care from " + number(one->significant) + " " + one->unit + ".");
+      return;
+    }
+    const bool explained = proven_ && !result_.effects.empty() && result_.explained_share >= kExplainedAtLeast;
+    result_.verdict = explained ? Verdict::mismatch : Verdict::undetermined;
+    if (explained && naming_.last.p_value <= options_.false_alarm_rate)
+      result_.notes.emplace_back("A remainder beyond the noise stays unexplained.");
+  }
+
+  const AssetConfig& asset_;
+  Data fit_, holdout_;
+  const ExplainOptions& options_;
+  const Progress& progress_;
+  std::shared_ptr<const FittedModel> baseline_;
+  Naming naming_;
+  Trial best_;
+  bool proven_ = false;
+  Explanation result_;
+};
+
+}  // namespace
+
+Status ExplainOptions::validate() const {
+  if (!(false_alarm_rate > 0.0 && false_alarm_rate < 0.5))
+    return fail("false_alarm_rate must be between 0 and 0.5, is " + number(false_alarm_rate));
+  if (maximum_laws < 1 || maximum_laws > 3)
+    return fail("maximum_laws must be 1 to 3, is " + std::to_string(maximum_laws));
+  if (threads < 1) return fail("threads must be at least 1, is " + std::to_string(threads));
+  return {};
+}
+
+Result<Explanation> explain(const AssetConfig& asset, std::span<const Recording> fit,
+                            std::span<const Recording> holdout, const ExplainOptions& options,
+                            const Progress& progress) {
+  if (const Status status = options.validate(); !status) return fail(status.error());
+  if (const Status status = check(asset, fit, holdout); !status) return fail(status.error());
+  return Analysis(asset, data_of(fit), data_of(holdout), options, progress).run();
+}
+
+}  // namespace sealwatch::mismatch

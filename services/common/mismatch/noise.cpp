@@ -1,0 +1,107 @@
+#include "services/common/mismatch/noise.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "sealwatch/estimation/noise_floor.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr Eigen::Index kPiece = 64;
+constexpr Eigen::Index kOrder = 3;
+constexpr double kQuietShare = 0.25;
+constexpr double kLeastCorrelation = 0.08;  // below it whitening would change no variance by more than 1 %
+constexpr double kSignificant = 4.0;        // standard errors of a correlation
+
+using Covariances = std::array<double, kOrder + 1>;
+
+// Takes the cubic off a piece.
+const Eigen::MatrixXd& detrending() {
+  static const Eigen::MatrixXd matrix = [] {
+    Eigen::MatrixXd powers(kPiece, 4);
+    for (Eigen::Index row = 0; row < kPiece; ++row)
+      for (Eigen::Index k = 0; k < 4; ++k)
+        powers(row, k) = std::pow(2.0 * static_cast<double>(row) / (kPiece - 1) - 1.0, static_cast<double>(k));
+    const Eigen::MatrixXd q = powers.householderQr().householderQ() * Eigen::MatrixXd::Identity(kPiece, 4);
+    return Eigen::MatrixXd(Eigen::MatrixXd::Identity(kPiece, kPiece) - q * q.transpose());
+  }();
+  return matrix;
+}
+
+std::vector<Eigen::VectorXd> pieces_of(const std::vector<double>& values) {
+  std::vector<Eigen::VectorXd> pieces;
+  for (std::size_t begin = 0; begin + kPiece <= values.size(); begin += kPiece)
+    pieces.emplace_back(detrending() * Eigen::Map<const Eigen::VectorXd>(values.data() + begin, kPiece));
+  std::ranges::sort(pieces, {}, [](const Eigen::VectorXd& piece) { return piece.squaredNorm(); });
+  pieces.resize(static_cast<std::size_t>(std::ceil(kQuietShare * static_cast<double>(pieces.size()))));
+  return pieces;
+}
+
+// What the cubic takes along makes white noise look correlated: E sum_t r_t r_(t+lag) = sigma^2 sum_t M_(t, t+lag).
+void add_covariances(const std::vector<Eigen::VectorXd>& pieces, Covariances& sum, double& samples) {
+  const Eigen::MatrixXd& m = detrending();
+  for (const Eigen::VectorXd& piece : pieces) {
+    const double variance = piece.squaredNorm() / m.trace();
+    sum[0] += variance;
+    for (Eigen::Index lag = 1; lag <= kOrder; ++lag)
+      sum[static_cast<std::size_t>(lag)] +=
+          (piece.head(kPiece - lag).dot(piece.tail(kPiece - lag)) - variance * m.diagonal(lag).sum()) /
+          static_cast<double>(kPiece - lag);
+    samples += static_cast<double>(kPiece);
+  }
+}
+
+// Yule and Walker's equations for the correlations rho_1..rho_p.
+ChannelColour autoregression(const Covariances& covariance) {
+  Eigen::Matrix<double, kOrder, kOrder> matrix;
+  Eigen::Matrix<double, kOrder, 1> right;
+  for (Eigen::Index j = 0; j < kOrder; ++j) {
+    right(j) = covariance[static_cast<std::size_t>(j + 1)] / covariance[0];
+    for (Eigen::Index k = 0; k < kOrder; ++k)
+      matrix(j, k) = covariance[static_cast<std::size_t>(std::abs(j - k))] / covariance[0];
+  }
+  const Eigen::Matrix<double, kOrder, 1> a = matrix.ldlt().solve(right);
+  return {.coefficients = {a.begin(), a.end()}, .innovation_std = std::sqrt(std::max(1e-6, 1.0 - a.dot(right)))};
+}
+
+// Standard deviation of the noise over what third differences make of it as if it were white.
+double growth(const Covariances& covariance) {
+  const double seen = 20.0 - (30.0 * covariance[1] - 12.0 * covariance[2] + 2.0 * covariance[3]) / covariance[0];
+  return std::sqrt(20.0 / std::max(seen, 1.0));
+}
+
+}  // namespace
+
+std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& channels) {
+  std::vector<std::string> sentences;
+  data.colour.assign(data.samples.size(), NoiseColour(channels.size()));
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    Covariances covariance{};
+    double samples = 0.0;
+    for (const TimeSeries& recorded : data.samples)
+      if (const Series* series = recorded.find(channels[c]))
+        add_covariances(pieces_of(series->values), covariance, samples);
+    if (!(covariance[0] > 0.0) || samples < 4.0 * kPiece) continue;
+    const double correlation = covariance[1] / covariance[0];
+    if (std::abs(correlation) < std::max(kLeastCorrelation, kSignificant / std::sqrt(samples))) continue;
+    const ChannelColour colour = autoregression(covariance);
+    for (std::size_t k = 0; k < data.samples.size(); ++k) {
+      data.colour[k][c] = colour;
+      for (Series& series : data.samples[k].channels)
+        if (series.name == channels[c] && series.noise_std <= 0.0)
+          series.noise_std = growth(covariance) * estimate_noise_floor(series.values).standard_deviation;
+    }
+    char sentence[160];
+    std::snprintf(sentence, sizeof sentence,
+                  "The noise of %s is correlated from sample to sample (%.2f); it was whitened by an autoregression.",
+                  channels[c].c_str(), correlation);
+    sentences.emplace_back(sentence);
+  }
+  return sentences;
+}
+
+}  // namespace sealwatch::mismatch

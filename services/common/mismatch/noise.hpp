@@ -1,0 +1,21 @@
+// Noise of the recordings from the recordings alone: standard deviation per channel (estimation/noise_floor.hpp, unless
+// the sidecar gives it) and its colour.
+//
+//   quiet pieces     the quarter of all pieces of 64 samples whose scatter about a cubic is least
+//   colour           autocovariance of what the cubic leaves, pooled over pieces and recordings; AR(p) by Yule and
+//   Walker
+//                    with p up to 3, only where the correlation is significant
+//   standard deviation   that of the coloured noise, where colour was found: differences do not see slow noise
+//
+// Never from a model's residuals. Source: docs/mismatch.md.
+#pragma once
+
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Fills data.colour, and noise_std of the channels where slow noise is larger than differences say; sentences on what
+/// was found.
+[[nodiscard]] std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& channels);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,37 @@
+// Does the added physics help on recordings that took part in nothing? Every shared parameter stays as it was fitted;
+// a held-out recording's own load and initial state alone are estimated, for the model before and for the one after.
+//
+//   gain = (sum r_before^2 - sum r_after^2) / (2 phi),   phi: dispersion of the model after on the fit recordings
+//
+// its interval by resampling blocks of 1 s. Source: docs/mismatch.md.
+#pragma once
+
+#include <vector>
+
+#include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Misfit of each block of time of all recordings, before and after.
+struct BlockGains {
+  std::vector<double> gain;  ///< (r_before^2 - r_after^2) / 2 of each block
+};
+
+struct GainInterval {
+  double gain = 0.0, low = 0.0, high = 0.0;
+};
+
+/// Sum over the blocks with its 95 % bootstrap interval, over `dispersion`.
+[[nodiscard]] GainInterval gain_interval(const BlockGains& blocks, double dispersion, std::uint64_t seed);
+
+[[nodiscard]] BlockGains block_gains(const FittedModel& before, const FittedModel& after, std::size_t recording);
+
+/// Rms, NRMSE and residual tests of every channel of one recording, with the curves.
+[[nodiscard]] RecordingComparison compare(const FittedModel& before, const FittedModel& after, const Data& data,
+                                          std::size_t recording);
+
+/// All recordings' channels as one: mean squares.
+[[nodiscard]] PooledFit pool(const std::vector<RecordingComparison>& recordings, bool holdout);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,125 @@
+#include "services/common/mismatch/telling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sealwatch::mismatch {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (k > 0) text += k + 1 == words.size() ? " or " : ", ";
+    text += words[k];
+  }
+  return text;
+}
+
+std::string law_in_words(const LawAt& law) {
+  std::string text = law.id;
+  std::ranges::replace(text, '_', ' ');
+  return text.append(" at ").append(element_in_words(law.element));
+}
+
+const ChannelComparison* worst_channel(const PooledFit& fit) {
+  const auto worst = std::ranges::max_element(fit.channels, {}, &ChannelComparison::rms_before);
+  return worst == fit.channels.end() ? nullptr : &*worst;
+}
+
+// Which change of the test's conditions tells apart laws of these kinds.
+std::string separating_test(const FoundEffect& effect) {
+  if (!effect.same_elements.empty() && effect.what.element.starts_with("sensor:"))
+    return "Compare the sensor with a reference at rest at two known values; a test cannot tell its error from the "
+           "plant's.";
+  return "Record tests that differ more in what these laws depend on: one at a third and one at twice the ramp speed, "
+         "one "
+         "with a clearly lower and one with a clearly higher load, and one over another part of the stroke.";
+}
+
+}  // namespace
+
+std::string number(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::string element_in_words(const std::string& element) {
+  constexpr std::string_view kSensor = "sensor:";
+  std::string text = element;
+  if (element.starts_with(kSensor))
+    text = "the sensor of " + element.substr(kSensor.size());
+  else
+    text.insert(0, "the ");
+  std::ranges::replace(text, '_', ' ');
+  return text;
+}
+
+std::string evidence_of(const FoundEffect& effect, double misfit_before, double misfit_after) {
+  std::string text = "Adding ";
+  text.append(effect.what.law).append(" takes the mean squared residual of the fit recordings from ");
+  text.append(number(misfit_before)).append(" to ").append(number(misfit_after)).append(" times the noise variance.");
+  return text;
+}
+
+std::string next_test_of(const Explanation& explanation) {
+  for (const FoundEffect& effect : explanation.effects)
+    if (!effect.indistinguishable.empty()) return separating_test(effect);
+  if (explanation.verdict != Verdict::undetermined) return {};
+  if (explanation.fit_recordings.size() < 2)
+    return "Record at least three more tests under other loads, speeds and strokes, one of them to be held out: one "
+           "recording "
+           "can hide an effect in its own parameters and leaves nothing to prove a law on.";
+  if (!explanation.statistically_significant)
+    return "Record tests under conditions that these lack: another load (by at least 20 %), half and twice the ramp "
+           "speed, "
+           "and a longer stroke; include a rest and a hold of 3 s.";
+  return "Record the same asset under two further loads and speeds, with all channels that the bench has, and hold two "
+         "of "
+         "these recordings out.";
+}
+
+std::string summary_of(const Explanation& explanation) {
+  std::string text;
+  const ChannelComparison* worst = worst_channel(explanation.fit);
+  if (explanation.verdict == Verdict::consistent) {
+    text =
+        "Simulation and recordings agree within the noise once the free parameters are fitted; no physics is missing "
+        "that these tests could have shown.";
+    return text;
+  }
+  if (explanation.verdict == Verdict::mismatch) {
+    text = "The simulation lacks ";
+    for (std::size_t k = 0; k < explanation.effects.size(); ++k) {
+      if (k > 0) text += " and ";
+      text += law_in_words(explanation.effects[k].what);
+    }
+    text += ". With it ";
+    const ChannelComparison* proof = worst_channel(explanation.holdout);
+    if (proof != nullptr) {
+      text.append("the misfit of ").append(proof->channel).append(" on recordings that took no part falls from ");
+      text.append(number(proof->rms_before))
+          .append(" to ")
+          .append(number(proof->rms_after))
+          .append(" times the noise.");
+    }
+    for (const FoundEffect& effect : explanation.effects) {
+      if (effect.indistinguishable.empty()) continue;
+      std::vector<std::string> others;
+      for (const LawAt& other : effect.indistinguishable) others.push_back(law_in_words(other));
+      text.append(" These recordings cannot tell it from ").append(joined(others)).append(".");
+    }
+    return text;
+  }
+  if (!explanation.statistically_significant)
+    return "No difference beyond the noise was found, but these recordings could not have shown effects of a size that "
+           "matters.";
+  text = "Simulation and recordings differ beyond the noise";
+  if (worst != nullptr)
+    text.append(" (").append(worst->channel).append(": ").append(number(worst->rms_before)).append(" times the noise)");
+  text += ", and no law was found that explains it and holds on recordings that took no part.";
+  return text;
+}
+
+}  // namespace sealwatch::mismatch

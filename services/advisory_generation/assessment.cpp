@@ -39,6 +39,14 @@ WearLevel level_for(double months_to_booking, const Options& options) {
   return months_to_booking <= options.planning_horizon_months ? WearLevel::plan : WearLevel::none;
 }
 
+/// The campaign before `work`, if it is still to come.
+std::optional<UtcTime> campaign_before(const Forecast& forecast, UtcTime work) {
+  std::optional<UtcTime> before;
+  for (const FailureProbability& candidate : forecast.failure_probability)
+    if (start_of_day({candidate.before_ns}) < work) before = start_of_day({candidate.before_ns});
+  return before;
+}
+
 /// How far the logarithmic law puts the end of life behind the forecast in charge; 0 where it gives none.
 double law_gap_months(const RemainingLife& life) {
   const Forecast& in_charge = life.forecasts.front();
@@ -70,10 +78,14 @@ void judge_wear(TestVerdict& verdict, const Evidence& evidence, const SiteConfig
       verdict.wear = verdict.urgent ? WearLevel::replace
                                     : level_for(months_between(now, work) - booking_lead_time_months(site), options);
       const bool laws_agree = law_gap_months(evidence.life) <= options.largest_law_gap_months;
-      if (laws_agree || verdict.urgent)
-        verdict.replace_by = work;
-      else
-        verdict.wear = std::min(*verdict.wear, WearLevel::plan);
+      const WearLevel most = laws_agree || verdict.urgent ? WearLevel::replace : WearLevel::plan;
+      verdict.wear = std::min(*verdict.wear, most);
+      if (laws_agree || verdict.urgent) verdict.replace_by = work;
+      if (const auto earlier = campaign_before(forecast, work)) {
+        const double months_to_booking = months_between(now, *earlier) - booking_lead_time_months(site);
+        const WearLevel level = std::min(level_for(months_to_booking, options), most);
+        if (level > *verdict.wear) verdict.wear_a_campaign_earlier = level;
+      }
       return;
     }
   }

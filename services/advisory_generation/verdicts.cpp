@@ -39,6 +39,14 @@ std::vector<T> votes(const std::vector<TestVerdict>& verdicts, std::optional<T> 
   return values;
 }
 
+std::vector<WearLevel> levels_to_ease_to(const std::vector<TestVerdict>& verdicts) {
+  std::vector<WearLevel> levels;
+  for (const TestVerdict& verdict : verdicts)
+    if (verdict.wear)
+      levels.push_back(std::max(*verdict.wear, verdict.wear_a_campaign_earlier.value_or(*verdict.wear)));
+  return levels;
+}
+
 bool raised(const std::vector<TestVerdict>& last, bool TestVerdict::*flag, bool before, const Options& options) {
   const auto says_yes = [&](const TestVerdict& verdict) { return verdict.*flag; };
   const auto recent = newest(last, options.confirming_window);
@@ -53,8 +61,18 @@ std::string words(const std::string& wear, const std::optional<UtcTime>& replace
          (doubted ? "doubted" : "trusted") + ", stroke " + (failed ? "failed" : "done");
 }
 
+constexpr std::string_view kEarlier = " (";
+constexpr std::string_view kEarlierEnd = ", a campaign earlier)";
+
+std::optional<WearLevel> level_of(std::string_view text) {
+  for (std::size_t level = 0; level < kWear.size(); ++level)
+    if (text == kWear[level]) return static_cast<WearLevel>(level);
+  return std::nullopt;
+}
+
 struct Words {
   std::optional<WearLevel> wear;
+  std::optional<WearLevel> wear_a_campaign_earlier;
   std::optional<UtcTime> replace_by;
   bool doubted = false;
   bool failed = false;
@@ -62,13 +80,19 @@ struct Words {
 
 /// What words() wrote, from its end: "WEAR, DATE, INSTRUMENTS, STROKE".
 std::optional<Words> read(std::string text) {
+  Words read;
+  if (const std::size_t end = text.find(kEarlierEnd); end != std::string::npos) {
+    const std::size_t begin = text.find(kEarlier);
+    if (begin > end) return std::nullopt;
+    read.wear_a_campaign_earlier = level_of(text.substr(begin + kEarlier.size(), end - begin - kEarlier.size()));
+    text.erase(begin, end + kEarlierEnd.size() - begin);
+  }
   const auto take_last = [&text] {
     const std::size_t comma = text.rfind(", ");
     std::string last = comma == std::string::npos ? "" : text.substr(comma + 2);
     text.resize(comma == std::string::npos ? 0 : comma);
     return last;
   };
-  Words read;
   const std::string stroke = take_last();
   const std::string instruments = take_last();
   std::string date = take_last();
@@ -76,8 +100,7 @@ std::optional<Words> read(std::string text) {
   if (date.starts_with(kBy)) {
     if (const auto time = parse_utc(date.substr(kBy.size()))) read.replace_by = *time;
   }
-  for (std::size_t level = 0; level < kWear.size(); ++level)
-    if (text == kWear[level]) read.wear = static_cast<WearLevel>(level);
+  read.wear = level_of(text);
   if (stroke.empty() || instruments.empty() || (!read.wear && text != kNotJudged)) return std::nullopt;
   read.doubted = instruments == "instruments doubted";
   read.failed = stroke == "stroke failed";
@@ -101,7 +124,7 @@ void VerdictMemory::judge_wear(const TestVerdict& verdict, const Options& option
   const auto levels = votes(last_, &TestVerdict::wear);
   const auto worse = std::greater<>();
   const auto confirmed = reached_by(newest(levels, options.confirming_window), options.confirming_tests, worse);
-  const auto row = newest(levels, options.easing_tests);
+  const auto row = newest(levels_to_ease_to(last_), options.easing_tests);
   if (row.size() == options.easing_tests) in_force_.wear = std::min(in_force_.wear, *reached_by(row, 1, worse));
   if (confirmed) in_force_.wear = std::max(in_force_.wear, *confirmed);
   if (verdict.urgent) in_force_.wear = std::max(in_force_.wear, *verdict.wear);
@@ -150,10 +173,11 @@ void VerdictMemory::remember(const TestVerdict& verdict) {
 
 std::string in_words(const TestVerdict& verdict, const InForce& in_force) {
   const auto wear = [](WearLevel level) { return std::string(kWear.at(static_cast<std::size_t>(level))); };
-  return kStart +
-         words(verdict.wear ? wear(*verdict.wear) : kNotJudged, verdict.replace_by, verdict.instruments_doubted,
-               verdict.failed) +
-         kMiddle + words(wear(in_force.wear), in_force.replace_by, in_force.instruments_doubted, in_force.failing);
+  std::string alone = verdict.wear ? wear(*verdict.wear) : kNotJudged;
+  if (verdict.wear_a_campaign_earlier)
+    alone.append(kEarlier).append(wear(*verdict.wear_a_campaign_earlier)).append(kEarlierEnd);
+  return kStart + words(alone, verdict.replace_by, verdict.instruments_doubted, verdict.failed) + kMiddle +
+         words(wear(in_force.wear), in_force.replace_by, in_force.instruments_doubted, in_force.failing);
 }
 
 std::optional<VerdictRecord> from_words(const std::string& line) {
@@ -164,8 +188,11 @@ std::optional<VerdictRecord> from_words(const std::string& line) {
   const auto force = read(line.substr(middle + std::string(kMiddle).size()));
   if (!test || !force) return std::nullopt;
   VerdictRecord record;
-  record.verdict = {
-      .wear = test->wear, .replace_by = test->replace_by, .instruments_doubted = test->doubted, .failed = test->failed};
+  record.verdict = {.wear = test->wear,
+                    .wear_a_campaign_earlier = test->wear_a_campaign_earlier,
+                    .replace_by = test->replace_by,
+                    .instruments_doubted = test->doubted,
+                    .failed = test->failed};
   record.in_force = {.wear = force->wear.value_or(WearLevel::none),
                      .replace_by = force->replace_by,
                      .instruments_doubted = force->doubted,

@@ -24,6 +24,9 @@ namespace sealwatch::advisory_generation {
 /// short) has no wear level and does not vote.
 struct TestVerdict {
   std::optional<WearLevel> wear = {};
+  /// What it would ask for if the work were one campaign earlier; none: the same. Advice is only eased below this: the
+  /// date steps from campaign to campaign, years apart, when the probability of failure wavers about its limit.
+  std::optional<WearLevel> wear_a_campaign_earlier = {};
   std::optional<UtcTime> replace_by = {};  ///< whole days
   bool urgent = false;                     ///< takes force at once, without confirmation
   bool instruments_doubted = false;
@@ -61,8 +64,8 @@ class VerdictMemory {
 };
 
 /// Both in one line that stands as the last reason of every advisory, for people and for restore():
-/// "this test alone calls for: booking a vessel, replacement by 2017-06-01, instruments trusted, stroke done; all
-/// tests so far call for: ...".
+/// "this test alone calls for: no work (planning, a campaign earlier), replacement by 2017-06-01, instruments trusted,
+/// stroke done; all tests so far call for: ...".
 [[nodiscard]] std::string in_words(const TestVerdict& verdict, const InForce& in_force);
 struct VerdictRecord {
   TestVerdict verdict;

@@ -48,6 +48,21 @@ TEST(Flapping, ActionsOnlyGetMoreUrgentAsTheSealWears) {
   EXPECT_LE(steps_back, kLives);
 }
 
+/// Campaigns every other summer: when the probability of failure wavers about its limit, the date steps by two years.
+TEST(Flapping, AReplacementOncePlannedIsNotWithdrawn) {
+  int withdrawn = 0;
+  constexpr int kLives = 40;
+  for (std::uint64_t seed = 1; seed <= kLives; ++seed) {
+    bool planned = false;
+    for (const Advisory& advisory : advice_for_noisy_life(seed)) {
+      if (advisory.state == AdvisoryState::superseded) continue;
+      withdrawn += planned && advisory.action == AdvisoryAction::none;
+      planned = advisory.action != AdvisoryAction::none;
+    }
+  }
+  EXPECT_LE(withdrawn, kLives / 20);
+}
+
 TEST(Flapping, DatesMoveSeldomAndNeverByLess) {
   std::size_t moves = 0;
   std::size_t advisories = 0;

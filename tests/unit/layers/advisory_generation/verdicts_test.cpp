@@ -105,6 +105,26 @@ TEST(VerdictWords, RoundTripOfEveryField) {
         }
 }
 
+TEST(VerdictWords, RoundTripOfWhatWouldHoldACampaignEarlier) {
+  const TestVerdict verdict{
+      .wear = WearLevel::none, .wear_a_campaign_earlier = WearLevel::book_at_once, .replace_by = day("2017-06-01")};
+  const auto record = from_words(in_words(verdict, {.wear = WearLevel::plan}));
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->verdict, verdict);
+  EXPECT_EQ(record->in_force, InForce{.wear = WearLevel::plan});
+}
+
+TEST_F(VerdictMemoryTest, IsNotEasedWhileACampaignEarlierWouldCallForAsMuch) {
+  const TestVerdict plan{.wear = WearLevel::plan};
+  const TestVerdict none_but_near{.wear = WearLevel::none, .wear_a_campaign_earlier = WearLevel::book};
+  for (int test = 0; test < 2; ++test) (void)memory_.judge(plan, kNow, {});
+  for (int test = 0; test < 12; ++test)
+    EXPECT_EQ(memory_.judge(none_but_near, kNow, {}).wear, WearLevel::plan) << "held, and not made worse either";
+  for (int test = 0; test < 3; ++test)
+    EXPECT_EQ(memory_.judge({.wear = WearLevel::none}, kNow, {}).wear, WearLevel::plan);
+  EXPECT_EQ(memory_.judge({.wear = WearLevel::none}, kNow, {}).wear, WearLevel::none);
+}
+
 TEST(VerdictWords, OtherReasonsAreNoRecord) {
   EXPECT_FALSE(from_words(""));
   EXPECT_FALSE(from_words("health grade 0.7"));

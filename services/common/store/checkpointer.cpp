@@ -5,9 +5,9 @@
 namespace sealwatch {
 namespace {
 
-constexpr std::size_t kRows = 2000;
+constexpr std::size_t kRows = 5000;
 /// Pages of 4 kB.
-constexpr int kLongLog = 8192;
+constexpr int kLongLog = 65'536;
 
 }  // namespace
 

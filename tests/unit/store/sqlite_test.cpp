@@ -37,10 +37,10 @@ TEST(JournalFile, TheLogGoesIntoTheFileWhileTheJournalIsUsed) {
   const Place place;
   auto journal = Journal::open(place.connection(), "state_detection");
   ASSERT_TRUE(journal.has_value());
-  constexpr std::uintmax_t kWritten = 2400 * 4096;
+  constexpr std::uintmax_t kWritten = 6000 * 4096;
   Message small = big_message(0);
   std::get<TestWindow>(small).samples.time_s.resize(500);
-  for (int number = 0; number < 2400; ++number) {
+  for (int number = 0; number < 6000; ++number) {
     header_of(small).message_id = std::to_string(number);
     ASSERT_TRUE(journal->begin());
     ASSERT_TRUE(journal->add_output(small, UtcTime{}).has_value());

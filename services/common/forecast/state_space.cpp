@@ -128,6 +128,11 @@ Status StateSpaceOptions::validate() const {
                      "must be at least 0, below 1");
       !s)
     return s;
+  if (auto s = check(fewest_tests >= 1, "fewest_tests", fewest_tests, "must be at least 1"); !s) return s;
+  if (auto s = check(change_per_month > 0.0 && change_per_month <= 0.1, "change_per_month", change_per_month,
+                     "must be above 0, at most 0.1");
+      !s)
+    return s;
   if (auto s = check(horizon_months > 0.0 && horizon_months <= kLongestMonths, "horizon_months", horizon_months,
                      "must be above 0, at most 1200");
       !s)

@@ -32,7 +32,7 @@ constexpr std::array<std::pair<double, double>, 3> kRanges{{{0.0, 12.0}, {12.0, 
 struct Tally {
   int lives = 0, reliable = 0, converged = 0, timely = 0, false_negative = 0, due = 0, false_positive = 0, not_due = 0;
   double antecedence = 0.0, reliable_error = 0.0;
-  std::vector<Cluster> last_year, before_p10;
+  std::vector<Cluster> last_year, before_p10, young;
   std::array<std::vector<Cluster>, 3> errors, crps;
   std::array<std::array<int, 4>, 3> inside{};  ///< of 50, 80, 95 %, at each lead
   std::array<int, 4> at_lead{};
@@ -42,7 +42,7 @@ struct Tally {
 
 struct OneLife {
   std::vector<ScoredMonth> months;
-  Cluster last_year, before_p10;
+  Cluster last_year, before_p10, young;  ///< young: relative errors before the 24th month
   std::array<Cluster, 3> errors, crps;
 };
 
@@ -57,6 +57,7 @@ void score(Tally& tally, OneLife& life, const ScoredMonth& month, const Predicti
   const double left = month.true_rul_months;
   const double error = std::abs(month.error_months());
   if (left <= 12.0) add(life.last_year, error);
+  if (month.time_months < 24.0) add(life.young, error / left);
   if (distribution) add(life.before_p10, left < distribution->quantile(0.10));
   for (std::size_t r = 0; r < kRanges.size(); ++r) {
     if (left <= kRanges[r].first || left > kRanges[r].second) continue;
@@ -90,6 +91,7 @@ void close(Tally& tally, OneLife& life) {
   }
   tally.last_year.push_back(life.last_year);
   tally.before_p10.push_back(life.before_p10);
+  tally.young.push_back(life.young);
   for (std::size_t r = 0; r < kRanges.size(); ++r) {
     tally.errors[r].push_back(life.errors[r]);
     tally.crps[r].push_back(life.crps[r]);
@@ -125,7 +127,8 @@ void print(const std::string& name, const Tally& t) {
     std::printf(" %3d/%d/%d", 100 * t.inside[0][k] / trials, 100 * t.inside[1][k] / trials,
                 100 * t.inside[2][k] / trials);
   }
-  std::printf(" | %.3f\n", t.forecasts ? 1e3 * t.seconds / static_cast<double>(t.forecasts) : 0.0);
+  std::printf(" | %3.0f | %.3f\n", 100.0 * mean(t.young),
+              t.forecasts ? 1e3 * t.seconds / static_cast<double>(t.forecasts) : 0.0);
 }
 
 }  // namespace

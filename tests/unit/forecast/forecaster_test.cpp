@@ -72,6 +72,39 @@ TEST(Ols, LargerStandardErrorsOfPemWidenTheInterval) {
   }
 }
 
+// The textbook interval of inverse regression, by its own formula: h^2 - a g with all scatter, solved here anew.
+TEST(OlsFieller, IsTheTextbookInterval) {
+  std::mt19937_64 random(11);
+  const auto life = test::with_noise(straight_life(36, 0.004, 0.0), 0.003, random);
+  const Forecast f = ask("ols_fieller", 36, life);
+  double mean_t = 0.0;
+  double mean_theta = 0.0;
+  std::vector<double> t;
+  for (const ConditionSample& sample : life) {
+    t.push_back(months_between(test::kInstalled, sample.time));
+    mean_t += t.back() / 36.0;
+    mean_theta += sample.condition / 36.0;
+  }
+  double S_tt = 0.0;
+  double S_ty = 0.0;
+  for (std::size_t i = 0; i < 36; ++i) {
+    S_tt += std::pow(t[i] - mean_t, 2);
+    S_ty += (t[i] - mean_t) * (life[i].condition - mean_theta);
+  }
+  const double b = S_ty / S_tt;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 36; ++i) squares += std::pow(life[i].condition - mean_theta - b * (t[i] - mean_t), 2);
+  const double s2 = squares / 34.0;
+  constexpr double kT = 2.0322445;  // Student's t, 34 degrees of freedom, 97.5 %
+  const double g = kT * kT * s2 / (b * b * S_tt);
+  const double D = (0.60 - mean_theta) / b;
+  const double half = kT * std::sqrt(s2) / std::abs(b) * std::sqrt((1.0 - g) * (1.0 + 1.0 / 36.0) + D * D / S_tt);
+  const double now = months_between(test::kInstalled, life.back().time);
+  EXPECT_NEAR(f.interval_95_low_months, mean_t + (D - half) / (1.0 - g) - now, 1e-4);
+  EXPECT_NEAR(f.interval_95_high_months, mean_t + (D + half) / (1.0 - g) - now, 1e-4);
+  EXPECT_EQ(f.rul_months, ask("ols", 36, life).rul_months);
+}
+
 TEST(OlsDrift, CarriesThatTheSlopeWillChange) {
   const Forecast straight = ask("ols", 36, straight_life(40, 0.004, 0.001));
   const Forecast drift = ask("ols_drift", 36, straight_life(40, 0.004, 0.001));
@@ -213,6 +246,44 @@ TEST(Panel, OrderOfArrivalDoesNotMatterAndOutliersAreNamed) {
   std::shuffle(life.begin(), life.end(), random);
   const auto shuffled = panel->forecast({.history = life, .threshold = 0.60, .now = month(60)});
   EXPECT_EQ(shuffled.forecasts, in_order.forecasts);
+}
+
+// A line over ln t bends away from a straight history, so that its windows always differ: that is no change of rate.
+TEST(Panel, StraightHistoriesDoNotDisagree) {
+  const auto panel = ForecastPanel::make(default_forecasters());
+  std::mt19937_64 random(5);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto answer = panel->forecast({.history = test::with_noise(straight_life(66, 0.004, 0.001), 0.001, random),
+                                         .threshold = 0.60,
+                                         .now = month(66),
+                                         .installed = test::kInstalled});
+    EXPECT_FALSE(answer.windows_disagree) << answer.disagreement;
+  }
+}
+
+TEST(Panel, WhatIsNoNumberIsLeftOut) {
+  const auto panel = ForecastPanel::make(default_forecasters());
+  const auto clean = straight_life(60, 0.004, 0.001);
+  auto spoiled = clean;
+  spoiled.push_back(clean[20]);  // delivered twice
+  spoiled.push_back({month(30.5), std::nan(""), 0.001});
+  spoiled.push_back({month(31.5), 0.9, -0.001});
+  const auto answer = panel->forecast({.history = spoiled, .threshold = 0.60, .now = month(60)});
+  EXPECT_EQ(answer.left_out.size(), 2u);
+  EXPECT_EQ(answer.used.size(), 60u);
+  EXPECT_EQ(answer.forecasts, panel->forecast({.history = clean, .threshold = 0.60, .now = month(60)}).forecasts);
+}
+
+TEST(Panel, EachNumberComesWithItsDistribution) {
+  const auto panel = ForecastPanel::make(default_forecasters());
+  const auto answer =
+      panel->forecast({.history = straight_life(60, 0.004, 0.001), .threshold = 0.60, .now = month(60)});
+  ASSERT_EQ(answer.distributions.size(), answer.forecasts.size());
+  for (std::size_t i = 0; i < answer.forecasts.size(); ++i) {
+    ASSERT_TRUE(answer.distributions[i]) << answer.forecasts[i].method;
+    EXPECT_EQ(answer.distributions[i]->quantile(0.5), answer.forecasts[i].rul_months);
+    EXPECT_EQ(answer.distributions[i]->quantile(0.1), answer.forecasts[i].rul_p10_months);
+  }
 }
 
 TEST(Panel, SettingsAreChecked) {

@@ -45,6 +45,18 @@ TEST(History, TurnsResistanceIntoCondition) {
   EXPECT_THAT(error_of(text), AllOf(HasSubstr("R_CL[Pa s/m3]"), HasSubstr("--asset")));
 }
 
+TEST(History, AMisspeltColumnIsNotPassedOver) {
+  EXPECT_THAT(error_of("time[iso8601],theta[1],theta_sdt[1]\n2031-01-05,0.9,0.004\n"),
+              AllOf(HasSubstr("theta_sdt[1]"), HasSubstr("did you mean 'theta_std[1]'")));
+  EXPECT_THAT(error_of("time[iso8601],theta[%],note\n2031-01-05,90,x\n"), HasSubstr("did you mean 'theta[1]'"));
+  EXPECT_EQ(error_of("time[iso8601],theta[1],phi[1],operator\n2031-01-05,0.9,0.1,me\n"), "no error");
+}
+
+TEST(History, RefusesNegativeResistances) {
+  EXPECT_THAT(error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,-4.64e12\n", SealSetting{}),
+              AllOf(HasSubstr("R_CL[Pa s/m3]"), HasSubstr("must be positive")));
+}
+
 TEST(History, NamesRowAndColumnOfBadCells) {
   const std::string start = std::string(kHeader) + "2031-01-05,0.91,0.004\n";
   EXPECT_THAT(error_of(start + "2031-02-05,abc,0.004\n"),

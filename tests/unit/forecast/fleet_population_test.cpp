@@ -1,0 +1,84 @@
+// Populations: what the constants say, and what a fleet says.
+#include "sealwatch/forecast/fleet_population.hpp"
+
+#include <gmock/gmock.h>
+
+#include "sealwatch/forecast/forecaster.hpp"
+#include "tests/unit/forecast/random_life.hpp"
+
+namespace sealwatch::forecast {
+namespace {
+
+std::vector<FleetLife> fleet(int lives, const std::string& scenario) {
+  std::vector<FleetLife> result;
+  for (int seed = 1; seed <= lives; ++seed) {
+    FleetLife life{.history = {}, .installed = test::kInstalled};
+    for (const auto& one : test::random_life(static_cast<std::uint64_t>(seed), scenario, 0.003, 0.6).months)
+      if (one.sample) life.history.push_back(*one.sample);
+    result.push_back(std::move(life));
+  }
+  return result;
+}
+
+TEST(FleetPopulation, DefaultsAreTheReferenceConstants) {
+  const FleetPopulation from_constants = reference_population();
+  const FleetPopulation defaults;
+  constexpr double kDigits = 1e-4;  // the defaults are printed with five
+  EXPECT_NEAR(from_constants.initial_rate / defaults.initial_rate, 1.0, kDigits);
+  EXPECT_NEAR(from_constants.initial_rate_std / defaults.initial_rate_std, 1.0, kDigits);
+  EXPECT_NEAR(from_constants.steepening / defaults.steepening, 1.0, kDigits);
+  EXPECT_NEAR(from_constants.steepening_std / defaults.steepening_std, 1.0, kDigits);
+  EXPECT_NEAR(from_constants.steepening_scatter / defaults.steepening_scatter, 1.0, kDigits);
+  EXPECT_NEAR(from_constants.irregularity_std / defaults.irregularity_std, 1.0, kDigits);
+  EXPECT_TRUE(from_constants.validate());
+}
+
+// 60 lives tell the means to a few per cent, and that a fleet which ages twice as fast does so.
+TEST(FleetPopulation, FitFindsTheFleet) {
+  const FleetFit usual = fit_population(fleet(60, "reference")).value();
+  EXPECT_EQ(usual.lives, 60);
+  EXPECT_NEAR(usual.population.initial_rate, 0.045, 0.006);
+  EXPECT_NEAR(usual.population.steepening, 0.00115, 0.0001);
+  EXPECT_NEAR(usual.population.irregularity_std / 0.0375, 1.0, 0.5);
+  const FleetFit fast = fit_population(fleet(60, "unlike")).value();
+  EXPECT_NEAR(fast.population.initial_rate, 0.08 + 0.015, 0.01);
+  EXPECT_NEAR(fast.population.steepening, 0.002125, 0.0004);
+}
+
+TEST(FleetPopulation, ASmallFleetIsPulledToTheReference) {
+  const FleetFit one = fit_population(fleet(1, "unlike")).value();
+  const FleetFit many = fit_population(fleet(40, "unlike")).value();
+  EXPECT_GT(one.population.initial_rate, 0.045);
+  EXPECT_LT(one.population.initial_rate, many.population.initial_rate);
+}
+
+TEST(FleetPopulation, EmptyOrShortFleetsAreErrors) {
+  EXPECT_THAT(fit_population({}).error().describe(), testing::HasSubstr("fleet is empty"));
+  const std::vector<FleetLife> young{{.history = test::straight_life(5, 0.004, 0.003), .installed = test::kInstalled}};
+  EXPECT_THAT(fit_population(young).error().describe(), testing::HasSubstr("at least 12 tests"));
+  std::vector<FleetLife> mixed = fleet(2, "reference");
+  mixed.push_back(young.front());
+  EXPECT_EQ(fit_population(mixed)->passed_over, 1);
+  EXPECT_FALSE(fit_population(mixed, {.n_0 = 0.0}));
+}
+
+// Before 24 tests exist: a fitted fleet knows what a straight line cannot, on lives that the fit has not seen.
+TEST(FleetPopulation, TellsYoungSealsMoreThanTheReferenceDoes) {
+  ForecasterSettings fitted{"fleet", kWholeLife_months};
+  fitted.population = fit_population(fleet(40, "unlike"))->population;
+  double error_fitted = 0.0;
+  double error_reference = 0.0;
+  for (std::uint64_t seed = 101; seed <= 140; ++seed) {
+    const test::RandomLife life = test::random_life(seed, "unlike", 0.003, 0.6);
+    ForecastRequest request{.threshold = 0.6, .now = test::month(12), .installed = test::kInstalled};
+    for (int n = 0; n < 12; ++n) request.history.push_back(*life.months[static_cast<std::size_t>(n)].sample);
+    const double left = life.end_months - 12.0;
+    error_fitted += std::abs(make_forecaster(fitted).value()->forecast(request).rul_months - left);
+    error_reference +=
+        std::abs(make_forecaster({"fleet", kWholeLife_months}).value()->forecast(request).rul_months - left);
+  }
+  EXPECT_LT(error_fitted, 0.5 * error_reference);
+}
+
+}  // namespace
+}  // namespace sealwatch::forecast

@@ -32,8 +32,12 @@ class Colouring {
   /// A sensor: a disc with `letters` in it and the probability below.
   [[nodiscard]] std::string sensor(std::string_view channel, std::string_view letters, double x, double y) const;
 
+  /// What drives the simulation (the plant's inputs; the flow, where the voltage is not recorded) is not among its
+  /// outputs and counts as recorded.
   [[nodiscard]] bool is_recorded(std::string_view channel) const {
-    return std::ranges::find(recorded_, channel) != recorded_.end();
+    const ChannelDescription* description = plant_.find_channel(channel);
+    const bool may_drive = channel == "flow" || (description != nullptr && description->input);
+    return may_drive || std::ranges::find(recorded_, channel) != recorded_.end();
   }
   [[nodiscard]] const PlantDescription& plant() const { return plant_; }
 

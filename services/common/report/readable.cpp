@@ -87,7 +87,7 @@ std::string number_text(double value, int digits) {
   const std::string scientific = buffer;  // rounding may carry into the next decade: the exponent is taken afterwards
   const std::size_t split = scientific.find('e');
   const int exponent = std::atoi(scientific.c_str() + split + 1);
-  if (exponent < -3 || exponent >= 6)
+  if (exponent < -3 || exponent >= 5)
     return with_minus(scientific.substr(0, split)).append("·").append(power_of_ten(exponent));
   std::snprintf(buffer, sizeof buffer, "%.*f", std::max(digits - 1 - exponent, 0), value);
   return with_minus(buffer);
@@ -104,7 +104,7 @@ std::string readable(double value, std::string_view si_unit, int digits) {
 
 std::string readable_with_error(double value, double error, std::string_view si_unit) {
   if (!(error > 0.0) || !std::isfinite(error) || !std::isfinite(value)) return readable(value, si_unit, 4);
-  const DisplayUnit unit = display_unit(si_unit, value);
+  const DisplayUnit unit = si_unit.empty() ? DisplayUnit{} : display_unit(si_unit, value);
   const double shown_error = error * unit.factor;
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(shown_error))), 0, 6);
   char buffer[96];
@@ -127,9 +127,9 @@ std::string percent_text(double share) {
 
 std::string p_value_text(double p) {
   if (!std::isfinite(p)) return "–";
-  if (p >= 1e-3) return number_text(p, 2);
-  if (p < 1e-300) return std::string("under ").append(power_of_ten(-300));
-  return std::string("under ").append(power_of_ten(static_cast<int>(std::floor(std::log10(p))) + 1));
+  if (p < 1e-9) return "< 10⁻⁹";  // further digits of a tail would mean nothing
+  if (p < 1e-3) return std::string("< ").append(power_of_ten(static_cast<int>(std::floor(std::log10(p))) + 1));
+  return number_text(p, 2);
 }
 
 std::string words_of(std::string_view identifier) {

@@ -25,13 +25,14 @@ struct DisplayUnit {
 /// Value in its everyday unit: readable(1.05e7, "Pa") = "105 bar".
 [[nodiscard]] std::string readable(double value, std::string_view si_unit, int digits = 3);
 
-/// Value with its standard error, as many decimals as the error's second digit: "(2.580 ± 0.030)·10¹³ Pa·s/m³".
+/// Value with its standard error, as many decimals as the error's second digit: "(2.580 ± 0.030)·10¹³ Pa·s/m³". Without
+/// a unit ("") the number is not scaled.
 [[nodiscard]] std::string readable_with_error(double value, double error, std::string_view si_unit);
 
 /// A share as percentage, "97 %", "0.4 %"; never "100 %" or "0 %" for what is neither.
 [[nodiscard]] std::string percent_text(double share);
 
-/// A p-value: "0.23", "under 10⁻⁹".
+/// A p-value: "0.23", "< 10⁻⁹" at the least.
 [[nodiscard]] std::string p_value_text(double p);
 
 /// "line_resistance" as "line resistance", "sensor:flow" as "sensor: flow".

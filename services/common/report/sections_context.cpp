@@ -22,6 +22,15 @@ double shift_in_errors(const ParameterShift& shift) {
   return (shift.after - shift.before) / std::hypot(shift.before_std, shift.after_std);
 }
 
+double largest_of(const ParameterShift& shift) {
+  return std::max({std::abs(shift.datasheet), std::abs(shift.before), std::abs(shift.after)});
+}
+
+/// "10.68 ± 0.41", as many decimals as the error's second digit; the error is left out where the data cannot tell it.
+std::string with_error(double value, double error) {
+  return error > 0.0 && std::isfinite(error) ? readable_with_error(value, error, "") : number_text(value, 4);
+}
+
 std::string change_text(double from, double to) {
   if (from == 0.0 || !std::isfinite(to / from)) return "–";
   const double percent = 100.0 * (to - from) / from;
@@ -46,20 +55,24 @@ std::string power_words(const Power& power) {
 std::string parameters_section(const Explanation& explanation) {
   if (explanation.parameters.empty()) return {};
   const bool changed = !explanation.effects.empty();
-  Table table({"parameter", ">datasheet", ">fitted before", ">fitted after", ">change", ">in standard errors", ""});
+  Table table(changed ? std::vector<std::string>{"parameter", "unit", ">datasheet", ">before", ">after", ">change",
+                                                 ">over its error"}
+                      : std::vector<std::string>{"parameter", "unit", ">datasheet", ">fitted"});
   for (const ParameterShift& shift : explanation.parameters) {
-    const double errors = shift_in_errors(shift);
-    const bool clear = changed && std::isfinite(errors) && std::abs(errors) > kClearShift;
-    std::string remark;
-    if (clear) remark = "had absorbed part of it";
-    table.row_of_html({escaped(shift.name), escaped(readable(shift.datasheet, shift.unit, 4)),
-                       escaped(readable_with_error(shift.before, shift.before_std, shift.unit)),
-                       changed ? escaped(readable_with_error(shift.after, shift.after_std, shift.unit)) : std::string(),
-                       changed ? escaped(change_text(shift.before, shift.after)) : std::string(),
-                       changed ? escaped(number_text(std::abs(errors), 2)) : std::string(), escaped(remark)},
-                      clear ? "strong" : "");
+    const DisplayUnit unit = display_unit(shift.unit, largest_of(shift));
+    std::vector<std::string> cells = {shift.name, unit.text, number_text(shift.datasheet * unit.factor, 4),
+                                      with_error(shift.before * unit.factor, shift.before_std * unit.factor)};
+    const double errors = std::abs(shift_in_errors(shift));
+    if (changed) {
+      cells.push_back(with_error(shift.after * unit.factor, shift.after_std * unit.factor));
+      cells.push_back(change_text(shift.before, shift.after));
+      cells.push_back(number_text(errors, 2));
+    }
+    for (std::string& cell : cells) cell = escaped(cell);
+    table.row_of_html(cells, changed && errors > kClearShift ? "strong" : "");
   }
-  const char* words = changed ? "A parameter that moves when the missing physics is added had been standing in for it."
+  const char* words = changed ? "A parameter that moves when the missing physics is added had been standing in for it. "
+                                "In bold: moved by more than three standard errors."
                               : "The parameters as fitted to the recordings.";
   return section(changed ? "What had absorbed the effect" : "Fitted parameters",
                  paragraph(words, "small muted").append(table.html()));

@@ -1,6 +1,8 @@
 // What was found: where it sits, the laws that were added, why not others.
 #include <cctype>
+#include <cmath>
 
+#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/report/actuator_drawing.hpp"
 #include "services/common/report/explanation_sections.hpp"
@@ -30,11 +32,23 @@ std::string law_line(const std::string& law) {
   return std::string("<p><span class=\"law\">").append(escaped(law)).append("</span></p>\n");
 }
 
+/// What the catalogue says of a law's parameter; "" where it does not know it.
+std::string meaning_of(const mismatch::LawAt& what, const std::string& parameter) {
+  for (const Law& law : all_laws())
+    if (law.id == what.id && law.form == what.form)
+      for (const LawParameter& known : law.parameters)
+        if (known.name == parameter) return std::string(known.meaning);
+  return {};
+}
+
 std::string parameter_table(const FoundEffect& effect) {
-  Table table({"parameter", ">value", ">± standard error", "unit", ""});
-  for (const mismatch::FoundParameter& parameter : effect.parameters)
-    table.row({parameter.name, number_text(parameter.value), number_text(parameter.std_error, 2),
-               unit_text(parameter.unit), parameter.at_bound ? "at its bound: the data cannot tell" : ""});
+  Table table({"parameter", ">value ± standard error", "~meaning"});
+  for (const mismatch::FoundParameter& parameter : effect.parameters) {
+    std::string meaning = meaning_of(effect.what, parameter.name);
+    if (parameter.at_bound || !std::isfinite(parameter.std_error))
+      meaning.append(meaning.empty() ? "" : "; ").append("these recordings cannot tell its value");
+    table.row({parameter.name, readable_with_error(parameter.value, parameter.std_error, parameter.unit), meaning});
+  }
   return table.empty() ? std::string() : table.html();
 }
 
@@ -91,6 +105,31 @@ std::string effect_html(const FoundEffect& effect) {
   return html;
 }
 
+void add_alternative(const mismatch::Alternative& alternative, Table& table) {
+  const std::string name = escaped(law_name(alternative.what));
+  table.row_of_html({std::string(name)
+                         .append("<br/><code class=\"small muted\">")
+                         .append(escaped(alternative.what.law))
+                         .append("</code>"),
+                     escaped(words_of(alternative.what.element)), escaped(number_text(alternative.misfit_above_best)),
+                     escaped(alternative.why_not)});
+}
+
+/// The nearest ones open, the rest folded.
+std::string alternatives_to(const FoundEffect& effect) {
+  constexpr std::size_t kOpen = 5;
+  const std::vector<std::string> columns = {"~instead of " + law_name(effect.what), "element", ">misfit above the best",
+                                            "~why not"};
+  Table near(columns);
+  Table far(columns);
+  for (std::size_t k = 0; k < effect.alternatives.size(); ++k)
+    add_alternative(effect.alternatives[k], k < kOpen ? near : far);
+  std::string html = near.empty() ? std::string() : near.html();
+  if (!far.empty())
+    html += folded(std::to_string(effect.alternatives.size() - kOpen) + " more that fit worse", far.html());
+  return html;
+}
+
 }  // namespace
 
 std::string where_section(const Explanation& explanation) {
@@ -117,14 +156,7 @@ std::string effects_section(const Explanation& explanation) {
 
 std::string alternatives_section(const Explanation& explanation) {
   std::string html;
-  for (const FoundEffect& effect : explanation.effects) {
-    if (effect.alternatives.empty()) continue;
-    Table table({"instead of " + law_name(effect.what), "element", ">misfit above the best", "~why not"});
-    for (const mismatch::Alternative& alternative : effect.alternatives)
-      table.row({law_name(alternative.what), words_of(alternative.what.element),
-                 number_text(alternative.misfit_above_best), alternative.why_not});
-    html += table.html();
-  }
+  for (const FoundEffect& effect : explanation.effects) html += alternatives_to(effect);
   if (!explanation.rejected.empty()) {
     html += "<h3>Better fits that physics forbids</h3>\n";
     Table table({"law", "element", "~why it is rejected"});

@@ -23,6 +23,13 @@ std::string kind_of(const RecordingComparison& recording) {
   return recording.holdout ? "kept aside" : recording.left_out ? "left out in turn" : "fitted";
 }
 
+std::vector<const RecordingComparison*> kept_aside_first(const Explanation& explanation) {
+  std::vector<const RecordingComparison*> order;
+  for (const RecordingComparison& recording : explanation.recordings) order.push_back(&recording);
+  std::ranges::stable_sort(order, {}, [](const RecordingComparison* one) { return !kept_aside(*one); });
+  return order;
+}
+
 Plot overlay(const Series& recorded, const Series& before, const Series* after, const RecordingComparison& recording) {
   Plot plot{.title = words_of(recorded.name),
             .x = {.unit = "s", .tick_labels = false},
@@ -111,7 +118,8 @@ void add_rows(const std::string& name, const std::string& kind, const std::vecto
 
 std::string gains(const Explanation& explanation) {
   Table table({"recording", "", ">likelihood gain", ">95 % interval", ""});
-  for (const RecordingComparison& recording : explanation.recordings) {
+  for (const RecordingComparison* one : kept_aside_first(explanation)) {
+    const RecordingComparison& recording = *one;
     const bool sure = recording.gain_low > 0.0;
     table.row({recording.recording, kind_of(recording), number_text(recording.likelihood_gain),
                number_text(recording.gain_low).append(" to ").append(number_text(recording.gain_high)),
@@ -125,13 +133,10 @@ std::string gains(const Explanation& explanation) {
 }  // namespace
 
 std::string overlays_section(const Explanation& explanation) {
-  std::vector<const RecordingComparison*> order;
-  for (const RecordingComparison& recording : explanation.recordings) order.push_back(&recording);
-  std::ranges::stable_sort(order, {}, [](const RecordingComparison* one) { return !kept_aside(*one); });
   std::string html;
   std::size_t left_out = 0;
   bool first = true;
-  for (const RecordingComparison* recording : order) {
+  for (const RecordingComparison* recording : kept_aside_first(explanation)) {
     if (html.size() > kMostBytesOfPlots) {
       ++left_out;
       continue;
@@ -153,13 +158,18 @@ std::string overlays_section(const Explanation& explanation) {
 
 std::string comparison_section(const Explanation& explanation) {
   const bool changed = !explanation.effects.empty();
-  Table table({"recording", "", "channel", ">misfit / noise", ">fit, %", ">white, p", ">independent of input, p"});
-  add_rows("all kept aside", "", explanation.holdout.channels, changed, table);
-  add_rows("all fitted", "", explanation.fit.channels, changed, table);
-  for (const RecordingComparison& recording : explanation.recordings)
-    add_rows(recording.recording, kind_of(recording), recording.channels, changed, table);
-  if (table.empty()) return {};
-  std::string html = table.html();
+  const std::vector<std::string> columns = {
+      "recording", "", "channel", ">misfit / noise", ">fit, %", ">white, p", ">independent of input, p"};
+  Table pooled(columns);
+  add_rows("all kept aside", "", explanation.holdout.channels, changed, pooled);
+  add_rows("all fitted", "", explanation.fit.channels, changed, pooled);
+  Table each(columns);
+  for (const RecordingComparison* recording : kept_aside_first(explanation))
+    add_rows(recording->recording, kind_of(*recording), recording->channels, changed, each);
+  std::string html;
+  if (!pooled.empty()) html += pooled.html();
+  if (!each.empty()) html += folded("Each recording", each.html());
+  if (html.empty()) return {};
   if (changed) html += gains(explanation);
   return section(changed ? "Before and after, in figures" : "The fit, in figures", html);
 }

@@ -49,8 +49,8 @@ TEST(Readable, ASharePretendsNoCertainty) {
 
 TEST(Readable, PValues) {
   EXPECT_EQ(p_value_text(0.234), "0.23");
-  EXPECT_EQ(p_value_text(3e-9), "under 10⁻⁸");
-  EXPECT_EQ(p_value_text(0.0), "under 10⁻³⁰⁰");
+  EXPECT_EQ(p_value_text(3e-9), "< 10⁻⁸");
+  EXPECT_EQ(p_value_text(0.0), "< 10⁻⁹");
 }
 
 TEST(Readable, Identifiers) {

@@ -128,6 +128,8 @@ class CommandLine {
     validate->add_flag("--fit", validate_.fit, "estimate the asset's free parameters from these recordings first");
     validate->add_flag("--json", validate_.json, "machine-readable result (schema sealwatch.validation/1)");
 
+    add_explain();
+
     CLI::App* forecast = command("forecast", "remaining useful life from a history of estimates",
                                  "sealwatch forecast --history history.csv --before 2019-06-01 --json",
                                  [this] { return run_forecast(forecast_); });
@@ -185,6 +187,27 @@ class CommandLine {
     rul->add_flag("--direct", o.direct, "recordings go to the estimator directly, not through the first two layers");
     rul->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
     rul->add_flag("--json", o.json, "machine-readable result (schema sealwatch.verification/1)");
+  }
+
+  void add_explain() {
+    CLI::App* explain =
+        command("explain", "say where recordings and simulation differ, by what physics, and whether adding it helps",
+                "sealwatch explain --asset asset.yaml --fit fit_*.csv --holdout holdout_*.csv --out found",
+                [this] { return run_explain(explain_); });
+    explain->add_option("--asset", explain_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    explain->add_option("--fit", explain_.fit, "recordings to fit: tests that differ in load, speed or profile")
+        ->required();
+    explain->add_option("--holdout", explain_.holdout,
+                        "recordings kept aside to prove it on (default: each fitted one is left out in turn)");
+    explain
+        ->add_option("--out", explain_.directory,
+                     "directory for report.json, report.html and asset.explained.yaml (made if absent)")
+        ->required();
+    explain->add_option("--seed", explain_.seed, "same seed, same report")->check(not_negative)->capture_default_str();
+    explain->add_option("--threads", explain_.threads, "threads to compute with")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    explain->add_flag("--json", explain_.json, "the report (schema sealwatch.mismatch/1) on standard output");
   }
 
   void add_live() {
@@ -285,6 +308,7 @@ class CommandLine {
   std::function<int()> chosen_ = [] { return kBadInput; };
   SimulateOptions simulate_;
   FitOptions fit_;
+  ExplainOptions explain_;
   ForecastOptions forecast_;
   ValidateOptions validate_;
   VerifyRulOptions verify_rul_;

@@ -123,18 +123,19 @@ std::string notes_section(const Explanation& explanation) {
 std::string explanation_to_html(const Explanation& explanation) {
   std::string body = "<h1>Simulation and recordings of ";
   body.append(escaped(explanation.asset_id)).append("</h1>\n");
-  body.append(banner(explanation))
-      .append(where_section(explanation))
+  const bool nothing_found = explanation.effects.empty();
+  body += banner(explanation);
+  if (nothing_found) body += power_section(explanation);  // what the silence is worth
+  body.append(where_section(explanation))
       .append(effects_section(explanation))
       .append(missing_section(explanation))
       .append(overlays_section(explanation))
       .append(comparison_section(explanation))
       .append(parameters_section(explanation))
       .append(prognosis_section(explanation))
-      .append(alternatives_section(explanation))
-      .append(power_section(explanation))
-      .append(next_section(explanation))
-      .append(notes_section(explanation));
+      .append(alternatives_section(explanation));
+  if (!nothing_found) body += power_section(explanation);
+  body.append(next_section(explanation)).append(notes_section(explanation));
   return html_page("Mismatch report, " + explanation.asset_id, body);
 }
 

@@ -47,7 +47,7 @@ code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
 .figures{display:flex;flex-wrap:wrap;gap:.6rem 2.2rem;margin:.7rem 0}.figures div{min-width:8rem}
 .figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}
 .scroll{overflow-x:auto}table{border-collapse:collapse;margin:.5rem 0 1rem;font-size:.9rem;font-variant-numeric:tabular-nums}
-td{white-space:nowrap}td.prose{white-space:normal;min-width:15rem}th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
+td{white-space:nowrap}td.prose{white-space:normal;min-width:13rem}tr.strong td.prose{font-weight:400}th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
 th{color:var(--muted);font-weight:600;white-space:nowrap}th.n,td.n{text-align:right;white-space:nowrap}
 tr.strong td{font-weight:600}.better{color:var(--good)}.worse{color:var(--bad)}
 .plots{display:flex;flex-wrap:wrap;gap:.4rem 1.2rem}.plots>div{flex:0 0 auto;max-width:100%}

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/model/plant_description.hpp"
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
@@ -54,10 +55,11 @@ std::string power_words(const Power& power) {
 
 std::string parameters_section(const Explanation& explanation) {
   if (explanation.parameters.empty()) return {};
+  const Result<const PlantDescription*> plant = find_plant(explanation.model);
   const bool changed = !explanation.effects.empty();
   Table table(changed ? std::vector<std::string>{"parameter", "unit", ">datasheet", ">before", ">after", ">change",
-                                                 ">over its error"}
-                      : std::vector<std::string>{"parameter", "unit", ">datasheet", ">fitted"});
+                                                 ">over its error", "~meaning"}
+                      : std::vector<std::string>{"parameter", "unit", ">datasheet", ">fitted", "~meaning"});
   for (const ParameterShift& shift : explanation.parameters) {
     const DisplayUnit unit = display_unit(shift.unit, largest_of(shift));
     std::vector<std::string> cells = {shift.name, unit.text, number_text(shift.datasheet * unit.factor, 4),
@@ -68,6 +70,8 @@ std::string parameters_section(const Explanation& explanation) {
       cells.push_back(change_text(shift.before, shift.after));
       cells.push_back(number_text(errors, 2));
     }
+    const ParameterDescription* known = plant ? (*plant)->find_parameter(shift.name) : nullptr;
+    cells.push_back(known == nullptr ? "" : known->meaning);
     for (std::string& cell : cells) cell = escaped(cell);
     table.row_of_html(cells, changed && errors > kClearShift ? "strong" : "");
   }
@@ -80,12 +84,12 @@ std::string parameters_section(const Explanation& explanation) {
 
 std::string prognosis_section(const Explanation& explanation) {
   const mismatch::PrognosisShift& prognosis = explanation.prognosis;
-  if (!prognosis.known) return {};
+  if (!prognosis.known || explanation.effects.empty()) return {};
   Table table({"", ">before", ">after", ">change"});
   table.row({"leakage resistance R_CL", readable(prognosis.R_CL_before, "Pa s/m3"),
              readable(prognosis.R_CL_after, "Pa s/m3"), change_text(prognosis.R_CL_before, prognosis.R_CL_after)});
   const auto theta = [](double value) {
-    return std::isfinite(value) ? number_text(100.0 * value, 3).append(" %") : "–";
+    return std::isfinite(value) ? number_text(100.0 * value, 4).append(" %") : "–";
   };
   table.row({"seal condition", theta(prognosis.theta_before), theta(prognosis.theta_after),
              change_text(prognosis.theta_before, prognosis.theta_after)});

@@ -138,7 +138,7 @@ std::string where_section(const Explanation& explanation) {
   std::string html = "<div class=\"scroll\">\n";
   html.append(actuator_drawing(**plant, explanation.location, recorded_channels(explanation))).append("</div>\n");
   if (explanation.location.empty())
-    return section("Where it sits", html.append(paragraph("No element stands out.", "muted")));
+    return section("The plant", html.append(paragraph("No element stands out.", "muted")));
   Table table({"element", ">probability", "cannot be told from", "~evidence"});
   for (const mismatch::Location& place : explanation.location) {
     const std::string element = words_of(place.element);

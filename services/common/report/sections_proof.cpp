@@ -39,7 +39,7 @@ Plot overlay(const Series& recorded, const Series& before, const Series* after, 
       Line{.x = recording.recorded.time_s, .y = recorded.values, .ink = Ink::muted, .label = "recorded", .width = 2.6});
   plot.marks.emplace_back(Line{.x = recording.before.time_s,
                                .y = before.values,
-                               .ink = Ink::second,
+                               .ink = after == nullptr ? Ink::first : Ink::second,
                                .label = after == nullptr ? "model" : "old model"});
   if (after != nullptr)
     plot.marks.emplace_back(
@@ -63,8 +63,10 @@ Plot residual_strip(const Series& recorded, const Series& before, const Series* 
             .y = {.unit = in_noise ? "1" : recorded.unit},
             .height = 124,
             .legend = false};
-  plot.marks.emplace_back(
-      Line{.x = recording.recorded.time_s, .y = residual(recorded, before), .ink = Ink::second, .width = 1.0});
+  plot.marks.emplace_back(Line{.x = recording.recorded.time_s,
+                               .y = residual(recorded, before),
+                               .ink = after == nullptr ? Ink::first : Ink::second,
+                               .width = 1.0});
   if (after != nullptr)
     plot.marks.emplace_back(
         Line{.x = recording.recorded.time_s, .y = residual(recorded, *after), .ink = Ink::first, .width = 1.0});

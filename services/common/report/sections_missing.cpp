@@ -129,8 +129,9 @@ std::string plots_of(const MissingTerm& term) {
 std::string missing_section(const mismatch::Explanation& explanation) {
   if (explanation.missing.empty()) return {};
   std::string html = paragraph(
-      "What the data demand is estimated without any law, from the recordings and the balance of the element; its band "
-      "is the 95 % interval. Where the law runs inside the band it says what the data say.",
+      "What the data demand is estimated without any law, from the recording and the balance of the element, as means "
+      "over a quarter of a second; its band is the 95 % interval. Where the law runs inside the band it says what the "
+      "data say.",
       "small muted");
   for (std::size_t k = 0; k < explanation.missing.size(); ++k) {
     const MissingTerm& term = explanation.missing[k];

@@ -44,10 +44,15 @@ std::string detectable(const Power& power) {
   return readable(power.minimum_detectable, power.unit, 2);
 }
 
+/// Whether an effect of a size that matters could be there unseen.
+bool could_hide(const Power& power) {
+  return !std::isfinite(power.minimum_detectable) ||
+         (power.significant > 0.0 && power.minimum_detectable > power.significant);
+}
+
 std::string power_words(const Power& power) {
   if (!std::isfinite(power.minimum_detectable)) return "these recordings cannot show it";
-  if (power.significant > 0.0 && power.minimum_detectable > power.significant)
-    return "could be there unseen at a size that matters";
+  if (could_hide(power)) return "could be there unseen at a size that matters";
   return power.absorbed_share > kAbsorbed ? "mostly absorbed by the free parameters, yet seen" : "would be seen";
 }
 
@@ -98,31 +103,29 @@ std::string prognosis_section(const Explanation& explanation) {
 
 std::string power_section(const Explanation& explanation) {
   if (explanation.power.empty()) return {};
-  std::vector<Power> powers = explanation.power;
-  const auto rank = [](const Power& power) {
-    if (!std::isfinite(power.minimum_detectable)) return 0;
-    return power.significant > 0.0 && power.minimum_detectable > power.significant ? 1 : 2;
-  };
-  std::ranges::stable_sort(powers, {}, rank);
-  Table table({"law", "element", ">smallest that shows", ">matters from", ">absorbed", ""});
-  std::size_t blind = 0;
-  for (const Power& power : powers) {
-    if (rank(power) < 2) ++blind;
-    table.row_of_html({escaped(law_name(power.what)), escaped(words_of(power.what.element)), escaped(detectable(power)),
-                       escaped(power.significant > 0.0 ? readable(power.significant, power.unit, 2) : "–"),
-                       escaped(percent_text(power.absorbed_share)), escaped(power_words(power))},
-                      rank(power) < 2 ? "strong" : "");
+  const std::vector<std::string> columns = {"law", "element", ">smallest that shows", ">matters from", ">absorbed", ""};
+  Table blind(columns);
+  Table seen(columns);
+  std::size_t blind_count = 0;
+  for (const Power& power : explanation.power) {
+    const bool unseen = could_hide(power);
+    if (unseen) ++blind_count;
+    (unseen ? blind : seen)
+        .row({law_name(power.what), words_of(power.what.element), detectable(power),
+              power.significant > 0.0 ? readable(power.significant, power.unit, 2) : "–",
+              percent_text(power.absorbed_share), power_words(power)});
   }
-  std::string words = std::string(
-      "The smallest size of each effect that these recordings would show (80 % of the time, with 1 % "
-      "false alarms). ");
-  words.append(std::to_string(powers.size() - blind)).append(" of ").append(std::to_string(powers.size()));
+  const std::size_t seen_count = explanation.power.size() - blind_count;
+  std::string words =
+      "The smallest size of each effect that these recordings would show (80 % of the time, with 1 % false alarms). ";
+  words.append(std::to_string(seen_count)).append(" of ").append(std::to_string(explanation.power.size()));
   words.append(
       " effects would be seen from the size at which they matter. Absorbed: the share of an effect that the "
       "fitted parameters would swallow.");
-  return section("What could have been seen",
-                 paragraph(words, "small muted")
-                     .append(folded("All " + std::to_string(powers.size()) + " effects", table.html())));
+  std::string html = paragraph(words, "small muted");
+  if (blind_count > 0) html += blind.html();
+  if (seen_count > 0) html += folded("The " + std::to_string(seen_count) + " effects that would be seen", seen.html());
+  return section("What could have been seen", html);
 }
 
 }  // namespace sealwatch::report

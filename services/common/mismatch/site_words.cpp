@@ -1,0 +1,78 @@
+#include "services/common/mismatch/site_words.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr SignalWords kCurrent{"motor current", "A"};
+constexpr SignalWords kShaftSpeed{"shaft speed", "rad/s"};
+constexpr SignalWords kPumpPressure{"pump pressure difference", "Pa"};
+constexpr SignalWords kValveFlow{"flow into the chamber", "m3/s"};
+constexpr SignalWords kValveDrop{"pressure drop over the valve", "Pa"};
+constexpr SignalWords kVelocity{"piston velocity", "m/s"};
+constexpr SignalWords kPosition{"piston position", "m"};
+constexpr SignalWords kNone{"", ""};
+
+constexpr SiteWords kDriver{"voltage lost in the driver",
+                            "V",
+                            {kCurrent, {"commanded voltage", "V"}, {"rate of the commanded voltage", "V/s"}, kNone}};
+constexpr SiteWords kWinding{"voltage lost in the winding", "V", {kCurrent, kShaftSpeed, kNone, kNone}};
+constexpr SiteWords kShaft{"torque against the rotation", "N m", {kShaftSpeed, kPumpPressure, kCurrent, kNone}};
+constexpr SiteWords kPump{"flow from port 1 to port 2", "m3/s", {kPumpPressure, kShaftSpeed, kNone, kNone}};
+constexpr SiteWords kLine{"pressure drop on the way to the chamber", "Pa", {kValveFlow, kValveDrop, kNone, kNone}};
+constexpr SiteWords kCrack{"lowering of the cracking pressure", "Pa", {kValveDrop, kValveFlow, kNone, kNone}};
+constexpr SiteWords kOutflow{
+    "flow out of the chamber", "m3/s", {SignalWords{"pressure above the reservoir", "Pa"}, kNone, kNone, kNone}};
+constexpr SiteWords kCompliance{
+    "compliance of the chamber", "m3/Pa", {SignalWords{"chamber pressure", "Pa"}, kNone, kNone, kNone}};
+constexpr SiteWords kSeal{"flow from chamber A to B",
+                          "m3/s",
+                          {SignalWords{"pressure difference across the piston", "Pa"}, kVelocity, kPosition, kNone}};
+constexpr SiteWords kPiston{
+    "force against +x", "N", {kVelocity, kPosition, {"pressure in chamber A", "Pa"}, {"pressure in chamber B", "Pa"}}};
+constexpr SiteWords kModulus{
+    "softness of the oil, 1/beta", "1/Pa", {SignalWords{"pressure", "Pa"}, kNone, kNone, kNone}};
+constexpr SiteWords kViscosity{
+    "relative change of viscosity", "1", {SignalWords{"dissipated power", "W"}, kNone, kNone, kNone}};
+constexpr SiteWords kTank{
+    "flow out of the tank", "V/s", {SignalWords{"level", "V"}, {"level of the tank above", "V"}, kNone, kNone}};
+constexpr SiteWords kSensor{"shift of the reading", "", {kNone, kNone, kNone, kNone}};
+
+}  // namespace
+
+const SiteWords& words_of(SiteKind kind) {
+  switch (kind) {
+    case SiteKind::voltage_command:
+      return kDriver;
+    case SiteKind::winding_voltage:
+      return kWinding;
+    case SiteKind::shaft_torque:
+      return kShaft;
+    case SiteKind::pump_slip:
+      return kPump;
+    case SiteKind::line_drop:
+      return kLine;
+    case SiteKind::valve_crack:
+      return kCrack;
+    case SiteKind::outflow:
+      return kOutflow;
+    case SiteKind::compliance:
+      return kCompliance;
+    case SiteKind::seal_leakage:
+      return kSeal;
+    case SiteKind::piston_force:
+      return kPiston;
+    case SiteKind::inverse_modulus:
+      return kModulus;
+    case SiteKind::viscosity:
+      return kViscosity;
+    case SiteKind::tank_flow:
+      return kTank;
+    case SiteKind::sensor_bias:
+    case SiteKind::sensor_gain:
+    case SiteKind::sensor_lag:
+      break;
+  }
+  return kSensor;
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,28 @@
+// What a site takes and what laws see there, in words and units (model/physics.hpp lists the same for code).
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "sealwatch/model/physics.hpp"
+
+namespace sealwatch::mismatch {
+
+struct SignalWords {
+  std::string_view name;  ///< "piston velocity"; empty: the kind has no such signal
+  std::string_view unit;
+};
+
+struct SiteWords {
+  std::string_view quantity;  ///< "force against +x"
+  std::string_view unit;      ///< empty for a sensor: its channel's
+  std::array<SignalWords, kSiteSignals> signals;
+};
+
+[[nodiscard]] const SiteWords& words_of(SiteKind kind);
+
+[[nodiscard]] inline bool is_sensor(SiteKind kind) {
+  return kind == SiteKind::sensor_bias || kind == SiteKind::sensor_gain || kind == SiteKind::sensor_lag;
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,258 @@
+// The missing term against the truth that made the recording: simulations of the plant with a law in force and seeded
+// noise, fitted without the law.
+#include "services/common/mismatch/missing_term.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "services/common/mismatch/regime.hpp"
+#include "services/common/mismatch/smooth_input.hpp"
+#include "tests/unit/model/standard_pst.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr SimulationOptions kTight = {.relative_tolerance = 1e-7, .maximum_step_s = 0.02};
+
+/// Share of the time within the 95 % band: less than that, as the band is that of a smooth input and friction jumps at
+/// each start and stop.
+constexpr double kMostOfTheTime = 0.8;
+
+/// A plant with one law in force, its recording, and models fitted without and with the law.
+struct Concealed {
+  const Law* law = nullptr;
+  std::vector<double> parameters;  ///< as fitted
+  Data data;
+  TimeSeries clean;  ///< without noise
+  FittedModel without, with;
+};
+
+AssetConfig plant() {
+  AssetConfig asset = nominal_asset("eha");
+  for (auto& [channel, sensor] : asset.sensors) sensor.time_constant_s = 0.0;  // channels are states: the truth is seen
+  return asset;
+}
+
+TimeSeries simulate(const AssetConfig& truth, double noise_share, TimeSeries* clean) {
+  TimeSeries samples = standard_pst(truth, 100.0);
+  const auto simulation = PlantSimulation::create(truth, samples).value();
+  const auto outputs = simulation->run(simulation->start(), {}, kTight).value();
+  std::mt19937 random(20310412);
+  std::normal_distribution<double> normal;
+  if (clean != nullptr) *clean = samples;
+  for (std::size_t c = 0; c < simulation->channels().size(); ++c)
+    for (std::size_t k = 0; k < samples.channels.size(); ++k) {
+      Series& series = samples.channels[k];
+      if (series.name != simulation->channels()[c]) continue;
+      series.noise_std = truth.sensors.at(series.name).noise_std;
+      for (std::size_t row = 0; row < series.values.size(); ++row) {
+        const double value = outputs.values(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
+        if (clean != nullptr) clean->channels[k].values[row] = value;
+        series.values[row] = value + noise_share * series.noise_std * normal(random);
+      }
+    }
+  return samples;
+}
+
+Concealed conceal(const std::string& id, const std::string& element, const std::vector<std::string>& names,
+                  const std::vector<double>& values) {
+  const Law* law = find_law(id, names).value();
+  Concealed made;
+  made.law = law;
+  const AssetConfig truth = with_law(plant(), *law, element, values);
+  made.data = {.names = {"pst"}, .samples = {simulate(truth, 1.0, &made.clean)}, .colour = {}};
+  made.without = fit_model(plant(), made.data, nullptr, 1).value();
+  made.with = fit_model(with_law(plant(), *law, element, values), made.data, &made.without, 1).value();
+  for (const LawParameter& parameter : law->parameters)
+    made.parameters.push_back(estimate_of(made.with, physics_parameter_name(element, id, parameter.name)).value());
+  return made;
+}
+
+/// Share of the knots at which the curve is within its band of the truth; rms of the difference over rms of the truth.
+struct Agreement {
+  double within = 0.0, relative_rms = 0.0;
+};
+Agreement compare(const MissingTerm& term, const std::vector<double>& curve, const std::vector<double>& truth) {
+  Agreement agreement;
+  double error = 0.0, size = 0.0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const double difference = std::abs(curve[k] - truth[k]);
+    if (difference <= term.band[k]) agreement.within += 1.0 / static_cast<double>(truth.size());
+    error += difference * difference, size += truth[k] * truth[k];
+  }
+  agreement.relative_rms = std::sqrt(error / size);
+  return agreement;
+}
+
+/// A parameter as made and as fitted with the law: what they differ by is missing too.
+struct MadeAndFitted {
+  double made = 0.0, fitted = 0.0;
+};
+MadeAndFitted made_and_fitted(const Concealed& concealed, const std::string& name) {
+  return {plant().parameter(name), concealed.with.asset.parameter(name)};
+}
+
+template <class Of>
+std::vector<double> truth_at_knots(const Concealed& concealed, const Of& of) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < concealed.clean.time_s.size(); ++k) values.push_back(of(k));
+  return hat_means(make_knots(concealed.clean.time_s), concealed.clean.time_s, values);
+}
+
+TEST(MissingTerm, OfCoulombFrictionIsItsForceOverTime) {
+  constexpr double kForce_N = 1500.0, kWidth_m_s = 1e-4;
+  const Concealed coulomb = conceal("coulomb_friction", "piston", {"F_c", "v_s"}, {kForce_N, kWidth_m_s});
+  const auto term = missing_term(coulomb.without, &coulomb.with, coulomb.data, 0, "piston", SiteKind::piston_force,
+                                 coulomb.law, coulomb.parameters);
+  ASSERT_TRUE(term) << term.error().describe();
+  const auto& v = coulomb.clean.find("velocity")->values;
+  const MadeAndFitted f_C = made_and_fitted(coulomb, "f_C");
+  const auto truth = truth_at_knots(
+      coulomb, [&](std::size_t k) { return kForce_N * std::tanh(v[k] / kWidth_m_s) + (f_C.made - f_C.fitted) * v[k]; });
+  ASSERT_EQ(term->time_s.size(), truth.size());
+  const Agreement demanded = compare(*term, term->demanded, truth), law = compare(*term, term->law, truth);
+  EXPECT_GT(demanded.within, kMostOfTheTime);
+  EXPECT_LT(demanded.relative_rms, 0.1);
+  EXPECT_LT(law.relative_rms, 0.1);
+  EXPECT_EQ(term->quantity, "force against +x, up to a constant");  // the load is each recording's own
+  EXPECT_EQ(term->unit, "N");
+  EXPECT_EQ(term->state, "piston velocity");
+  EXPECT_NEAR(*std::ranges::max_element(term->state_value), 1.33e-3, 1e-4);
+  EXPECT_EQ(regime_of(coulomb.with, "piston", *coulomb.law, coulomb.parameters), "moving, both directions");
+  RecordProperty("within", std::to_string(demanded.within));
+  RecordProperty("relative_rms", std::to_string(demanded.relative_rms));
+}
+
+TEST(MissingTerm, OfAScoredBoreIsItsLeakageOverTime) {
+  constexpr double kFlow = 3e-14, kPosition_m = 0.052, kWidth_m = 4e-3;
+  const Concealed score = conceal("unlisted", "piston_seal", {"G_l", "x_l", "w_l"}, {kFlow, kPosition_m, kWidth_m});
+  const auto term = missing_term(score.without, &score.with, score.data, 0, "piston_seal", SiteKind::seal_leakage,
+                                 score.law, score.parameters);
+  ASSERT_TRUE(term) << term.error().describe();
+  const auto &p_A = score.clean.find("pressure_a")->values, &p_B = score.clean.find("pressure_b")->values;
+  const auto& x = score.clean.find("position")->values;
+  const MadeAndFitted R_CL = made_and_fitted(score, "R_CL");
+  const auto truth = truth_at_knots(score, [&](std::size_t k) {
+    const double bell = std::exp(-std::pow((x[k] - kPosition_m) / kWidth_m, 2));
+    return (p_A[k] - p_B[k]) * (kFlow * bell + 1.0 / R_CL.made - 1.0 / R_CL.fitted);
+  });
+  const Agreement demanded = compare(*term, term->demanded, truth);
+  EXPECT_GT(demanded.within, kMostOfTheTime);
+  EXPECT_LT(demanded.relative_rms, 0.1);
+  EXPECT_LT(compare(*term, term->law, truth).relative_rms, 0.05);
+  EXPECT_EQ(term->quantity, "flow from chamber A to B");
+  EXPECT_EQ(term->state, "pressure difference across the piston");
+  EXPECT_THAT(regime_of(score.with, "piston_seal", *score.law, score.parameters),
+              HasSubstr("; piston position between "));
+  RecordProperty("within", std::to_string(demanded.within));
+  RecordProperty("relative_rms", std::to_string(demanded.relative_rms));
+}
+
+TEST(MissingTerm, IsNothingBeyondItsBandWhereNothingIsMissing) {
+  Data data{.names = {"pst"}, .samples = {simulate(plant(), 1.0, nullptr)}, .colour = {}};
+  const FittedModel model = fit_model(plant(), data, nullptr, 1).value();
+  for (const auto& [element, kind] :
+       {std::pair("piston", SiteKind::piston_force), std::pair("piston_seal", SiteKind::seal_leakage),
+        std::pair("shaft", SiteKind::shaft_torque), std::pair("sensor:flow", SiteKind::sensor_bias)}) {
+    const auto term = missing_term(model, nullptr, data, 0, element, kind, nullptr, {});
+    ASSERT_TRUE(term) << element << ": " << term.error().describe();
+    EXPECT_TRUE(term->law.empty());
+    const std::vector<double> nothing(term->time_s.size(), 0.0);
+    EXPECT_GT(compare(*term, term->demanded, nothing).within, kMostOfTheTime) << element;
+  }
+}
+
+TEST(MissingTerm, OfASensorIsTheShiftOfItsReading) {
+  const double bias = 20.0 * plant().sensors.at("flow").noise_std;
+  const Concealed biased = conceal("sensor_bias", "sensor:flow", {"b"}, {bias});
+  const auto term = missing_term(biased.without, &biased.with, biased.data, 0, "sensor:flow", SiteKind::sensor_bias,
+                                 biased.law, biased.parameters);
+  ASSERT_TRUE(term) << term.error().describe();
+  EXPECT_EQ(term->unit, "m3/s");
+  for (std::size_t k = 0; k < term->time_s.size(); ++k) EXPECT_NEAR(term->law[k], biased.parameters[0], 1e-3 * bias);
+  EXPECT_GT(compare(*term, term->demanded, std::vector<double>(term->time_s.size(), bias)).within, kMostOfTheTime);
+}
+
+TEST(MissingTerm, OfAPlaceThatThePlantDoesNotHaveIsAnError) {
+  Data data{.names = {"pst"}, .samples = {simulate(plant(), 1.0, nullptr)}, .colour = {}};
+  const FittedModel model = fit_model(plant(), data, nullptr, 1).value();
+  for (const auto& [element, kind] :
+       {std::pair("gearbox", SiteKind::piston_force), std::pair("sensor:gearbox", SiteKind::sensor_bias)}) {
+    const auto term = missing_term(model, nullptr, data, 0, element, kind, nullptr, {});
+    ASSERT_FALSE(term.has_value());
+    EXPECT_THAT(term.error().describe(), HasSubstr(element));
+  }
+}
+
+TEST(SmoothInput, OfALineIsTheLineWithItsError) {
+  // Seen directly with noise 1: residual = w, a line from 0 to 10 over 400 samples.
+  constexpr Eigen::Index kSamples = 400;
+  std::vector<double> time_s;
+  for (Eigen::Index k = 0; k < kSamples; ++k) time_s.push_back(0.025 * static_cast<double>(k));
+  const Knots knots = make_knots(time_s);
+  RowMatrix hats = RowMatrix::Zero(kSamples, static_cast<Eigen::Index>(knots.count));
+  Eigen::VectorXd residual(kSamples);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (Eigen::Index k = 0; k < kSamples; ++k) {
+    const double t = time_s[static_cast<std::size_t>(k)];
+    const auto [knot, share] = knots.at(t);
+    hats(k, static_cast<Eigen::Index>(knot)) = 1.0 - share;
+    hats(k, static_cast<Eigen::Index>(knot) + 1) = share;
+    residual(k) = t + normal(random);
+  }
+  const auto line = smooth_input(hats, RowMatrix(kSamples, 0), residual);
+  ASSERT_TRUE(line);
+  EXPECT_TRUE(line->level_known);
+  const double middle_error = 1.0 / std::sqrt(static_cast<double>(kSamples));  // of a straight line at its middle
+  const auto middle = static_cast<Eigen::Index>(knots.count / 2);
+  EXPECT_NEAR(line->value(middle), knots.time_s(knots.count / 2), 4.0 * line->standard_error(middle));
+  EXPECT_NEAR(line->standard_error(middle), middle_error, middle_error);
+  EXPECT_NEAR(line->dispersion, 1.0, 0.2);
+  // A constant beside it takes the level up.
+  const auto centred = smooth_input(hats, RowMatrix::Ones(kSamples, 1), residual);
+  ASSERT_TRUE(centred);
+  EXPECT_FALSE(centred->level_known);
+  EXPECT_NEAR(centred->value.mean(), 0.0, 1e-9);
+  EXPECT_NEAR(centred->value(static_cast<Eigen::Index>(knots.count) - 1), 5.0, 0.5);
+  EXPECT_FALSE(smooth_input(0.0 * hats, RowMatrix(kSamples, 0), residual).has_value());
+}
+
+/// A path of the piston: signals v, x, p_A, p_B each 10 ms.
+template <class Of>
+TermPath path_of(const Of& force) {
+  TermPath path;
+  for (int k = 0; k < 3000; ++k) {
+    const double t = 0.01 * k,
+                 v = 1e-3 * (t < 10.0   ? 1.0
+                             : t < 20.0 ? -1.0
+                                        : 0.0),
+                 x = 0.05 + 1e-3 * std::min(t, 20.0 - t);
+    path.time_s.push_back(t);
+    path.signals.push_back({v, t < 20.0 ? x : 0.05, 1e7, 1e6});
+    path.contribution.push_back(force(t, v, path.signals.back()[1]));
+  }
+  return path;
+}
+
+TEST(Regime, IsNamedByWhereTheEnergyIs) {
+  const auto regime = [](const auto& force) {
+    const std::array paths{path_of(force)};
+    return regime_of(paths, SiteKind::piston_force);
+  };
+  EXPECT_EQ(regime([](double, double, double) { return 100.0; }), "throughout");
+  EXPECT_EQ(regime([](double, double, double) { return 0.0; }), "throughout");
+  EXPECT_EQ(regime([](double, double v, double) { return 1e5 * v; }), "moving, both directions");
+  EXPECT_THAT(regime([](double, double v, double) { return v > 0.0 ? 100.0 : 0.0; }), HasSubstr("moving towards +x"));
+  EXPECT_THAT(regime([](double, double v, double) { return v < 0.0 ? 100.0 : 0.0; }), HasSubstr("moving towards -x"));
+  EXPECT_THAT(regime([](double, double v, double) { return v == 0.0 ? 100.0 : 0.0; }), HasSubstr("at rest"));
+  EXPECT_EQ(regime([](double, double v, double x) { return x > 0.057 ? 1e5 * v : 0.0; }),
+            "moving, both directions; piston position above 57 mm");
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,241 @@
+#include "services/virtual_bench/truth_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "sealwatch/core/text.hpp"
+#include "services/virtual_bench/random.hpp"
+#include "services/virtual_bench/truth_conditions.hpp"
+
+namespace sealwatch::bench {
+namespace {
+
+constexpr std::array kTimesBarely = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+
+double log_uniform(forecast::UniformRandom& random, const forecast::Range& range) {
+  if (!(range.max > range.min)) return range.min;
+  return range.min * std::pow(range.max / range.min, random.unit());
+}
+
+/// A form at one of its elements.
+struct Place {
+  const EffectForm* form;
+  std::size_t side;
+};
+
+std::vector<Place> places_of(std::initializer_list<std::span<const EffectForm>> groups) {
+  std::vector<Place> places;
+  for (const std::span<const EffectForm> group : groups)
+    for (const EffectForm& form : group) {
+      places.push_back({&form, 0});
+      if (!form.other_element.empty()) places.push_back({&form, 1});
+    }
+  return places;
+}
+
+const std::vector<Place>& listed_places() {
+  static const std::vector<Place> places = places_of({piston_effects(), hydraulic_effects(), electric_effects()});
+  return places;
+}
+
+/// Forms that free parameters of the model swallow in nominal tests.
+const std::vector<Place>& swallowed_places() {
+  static const std::vector<Place> places = [] {
+    std::vector<Place> found;
+    for (const Place& place : listed_places())
+      for (const std::string_view id :
+           {"turbulent_pump_slip", "turbulent_seal_leakage", "external_leakage", "entrained_air", "quadratic_drag",
+            "hose_compliance", "torque_saturation", "speed_dependent_pump_slip"})
+        if (place.form->id == id && place.side == 0) found.push_back(place);
+    return found;
+  }();
+  return places;
+}
+
+HiddenEffect draw_effect(const Place& place, double times_barely, forecast::UniformRandom& random) {
+  HiddenEffect effect{.form = place.form,
+                      .element = std::string(place.side == 0 ? place.form->element : place.form->other_element),
+                      .side = place.side};
+  effect.size = std::min(place.form->barely * times_barely * log_uniform(random, {0.85, 1.18}), place.form->largest);
+  for (std::size_t k = 0; k < kShapes; ++k) effect.shape[k] = log_uniform(random, place.form->shapes[k]);
+  return effect;
+}
+
+/// Every place in turn, sizes mixed: neighbouring seeds have other places and other sizes.
+template <class Sizes>
+HiddenEffect nth_effect(const std::vector<Place>& places, std::uint64_t seed, const Sizes& sizes,
+                        forecast::UniformRandom& random) {
+  const std::uint64_t round = seed / places.size();
+  const std::uint64_t place = seed % places.size();
+  return draw_effect(places[place], sizes[(place + round) % sizes.size()], random);
+}
+
+SensorFault draw_fault(std::uint64_t seed, const std::vector<std::string>& channels) {
+  static constexpr std::array<std::string_view, 3> kKinds = {"sensor_bias", "sensor_gain", "sensor_lag"};
+  std::vector<std::string> outputs = channels;
+  std::erase(outputs, "motor_voltage");
+  const std::string& channel = outputs[(seed / kKinds.size()) % outputs.size()];
+  const std::string kind(kKinds[seed % kKinds.size()]);
+  const double times =
+      kTimesBarely[(seed + seed / kTimesBarely.size() + seed / (kKinds.size() * outputs.size())) % kTimesBarely.size()];
+  double barely = 0.001;                                           // relative gain
+  if (kind == "sensor_bias") barely = 0.1 * usual_noise(channel);  // of the noise of one sample
+  if (kind == "sensor_lag") barely = 5e-4;                         // s
+  const double sign = kind == "sensor_lag" || (seed / 2) % 2 == 0 ? 1.0 : -1.0;
+  return {.kind = kind, .channel = channel, .size = sign * barely * times};
+}
+
+void hide(TrialPlan& plan, forecast::UniformRandom& random) {
+  const std::uint64_t seed = plan.seed;
+  const auto plainly = std::span(kTimesBarely).subspan(3);
+  const auto medium = std::span(kTimesBarely).subspan(2, 3);
+  switch (plan.stratum) {
+    case TrialStratum::null:
+      return;
+    case TrialStratum::single:
+      plan.effects.push_back(nth_effect(listed_places(), seed, kTimesBarely, random));
+      return;
+    case TrialStratum::pair: {
+      const std::vector<Place>& places = listed_places();
+      const std::size_t first = seed % places.size();
+      std::size_t second =
+          (first + 1 + static_cast<std::size_t>(random.unit() * (static_cast<double>(places.size()) - 1.0))) %
+          places.size();
+      while (places[second].form->id == places[first].form->id) second = (second + 1) % places.size();
+      for (const std::size_t k : {first, second})
+        plan.effects.push_back(draw_effect(places[k], plainly[(seed + k) % plainly.size()], random));
+      return;
+    }
+    case TrialStratum::outside: {
+      static const std::vector<Place> places = places_of({unlisted_effects()});
+      plan.effects.push_back(nth_effect(places, seed, kTimesBarely, random));
+      return;
+    }
+    case TrialStratum::sensor:
+      plan.faults.push_back(draw_fault(seed, plan.channels));
+      return;
+    case TrialStratum::source_sensors: {
+      static const std::vector<Place> places = [] {
+        std::vector<Place> found;
+        for (const Place& place : listed_places())
+          if (place.form->element == "piston" || place.form->element == "piston_seal" ||
+              place.form->element == "chamber_a")
+            found.push_back(place);
+        return found;
+      }();
+      if (seed % 4 == 1 || seed % 4 == 2) plan.effects.push_back(nth_effect(places, seed / 2, kTimesBarely, random));
+      if (seed % 4 == 3) plan.faults.push_back(draw_fault(seed / 4, plan.channels));
+      return;
+    }
+    case TrialStratum::concealed:
+    case TrialStratum::nominal_only:
+      plan.effects.push_back(nth_effect(swallowed_places(), seed, medium, random));
+      return;
+    case TrialStratum::inseparable:
+      hide_inseparable(plan, plainly[(seed / 4) % plainly.size()]);
+      return;
+  }
+}
+
+TruthParameters draw_parameters(NormalRandom& normal) {
+  TruthParameters p;
+  const auto scatter = [&](double& value, double share) { value *= std::exp(share * normal.next()); };
+  scatter(p.seal_resistance, 0.25);
+  scatter(p.piston_viscosity, 0.20);
+  scatter(p.pump_resistance, 0.25);
+  scatter(p.motor_viscosity, 0.20);
+  scatter(p.oil_modulus, 0.15);
+  scatter(p.winding_resistance, 0.05);
+  scatter(p.load, 0.10);
+  return p;
+}
+
+}  // namespace
+
+HiddenEffect effect_named(std::string_view id, std::string_view form, std::size_t side, double times_barely,
+                          std::uint64_t seed) {
+  forecast::UniformRandom random(sub_seed(seed, "effect"));
+  for (const Place& place : listed_places())
+    if (place.form->id == id && place.form->form == form && place.side == side)
+      return draw_effect(place, times_barely, random);
+  return {};
+}
+
+TrialPlan plan_trial(TrialStratum stratum, std::uint64_t seed) {
+  TrialPlan plan;
+  plan.stratum = stratum;
+  plan.seed = seed;
+  const std::uint64_t own = sub_seed(seed, std::string("trial ").append(name_of(stratum)));
+  NormalRandom normal(sub_seed(own, "parameters"));
+  plan.parameters = draw_parameters(normal);
+  choose_channels(plan);
+  forecast::UniformRandom physics(sub_seed(own, "physics"));
+  hide(plan, physics);
+  choose_conditions(plan, own);
+  choose_noise(plan, own);
+  return plan;
+}
+
+std::vector<TrialTruth> TrialPlan::truths() const {
+  std::vector<TrialTruth> found;
+  for (const HiddenEffect& e : effects)
+    found.push_back({.id = std::string(e.form->id),
+                     .element = e.element,
+                     .form = std::string(e.form->form),
+                     .size = e.size,
+                     .unit = std::string(e.form->unit),
+                     .strength = std::string(e.form->strength),
+                     .strength_value = e.size * e.form->strength_factor,
+                     .times_barely = e.size / e.form->barely});
+  for (const SensorFault& f : faults) {
+    const bool bias = f.kind == "sensor_bias", lag = f.kind == "sensor_lag";
+    found.push_back({.id = f.kind,
+                     .element = "sensor:" + f.channel,
+                     .form = "constant",
+                     .size = f.size,
+                     .unit = bias  ? "channel"
+                             : lag ? "s"
+                                   : "1",
+                     .strength = bias  ? "b"
+                                 : lag ? "tau"
+                                       : "g",
+                     .strength_value = f.size,
+                     .times_barely = std::abs(f.size) / (bias  ? 0.1 * usual_noise(f.channel)
+                                                         : lag ? 5e-4
+                                                               : 1e-3)});
+  }
+  return found;
+}
+
+std::string TrialPlan::label() const {
+  std::string line(name_of(stratum));
+  const auto add = [&line](const char* format, auto... values) {
+    char text[160];
+    std::snprintf(text, sizeof text, format, values...);
+    line += text;
+  };
+  add(" %llu", static_cast<unsigned long long>(seed));
+  for (const HiddenEffect& e : effects)
+    add(" | %s %s at %s %.6g %s [%.6g %.6g %.6g]", std::string(e.form->id).c_str(), std::string(e.form->form).c_str(),
+        e.element.c_str(), e.size, std::string(e.form->unit).c_str(), e.shape[0], e.shape[1], e.shape[2]);
+  for (const SensorFault& f : faults) add(" | %s of %s %.6g", f.kind.c_str(), f.channel.c_str(), f.size);
+  add(" | R_CL %.6g f_C %.6g R_PL %.6g f_M %.6g beta %.6g R_M %.6g phi %.6g", parameters.seal_resistance,
+      parameters.piston_viscosity, parameters.pump_resistance, parameters.motor_viscosity, parameters.oil_modulus,
+      parameters.winding_resistance, parameters.load);
+  add(" | jitter %.3g", jitter);
+  for (const auto& [channel, own] : noise)
+    if (own.correlation > 0.0 || own.quantum > 0.0)
+      add(" | %s %.3g %.6g", channel.c_str(), own.correlation, own.quantum);
+  return line;
+}
+
+std::string label_hash(TrialStratum stratum, std::uint64_t first, int count) {
+  std::string lines;
+  for (int k = 0; k < count; ++k)
+    lines.append(plan_trial(stratum, first + static_cast<std::uint64_t>(k)).label()).append("\n");
+  return content_hash(lines);
+}
+
+}  // namespace sealwatch::bench

@@ -106,6 +106,16 @@ std::string content(const Advisory& m) {
 }
 std::string content(const Acknowledgement& m) { return m.advisory_id + " by " + m.acknowledged_by + " " + m.remark; }
 std::string content(const MaintenanceEvent& m) { return words(m.kind) + " by " + m.reported_by + " " + m.remark; }
+std::string content(const ModelDiscrepancy& m) {
+  std::string text = "version " + std::to_string(m.version) + ", ";
+  if (!m.analysed) return text.append("not analysed: ").append(m.failure);
+  text.append(name_of(m.verdict)).append(": ").append(m.summary);
+  return text;
+}
+std::string content(const ModelAcceptance& m) {
+  std::string text = m.discrepancy_id;
+  return text.append(m.revoked ? " revoked by " : " accepted by ").append(m.accepted_by).append(" ").append(m.remark);
+}
 
 }  // namespace
 

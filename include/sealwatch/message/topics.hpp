@@ -16,12 +16,14 @@ namespace sealwatch {
 
 /// A message of one of the topics that carry assets' data (the service topics are the runtime's own affair).
 using Message = std::variant<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,
-                             LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent>;
+                             LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent,
+                             ModelDiscrepancy, ModelAcceptance>;
 
 /// Same order as Message's alternatives: static_cast<Topic>(message.index()). A topic's DDS name is "sealwatch/" +
 /// name.
 SEALWATCH_ENUM(Topic, raw_samples, sample_block, test_window, test_features, state_report, health_report,
-               leakage_estimate, remaining_life, pst_request, advisory, acknowledgement, maintenance_event)
+               leakage_estimate, remaining_life, pst_request, advisory, acknowledgement, maintenance_event,
+               model_discrepancy, model_acceptance)
 
 [[nodiscard]] inline Topic topic_of(const Message& message) { return static_cast<Topic>(message.index()); }
 [[nodiscard]] inline const Header& header_of(const Message& message) {

@@ -14,9 +14,9 @@ namespace {
 template <class T>
 class EveryTopic : public ::testing::Test {};
 
-using Topics =
-    ::testing::Types<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport, LeakageEstimate,
-                     RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent>;
+using Topics = ::testing::Types<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,
+                                LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent,
+                                ModelDiscrepancy, ModelAcceptance>;
 TYPED_TEST_SUITE(EveryTopic, Topics);
 
 TYPED_TEST(EveryTopic, ComesBackFieldByFieldInBothForms) {

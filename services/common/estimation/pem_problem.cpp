@@ -93,9 +93,9 @@ Result<Unknown> load_unknown(const PlantSimulation& simulation) {
   return load;
 }
 
-Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation) {
+Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation, bool with_load) {
   std::vector<Unknown> unknowns;
-  if (simulation.plant().has_load()) {
+  if (with_load && simulation.plant().has_load()) {
     Result<Unknown> load = load_unknown(simulation);
     if (!load) return fail(load.error());
     unknowns.push_back(std::move(*load));
@@ -110,19 +110,18 @@ Result<std::vector<Unknown>> own_unknowns(const PlantSimulation& simulation) {
   return unknowns;
 }
 
-Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& recorded) {
+Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& recorded, bool window) {
   if (const Status usable = check_values(recorded); !usable) return fail(usable.error());
   Result<std::unique_ptr<PlantSimulation>> simulation = PlantSimulation::create(asset, recorded);
   if (!simulation) return fail(simulation.error());
-  PemRecording recording{
-      .simulation = std::move(*simulation), .noise_std = {}, .time_s = recorded.time_s, .own = {}};
+  PemRecording recording{.simulation = std::move(*simulation), .noise_std = {}, .time_s = recorded.time_s, .own = {}};
   const std::span<const std::string> channels = recording.simulation->channels();
   recording.noise_std.resize(static_cast<Eigen::Index>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const double noise_std = noise_std_of(asset, *recorded.find(channels[c]));
     recording.noise_std(static_cast<Eigen::Index>(c)) = noise_std > 0.0 ? noise_std : kInfinity;
   }
-  Result<std::vector<Unknown>> own = own_unknowns(*recording.simulation);
+  Result<std::vector<Unknown>> own = own_unknowns(*recording.simulation, !window);
   if (!own) return fail(own.error());
   recording.own = std::move(*own);
   return recording;
@@ -134,10 +133,11 @@ double Unknown::to_unknown(double value) const { return logarithmic ? std::log(v
 double Unknown::to_value(double unknown) const { return logarithmic ? scale * std::exp(unknown) : scale * unknown; }
 double Unknown::slope(double unknown) const { return logarithmic ? to_value(unknown) : scale; }
 
-Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings) {
+Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
+                                    std::span<const int> groups) {
   PemProblem problem;
   for (const TimeSeries& recorded : recordings) {
-    Result<PemRecording> recording = make_recording(asset, recorded);
+    Result<PemRecording> recording = make_recording(asset, recorded, !groups.empty());
     if (!recording) return fail(recording.error());
     problem.recordings.push_back(std::move(*recording));
   }
@@ -145,6 +145,18 @@ Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const Ti
   Result<std::vector<Unknown>> shared = shared_unknowns(asset, *problem.recordings.front().simulation);
   if (!shared) return fail(shared.error());
   problem.shared = std::move(*shared);
+  if (groups.empty() || !problem.recordings.front().simulation->plant().has_load()) return problem;
+  int last = -1;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    problem.recordings[k].group = groups[k];
+    if (groups[k] == last) continue;
+    Result<Unknown> load = load_unknown(*problem.recordings[k].simulation);
+    if (!load) return fail(load.error());
+    load->group = last = groups[k];
+    load->name += ":";
+    load->name += std::to_string(last);
+    problem.shared.push_back(std::move(*load));
+  }
   return problem;
 }
 
@@ -153,9 +165,27 @@ ModelValues values_at(const PemProblem& problem, std::size_t recording, const st
   const PemRecording& part = problem.recordings[recording];
   ModelValues values = part.simulation->start();
   for (std::size_t k = 0; k < shared.size(); ++k)
-    problem.shared[k].quantity.in(values) = problem.shared[k].to_value(shared[k]);
+    if (problem.shared[k].belongs_to(part.group))
+      problem.shared[k].quantity.in(values) = problem.shared[k].to_value(shared[k]);
   for (std::size_t k = 0; k < own.size(); ++k) part.own[k].quantity.in(values) = part.own[k].to_value(own[k]);
   return values;
+}
+
+FreeOfRecording free_of(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
+                        const std::vector<double>& own) {
+  const PemRecording& part = problem.recordings[recording];
+  FreeOfRecording free;
+  const auto add = [&](const std::vector<Unknown>& unknowns, const std::vector<double>& at, std::size_t first) {
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      if (!unknowns[k].belongs_to(part.group)) continue;
+      free.quantity.push_back(unknowns[k].quantity);
+      free.slope.push_back(unknowns[k].slope(at[k]));
+      free.column.push_back(static_cast<Eigen::Index>(first + k));
+    }
+  };
+  add(problem.shared, shared, 0);
+  add(part.own, own, shared.size());
+  return free;
 }
 
 // r_t - sum_j a_j r_(t-j) over the innovation's standard deviation (1 for white noise); the first samples, whose past
@@ -183,18 +213,10 @@ void whiten(const NoiseColour& colour, Linearisation& at) {
 Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                 const std::vector<double>& own) {
   const PemRecording& part = problem.recordings[recording];
-  std::vector<FreeQuantity> free;
-  std::vector<double> slope;
-  const auto add = [&](const std::vector<Unknown>& unknowns, const std::vector<double>& at) {
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      free.push_back(unknowns[k].quantity);
-      slope.push_back(unknowns[k].slope(at[k]));
-    }
-  };
-  add(problem.shared, shared);
-  add(part.own, own);
+  const FreeOfRecording free = free_of(problem, recording, shared, own);
+  const std::vector<double>& slope = free.slope;
   Result<SimulatedOutputs> outputs =
-      part.simulation->run(values_at(problem, recording, shared, own), free, problem.simulation_options);
+      part.simulation->run(values_at(problem, recording, shared, own), free.quantity, problem.simulation_options);
   if (!outputs) return fail(outputs.error());
   const Eigen::Index channels = part.noise_std.size(), samples = outputs->values.rows();
   const Eigen::RowVectorXd weight = part.noise_std.cwiseInverse().transpose();
@@ -207,6 +229,12 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
   const RowMatrix scale = -weight.transpose() * Eigen::Map<const Eigen::RowVectorXd>(slope.data(), unknowns);
   Eigen::Map<RowMatrix>(result.jacobian.data(), samples, channels * unknowns).array().rowwise() *=
       Eigen::Map<const Eigen::RowVectorXd>(scale.data(), scale.size()).array();
+  if (shared.size() + own.size() != slope.size()) {
+    RowMatrix wide = RowMatrix::Zero(result.jacobian.rows(), static_cast<Eigen::Index>(shared.size() + own.size()));
+    for (Eigen::Index k = 0; k < unknowns; ++k)
+      wide.col(free.column[static_cast<std::size_t>(k)]) = result.jacobian.col(k);
+    result.jacobian = std::move(wide);
+  }
   whiten(part.colour, result);
   if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");
   return result;

@@ -19,6 +19,8 @@ struct Unknown {
   double scale = 1.0;
   double start = 0.0;           ///< of the quantity
   double min = 0.0, max = 0.0;  ///< of the quantity
+  int group = -1;               ///< recordings that it belongs to; -1: all
+  [[nodiscard]] bool belongs_to(int recordings_group) const { return group < 0 || group == recordings_group; }
   [[nodiscard]] double to_unknown(double value) const;
   [[nodiscard]] double to_value(double unknown) const;
   [[nodiscard]] double slope(double unknown) const;  ///< d value / d unknown
@@ -37,8 +39,9 @@ struct PemRecording {
   std::unique_ptr<PlantSimulation> simulation;
   Eigen::VectorXd noise_std;  ///< per channel; infinite: the channel is left out
   std::vector<double> time_s;
-  NoiseColour colour = {};    ///< by which residuals are whitened beside their standard deviation
-  std::vector<Unknown> own;   ///< load, slow initial states
+  int group = 0;             ///< windows of one recording share its load
+  NoiseColour colour = {};   ///< by which residuals are whitened beside their standard deviation
+  std::vector<Unknown> own;  ///< load, slow initial states
 };
 
 struct PemProblem {
@@ -54,7 +57,20 @@ struct Linearisation {
   RowMatrix jacobian;        ///< d residual / d unknown: shared first, then own
 };
 
-[[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings);
+/// `groups`: for windows cut from longer recordings, which recording each comes from; its load is then one unknown for
+/// all of them. Empty: each is a recording by itself.
+[[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
+                                                  std::span<const int> groups = {});
+
+/// Quantities that one recording's outputs are differentiated by, with the slope of each to its unknown and its place
+/// among all unknowns (shared first, then the recording's own).
+struct FreeOfRecording {
+  std::vector<FreeQuantity> quantity;
+  std::vector<double> slope;
+  std::vector<Eigen::Index> column;
+};
+[[nodiscard]] FreeOfRecording free_of(const PemProblem& problem, std::size_t recording,
+                                      const std::vector<double>& shared, const std::vector<double>& own);
 
 [[nodiscard]] ModelValues values_at(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                     const std::vector<double>& own);

@@ -8,6 +8,7 @@
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -38,7 +39,7 @@ Data without(const Data& data, std::size_t left_out) {
 }
 
 Data only(const Data& data, std::size_t one) {
-  Data single{.names = {data.names[one]}, .samples = {data.samples[one]}, .colour = {}};
+  Data single{.names = {data.names[one]}, .samples = {data.samples[one]}, .colour = {}, .groups = {}};
   if (!data.colour.empty()) single.colour = {data.colour[one]};
   return single;
 }
@@ -124,7 +125,7 @@ class Analysis {
     result_.holdout_recordings = holdout_.names;
     if (const Status status = fit_baseline(); !status) return fail(status.error());
     tell("looking for what is missing", 0.15);
-    Result<Naming> naming = name_effects(baseline_, fit_, options_, progress_);
+    Result<Naming> naming = name_effects(baseline_, prepared(fit_), options_, progress_);
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
     best_ = naming_.best;
@@ -152,7 +153,13 @@ class Analysis {
     result_.notes = find_noise(fit_, channels);
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
-    Result<FittedModel> model = fit_model(asset_, fit_, nullptr, options_.threads);
+    windowed_ = needs_windows(asset_, fit_.samples.front());
+    Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
+    if (model && windowed_ && asset_.model == "eha") {
+      add_input_noise(holdout_, *model, prepared(fit_), options_.seed);
+      add_input_noise(fit_, *model, prepared(fit_), options_.seed);
+      model = fit_model(model->asset, prepared(fit_), &*model, options_.threads);
+    }
     if (!model) {
       Error error = model.error();
       error.advice =
@@ -173,9 +180,19 @@ class Analysis {
       Result<FittedModel> old_model = predict(before, data, k, in_turn), new_model = predict(after, data, k, in_turn);
       if (!old_model) return fail(old_model.error());
       if (!new_model) return fail(new_model.error());
-      const BlockGains own = block_gains(*old_model, *new_model, 0);
+      BlockGains own;
+      for (std::size_t window = 0; window < old_model->problem.recordings.size(); ++window) {
+        const BlockGains piece = block_gains(*old_model, *new_model, window);
+        own.gain.insert(own.gain.end(), piece.gain.begin(), piece.gain.end());
+      }
       blocks.gain.insert(blocks.gain.end(), own.gain.begin(), own.gain.end());
       if (!keep) continue;
+      if (windowed_) {
+        old_model = free_run(old_model->asset, data, k);
+        new_model = free_run(new_model->asset, data, k);
+        if (!old_model) return fail(old_model.error());
+        if (!new_model) return fail(new_model.error());
+      }
       RecordingComparison comparison = compare(*old_model, *new_model, only(data, k), 0);
       (in_turn ? comparison.left_out : comparison.holdout) = true;
       add_gain(comparison, own);
@@ -187,12 +204,19 @@ class Analysis {
   Result<FittedModel> predict(const Trial& trial, const Data& data, std::size_t recording, bool in_turn) {
     AssetConfig asset = trial.model->asset;
     if (in_turn) {
-      Result<FittedModel> rest = fit_model(asset, without(data, recording), nullptr, options_.threads);
+      Result<FittedModel> rest = fit_model(asset, prepared(without(data, recording)), nullptr, options_.threads);
       if (!rest) return fail(rest.error());
       asset = rest->asset;
     }
+    return fit_model(with_fixed_parameters(asset), prepared(only(data, recording)), nullptr, 1);
+  }
+
+  // The whole recording from one initial state: what is reported, where the analysis itself looks at windows.
+  static Result<FittedModel> free_run(const AssetConfig& asset, const Data& data, std::size_t recording) {
     return fit_model(with_fixed_parameters(asset), only(data, recording), nullptr, 1);
   }
+
+  [[nodiscard]] Data prepared(const Data& data) const { return windowed_ ? cut_into_windows(data) : data; }
 
   void add_gain(RecordingComparison& comparison, const BlockGains& blocks) const {
     const GainInterval interval = gain_interval(blocks, dispersion(*best_.model), options_.seed);
@@ -231,7 +255,7 @@ class Analysis {
     if (fewer.model != baseline_) return fewer;
     AssetConfig asset = trial.model->asset;
     asset.physics.pop_back();
-    Result<FittedModel> model = fit_model(asset, fit_, trial.model.get(), options_.threads);
+    Result<FittedModel> model = fit_model(asset, prepared(fit_), trial.model.get(), options_.threads);
     if (model) fewer.model = std::make_shared<const FittedModel>(std::move(*model));
     return fewer;
   }
@@ -240,9 +264,16 @@ class Analysis {
     tell("writing down what was found", 0.9);
     const Trial before{{}, baseline_};
     for (std::size_t k = 0; k < fit_.samples.size(); ++k) {
-      RecordingComparison comparison = compare(*baseline_, *best_.model, fit_, k);
-      add_gain(comparison, block_gains(*baseline_, *best_.model, k));
-      result_.recordings.push_back(std::move(comparison));
+      if (!windowed_) {
+        result_.recordings.push_back(compare(*baseline_, *best_.model, fit_, k));
+        add_gain(result_.recordings.back(), block_gains(*baseline_, *best_.model, k));
+        continue;
+      }
+      const auto old_model = free_run(baseline_->asset, fit_, k), new_model = free_run(best_.model->asset, fit_, k);
+      if (!old_model) return fail(old_model.error());
+      if (!new_model) return fail(new_model.error());
+      result_.recordings.push_back(compare(*old_model, *new_model, only(fit_, k), 0));
+      add_gain(result_.recordings.back(), block_gains(*old_model, *new_model, 0));
     }
     if (const auto blocks = held_out_gains(before, best_, true); !blocks) return fail(blocks.error());
     result_.fit = pool(result_.recordings, false);
@@ -253,13 +284,13 @@ class Analysis {
         excess_before > 0.0 ? std::clamp(1.0 - std::max(excess_after, 0.0) / excess_before, 0.0, 1.0) : 0.0;
     result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last);
     if (!best_.effects.empty()) {
-      result_.effects = describe_effects(naming_, best_, fit_, options_);
+      result_.effects = describe_effects(naming_, best_, prepared(fit_), options_);
       result_.location = locate(result_.effects);
     } else if (result_.statistically_significant) {
       result_.location = locate_without_law(naming_.first);
     }
     for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
-    result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model, fit_);
+    result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model, prepared(fit_));
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = best_.model->asset;
     decide();
@@ -271,7 +302,7 @@ class Analysis {
   }
 
   void decide() {
-    if (at_rest(*baseline_, fit_)) {
+    if (at_rest(*baseline_, prepared(fit_))) {
       result_.verdict = Verdict::undetermined;
       result_.effects.clear();
       result_.explained = baseline_->asset;
@@ -301,6 +332,7 @@ class Analysis {
   Naming naming_;
   Trial best_;
   bool proven_ = false;
+  bool windowed_ = false;
   Explanation result_;
 };
 

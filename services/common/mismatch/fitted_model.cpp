@@ -48,7 +48,7 @@ void continue_from(const FittedModel& start, const PemProblem& problem, PemPoint
 Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
                               int iterations) {
   const ActuatorFitOptions options = search_options(threads, iterations);
-  Result<PemProblem> problem = make_pem_problem(asset, data.samples);
+  Result<PemProblem> problem = make_pem_problem(asset, data.samples, data.groups);
   if (!problem) return fail(problem.error());
   for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
   problem->simulation_options = simulation_options(data.samples, options);

@@ -15,6 +15,7 @@ struct Data {
   std::vector<std::string> names;
   std::vector<TimeSeries> samples;
   std::vector<NoiseColour> colour;  ///< per recording
+  std::vector<int> groups;          ///< which recording a window was cut from; empty: whole recordings
 };
 
 struct FittedModel {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
+#include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/site_words.hpp"
 #include "services/common/mismatch/smooth_input.hpp"
 #include "services/common/mismatch/term_path.hpp"
@@ -15,50 +15,6 @@ namespace {
 constexpr double kBand = 1.96;         // standard errors: 95 %
 constexpr double kStepsPerKnot = 8.0;  // of the integrator: hats have corners that it does not know of
 constexpr std::string_view kSensor = "sensor:";
-
-// The model without the effect at one recording.
-struct Base {
-  std::optional<PemProblem> problem;  ///< of this recording alone; none: that of the model without the effect
-  std::vector<double> shared, own;
-  SimulatedPoint at;
-};
-
-std::vector<double> own_values(const PemProblem& problem, const SimulatedPoint& like) {
-  const std::vector<Unknown>&own = problem.recordings.front().own, &from = like.problem->recordings[like.recording].own;
-  std::vector<double> values;
-  for (const Unknown& unknown : own) {
-    double value = unknown.start;
-    for (std::size_t k = 0; k < from.size(); ++k)
-      if (from[k].name == unknown.name) value = from[k].to_value(like.own[k]);
-    values.push_back(unknown.to_unknown(value));
-  }
-  return values;
-}
-
-AssetConfig without_law(AssetConfig asset, const Law& law, const std::string& element) {
-  std::erase_if(asset.physics, [&](const PhysicsTerm& term) { return term.id == law.id && term.element == element; });
-  return asset;
-}
-
-// The model with the effect, less the law; the recording's own unknowns at their best where that can be found.
-Status less_law(const FittedModel& with, const Data& data, std::size_t recording, const std::string& element,
-                const Law& law, bool refit, Base& base) {
-  const AssetConfig asset = with_fixed_parameters(without_law(with.asset, law, element));
-  Result<PemProblem> problem = make_pem_problem(asset, std::span(data.samples).subspan(recording, 1));
-  if (!problem) return fail(problem.error());
-  if (!data.colour.empty()) problem->recordings.front().colour = data.colour[recording];
-  problem->simulation_options = with.problem.simulation_options;
-  base.problem = std::move(*problem);
-  base.own = own_values(*base.problem, point_of(with, recording));
-  if (refit) {
-    ActuatorFitOptions options;
-    options.hopeless_rms = 1e9;  // without the effect it may fit as badly as it likes
-    if (const auto found = search(*base.problem, {.shared = {}, .own = {base.own}}, options))
-      base.own = found->point.own.front();
-  }
-  base.at = {&*base.problem, 0, base.shared, base.own};
-  return {};
-}
 
 std::size_t channel_of(const PlantSimulation& simulation, const std::string& element) {
   const auto channels = simulation.channels();
@@ -74,6 +30,25 @@ tl::unexpected<Error> no_such_place(const std::string& element, const PlantSimul
                     .advice = {}});
 }
 
+ModelValues values_of(const SimulatedPoint& at) {
+  return values_at(*at.problem, at.recording, {at.shared.begin(), at.shared.end()}, {at.own.begin(), at.own.end()});
+}
+
+// Load and initial states; the load is the recording's own even where windows of a recording share it.
+std::vector<FreeQuantity> own_quantities(const SimulatedPoint& at, const ModelValues& values) {
+  const PemRecording& part = at.problem->recordings[at.recording];
+  std::vector<FreeQuantity> own;
+  bool load = false;
+  for (const Unknown& unknown : part.own) {
+    own.push_back(unknown.quantity);
+    load = load || unknown.quantity.kind != FreeQuantity::Kind::initial_state;
+  }
+  if (load || !part.simulation->plant().has_load()) return own;
+  const bool has_mean = part.simulation->find("phi")->in(values) != 0.0;
+  own.push_back(*part.simulation->find(has_mean ? "load_factor" : "phi"));
+  return own;
+}
+
 // Whitened residual, own columns and hat columns of the recording.
 struct Columns {
   RowMatrix own, hats;
@@ -83,14 +58,12 @@ struct Columns {
 Result<Columns> columns_of(const SimulatedPoint& at, const Knots& knots, const std::vector<std::size_t>& sites,
                            std::size_t sensor) {
   const PemRecording& part = at.problem->recordings[at.recording];
-  std::vector<FreeQuantity> free;
-  for (const Unknown& unknown : part.own) free.push_back(unknown.quantity);
+  const ModelValues values = values_of(at);
+  const std::vector<FreeQuantity> free = own_quantities(at, values);
   HatColumns hats(knots, sites);
   SimulationOptions options = at.problem->simulation_options;
   options.maximum_step_s = std::min(options.maximum_step_s, knots.spacing_s / kStepsPerKnot);
-  const std::vector<double> shared(at.shared.begin(), at.shared.end()), own(at.own.begin(), at.own.end());
-  auto run = part.simulation->run(values_at(*at.problem, at.recording, shared, own), free, options,
-                                  sites.empty() ? nullptr : &hats);
+  auto run = part.simulation->run(values, free, options, sites.empty() ? nullptr : &hats);
   if (!run) return fail(run.error());
 
   const Eigen::Index channels = run->values.cols(), rows = run->values.rows() * channels;
@@ -117,38 +90,37 @@ Result<Columns> columns_of(const SimulatedPoint& at, const Knots& knots, const s
                  .residual = std::move(all.residual)};
 }
 
-Result<std::vector<double>> simulated_channel(const SimulatedPoint& at, std::size_t channel) {
-  const std::vector<double> shared(at.shared.begin(), at.shared.end()), own(at.own.begin(), at.own.end());
-  const auto run = at.problem->recordings[at.recording].simulation->run(
-      values_at(*at.problem, at.recording, shared, own), {}, at.problem->simulation_options);
+Result<std::vector<double>> simulated_channel(const SimulatedPoint& at, const ModelValues& values,
+                                              std::size_t channel) {
+  const auto run = at.problem->recordings[at.recording].simulation->run(values, {}, at.problem->simulation_options);
   if (!run) return fail(run.error());
   const Eigen::VectorXd column = run->values.col(static_cast<Eigen::Index>(channel));
   return std::vector<double>(column.begin(), column.end());
 }
 
-// What a sensor's law makes of its channel: its simulation with it less that without it, all else equal.
-Status add_sensor_law(const FittedModel& with, const Data& data, std::size_t recording, const Law& law,
-                      std::size_t channel, const Knots& knots, MissingTerm& term) {
-  Base base;
-  if (const Status made = less_law(with, data, recording, term.element, law, false, base); !made)
-    return fail(made.error());
-  auto read = simulated_channel(point_of(with, recording), channel);
-  const auto true_value = simulated_channel(base.at, channel);
-  if (!read || !true_value) return fail(read ? true_value.error() : read.error());
-  for (std::size_t k = 0; k < read->size(); ++k) (*read)[k] -= (*true_value)[k];
-  term.law = hat_means(knots, with.problem.recordings[recording].time_s, *read);
-  return {};
-}
-
-Status describe_sensor(const SimulatedPoint& at, std::size_t channel, const Knots& knots, MissingTerm& term) {
+// The law of a sensor is what the channel loses when it is absent, all else equal.
+Status describe_sensor(const SimulatedPoint& at, std::size_t channel, const Law* law, const Knots& knots,
+                       MissingTerm& term) {
   const PemRecording& part = at.problem->recordings[at.recording];
-  const auto simulated = simulated_channel(at, channel);
-  if (!simulated) return fail(simulated.error());
-  term.state_value = hat_means(knots, part.time_s, *simulated);
+  const ModelValues values = values_of(at);
+  auto reading = simulated_channel(at, values, channel);
+  if (!reading) return fail(reading.error());
+  term.state_value = hat_means(knots, part.time_s, *reading);
   if (const auto* description = part.simulation->plant().find_channel(part.simulation->channels()[channel])) {
     term.unit = term.state_unit = description->unit;
     term.state = description->meaning;
   }
+  if (law == nullptr) return {};
+  ModelValues absent = values;
+  for (const std::size_t k : strengths_of(*law)) {
+    const auto strength = part.simulation->find(physics_parameter_name(term.element, law->id, law->parameters[k].name));
+    if (!strength) return fail(strength.error());
+    strength->in(absent) = 0.0;
+  }
+  const auto without = simulated_channel(at, absent, channel);
+  if (!without) return fail(without.error());
+  for (std::size_t k = 0; k < reading->size(); ++k) (*reading)[k] -= (*without)[k];
+  term.law = hat_means(knots, part.time_s, *reading);
   return {};
 }
 
@@ -171,13 +143,10 @@ Status describe_site(const SimulatedPoint& at, SiteKind kind, const Law* law, st
 Result<MissingTerm> missing_term(const FittedModel& without, const FittedModel* with, const Data& data,
                                  std::size_t recording, const std::string& element, SiteKind kind, const Law* law,
                                  std::span<const double> parameters) {
-  const bool sensor = is_sensor(kind), found = with != nullptr && law != nullptr;
-  Base base;
-  base.at = point_of(without, recording);
-  if (found)
-    if (const Status made = less_law(*with, data, recording, element, *law, true, base); !made)
-      return fail(made.error());
-  const PemRecording& part = base.at.problem->recordings[base.at.recording];
+  if (with == nullptr) law = nullptr;
+  const SimulatedPoint at = point_of(law == nullptr ? without : *with, recording);
+  const PemRecording& part = at.problem->recordings[recording];
+  const bool sensor = is_sensor(kind);
   const std::vector<std::size_t> sites = sites_of(*part.simulation, element, kind);
   const std::size_t channel = sensor ? channel_of(*part.simulation, element) : 0;
   if (sensor ? channel == part.simulation->channels().size() : sites.empty())
@@ -187,16 +156,15 @@ Result<MissingTerm> missing_term(const FittedModel& without, const FittedModel* 
   term.element = element;
   term.recording = data.names[recording];
   const Knots knots = make_knots(part.time_s);
-  Result<Columns> columns = columns_of(base.at, knots, sites, channel);
+  const Status described =
+      sensor ? describe_sensor(at, channel, law, knots, term) : describe_site(at, kind, law, parameters, knots, term);
+  if (!described) return fail(described.error());
+  Result<Columns> columns = columns_of(at, knots, sites, channel);
   if (!columns) return fail(columns.error());
+  if (!term.law.empty())  // given back: the data have to ask for it
+    columns->residual += columns->hats * Eigen::Map<const Eigen::VectorXd>(term.law.data(), columns->hats.cols());
   const auto input = smooth_input(std::move(columns->hats), columns->own, std::move(columns->residual));
   if (!input) return fail(input.error());
-
-  const SimulatedPoint drawn = found ? point_of(*with, recording) : base.at;
-  Status status = sensor ? describe_sensor(drawn, channel, knots, term)
-                         : describe_site(drawn, kind, found ? law : nullptr, parameters, knots, term);
-  if (status && sensor && found) status = add_sensor_law(*with, data, recording, *law, channel, knots, term);
-  if (!status) return fail(status.error());
 
   term.quantity = words_of(kind).quantity;
   if (!input->level_known) term.quantity += ", up to a constant";

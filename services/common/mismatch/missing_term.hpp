@@ -1,13 +1,17 @@
 // The missing force, flow, torque or voltage of one element over one recording, as the data alone demand it.
 //
-// The model without the effect is simulated; its residual is explained by an unknown input w(t) at the element's site,
-// linear between knots (smooth_input.hpp: weak-constraint smoother, smoothness by marginal likelihood), beside the
-// recording's own load and initial states. No law takes part in it. What the figure means:
-//   - With a model that has the effect, `with`: the same model with the law taken out again and nothing else changed
-//     but this recording's load and initial states. So w is to be compared with the law at its full size. Without one:
-//     the model as it was fitted, and w is what its parameters have not swallowed.
-//   - w is linear in the residual, at the trajectory of the model without the effect. For an effect that moves the
-//     trajectory far (the piston elsewhere, a valve shut that should be open) it shows time and direction, not size.
+// An unknown input w(t) at the element's site, linear between knots, explains what the recording holds beyond the model
+// (smooth_input.hpp: weak-constraint smoother, smoothness by marginal likelihood), beside the recording's own load and
+// initial states. What the figure means:
+//   - With a model that holds the effect, `with`, the simulation runs with its law, so that the trajectory is that of
+//     the recording; then the law's contribution is given back to the residual, r + H w_law, and w has to ask for all
+//     of it. Smoothness is asked of w, not of its difference from the law: where the law is wrong w departs from it,
+//     as far as its parameters leave something (they are those of `with`).
+//   - Without one the model stays as it was fitted, and w is what its parameters have not swallowed.
+//   - w is linear in the residual, at that trajectory. For an effect that no law describes and that moves the
+//     trajectory far (the piston elsewhere, a valve shut that should be open), and for a law far from right, it shows
+//     time and direction, not size. Where the law reacts to the input itself (dry friction at rest takes up any force)
+//     the data say little, and the band is wide.
 //   - `demanded`, `law` and `state_value` are means over the same quarter of a second (the knot's hat), so that a jump
 //     is drawn by all as a ramp of this length.
 //   - `band` is 1.96 standard errors under noise of the assumed colour, raised by the root of what stays unexplained.

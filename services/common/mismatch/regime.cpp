@@ -94,13 +94,16 @@ Shares shares(const std::vector<Step>& steps, const Inside& inside) {
   return {part.energy / std::max(all.energy, 1e-300), part.time / std::max(all.time, 1e-300)};
 }
 
+// The value below which a signal stays for that share of the time.
 template <class Of>
 double quantile(const std::vector<Step>& steps, double share, const Of& of) {
-  std::vector<double> values;
-  for (const Step& step : steps) values.push_back(of(step));
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, values.begin() + at);
-  return values[static_cast<std::size_t>(at)];
+  std::vector<std::pair<double, double>> values;
+  double time_s = 0.0, below_s = 0.0;
+  for (const Step& step : steps) values.emplace_back(of(step), step.weight_s), time_s += step.weight_s;
+  std::ranges::sort(values);
+  for (const auto& [value, weight_s] : values)
+    if (below_s += weight_s; below_s >= share * time_s) return value;
+  return values.back().first;
 }
 
 // Names the motion and leaves only the steps in which it acts.

@@ -66,34 +66,28 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
                               const std::vector<PassColumn>& columns) {
   const PemRecording& part = model.problem.recordings[recording];
   const std::vector<double>&shared = model.optimum.point.shared, &own = model.optimum.point.own[recording];
-  std::vector<FreeQuantity> free;
-  std::vector<double> slope;
-  for (std::size_t k = 0; k < shared.size(); ++k) {
-    free.push_back(model.problem.shared[k].quantity);
-    slope.push_back(model.problem.shared[k].slope(shared[k]));
-  }
-  for (std::size_t k = 0; k < own.size(); ++k) {
-    free.push_back(part.own[k].quantity);
-    slope.push_back(part.own[k].slope(own[k]));
-  }
+  const FreeOfRecording free = free_of(model.problem, recording, shared, own);
   LawColumns injected(law_columns(candidates, columns));
   SimulationOptions options = model.problem.simulation_options;
   options.maximum_step_s = std::min(options.maximum_step_s, kTurningStep_s);
-  auto outputs = part.simulation->run(values_at(model.problem, recording, shared, own), free, options, &injected);
+  auto outputs =
+      part.simulation->run(values_at(model.problem, recording, shared, own), free.quantity, options, &injected);
   if (!outputs) return fail(outputs.error());
 
   const Eigen::Index samples = outputs->values.rows(), channels = outputs->values.cols();
-  const auto unknowns = static_cast<Eigen::Index>(free.size()), laws = static_cast<Eigen::Index>(columns.size());
+  const auto unknowns = static_cast<Eigen::Index>(shared.size() + own.size()),
+             laws = static_cast<Eigen::Index>(columns.size());
   Linearisation all{.simulated = outputs->values,
                     .residual = Eigen::VectorXd(samples * channels),
-                    .jacobian = RowMatrix(samples * channels, unknowns + laws)};
+                    .jacobian = RowMatrix::Zero(samples * channels, unknowns + laws)};
   for (Eigen::Index row = 0; row < samples * channels; ++row) {
     const Eigen::Index channel = row % channels, sample = row / channels;
     const double weight = 1.0 / part.noise_std(channel);
     all.residual(row) = weight * (part.simulation->recorded()(sample, channel) - outputs->values(sample, channel));
-    for (Eigen::Index k = 0; k < unknowns; ++k)
-      all.jacobian(row, k) = weight * slope[static_cast<std::size_t>(k)] * outputs->sensitivities(row, k);
-    Eigen::Index site_column = unknowns;
+    for (std::size_t k = 0; k < free.slope.size(); ++k)
+      all.jacobian(row, free.column[k]) =
+          weight * free.slope[k] * outputs->sensitivities(row, static_cast<Eigen::Index>(k));
+    auto site_column = static_cast<Eigen::Index>(free.slope.size());
     for (Eigen::Index k = 0; k < laws; ++k)
       all.jacobian(row, unknowns + k) = candidates[columns[static_cast<std::size_t>(k)].candidate].sites.empty()
                                             ? 0.0

@@ -1,0 +1,88 @@
+#include "services/common/mismatch/windows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "services/common/estimation/channel_noise.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kShortest = 0.5;  // of a window: a shorter rest goes to the window before
+
+TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end) {
+  const auto cut = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                               values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  TimeSeries piece{.time_s = cut(samples.time_s), .channels = {}, .input_hold = samples.input_hold};
+  for (const Series& channel : samples.channels)
+    piece.channels.push_back({channel.name, channel.unit, channel.noise_std, cut(channel.values)});
+  return piece;
+}
+
+// The flow and the other chamber's pressure drive the cylinder circuit.
+TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  for (Series& channel : samples.channels) {
+    if (channel.name != "flow" && channel.name != "pressure_b") continue;
+    const double noise_std = noise_std_of(asset, channel);
+    for (double& value : channel.values) value += noise_std * normal(random);
+  }
+  return samples;
+}
+
+}  // namespace
+
+bool needs_windows(const AssetConfig& asset, const TimeSeries& recorded) {
+  return asset.model == "eha_switched" || (asset.model == "eha" && !recorded.has("motor_voltage"));
+}
+
+Data cut_into_windows(const Data& data) {
+  Data windows;
+  for (std::size_t k = 0; k < data.samples.size(); ++k) {
+    const TimeSeries& samples = data.samples[k];
+    std::size_t begin = 0;
+    while (begin < samples.time_s.size()) {
+      const double end_s = samples.time_s[begin] + kWindow_s;
+      auto end = static_cast<std::size_t>(std::ranges::lower_bound(samples.time_s, end_s) - samples.time_s.begin());
+      if (samples.time_s.back() - end_s < kShortest * kWindow_s) end = samples.time_s.size();
+      windows.names.push_back(data.names[k]);
+      windows.samples.push_back(rows_of(samples, begin, end));
+      if (!data.colour.empty()) windows.colour.push_back(data.colour[k]);
+      windows.groups.push_back(static_cast<int>(k));
+      begin = end;
+    }
+  }
+  return windows;
+}
+
+void add_input_noise(Data& data, const FittedModel& model, const Data& windows, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::map<std::string, std::pair<double, double>> squares;  // per channel: sum and count
+  for (std::size_t k = 0; k < windows.samples.size(); ++k) {
+    const PemRecording& part = model.problem.recordings[k];
+    const auto noisy = PlantSimulation::create(model.asset, with_more_noise(model.asset, windows.samples[k], random));
+    if (!noisy) continue;
+    const ModelValues values = values_at(model.problem, k, model.optimum.point.shared, model.optimum.point.own[k]);
+    const auto outputs = (*noisy)->run(values, {}, model.problem.simulation_options);
+    if (!outputs) continue;
+    const RowMatrix difference = outputs->values - model.optimum.at_optimum[k].simulated;
+    for (Eigen::Index c = 0; c < difference.cols(); ++c) {
+      auto& [sum, count] = squares[part.simulation->channels()[static_cast<std::size_t>(c)]];
+      sum += difference.col(c).squaredNorm();
+      count += static_cast<double>(difference.rows());
+    }
+  }
+  for (TimeSeries& samples : data.samples)
+    for (Series& channel : samples.channels) {
+      const auto found = squares.find(channel.name);
+      if (found == squares.end() || !(found->second.second > 0.0)) continue;
+      channel.noise_std =
+          std::sqrt(std::pow(noise_std_of(model.asset, channel), 2) + found->second.first / found->second.second);
+    }
+}
+
+}  // namespace sealwatch::mismatch

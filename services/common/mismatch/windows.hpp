@@ -1,0 +1,27 @@
+// Windows: pieces of a recording that are simulated from initial states of their own, with the recording's load shared.
+//
+// Where the simulation integrates a noisy measured input (the cylinder circuit is driven by the recorded flow), its
+// error grows like a random walk; within 2 s it stays below the sensors' noise. What the input's noise still adds is
+// found by simulating once with as much noise again, and goes into the noise of the outputs:
+//
+//   sigma^2 <- sigma^2 + mean (y(u + e) - y(u))^2,   e: seeded noise of the input channels
+#pragma once
+
+#include <cstdint>
+
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+inline constexpr double kWindow_s = 2.0;
+
+/// Whether the simulation of this recording needs windows: driven by a measured flow, or a plant whose whole records no
+/// model follows (valves that switch).
+[[nodiscard]] bool needs_windows(const AssetConfig& asset, const TimeSeries& recorded);
+
+[[nodiscard]] Data cut_into_windows(const Data& data);
+
+/// Raises noise_std of `data`'s output channels by what the noise of its inputs makes of them.
+void add_input_noise(Data& data, const FittedModel& model, const Data& windows, std::uint64_t seed);
+
+}  // namespace sealwatch::mismatch

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 
 #include "services/common/mismatch/regime.hpp"
@@ -17,6 +18,14 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr SimulationOptions kTight = {.relative_tolerance = 1e-7, .maximum_step_s = 0.02};
+
+/// One recording.
+Data data_of(TimeSeries samples) {
+  Data data;
+  data.names = {"pst"};
+  data.samples = {std::move(samples)};
+  return data;
+}
 
 /// Share of the time within the 95 % band: less than that, as the band is that of a smooth input and friction jumps at
 /// each start and stop.
@@ -64,7 +73,7 @@ Concealed conceal(const std::string& id, const std::string& element, const std::
   Concealed made;
   made.law = law;
   const AssetConfig truth = with_law(plant(), *law, element, values);
-  made.data = {.names = {"pst"}, .samples = {simulate(truth, 1.0, &made.clean)}, .colour = {}};
+  made.data = data_of(simulate(truth, 1.0, &made.clean));
   made.without = fit_model(plant(), made.data, nullptr, 1).value();
   made.with = fit_model(with_law(plant(), *law, element, values), made.data, &made.without, 1).value();
   for (const LawParameter& parameter : law->parameters)
@@ -127,6 +136,32 @@ TEST(MissingTerm, OfCoulombFrictionIsItsForceOverTime) {
   RecordProperty("relative_rms", std::to_string(demanded.relative_rms));
 }
 
+TEST(MissingTerm, DepartsFromALawThatIsWrong) {
+  constexpr double kForce_N = 1500.0, kWidth_m_s = 1e-4;
+  Concealed coulomb = conceal("coulomb_friction", "piston", {"F_c", "v_s"}, {kForce_N, kWidth_m_s});
+  const Law* spring = find_law("spring_load", {"k"}).value();
+  // The plant's parameters stay what they are, so that nothing else takes the friction up.
+  const AssetConfig wrong = with_law(with_fixed_parameters(plant()), *spring, "piston", std::array{5e4});
+  coulomb.with = fit_model(wrong, coulomb.data, nullptr, 1).value();
+  const std::array stiffness{estimate_of(coulomb.with, "piston.spring_load.k").value()};
+  const auto term = missing_term(coulomb.without, &coulomb.with, coulomb.data, 0, "piston", SiteKind::piston_force,
+                                 spring, stiffness);
+  ASSERT_TRUE(term) << term.error().describe();
+  const auto& v = coulomb.clean.find("velocity")->values;
+  auto truth = truth_at_knots(coulomb, [&](std::size_t k) { return kForce_N * std::tanh(v[k] / kWidth_m_s); });
+  const auto mean = [](const std::vector<double>& of) {
+    return std::accumulate(of.begin(), of.end(), 0.0) / static_cast<double>(of.size());
+  };
+  const double level = mean(term->law) - mean(truth);  // a constant is the law's
+  for (double& value : truth) value += level;
+  const double demanded = compare(*term, term->demanded, truth).relative_rms;
+  const double law = compare(*term, term->law, truth).relative_rms;
+  EXPECT_LT(demanded, 0.1);
+  EXPECT_GT(law, 0.5);
+  RecordProperty("relative_rms", std::to_string(demanded));
+  RecordProperty("law_relative_rms", std::to_string(law));
+}
+
 TEST(MissingTerm, OfAScoredBoreIsItsLeakageOverTime) {
   constexpr double kFlow = 3e-14, kPosition_m = 0.052, kWidth_m = 4e-3;
   const Concealed score = conceal("unlisted", "piston_seal", {"G_l", "x_l", "w_l"}, {kFlow, kPosition_m, kWidth_m});
@@ -153,7 +188,7 @@ TEST(MissingTerm, OfAScoredBoreIsItsLeakageOverTime) {
 }
 
 TEST(MissingTerm, IsNothingBeyondItsBandWhereNothingIsMissing) {
-  Data data{.names = {"pst"}, .samples = {simulate(plant(), 1.0, nullptr)}, .colour = {}};
+  const Data data = data_of(simulate(plant(), 1.0, nullptr));
   const FittedModel model = fit_model(plant(), data, nullptr, 1).value();
   for (const auto& [element, kind] :
        {std::pair("piston", SiteKind::piston_force), std::pair("piston_seal", SiteKind::seal_leakage),
@@ -178,7 +213,7 @@ TEST(MissingTerm, OfASensorIsTheShiftOfItsReading) {
 }
 
 TEST(MissingTerm, OfAPlaceThatThePlantDoesNotHaveIsAnError) {
-  Data data{.names = {"pst"}, .samples = {simulate(plant(), 1.0, nullptr)}, .colour = {}};
+  const Data data = data_of(simulate(plant(), 1.0, nullptr));
   const FittedModel model = fit_model(plant(), data, nullptr, 1).value();
   for (const auto& [element, kind] :
        {std::pair("gearbox", SiteKind::piston_force), std::pair("sensor:gearbox", SiteKind::sensor_bias)}) {

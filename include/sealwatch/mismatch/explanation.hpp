@@ -76,6 +76,7 @@ struct Power {
   std::string unit;
   double absorbed_share = 0.0;  ///< of the effect that the free parameters swallow, 0..1
   double significant = 0.0;     ///< strength that an engineer would care about, same unit
+  double leakage_shift = 0.0;   ///< relative change of R_CL by which the fit would swallow it at that size
 };
 
 /// Fit of one recording and channel. noise_normalised_rms: 1 is the floor.

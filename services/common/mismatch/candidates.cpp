@@ -8,8 +8,9 @@ namespace {
 constexpr std::size_t kLargestGrid = 12;
 constexpr double kBiasShare = 0.01;  // usual bias of a sensor, of the range of its channel in the recording
 
-// All combinations of the start values; for many, the first values of each parameter with the usual ones of the others.
-std::vector<std::vector<double>> shape_grid(const Law& law) {
+// All combinations of the start values, in the sizes of the plant; for many, the first values of each parameter with
+// the usual ones of the others.
+std::vector<std::vector<double>> shape_grid(const Law& law, const PlantDescription& plant) {
   std::vector<std::vector<double>> grid(1);
   for (const LawParameter& parameter : law.parameters) {
     const std::size_t choices = parameter.strength ? 1 : parameter.start.size();
@@ -17,7 +18,8 @@ std::vector<std::vector<double>> shape_grid(const Law& law) {
     for (std::size_t k = 0; k < choices && next.size() < kLargestGrid; ++k)
       for (const std::vector<double>& point : grid) {
         next.push_back(point);
-        next.back().push_back(parameter.start[k]);
+        next.back().push_back(
+            std::clamp(plant.law_size(parameter.unit) * parameter.start[k], parameter.min, parameter.max));
       }
     grid = std::move(next);
   }
@@ -50,8 +52,11 @@ void add_at_sites(const Law& law, const PlantSimulation& simulation, const std::
       continue;
     }
     if (present_already(present, law, site.element) || pointless(law, simulation)) continue;
-    found.push_back(
-        {.law = &law, .element = std::string(site.element), .sites = {k}, .channel = {}, .grid = shape_grid(law)});
+    found.push_back({.law = &law,
+                     .element = std::string(site.element),
+                     .sites = {k},
+                     .channel = {},
+                     .grid = shape_grid(law, simulation.plant())});
   }
   candidates.insert(candidates.end(), found.begin(), found.end());
 }
@@ -61,8 +66,11 @@ void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std
   for (std::size_t c = 0; c < simulation.channels().size(); ++c) {
     const std::string element = "sensor:" + simulation.channels()[c];
     if (present_already(present, law, element)) continue;
-    Candidate candidate{
-        .law = &law, .element = element, .sites = {}, .channel = simulation.channels()[c], .grid = shape_grid(law)};
+    Candidate candidate{.law = &law,
+                        .element = element,
+                        .sites = {},
+                        .channel = simulation.channels()[c],
+                        .grid = shape_grid(law, simulation.plant())};
     if (law.kind == SiteKind::sensor_bias) {
       const auto column = simulation.recorded().col(static_cast<Eigen::Index>(c));
       const double size = std::max(column.maxCoeff() - column.minCoeff(), 1e-12);
@@ -85,6 +93,12 @@ std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const 
       add_at_sites(law, simulation, present, candidates);
   }
   return candidates;
+}
+
+double significant_size(const Candidate& candidate, const PlantDescription& plant) {
+  const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
+  if (candidate.law->kind == SiteKind::sensor_bias) return candidate.strength_scale * strength.start.front();
+  return plant.law_size(strength.unit) * strength.significant;
 }
 
 std::vector<std::size_t> strengths_of(const Law& law) {

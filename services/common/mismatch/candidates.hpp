@@ -25,6 +25,9 @@ struct Candidate {
 
 inline constexpr std::string_view kUnlisted = "unlisted";
 
+/// Size of its first strength from which an engineer of this plant would care.
+[[nodiscard]] double significant_size(const Candidate& candidate, const PlantDescription& plant);
+
 /// Indices of the law's strengths.
 [[nodiscard]] std::vector<std::size_t> strengths_of(const Law& law);
 

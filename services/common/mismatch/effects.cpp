@@ -1,10 +1,12 @@
 #include "services/common/mismatch/effects.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
-#include "services/common/estimation/fit_report.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -42,7 +44,48 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   return found;
 }
 
-std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedModel& model, const JointFit& fit) {
+// Standard error of each shared unknown in its own unit: (J'J)^-1 with every recording's own unknowns eliminated, over
+// the dispersion; infinite where the data cannot tell or where the unknown is at its bound.
+std::vector<double> standard_errors(const FittedModel& model) {
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  std::vector<double> errors(model.problem.shared.size(), std::numeric_limits<double>::infinity());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(shared, shared);
+  for (const Linearisation& at : model.optimum.at_optimum) {
+    const Eigen::MatrixXd gram = at.jacobian.transpose() * at.jacobian;
+    const Eigen::Index own = gram.cols() - shared;
+    Eigen::MatrixXd of_own = gram.bottomRightCorner(own, own);
+    of_own.diagonal() *= 1.0 + 1e-12;
+    of_own.diagonal().array() += 1e-300;
+    information += gram.topLeftCorner(shared, shared) -
+                   gram.topRightCorner(shared, own) * of_own.ldlt().solve(gram.bottomLeftCorner(own, shared));
+  }
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index k = 0; k < shared; ++k) {
+    const Unknown& unknown = model.problem.shared[static_cast<std::size_t>(k)];
+    const double at = model.optimum.point.shared[static_cast<std::size_t>(k)];
+    const bool held = at - unknown.to_unknown(unknown.min) < 1e-6 || unknown.to_unknown(unknown.max) - at < 1e-6;
+    if (!held && information(k, k) > 0.0) seen.push_back(k);
+  }
+  const auto count = static_cast<Eigen::Index>(seen.size());
+  Eigen::MatrixXd scaled(count, count);
+  for (Eigen::Index j = 0; j < count; ++j)
+    for (Eigen::Index k = 0; k < count; ++k)
+      scaled(j, k) = information(seen[static_cast<std::size_t>(j)], seen[static_cast<std::size_t>(k)]) /
+                     std::sqrt(information(seen[static_cast<std::size_t>(j)], seen[static_cast<std::size_t>(j)]) *
+                               information(seen[static_cast<std::size_t>(k)], seen[static_cast<std::size_t>(k)]));
+  scaled.diagonal().array() += 1e-12;
+  const Eigen::MatrixXd covariance = scaled.inverse();
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const auto k = static_cast<std::size_t>(seen[static_cast<std::size_t>(j)]);
+    const double variance = covariance(j, j) * dispersion(model) /
+                            information(seen[static_cast<std::size_t>(j)], seen[static_cast<std::size_t>(j)]);
+    errors[k] = std::sqrt(variance) * std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
+  }
+  return errors;
+}
+
+std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedModel& model,
+                                          const std::vector<double>& errors) {
   std::vector<FoundParameter> parameters;
   for (const LawParameter& parameter : effect.law->parameters) {
     const std::string name = physics_parameter_name(effect.element, effect.law->id, parameter.name);
@@ -55,10 +98,10 @@ std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedMode
       if (term.id == effect.law->id && term.element == effect.element)
         if (const auto setting = term.parameters.find(found.name); setting != term.parameters.end())
           found.value = setting->second.value;
-    for (const EstimatedParameter& estimate : fit.report.parameters) {
-      if (estimate.name != name) continue;
-      found.std_error = estimate.std_error;
-      found.at_bound = estimate.at_bound;
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      if (model.problem.shared[k].name != name) continue;
+      found.std_error = errors[k];
+      found.at_bound = !std::isfinite(errors[k]);
     }
     parameters.push_back(std::move(found));
   }
@@ -131,7 +174,7 @@ bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b) {
 
 std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
                                           const ExplainOptions& options) {
-  const JointFit fit = report_fit(best.model->asset, best.model->problem, best.model->optimum, data.samples);
+  const std::vector<double> errors = standard_errors(*best.model);
   std::vector<FoundEffect> effects;
   for (std::size_t slot = 0; slot < best.effects.size(); ++slot) {
     const std::vector<Trial> alternatives = alternatives_of(naming, best, slot, data, options);
@@ -139,7 +182,7 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     for (const Trial& trial : alternatives) phi = std::min(phi, dispersion(*trial.model));
     FoundEffect effect;
     effect.what = law_at(best.effects[slot]);
-    effect.parameters = parameters_of(best.effects[slot], *best.model, fit);
+    effect.parameters = parameters_of(best.effects[slot], *best.model, errors);
     effect.engineering_share = engineering_share(effect, *best.effects[slot].law);
     weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), phi);
     const FittedModel* fewer = naming.baseline.get();
@@ -205,22 +248,22 @@ Rejected describe(const Forbidden& forbidden) {
 }
 
 std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const FittedModel& before,
-                                             const FittedModel& after, const Data& data) {
-  const JointFit a = report_fit(before.asset, before.problem, before.optimum, data.samples);
-  const JointFit b = report_fit(after.asset, after.problem, after.optimum, data.samples);
+                                             const FittedModel& after) {
+  const std::vector<double> old_errors = standard_errors(before), new_errors = standard_errors(after);
   std::vector<ParameterShift> shifts;
-  for (const EstimatedParameter& old_value : a.report.parameters)
-    for (const EstimatedParameter& new_value : b.report.parameters) {
-      const auto sheet = datasheet.parameters.find(old_value.name);
-      if (old_value.name != new_value.name || sheet == datasheet.parameters.end()) continue;
-      shifts.push_back({.name = old_value.name,
-                        .unit = old_value.unit,
-                        .before = old_value.value,
-                        .before_std = old_value.std_error,
-                        .after = new_value.value,
-                        .after_std = new_value.std_error,
-                        .datasheet = sheet->second.value});
-    }
+  for (std::size_t j = 0; j < before.problem.shared.size(); ++j) {
+    const Unknown& unknown = before.problem.shared[j];
+    const auto sheet = datasheet.parameters.find(unknown.name);
+    for (std::size_t k = 0; k < after.problem.shared.size() && sheet != datasheet.parameters.end(); ++k)
+      if (after.problem.shared[k].name == unknown.name)
+        shifts.push_back({.name = unknown.name,
+                          .unit = unknown.unit,
+                          .before = *estimate_of(before, unknown.name),
+                          .before_std = old_errors[j],
+                          .after = *estimate_of(after, unknown.name),
+                          .after_std = new_errors[k],
+                          .datasheet = sheet->second.value});
+  }
   return shifts;
 }
 

@@ -20,7 +20,7 @@ namespace sealwatch::mismatch {
 [[nodiscard]] Rejected describe(const Forbidden& forbidden);
 
 [[nodiscard]] std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const FittedModel& before,
-                                                           const FittedModel& after, const Data& data);
+                                                           const FittedModel& after);
 
 [[nodiscard]] PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<ParameterShift>& parameters);
 

@@ -4,19 +4,22 @@
 #include <cmath>
 
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/missing_term.hpp"
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/regime.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-// Laws that hide in free parameters, and how much larger than an engineer's limit they would have to be to show, before
-// the data is said to be too poor.
+// Laws that hide in free parameters, how much larger than an engineer's limit they would have to be to show, and how
+// far they would then have moved the seal's estimate, before the data is said to be too poor.
 constexpr double kConcealed = 0.5;
 constexpr double kTooLarge = 3.0;
+constexpr double kLeakageMatters = 0.1;    // of R_CL: the standard error above which a fit is not admissible either
 constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
 constexpr double kRest = 5.0;              // a channel moves if it spans more than this many noise standard deviations
 
@@ -39,7 +42,11 @@ Data without(const Data& data, std::size_t left_out) {
 }
 
 Data only(const Data& data, std::size_t one) {
-  Data single{.names = {data.names[one]}, .samples = {data.samples[one]}, .colour = {}, .groups = {}};
+  Data single{.names = {data.names[one]},
+              .samples = {data.samples[one]},
+              .colour = {},
+              .groups = {},
+              .resolution = data.resolution};
   if (!data.colour.empty()) single.colour = {data.colour[one]};
   return single;
 }
@@ -97,7 +104,8 @@ std::vector<Power> power_of(const Screening& screening) {
                      .minimum_detectable = variant.minimum_detectable,
                      .unit = std::string(strength.unit),
                      .absorbed_share = std::clamp(variant.absorbed, 0.0, 1.0),
-                     .significant = bias ? candidate.strength_scale * strength.start.front() : strength.significant});
+                     .significant = bias ? candidate.strength_scale * strength.start.front() : strength.significant,
+                     .leakage_shift = variant.leakage_shift});
   }
   std::ranges::stable_sort(power, {}, [](const Power& one) { return one.what.id; });
   return power;
@@ -136,6 +144,7 @@ class Analysis {
       if (const Status status = prove(); !status) return fail(status.error());
     }
     if (const Status status = finish(); !status) return fail(status.error());
+    draw_what_is_missing();
     tell("done", 1.0);
     return std::move(result_);
   }
@@ -290,7 +299,7 @@ class Analysis {
       result_.location = locate_without_law(naming_.first);
     }
     for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
-    result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model, prepared(fit_));
+    result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model);
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = best_.model->asset;
     decide();
@@ -299,6 +308,27 @@ class Analysis {
     result_.next_test = next_test_of(result_);
     result_.summary = summary_of(result_);
     return {};
+  }
+
+  // The missing term of each effect, over the recording in which it did most.
+  void draw_what_is_missing() {
+    if (best_.effects.empty() || result_.effects.empty()) return;
+    const Data data = prepared(fit_);
+    for (const Effect& effect : best_.effects) {
+      const auto term = std::ranges::find_if(best_.model->asset.physics, [&](const PhysicsTerm& one) {
+        return one.id == effect.law->id && one.element == effect.element;
+      });
+      if (term == best_.model->asset.physics.end()) continue;
+      std::vector<double> parameters;
+      for (const LawParameter& parameter : effect.law->parameters)
+        parameters.push_back(term->parameters.at(std::string(parameter.name)).value);
+      const auto drawn = missing_term(*baseline_, best_.model.get(), data, 0, effect.element, effect.law->kind,
+                                      effect.law, parameters);
+      if (drawn) result_.missing.push_back(*drawn);
+      for (FoundEffect& found : result_.effects)
+        if (found.what.id == effect.law->id && found.what.element == effect.element)
+          found.regime = regime_of(*best_.model, effect.element, *effect.law, parameters);
+    }
   }
 
   void decide() {

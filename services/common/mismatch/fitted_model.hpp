@@ -15,7 +15,10 @@ struct Data {
   std::vector<std::string> names;
   std::vector<TimeSeries> samples;
   std::vector<NoiseColour> colour;  ///< per recording
-  std::vector<int> groups;          ///< which recording a window was cut from; empty: whole recordings
+  std::vector<int> groups = {};     ///< which recording a window was cut from; empty: whole recordings
+  /// Share of a significant strength (model/physics.hpp) that errors of a measured input can feign: a law must want
+  /// more than that to count.
+  double resolution = 0.0;
 };
 
 struct FittedModel {

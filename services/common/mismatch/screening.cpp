@@ -14,6 +14,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kDetectable = 27.0;  // lambda: noncentrality that is seen with 80 % power at 1 % over the catalogue
+constexpr double kAbsurd = 100.0;     // usual sizes
 constexpr double kRidge = 1e-10;      // of a normal matrix with unit diagonal: directions that the data do not show
 
 // X (X'X)^-1 X'Y taken off Y, in place.
@@ -175,13 +176,44 @@ double quadratic(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& vector) {
   return right.dot(scaled.ldlt().solve(right));
 }
 
-void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& variance) {
+// Strengths, in usual sizes, that errors of a measured input can feign.
+Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant, double share) {
+  const Candidate& candidate = screening.candidates[variant.candidate];
+  const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
+  Eigen::VectorXd least = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(variant.columns.size()));
+  for (Eigen::Index k = 0; k < least.size(); ++k) {
+    const LawParameter& strength =
+        candidate.law->parameters[strengths[std::min(static_cast<std::size_t>(k), strengths.size() - 1)]];
+    const double unit =
+        std::abs(screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
+    const bool bias = candidate.law->kind == SiteKind::sensor_bias;
+    least(k) = share * (bias ? 1.0 : strength.significant / unit);
+  }
+  return least;
+}
+
+double score_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, const Eigen::MatrixXd& variance,
+                const Eigen::VectorXd& resolution, const Eigen::VectorXd& strength) {
+  if (gradient.size() == 1) {
+    const double beyond = std::max(0.0, std::abs(gradient(0)) - resolution(0) * gram(0, 0));
+    return beyond * beyond / std::max(variance(0, 0), 1e-300);
+  }
+  const bool within = (strength.cwiseAbs().array() <= resolution.array()).all();
+  return within && resolution.maxCoeff() > 0.0 ? 0.0 : quadratic(variance, gradient);
+}
+
+void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& variance,
+              double resolution) {
   for (Variant& variant : screening.variants) {
     const Eigen::VectorXd gradient = subvector(screening.gradient, variant.columns);
     const Eigen::MatrixXd gram = submatrix(screening.gram, variant.columns);
-    variant.score = quadratic(submatrix(variance, variant.columns), gradient);
-    variant.p_value = chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
     const LinearStep step = bounded_step(gram, gradient, sign_bounds(screening, variant));
+    variant.score = score_of(gram, gradient, submatrix(variance, variant.columns),
+                             resolution_of(screening, variant, resolution), step.strength);
+    // With an input that is itself measured only what a law could be counts: its sign, and no absurd size.
+    const bool possible = step.free && step.strength.cwiseAbs().maxCoeff() < kAbsurd;
+    if (resolution > 0.0 && !possible) variant.score = 0.0;
+    variant.p_value = chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
     variant.gain = step.gain;
     variant.physical = step.free;
     for (Eigen::Index k = 0; k < step.strength.size(); ++k)
@@ -226,6 +258,23 @@ void calibrate(Screening& screening, const Eigen::MatrixXd& centred, const Eigen
   const auto best = std::ranges::min_element(screening.variants, {}, &Variant::p_value);
   screening.best = static_cast<std::size_t>(best - screening.variants.begin());
   screening.p_value = -std::expm1(screening.effective_number * std::log1p(-std::min(best->p_value, 1.0 - 1e-16)));
+}
+
+// How far a law of the smallest detectable size would move the estimate of the seal's leakage resistance, relative.
+void find_leakage_shifts(Screening& screening, const FittedModel& model, const Eigen::MatrixXd& gram,
+                         const Eigen::MatrixXd& cross) {
+  const auto leakage = std::ranges::find(model.problem.shared, "R_CL", &Unknown::name);
+  if (leakage == model.problem.shared.end()) return;
+  const auto row = static_cast<Eigen::Index>(leakage - model.problem.shared.begin());
+  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
+  scaled.diagonal().array() += kRidge;
+  const Eigen::MatrixXd swallowed = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * cross);
+  for (Variant& variant : screening.variants) {
+    const Eigen::Index column = variant.columns.front();
+    const double size = screening.gram(column, column);
+    if (size > 0.0) variant.leakage_shift = std::abs(swallowed(row, column)) * std::sqrt(kDetectable / size);
+  }
 }
 
 std::vector<Variant> make_variants(const std::vector<PassColumn>& columns, const Layout& layout) {
@@ -311,9 +360,10 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
     at += part.rows();
   }
   screening.gradient = screening.block_scores.colwise().sum();
+  if (shared > 0) find_leakage_shifts(screening, model, gram, cross);
   const Eigen::MatrixXd centred = screening.block_scores.rowwise() - screening.block_scores.colwise().mean();
   const Eigen::MatrixXd variance = centred.transpose() * centred;
-  evaluate(screening, raw_norm, variance);
+  evaluate(screening, raw_norm, variance, data.resolution);
   calibrate(screening, centred, variance, options);
   return screening;
 }

@@ -5,6 +5,8 @@
 //   s~_j   = P s_j, with the columns of all free parameters, loads and initial states projected off
 //   g = S~' r,  G = S~' S~,  U_b = S~_b' r_b   per block b of time, V = sum_b (U_b - U_mean)(U_b - U_mean)'
 //   score of a law with strengths I   T = g_I' V_I^-1 g_I                (chi-squared of |I| under noise alone)
+//   against an interval: with |k| <= k_0 = resolution x significant size as the null, one strength counts with
+//                        (|g| - k_0 G)^2 / V where that is positive, several with 0 where all stay within
 //   gain of a law, if added           d = g_I' G_I^-1 g_I                (drop of the whitened misfit, linearised)
 //   absorbed share                    a = 1 - |s~|^2/|s|^2
 //   minimum detectable strength       sqrt(lambda / |s~|^2), lambda = 27 (80 % power at 1 % over the whole catalogue)
@@ -35,6 +37,7 @@ struct Variant {
   bool physical = true;               ///< the unconstrained estimate is within its bounds
   double absorbed = 0.0;
   double minimum_detectable = 0.0;  ///< of the first strength, in the law's unit
+  double leakage_shift = 0.0;       ///< relative change of R_CL that would swallow a law of that size
 };
 
 struct Screening {

@@ -1,5 +1,6 @@
 #include "services/common/mismatch/sensitivity_pass.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "services/common/mismatch/law_columns.hpp"
@@ -7,8 +8,9 @@
 namespace sealwatch::mismatch {
 namespace {
 
-// A torque that turns with the shaft needs steps that resolve it.
-constexpr double kTurningStep_s = 0.02;
+// A hidden state (a bristle, a shaft's angle) follows the plant's signals as linear from step to step: these steps have
+// to resolve it.
+constexpr double kHiddenStep_s = 0.02;
 
 std::vector<LawColumn> law_columns(const std::vector<Candidate>& candidates, const std::vector<PassColumn>& columns) {
   std::vector<LawColumn> laws;
@@ -69,7 +71,8 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
   const FreeOfRecording free = free_of(model.problem, recording, shared, own);
   LawColumns injected(law_columns(candidates, columns));
   SimulationOptions options = model.problem.simulation_options;
-  options.maximum_step_s = std::min(options.maximum_step_s, kTurningStep_s);
+  if (std::ranges::any_of(candidates, [](const Candidate& candidate) { return candidate.law->hidden.has_value(); }))
+    options.maximum_step_s = std::min(options.maximum_step_s, kHiddenStep_s);
   auto outputs =
       part.simulation->run(values_at(model.problem, recording, shared, own), free.quantity, options, &injected);
   if (!outputs) return fail(outputs.error());

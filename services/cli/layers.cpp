@@ -3,7 +3,9 @@
 #include "sealwatch/estimation/pem_estimator.hpp"
 #include "sealwatch/forecast/configured.hpp"
 #include "services/advisory_generation/advisory_generation.hpp"
+#include "services/common/mismatch/mismatch_explainer.hpp"
 #include "services/common/model/model_simulator.hpp"
+#include "services/common/runtime/asset_file.hpp"
 #include "services/data_acquisition/data_acquisition.hpp"
 #include "services/data_manipulation/data_manipulation.hpp"
 #include "services/health_assessment/health_assessment.hpp"
@@ -19,7 +21,8 @@ Result<LayerSet> LayerSet::make(const Configuration& configuration) {
   set.layers_.push_back(std::make_unique<DataAcquisition>(configuration.assets));
   set.layers_.push_back(std::make_unique<DataManipulation>(configuration.assets));
   set.layers_.push_back(std::make_unique<StateDetection>(configuration.assets, set.simulator_));
-  set.layers_.push_back(std::make_unique<HealthAssessment>(configuration.assets));
+  set.layers_.push_back(std::make_unique<HealthAssessment>(configuration.assets, HealthAssessmentOptions{},
+                                                           make_mismatch_explainer(asset_to_yaml)));
   auto prognostic = prognostic_assessment::PrognosticAssessment::make(
       configuration, *set.estimator_, {.forecasters = forecast::configured_forecasters(configuration)});
   if (!prognostic) return fail(prognostic.error());

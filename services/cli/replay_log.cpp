@@ -9,9 +9,9 @@
 namespace sealwatch::cli {
 namespace {
 
-constexpr std::array kTopics = {Topic::test_features,    Topic::state_report,   Topic::health_report,
-                                Topic::leakage_estimate, Topic::remaining_life, Topic::pst_request,
-                                Topic::advisory};
+constexpr std::array kTopics = {Topic::test_features,    Topic::state_report,     Topic::health_report,
+                                Topic::leakage_estimate, Topic::remaining_life,   Topic::pst_request,
+                                Topic::advisory,         Topic::model_discrepancy};
 
 }  // namespace
 

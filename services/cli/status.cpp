@@ -12,8 +12,9 @@
 namespace sealwatch::cli {
 namespace {
 
-constexpr std::array kStateTopics = {Topic::state_report,   Topic::health_report, Topic::leakage_estimate,
-                                     Topic::remaining_life, Topic::pst_request,   Topic::advisory};
+constexpr std::array kStateTopics = {Topic::state_report,      Topic::health_report,   Topic::leakage_estimate,
+                                     Topic::remaining_life,    Topic::pst_request,     Topic::advisory,
+                                     Topic::model_discrepancy, Topic::model_acceptance};
 
 /// What was heard while listening.
 struct Heard {

@@ -192,6 +192,8 @@ void AssetView::take(const Message& message) {
   if (const auto* state = std::get_if<StateReport>(&message)) keep_latest(state_, *state);
   if (const auto* advisory = std::get_if<Advisory>(&message))
     if (advisory->state != AdvisoryState::superseded) advisory_ = *advisory;
+  if (const auto* found = std::get_if<ModelDiscrepancy>(&message)) keep_latest(discrepancy_, *found);
+  if (const auto* acceptance = std::get_if<ModelAcceptance>(&message)) keep_latest(acceptance_, *acceptance);
 }
 
 bool AssetView::is_of_now(const Header& header) const {
@@ -277,6 +279,20 @@ std::string AssetView::advisory_lines() const {
   return text + "                   (to acknowledge: " + advisory_->advisory_id + ")\n";
 }
 
+std::string AssetView::model_lines() const {
+  std::string text;
+  if (discrepancy_ && is_of_now(discrepancy_->header)) {
+    const ModelDiscrepancy& found = *discrepancy_;
+    text += "  model            ";
+    text += wrapped(found.analysed ? found.summary : "residuals persist, not analysed: " + found.failure, 100, 19);
+    text += "\n                   (version " + std::to_string(found.version) +
+            ", to accept: " + found.header.message_id + ")\n";
+  }
+  if (acceptance_ && (!discrepancy_ || is_of_now(discrepancy_->header)))
+    text += "                   " + content(*acceptance_) + "\n";
+  return text;
+}
+
 std::string AssetView::left_out_lines() const {
   std::string text;
   for (const LeakageEstimate* one : estimates_of_now()) {
@@ -300,6 +316,8 @@ std::string AssetView::json() const {
   add(health_);
   add(life_);
   add(advisory_);
+  add(discrepancy_);
+  add(acceptance_);
   return text + "}";
 }
 
@@ -311,7 +329,7 @@ std::string AssetView::screen() const {
     text += ", last test " + date(life_->header.event_time_ns);
   text += tests == 0 && replaced_ns_ ? ", no test since\n"
                                      : ", " + std::to_string(tests) + (tests == 1 ? " test" : " tests") + " in view\n";
-  return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines() + left_out_lines();
+  return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines() + model_lines() + left_out_lines();
 }
 
 }  // namespace sealwatch::cli

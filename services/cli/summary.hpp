@@ -34,6 +34,7 @@ class AssetView {
   [[nodiscard]] std::string history_chart() const;
   [[nodiscard]] std::string forecast_lines() const;
   [[nodiscard]] std::string advisory_lines() const;
+  [[nodiscard]] std::string model_lines() const;
   [[nodiscard]] std::string left_out_lines() const;
   /// Whether this is about the actuator or seal that is there now.
   [[nodiscard]] bool is_of_now(const Header& header) const;
@@ -47,6 +48,8 @@ class AssetView {
   std::optional<HealthReport> health_;
   std::optional<StateReport> state_;
   std::optional<Advisory> advisory_;
+  std::optional<ModelDiscrepancy> discrepancy_;
+  std::optional<ModelAcceptance> acceptance_;
 };
 
 }  // namespace sealwatch::cli

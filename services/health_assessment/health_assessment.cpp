@@ -59,23 +59,35 @@ Status HealthAssessmentOptions::validate() const {
   return fail(Error{{}, "trend_tests", std::to_string(trend_tests), "must be at least 6", "a trend needs half a year"});
 }
 
-HealthAssessment::HealthAssessment(std::span<const AssetConfig> assets, const HealthAssessmentOptions& options)
-    : options_(options) {
+HealthAssessment::HealthAssessment(std::span<const AssetConfig> assets, const HealthAssessmentOptions& options,
+                                   std::shared_ptr<const Explainer> explainer)
+    : options_(options), explainer_(std::move(explainer)) {
   for (const AssetConfig& asset : assets) assets_.emplace(asset.asset_id, asset);
 }
 
 std::span<const Topic> HealthAssessment::inputs() const {
-  static constexpr std::array kInputs = {Topic::state_report, Topic::test_features};
-  return kInputs;
+  static constexpr std::array kInputs = {Topic::state_report, Topic::test_features, Topic::test_window};
+  return std::span(kInputs).first(explainer_ ? 3 : 2);
 }
 
 std::span<const Topic> HealthAssessment::outputs() const {
-  static constexpr std::array kOutputs = {Topic::health_report};
-  return kOutputs;
+  static constexpr std::array kOutputs = {Topic::health_report, Topic::model_discrepancy};
+  return std::span(kOutputs).first(explainer_ ? 2 : 1);
 }
 
 void HealthAssessment::restore(const Message& own_output) {
-  if (const auto* report = std::get_if<HealthReport>(&own_output)) learn(states_[report->asset_id], *report);
+  AssetState& state = states_[asset_of(own_output)];
+  if (const auto* found = std::get_if<ModelDiscrepancy>(&own_output)) state.discrepancies.restore(*found);
+  const auto* report = std::get_if<HealthReport>(&own_output);
+  if (!report) return;
+  learn(state, *report);
+  state.discrepancies.restore(*report, is_first_after_replacement(report->header));
+}
+
+std::size_t HealthAssessment::held() const {
+  std::size_t held = 0;
+  for (const auto& [asset_id, state] : states_) held += state.discrepancies.held();
+  return held;
 }
 
 Conclusion HealthAssessment::receive(const Message& input) {
@@ -83,23 +95,47 @@ Conclusion HealthAssessment::receive(const Message& input) {
   AssetState& state = states_[asset_of(input)];
   if (const auto* features = std::get_if<TestFeatures>(&input))
     state.features.emplace(features->header.pst_id, *features);
-  if (const auto* report = std::get_if<StateReport>(&input)) {
-    if (report->header.pst_id.empty())
-      conclusion.consumed.push_back(report->header.message_id);
+  if (const auto* report = std::get_if<StateReport>(&input)) take_report(state, *report, conclusion);
+  if (const auto* window = std::get_if<TestWindow>(&input)) {
+    const auto asset = assets_.find(window->asset_id);
+    if (!explainer_ || asset == assets_.end())
+      conclusion.consumed.push_back(window->header.message_id);
     else
-      state.reports.push_back(*report);
+      state.discrepancies.take(*window, asset->second, *explainer_, conclusion);
   }
   while (!state.reports.empty()) {
-    const StateReport& report = state.reports.front();
+    const StateReport report = state.reports.front();
     const auto features = state.features.find(report.header.pst_id);
     if (features == state.features.end()) break;
-    conclusion.outputs.emplace_back(conclude(state, report, features->second));
-    conclusion.consumed.push_back(report.header.message_id);
+    const HealthReport health = conclude(state, report, features->second);
+    conclusion.outputs.emplace_back(health);
     conclusion.consumed.push_back(features->second.header.message_id);
     state.features.erase(features);
     state.reports.pop_front();
+    settle(state, report, health.admissible_for_prognosis, conclusion);
   }
   return conclusion;
+}
+
+/// One whose health is concluded already comes again after a restart because its test was kept.
+void HealthAssessment::take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const {
+  const std::optional<bool> admissible = state.discrepancies.concluded(report.header.pst_id);
+  if (report.header.pst_id.empty())
+    conclusion.consumed.push_back(report.header.message_id);
+  else if (admissible && explainer_)
+    settle(state, report, *admissible, conclusion);
+  else
+    state.reports.push_back(report);
+}
+
+void HealthAssessment::settle(AssetState& state, const StateReport& report, bool admissible,
+                              Conclusion& conclusion) const {
+  const auto asset = assets_.find(report.asset_id);
+  if (explainer_ && asset != assets_.end())
+    state.discrepancies.take(report, admissible, is_first_after_replacement(report.header), asset->second, *explainer_,
+                             conclusion);
+  else
+    conclusion.consumed.push_back(report.header.message_id);
 }
 
 HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& state_report,

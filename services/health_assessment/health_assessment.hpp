@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,7 +12,9 @@
 
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/port/explainer.hpp"
 #include "sealwatch/port/layer.hpp"
+#include "services/health_assessment/discrepancy_watch.hpp"
 #include "services/health_assessment/trend.hpp"
 
 namespace sealwatch {
@@ -26,15 +29,19 @@ struct HealthAssessmentOptions {
 ///
 /// A test that was not judged says nothing about health: its report carries over the grade and the proposals of the
 /// last one that did, and says so. A state report concluded from a maintenance_event starts the asset's history anew.
+/// With an explainer, tests whose residuals persist are kept and analysed (discrepancy_watch.hpp).
 class HealthAssessment final : public Layer {
  public:
-  explicit HealthAssessment(std::span<const AssetConfig> assets, const HealthAssessmentOptions& options = {});
+  /// `explainer` may be null: then nothing is analysed.
+  explicit HealthAssessment(std::span<const AssetConfig> assets, const HealthAssessmentOptions& options = {},
+                            std::shared_ptr<const Explainer> explainer = nullptr);
 
   [[nodiscard]] std::string_view name() const override { return "health_assessment"; }
   [[nodiscard]] std::span<const Topic> inputs() const override;
   [[nodiscard]] std::span<const Topic> outputs() const override;
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
+  [[nodiscard]] std::size_t held() const override;
 
  private:
   struct AssetState {
@@ -42,13 +49,17 @@ class HealthAssessment final : public Layer {
     std::map<std::string, TestFeatures> features;  // by pst_id
     std::vector<GradeAt> grades;                   // of admissible tests since the last replacement, oldest first
     std::optional<HealthReport> last;
+    DiscrepancyWatch discrepancies;
   };
 
+  void take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const;
+  void settle(AssetState& state, const StateReport& report, bool admissible, Conclusion& conclusion) const;
   [[nodiscard]] HealthReport conclude(AssetState& state, const StateReport& report, const TestFeatures& features) const;
   void learn(AssetState& state, const HealthReport& report) const;
 
   std::map<std::string, AssetConfig> assets_;
   HealthAssessmentOptions options_;
+  std::shared_ptr<const Explainer> explainer_;
   std::map<std::string, AssetState> states_;
 };
 

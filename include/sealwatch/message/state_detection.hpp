@@ -7,8 +7,9 @@ namespace sealwatch {
 
 SEALWATCH_ENUM(AlertRegion, normal, advisory, warning, alarm)
 SEALWATCH_ENUM(PstVerdict, passed, failed, aborted, not_judged)
-/// What a residual was judged against: the datasheet's model or the asset's own first tests.
-SEALWATCH_ENUM(Reference, limit, nominal_model, own_baseline)
+/// What a residual was judged against: the datasheet's model, the asset's own first tests, or its first tests with the
+/// model that an operator accepted.
+SEALWATCH_ENUM(Reference, limit, nominal_model, own_baseline, accepted_model)
 
 /// One judged quantity with its region after hysteresis and delay.
 struct RegionJudgement {
@@ -49,8 +50,9 @@ struct StateReport {
   bool pst_overdue = false;   ///< at the event time of this report a test was overdue, or this test came late
   double overdue_days = 0.0;  ///< by how much
   std::vector<std::string> stale_channels;
+  std::string accepted_discrepancy;  ///< model_discrepancy whose model was judged besides; "" none
   SEALWATCH_FIELDS(StateReport, asset_id, header, verdict, verdict_reasons, region, judgements, residuals, pst_overdue,
-                   overdue_days, stale_channels)
+                   overdue_days, stale_channels, accepted_discrepancy)
   friend bool operator==(const StateReport&, const StateReport&) = default;
 };
 

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <iterator>
 #include <span>
@@ -56,6 +57,8 @@ class Layer {
   virtual void restore(const Message& own_output) = 0;
   /// Takes one input; never fails: bad content becomes a message that says so.
   [[nodiscard]] virtual Conclusion receive(const Message& input) = 0;
+  /// How many of its unconsumed inputs it keeps as its memory: they wait for nothing.
+  [[nodiscard]] virtual std::size_t held() const { return 0; }
   /// Lets time pass in live operation (never called in replay or offline): tests that became overdue, tests whose end
   /// never came. Must depend on `now` only in whether it concludes, not in what.
   [[nodiscard]] virtual Conclusion tick(UtcTime now) {

@@ -257,7 +257,10 @@ void LayerRunner::report_progress() {
     received.push_back({stream.first, stream.second, position == committed_.end() ? 0 : position->second});
   }
   heartbeat_->update([&](ServiceStatus& status) {
-    status.pending_inputs = journal_.open_inputs() + ready_.size();
+    // What the layer keeps as its memory waits for nothing; what runs in the other thread does.
+    const std::uint64_t open = journal_.open_inputs();
+    status.pending_inputs = std::max<std::uint64_t>(open - std::min<std::uint64_t>(layer_.held(), open), later_.open());
+    status.pending_inputs += ready_.size();
     status.written = std::move(written);
     status.received = std::move(received);
     status.last_error = last_error_;

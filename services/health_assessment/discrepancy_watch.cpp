@@ -1,0 +1,237 @@
+#include "services/health_assessment/discrepancy_watch.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <utility>
+
+namespace sealwatch {
+namespace {
+
+constexpr const char* kProducer = "health_assessment 0.1.0";
+constexpr std::string_view kResidual = "residual.";
+
+/// Both, one after the other, as one piece of work.
+void add_later(Conclusion& conclusion, std::function<Conclusion()> work) {
+  if (!conclusion.later) {
+    conclusion.later = std::move(work);
+    return;
+  }
+  conclusion.later = [first = std::move(conclusion.later), second = std::move(work)] {
+    Conclusion both = completed(first());
+    Conclusion rest = completed(second());
+    std::ranges::move(rest.outputs, std::back_inserter(both.outputs));
+    std::ranges::move(rest.consumed, std::back_inserter(both.consumed));
+    return both;
+  };
+}
+
+std::string in_words(const RegionJudgement& judgement) {
+  char figures[120];
+  std::snprintf(figures, sizeof figures, " is %.3g %s, in region ", judgement.value, judgement.unit.c_str());
+  std::string text = judgement.quantity;
+  text.append(figures).append(name_of(judgement.raw_region)).append(" against ");
+  return text.append(name_of(judgement.reference));
+}
+
+/// The test as the analysis takes it: channels that the test's own status calls OK.
+Recording recording_of(const TestWindow& window) {
+  Recording recording;
+  recording.file = recording.recording_id = window.header.pst_id;
+  recording.asset_id = window.asset_id;
+  recording.content_hash = window.header.pst_id;
+  if (window.header.event_time_known) recording.start_time = UtcTime{window.header.event_time_ns};
+  recording.samples = window.samples;
+  for (const ChannelStatus& status : window.channel_status)
+    if (status.state != ChannelState::OK)
+      std::erase_if(recording.samples.channels, [&](const Series& series) { return series.name == status.channel; });
+  return recording;
+}
+
+Header header_after(const Header& last_test) {
+  Header header;
+  header.message_id = "model_discrepancy/" + last_test.pst_id;
+  header.pst_id = last_test.pst_id;
+  header.producer = kProducer;
+  header.event_time_known = last_test.event_time_known;
+  header.event_time_ns = last_test.event_time_ns;
+  header.replay = last_test.replay;
+  return header;
+}
+
+}  // namespace
+
+std::vector<std::string> persistent_residuals(const StateReport& report) {
+  const bool accepted = std::ranges::any_of(
+      report.judgements, [](const RegionJudgement& j) { return j.reference == Reference::accepted_model; });
+  std::vector<std::string> found;
+  for (const RegionJudgement& judgement : report.judgements)
+    if (judgement.quantity.starts_with(kResidual) && judgement.raw_region >= AlertRegion::warning &&
+        (!accepted || judgement.reference == Reference::accepted_model))
+      found.push_back(in_words(judgement));
+  return found;
+}
+
+void DiscrepancyWatch::restore(const HealthReport& own_output, bool first_after_replacement) {
+  if (first_after_replacement) begin_anew();
+  concluded_[own_output.header.pst_id] = own_output.admissible_for_prognosis;
+}
+
+void DiscrepancyWatch::restore(const ModelDiscrepancy& own_output) {
+  // One that was still running when the actuator was replaced says nothing about the new one.
+  if (own_output.fit_tests.empty() || before_replacement_.contains(own_output.fit_tests.front())) return;
+  version_ = own_output.version;
+  analysed_.clear();
+  analysed_.insert(own_output.fit_tests.begin(), own_output.fit_tests.end());
+  analysed_.insert(own_output.holdout_tests.begin(), own_output.holdout_tests.end());
+}
+
+std::optional<bool> DiscrepancyWatch::concluded(const std::string& pst_id) const {
+  const auto found = concluded_.find(pst_id);
+  if (found == concluded_.end()) return std::nullopt;
+  return found->second;
+}
+
+void DiscrepancyWatch::take(const TestWindow& window, const AssetConfig& asset, const Explainer& explainer,
+                            Conclusion& conclusion) {
+  if (settled_.erase(window.header.pst_id) > 0) {
+    no_longer_needed_.push_back(window.header.message_id);
+  } else {
+    windows_.emplace(window.header.pst_id, std::make_shared<const TestWindow>(window));
+    keep_complete_tests(asset, explainer, conclusion);
+  }
+  release(conclusion);
+}
+
+void DiscrepancyWatch::take(const StateReport& report, bool admissible, bool first_after_replacement,
+                            const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion) {
+  if (!concluded_.contains(report.header.pst_id)) {
+    forget_windows_of_settled_tests();
+    if (first_after_replacement) begin_anew();
+    concluded_.emplace(report.header.pst_id, admissible);
+  }
+  if (first_after_replacement) end_row();
+  if (!admissible) {
+    settle(report);
+  } else if (persistent_residuals(report).empty()) {
+    end_row();
+    settle(report);
+  } else {
+    deviating_.push_back(report);
+    keep_complete_tests(asset, explainer, conclusion);
+  }
+  release(conclusion);
+}
+
+/// The next test is one of another actuator: versions count anew.
+void DiscrepancyWatch::begin_anew() {
+  for (const auto& [pst_id, admissible] : concluded_) before_replacement_.insert(pst_id);
+  analysed_.clear();
+  version_ = 0;
+}
+
+void DiscrepancyWatch::end_row() {
+  for (const StoredTest& test : row_) {
+    no_longer_needed_.push_back(test.report.header.message_id);
+    no_longer_needed_.push_back(test.window->header.message_id);
+  }
+  row_.clear();
+  for (const StateReport& report : std::exchange(deviating_, {})) settle(report);
+}
+
+void DiscrepancyWatch::settle(const StateReport& report) {
+  no_longer_needed_.push_back(report.header.message_id);
+  const auto window = windows_.find(report.header.pst_id);
+  if (window == windows_.end()) {
+    settled_.insert(report.header.pst_id);
+    return;
+  }
+  no_longer_needed_.push_back(window->second->header.message_id);
+  windows_.erase(window);
+}
+
+/// Windows that came, after this process was started again, of tests that had been settled before. Kept tests have all
+/// come back by the first new report.
+void DiscrepancyWatch::forget_windows_of_settled_tests() {
+  const auto waits = [this](const std::string& pst_id) {
+    return std::ranges::any_of(deviating_, [&](const StateReport& report) { return report.header.pst_id == pst_id; });
+  };
+  for (auto window = windows_.begin(); window != windows_.end();) {
+    const bool settled = concluded_.contains(window->first) && !waits(window->first);
+    if (settled) no_longer_needed_.push_back(window->second->header.message_id);
+    window = settled ? windows_.erase(window) : std::next(window);
+  }
+}
+
+void DiscrepancyWatch::keep_complete_tests(const AssetConfig& asset, const Explainer& explainer,
+                                           Conclusion& conclusion) {
+  while (!deviating_.empty()) {
+    const auto window = windows_.find(deviating_.front().header.pst_id);
+    if (window == windows_.end()) return;
+    row_.push_back({std::move(deviating_.front()), window->second});
+    deviating_.pop_front();
+    windows_.erase(window);
+    if (row_.size() > kTestsOfAnalysis) {
+      no_longer_needed_.push_back(row_.front().report.header.message_id);
+      no_longer_needed_.push_back(row_.front().window->header.message_id);
+      row_.pop_front();
+    }
+    if (!due()) continue;
+    add_later(conclusion, analysis(asset, explainer));
+    analysis_begun_ = true;
+  }
+}
+
+bool DiscrepancyWatch::due() const {
+  const auto is_new = [this](const StoredTest& test) { return !analysed_.contains(test.report.header.pst_id); };
+  const auto unseen = static_cast<std::size_t>(std::ranges::count_if(row_, is_new));
+  if (row_.size() == kTestsOfFirstAnalysis) return unseen == kTestsOfFirstAnalysis;
+  if (row_.size() < kTestsOfAnalysis) return false;
+  return unseen == kTestsOfAnalysis || (analysed_.size() < kTestsOfAnalysis && unseen >= kTestsOfFirstAnalysis);
+}
+
+std::function<Conclusion()> DiscrepancyWatch::analysis(const AssetConfig& asset, const Explainer& explainer) {
+  analysed_.clear();
+  std::vector<Window> windows;
+  ModelDiscrepancy known;
+  known.version = ++version_;
+  known.asset_id = asset.asset_id;
+  known.reasons = persistent_residuals(row_.back().report);
+  known.header = header_after(row_.back().report.header);
+  const std::size_t fitted = row_.size() - row_.size() / 3;
+  for (const StoredTest& test : row_) {
+    (windows.size() < fitted ? known.fit_tests : known.holdout_tests).push_back(test.report.header.pst_id);
+    known.header.source_ids.push_back(test.report.header.message_id);
+    known.header.source_ids.push_back(test.window->header.message_id);
+    analysed_.insert(test.report.header.pst_id);
+    windows.push_back(test.window);
+  }
+  return [windows = std::move(windows), known = std::move(known), asset, fitted, &explainer] {
+    std::vector<Recording> recordings;
+    for (const Window& window : windows) recordings.push_back(recording_of(*window));
+    const std::span<const Recording> all(recordings);
+    ModelDiscrepancy found = explainer.explain(asset, all.first(fitted), all.subspan(fitted));
+    found.asset_id = known.asset_id;
+    found.header = known.header;
+    found.version = known.version;
+    found.reasons = known.reasons;
+    found.fit_tests = known.fit_tests;
+    found.holdout_tests = known.holdout_tests;
+    Conclusion conclusion;
+    conclusion.outputs.emplace_back(std::move(found));
+    return conclusion;
+  };
+}
+
+/// Behind the analyses that are still running, so that they can be made again until they are stored.
+void DiscrepancyWatch::release(Conclusion& conclusion) {
+  std::vector<std::string> ids = std::exchange(no_longer_needed_, {});
+  if (ids.empty()) return;
+  if (!analysis_begun_) {
+    std::ranges::move(ids, std::back_inserter(conclusion.consumed));
+    return;
+  }
+  add_later(conclusion, [ids = std::move(ids)] { return Conclusion{.outputs = {}, .consumed = ids}; });
+}
+
+}  // namespace sealwatch

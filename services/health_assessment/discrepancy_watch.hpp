@@ -1,0 +1,85 @@
+// From residuals that persist to the mismatch analysis: which tests are kept for it, and when it is due.
+//
+// A test deviates when a residual of the model in force (the accepted one, else the nominal one) or against the
+// asset's own first tests stands in the warning region or above. The last six deviating tests in a row are kept: a
+// judged test that does not deviate ends the row, one that is not fit to be judged does neither. The analysis is due
+// with the third test of a row, again with the sixth, then with every six more. It fits the earlier two thirds of the
+// tests and keeps the last third aside. docs/health.md has the reasons.
+//
+// Everything here comes back from inputs that were not consumed (the kept tests) and from model_discrepancy (what was
+// analysed), so that an analysis that was cut off is made again, the same. What is no longer needed is consumed behind
+// the analyses that are still running.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/data_manipulation.hpp"
+#include "sealwatch/message/health_assessment.hpp"
+#include "sealwatch/message/state_detection.hpp"
+#include "sealwatch/port/explainer.hpp"
+#include "sealwatch/port/layer.hpp"
+
+namespace sealwatch {
+
+inline constexpr std::size_t kTestsOfFirstAnalysis = 3;
+inline constexpr std::size_t kTestsOfAnalysis = 6;
+
+/// Residuals of this test that stand in the warning region or above, in words; empty: it does not deviate. Of the
+/// nominal model only where no accepted one is judged.
+[[nodiscard]] std::vector<std::string> persistent_residuals(const StateReport& report);
+
+/// Of one asset.
+class DiscrepancyWatch {
+ public:
+  void restore(const HealthReport& own_output, bool first_after_replacement);
+  void restore(const ModelDiscrepancy& own_output);
+  /// Whether the health of this test has been concluded, and if so whether it was admissible.
+  [[nodiscard]] std::optional<bool> concluded(const std::string& pst_id) const;
+
+  /// Takes a window in; it may come before or after its test's report.
+  void take(const TestWindow& window, const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion);
+  /// Takes the report of a test whose health is concluded, and says when it is no longer needed. A report may come a
+  /// second time, after a restart.
+  void take(const StateReport& report, bool admissible, bool first_after_replacement, const AssetConfig& asset,
+            const Explainer& explainer, Conclusion& conclusion);
+  /// Inputs that wait for nothing and are kept for the next analysis.
+  [[nodiscard]] std::size_t held() const { return 2 * row_.size(); }
+
+ private:
+  using Window = std::shared_ptr<const TestWindow>;
+  struct StoredTest {
+    StateReport report;
+    Window window;
+  };
+
+  void begin_anew();
+  void end_row();
+  void settle(const StateReport& report);
+  void forget_windows_of_settled_tests();
+  void keep_complete_tests(const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion);
+  [[nodiscard]] bool due() const;
+  [[nodiscard]] std::function<Conclusion()> analysis(const AssetConfig& asset, const Explainer& explainer);
+  void release(Conclusion& conclusion);
+
+  std::map<std::string, bool> concluded_;  ///< pst_id; whether admissible
+  std::set<std::string> before_replacement_;
+  std::set<std::string> settled_;          ///< pst_ids whose windows are not needed, should they still come
+  std::map<std::string, Window> windows_;  ///< whose tests are not kept yet, by pst_id
+  std::deque<StateReport> deviating_;      ///< whose windows are not there yet, or those of tests before
+  std::deque<StoredTest> row_;             ///< at most kTestsOfAnalysis
+  std::set<std::string> analysed_;         ///< pst_ids of the latest analysis
+  std::int32_t version_ = 0;               ///< of the latest analysis
+  std::vector<std::string> no_longer_needed_;
+  bool analysis_begun_ = false;  ///< in this process: it may still be running
+};
+
+}  // namespace sealwatch

@@ -18,7 +18,7 @@ namespace {
 // Laws that hide in free parameters, how much larger than an engineer's limit they would have to be to show, and how
 // far they would then have moved the seal's estimate, before the data is said to be too poor.
 constexpr double kConcealed = 0.5;
-constexpr double kTooLarge = 3.0;
+constexpr double kTooLarge = 1.0;
 constexpr double kLeakageMatters = 0.1;    // of R_CL: the standard error above which a fit is not admissible either
 constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
 constexpr double kRest = 5.0;              // a channel moves if it spans more than this many noise standard deviations

@@ -13,6 +13,7 @@
 #include "services/cli/manual.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/verify.hpp"
+#include "services/cli/verify_mismatch.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -159,12 +160,36 @@ class CommandLine {
     add_verify_rul(part("rul", "Monte Carlo: random lives, monthly tests, estimates, forecasts until failure",
                         "sealwatch verify rul --asset config/assets/xt03-mv2.yaml --lives 1000 --out verification",
                         [this] { return run_verify_rul(verify_rul_); }));
+    add_verify_mismatch(part("mismatch", "blind trial of explain: recordings with hidden physics, and who finds it",
+                             "sealwatch verify mismatch --sets 40 --strata null,single --out trial",
+                             [this] { return run_verify_mismatch(verify_mismatch_); }));
     CLI::App* merge = part("merge", "put the shards of one run together: the same results as of a run in one piece",
                            "sealwatch verify merge shard1 shard2 --out verification",
                            [this] { return run_verify_merge(verify_merge_); });
     merge->add_option("directories", verify_merge_.directories, "the --out of each shard")->required();
     merge->add_option("--out", verify_merge_.directory, "directory for the results (made if absent)")->required();
     merge->add_flag("--json", verify_merge_.json, "machine-readable result (schema sealwatch.verification/1)");
+  }
+
+  void add_verify_mismatch(CLI::App* trial) {
+    VerifyMismatchOptions& o = verify_mismatch_;
+    trial->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
+    trial->add_option("--sets", o.sets, "sets of each stratum")->check(CLI::Range(0, 100000))->capture_default_str();
+    trial
+        ->add_option("--strata", o.strata,
+                     "null, single, pair, outside, sensor, source_sensors, concealed, inseparable, nominal_only "
+                     "(default: all)")
+        ->delimiter(',');
+    trial->add_option("--seed", o.seed, "of the first set; the next has the next")
+        ->check(not_negative)
+        ->capture_default_str();
+    trial->add_option("--threads", o.threads, "0: one for each core")->check(CLI::Range(0, 256))->capture_default_str();
+    trial->add_option("--shard", o.shard, "k/n: only this part of the sets")->capture_default_str();
+    trial->add_option("--from", o.from, "directories of other shards, whose sets are counted too");
+    trial->add_flag("--no-controls", o.without_controls, "only the analysis itself");
+    trial->add_flag("--seal", o.seal, "run nothing: write the hash of the sets' labels to sealed.txt");
+    trial->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
+    trial->add_flag("--json", o.json, "machine-readable result (schema sealwatch.mismatch_trial/1)");
   }
 
   void add_verify_rul(CLI::App* rul) {
@@ -311,6 +336,7 @@ class CommandLine {
   ExplainOptions explain_;
   ForecastOptions forecast_;
   ValidateOptions validate_;
+  VerifyMismatchOptions verify_mismatch_;
   VerifyRulOptions verify_rul_;
   VerifyMergeOptions verify_merge_;
   ReplayOptions replay_;

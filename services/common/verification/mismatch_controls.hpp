@@ -1,0 +1,16 @@
+// What other methods say of the same set:
+//   chi-square   misfit of the refitted model against its degrees of freedom: detects, names nothing
+//   BIC          the single law with the lowest misfit + k ln N, no colour and no long-run factor
+//   oracle       refit with the true laws (nearest form of the catalogue) given: the best that could be reached
+// and how much of the truth the free parameters swallow, on these tests and on the nominal ones alone.
+#pragma once
+
+#include "services/common/verification/mismatch_record.hpp"
+#include "services/virtual_bench/truth_trials.hpp"
+
+namespace sealwatch::verification {
+
+[[nodiscard]] ControlRecord run_controls(const AssetConfig& asset, const bench::TrialRecordings& recordings,
+                                         const bench::TrialPlan& plan, int threads);
+
+}  // namespace sealwatch::verification

@@ -115,7 +115,7 @@ std::vector<const Power*> could_not_show(const std::vector<Power>& power) {
   std::vector<const Power*> blind;
   for (const Power& one : power)
     if (one.absorbed_share > kConcealed && one.minimum_detectable > kTooLarge * one.significant &&
-        one.significant > 0.0)
+        one.leakage_shift > kLeakageMatters && one.significant > 0.0)
       blind.push_back(&one);
   return blind;
 }

@@ -12,7 +12,7 @@
 namespace sealwatch::bench {
 namespace {
 
-constexpr std::array kTimesBarely = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+constexpr std::array kTimesBarely = {1.0, 3.0, 10.0, 30.0, 100.0, 300.0};
 
 double log_uniform(forecast::UniformRandom& random, const forecast::Range& range) {
   if (!(range.max > range.min)) return range.min;
@@ -72,6 +72,22 @@ HiddenEffect nth_effect(const std::vector<Place>& places, std::uint64_t seed, co
   return draw_effect(places[place], sizes[(place + round) % sizes.size()], random);
 }
 
+/// Faults that such tests begin to show, and beyond which a sensor would be replaced unasked.
+double barely_fault(const std::string& kind, const std::string& channel) {
+  constexpr double kGain = 3e-4, kLag_s = 3e-4, kShareOfNoise = 0.05;
+  constexpr double kPosition_m = 5e-5;  // only what depends on the position tells its bias
+  if (kind == "sensor_gain") return kGain;
+  if (kind == "sensor_lag") return kLag_s;
+  return channel == "position" ? kPosition_m : kShareOfNoise * usual_noise(channel);
+}
+
+double largest_fault(const std::string& kind, const std::string& channel) {
+  constexpr double kGain = 0.1, kLag_s = 0.05, kTimesNoise = 15.0, kPosition_m = 2e-3;
+  if (kind == "sensor_gain") return kGain;
+  if (kind == "sensor_lag") return kLag_s;
+  return channel == "position" ? kPosition_m : kTimesNoise * usual_noise(channel);
+}
+
 SensorFault draw_fault(std::uint64_t seed, const std::vector<std::string>& channels) {
   static constexpr std::array<std::string_view, 3> kKinds = {"sensor_bias", "sensor_gain", "sensor_lag"};
   std::vector<std::string> outputs = channels;
@@ -80,17 +96,16 @@ SensorFault draw_fault(std::uint64_t seed, const std::vector<std::string>& chann
   const std::string kind(kKinds[seed % kKinds.size()]);
   const double times =
       kTimesBarely[(seed + seed / kTimesBarely.size() + seed / (kKinds.size() * outputs.size())) % kTimesBarely.size()];
-  double barely = 0.001;                                           // relative gain
-  if (kind == "sensor_bias") barely = 0.1 * usual_noise(channel);  // of the noise of one sample
-  if (kind == "sensor_lag") barely = 5e-4;                         // s
   const double sign = kind == "sensor_lag" || (seed / 2) % 2 == 0 ? 1.0 : -1.0;
-  return {.kind = kind, .channel = channel, .size = sign * barely * times};
+  return {.kind = kind,
+          .channel = channel,
+          .size = sign * std::min(barely_fault(kind, channel) * times, largest_fault(kind, channel))};
 }
 
 void hide(TrialPlan& plan, forecast::UniformRandom& random) {
   const std::uint64_t seed = plan.seed;
   const auto plainly = std::span(kTimesBarely).subspan(3);
-  const auto medium = std::span(kTimesBarely).subspan(2, 3);
+  const auto medium = std::span(kTimesBarely).subspan(1, 3);
   switch (plan.stratum) {
     case TrialStratum::null:
       return;
@@ -202,9 +217,7 @@ std::vector<TrialTruth> TrialPlan::truths() const {
                                  : lag ? "tau"
                                        : "g",
                      .strength_value = f.size,
-                     .times_barely = std::abs(f.size) / (bias  ? 0.1 * usual_noise(f.channel)
-                                                         : lag ? 5e-4
-                                                               : 1e-3)});
+                     .times_barely = std::abs(f.size) / barely_fault(f.kind, f.channel)});
   }
   return found;
 }

@@ -73,23 +73,30 @@ std::vector<std::string> persistent_residuals(const StateReport& report) {
 }
 
 void DiscrepancyWatch::restore(const HealthReport& own_output, bool first_after_replacement) {
-  if (first_after_replacement) begin_anew();
-  concluded_[own_output.header.pst_id] = own_output.admissible_for_prognosis;
+  note_concluded(own_output.header.pst_id, own_output.admissible_for_prognosis, first_after_replacement);
 }
 
 void DiscrepancyWatch::restore(const ModelDiscrepancy& own_output) {
-  // One that was still running when the actuator was replaced says nothing about the new one.
-  if (own_output.fit_tests.empty() || before_replacement_.contains(own_output.fit_tests.front())) return;
-  version_ = own_output.version;
-  analysed_.clear();
-  analysed_.insert(own_output.fit_tests.begin(), own_output.fit_tests.end());
-  analysed_.insert(own_output.holdout_tests.begin(), own_output.holdout_tests.end());
+  // It may have been stored after the replacement that ended its era.
+  const auto test = own_output.fit_tests.empty() ? concluded_.end() : concluded_.find(own_output.fit_tests.front());
+  if (test == concluded_.end()) return;
+  Era& era = eras_[test->second.era];
+  era.version = own_output.version;
+  era.analysed = {own_output.fit_tests.begin(), own_output.fit_tests.end()};
+  era.analysed.insert(own_output.holdout_tests.begin(), own_output.holdout_tests.end());
+}
+
+/// With another actuator versions count anew.
+void DiscrepancyWatch::note_concluded(const std::string& pst_id, bool admissible, bool first_after_replacement) {
+  if (concluded_.contains(pst_id)) return;
+  if (first_after_replacement) eras_.emplace_back();
+  concluded_[pst_id] = {.admissible = admissible, .era = eras_.size() - 1};
 }
 
 std::optional<bool> DiscrepancyWatch::concluded(const std::string& pst_id) const {
   const auto found = concluded_.find(pst_id);
   if (found == concluded_.end()) return std::nullopt;
-  return found->second;
+  return found->second.admissible;
 }
 
 void DiscrepancyWatch::take(const TestWindow& window, const AssetConfig& asset, const Explainer& explainer,
@@ -105,11 +112,8 @@ void DiscrepancyWatch::take(const TestWindow& window, const AssetConfig& asset, 
 
 void DiscrepancyWatch::take(const StateReport& report, bool admissible, bool first_after_replacement,
                             const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion) {
-  if (!concluded_.contains(report.header.pst_id)) {
-    forget_windows_of_settled_tests();
-    if (first_after_replacement) begin_anew();
-    concluded_.emplace(report.header.pst_id, admissible);
-  }
+  if (!concluded_.contains(report.header.pst_id)) forget_windows_of_settled_tests();
+  note_concluded(report.header.pst_id, admissible, first_after_replacement);
   if (first_after_replacement) end_row();
   if (!admissible) {
     settle(report);
@@ -121,13 +125,6 @@ void DiscrepancyWatch::take(const StateReport& report, bool admissible, bool fir
     keep_complete_tests(asset, explainer, conclusion);
   }
   release(conclusion);
-}
-
-/// The next test is one of another actuator: versions count anew.
-void DiscrepancyWatch::begin_anew() {
-  for (const auto& [pst_id, admissible] : concluded_) before_replacement_.insert(pst_id);
-  analysed_.clear();
-  version_ = 0;
 }
 
 void DiscrepancyWatch::end_row() {
@@ -182,19 +179,21 @@ void DiscrepancyWatch::keep_complete_tests(const AssetConfig& asset, const Expla
   }
 }
 
-bool DiscrepancyWatch::due() const {
-  const auto is_new = [this](const StoredTest& test) { return !analysed_.contains(test.report.header.pst_id); };
+bool DiscrepancyWatch::due() {
+  const std::set<std::string>& analysed = era_of_row().analysed;
+  const auto is_new = [&](const StoredTest& test) { return !analysed.contains(test.report.header.pst_id); };
   const auto unseen = static_cast<std::size_t>(std::ranges::count_if(row_, is_new));
   if (row_.size() == kTestsOfFirstAnalysis) return unseen == kTestsOfFirstAnalysis;
   if (row_.size() < kTestsOfAnalysis) return false;
-  return unseen == kTestsOfAnalysis || (analysed_.size() < kTestsOfAnalysis && unseen >= kTestsOfFirstAnalysis);
+  return unseen == kTestsOfAnalysis || (analysed.size() < kTestsOfAnalysis && unseen >= kTestsOfFirstAnalysis);
 }
 
 std::function<Conclusion()> DiscrepancyWatch::analysis(const AssetConfig& asset, const Explainer& explainer) {
-  analysed_.clear();
+  Era& era = era_of_row();
+  era.analysed.clear();
   std::vector<Window> windows;
   ModelDiscrepancy known;
-  known.version = ++version_;
+  known.version = ++era.version;
   known.asset_id = asset.asset_id;
   known.reasons = persistent_residuals(row_.back().report);
   known.header = header_after(row_.back().report.header);
@@ -203,7 +202,7 @@ std::function<Conclusion()> DiscrepancyWatch::analysis(const AssetConfig& asset,
     (windows.size() < fitted ? known.fit_tests : known.holdout_tests).push_back(test.report.header.pst_id);
     known.header.source_ids.push_back(test.report.header.message_id);
     known.header.source_ids.push_back(test.window->header.message_id);
-    analysed_.insert(test.report.header.pst_id);
+    era.analysed.insert(test.report.header.pst_id);
     windows.push_back(test.window);
   }
   return [windows = std::move(windows), known = std::move(known), asset, fitted, &explainer] {

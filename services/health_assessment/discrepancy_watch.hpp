@@ -56,28 +56,36 @@ class DiscrepancyWatch {
 
  private:
   using Window = std::shared_ptr<const TestWindow>;
+  /// Between two replacements.
+  struct Era {
+    std::set<std::string> analysed;  ///< pst_ids of the latest analysis
+    std::int32_t version = 0;        ///< of the latest analysis
+  };
+  struct Concluded {
+    bool admissible = false;
+    std::size_t era = 0;
+  };
   struct StoredTest {
     StateReport report;
     Window window;
   };
 
-  void begin_anew();
+  void note_concluded(const std::string& pst_id, bool admissible, bool first_after_replacement);
   void end_row();
   void settle(const StateReport& report);
   void forget_windows_of_settled_tests();
   void keep_complete_tests(const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion);
-  [[nodiscard]] bool due() const;
+  [[nodiscard]] Era& era_of_row() { return eras_[concluded_.at(row_.back().report.header.pst_id).era]; }
+  [[nodiscard]] bool due();
   [[nodiscard]] std::function<Conclusion()> analysis(const AssetConfig& asset, const Explainer& explainer);
   void release(Conclusion& conclusion);
 
-  std::map<std::string, bool> concluded_;  ///< pst_id; whether admissible
-  std::set<std::string> before_replacement_;
+  std::map<std::string, Concluded> concluded_;  ///< by pst_id
+  std::vector<Era> eras_{1};
   std::set<std::string> settled_;          ///< pst_ids whose windows are not needed, should they still come
   std::map<std::string, Window> windows_;  ///< whose tests are not kept yet, by pst_id
   std::deque<StateReport> deviating_;      ///< whose windows are not there yet, or those of tests before
   std::deque<StoredTest> row_;             ///< at most kTestsOfAnalysis
-  std::set<std::string> analysed_;         ///< pst_ids of the latest analysis
-  std::int32_t version_ = 0;               ///< of the latest analysis
   std::vector<std::string> no_longer_needed_;
   bool analysis_begun_ = false;  ///< in this process: it may still be running
 };

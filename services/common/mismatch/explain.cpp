@@ -138,7 +138,7 @@ class Analysis {
     naming_ = std::move(*naming);
     best_ = naming_.best;
     result_.p_value = naming_.first.p_value;
-    result_.statistically_significant = result_.p_value <= options_.false_alarm_rate;
+    result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
       if (const Status status = prove(); !status) return fail(status.error());
@@ -163,6 +163,7 @@ class Analysis {
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     windowed_ = needs_windows(asset_, fit_.samples.front());
+    if (windowed_ && asset_.model == "eha") fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
     Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
     if (model && windowed_ && asset_.model == "eha") {
       add_input_noise(holdout_, *model, prepared(fit_), options_.seed);

@@ -197,6 +197,11 @@ Status try_unlisted(Naming& naming, const Data& data, const ExplainOptions& opti
 
 double dispersion(const FittedModel& best) { return std::max(1.0, best.misfit / best.residuals); }
 
+bool differs(double p_value, const FittedModel& model, double false_alarm_rate) {
+  constexpr double kGross = 2.0;
+  return p_value <= false_alarm_rate || dispersion(model) > kGross;
+}
+
 double criterion(const FittedModel& model, double dispersion) {
   return model.misfit / dispersion + static_cast<double>(model.free_shared) * std::log(model.residuals / dispersion);
 }
@@ -246,7 +251,9 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
   naming.forbidden = forbidden_by_physics(naming.first);
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
-    if (naming.last.p_value > options.false_alarm_rate || !promising(naming.last, *naming.best.model)) break;
+    if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||
+        !promising(naming.last, *naming.best.model))
+      break;
     const std::size_t level = naming.best.effects.size();
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
     std::vector<std::vector<LawStart>> starts;

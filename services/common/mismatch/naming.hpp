@@ -45,6 +45,9 @@ struct Naming {
 
 [[nodiscard]] double criterion(const FittedModel& model, double dispersion);
 [[nodiscard]] double dispersion(const FittedModel& best);
+/// Whether a fitted model and its recordings differ beyond the noise: by the scores of the laws, or grossly (mean
+/// squared residual above twice the noise variance), whatever any law says to it.
+[[nodiscard]] bool differs(double p_value, const FittedModel& model, double false_alarm_rate);
 
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                                           const ExplainOptions& options, const Progress& progress);

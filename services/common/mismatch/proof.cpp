@@ -68,6 +68,7 @@ BlockGains block_gains(const FittedModel& before, const FittedModel& after, std:
 
 GainInterval gain_interval(const BlockGains& blocks, double dispersion, std::uint64_t seed) {
   GainInterval interval{.gain = std::accumulate(blocks.gain.begin(), blocks.gain.end(), 0.0) / dispersion};
+  if (blocks.gain.empty()) return interval;
   std::mt19937_64 random(seed);
   std::vector<double> sums;
   for (int draw = 0; draw < kDraws; ++draw) {

@@ -212,9 +212,9 @@ void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen
                              resolution_of(screening, variant, resolution), step.strength);
     // With an input that is itself measured only what a law could be counts: its sign, and no absurd size.
     const bool possible = step.free && step.strength.cwiseAbs().maxCoeff() < kAbsurd;
-    if (resolution > 0.0 && !possible) variant.score = 0.0;
+    if ((resolution > 0.0 && !possible) || !std::isfinite(variant.score)) variant.score = 0.0;
     variant.p_value = chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
-    variant.gain = step.gain;
+    variant.gain = std::isfinite(step.gain) ? step.gain : 0.0;  // columns of zeros: the law cannot act here
     variant.physical = step.free;
     for (Eigen::Index k = 0; k < step.strength.size(); ++k)
       variant.strength.push_back(

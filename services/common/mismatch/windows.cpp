@@ -10,9 +10,6 @@
 namespace sealwatch::mismatch {
 namespace {
 
-// Corners of a test come out of the flow sensor rounded: friction of some 20 N fits that. A tenth of what an engineer
-// would care about is not claimed from a measured input.
-constexpr double kInputResolution = 0.1;
 constexpr double kShortest = 0.5;  // of a window: a shorter rest goes to the window before
 
 TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end) {
@@ -45,7 +42,7 @@ bool needs_windows(const AssetConfig& asset, const TimeSeries& recorded) {
 
 Data cut_into_windows(const Data& data) {
   Data windows;
-  windows.resolution = kInputResolution;
+  windows.resolution = data.resolution;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const TimeSeries& samples = data.samples[k];
     std::size_t begin = 0;

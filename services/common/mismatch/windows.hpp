@@ -14,6 +14,9 @@
 namespace sealwatch::mismatch {
 
 inline constexpr double kWindow_s = 2.0;
+/// Data::resolution of recordings that are driven by a measured flow: its sensor rounds the corners of a test, and
+/// friction of some 20 N fits that. A tenth of what an engineer would care about is not claimed from such an input.
+inline constexpr double kMeasuredInputResolution = 0.1;
 
 /// Whether the simulation of this recording needs windows: driven by a measured flow, or a plant whose whole records no
 /// model follows (valves that switch).

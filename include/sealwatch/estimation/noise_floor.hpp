@@ -4,6 +4,7 @@
 //   signal that is a parabola over four samples; its median absolute deviation is blind to the few samples where the
 //   signal jumps:
 //     sigma_hat = 1.4826 MAD(d) / sqrt(20)
+//   where the signal is rounded coarsely, the root mean square of all but the largest tenth of |d| instead
 //   quantisation in steps of Delta adds Delta^2 / 12, the least that the noise can be.
 //
 // Noise that is correlated from sample to sample is underestimated: whoever uses the figure must test its residual for

@@ -117,21 +117,26 @@ double engineering_share(const FoundEffect& effect, const Law& law) {
 
 // Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place.
 void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& alternatives, double best_criterion,
-           double phi) {
+           double best_misfit, double phi) {
   std::map<std::pair<std::string, std::string>, double> weight;  // by id and element
   weight[{effect.what.id, effect.what.element}] = 1.0;
   std::map<std::pair<std::string, std::string>, double> nearest;
   for (const Trial& trial : alternatives) {
     const Effect& other = trial.effects.back();
     const double behind = criterion(*trial.model, phi) - best_criterion;
+    // A richer law of the same element that fits no worse cannot be excluded by data, only by thrift.
+    const bool contains =
+        other.element == effect.what.element && other.law->id != kUnlisted && trial.model->misfit <= best_misfit + phi;
+    const bool cannot_tell = behind < kCannotTell || contains;
     const std::pair key{std::string(other.law->id), other.element};
     if (key.first == effect.what.id && key.second == effect.what.element) {
-      if (other.law != chosen.law && behind < kCannotTell) effect.indistinguishable.push_back(law_at(other));
+      if (other.law != chosen.law && cannot_tell) effect.indistinguishable.push_back(law_at(other));
       continue;
     }
     weight[key] += std::exp(-0.5 * std::clamp(behind, 0.0, 1400.0));
     if (!nearest.contains(key) || behind < nearest[key]) nearest[key] = behind;
-    if (behind < kCannotTell) {
+    const auto listed = [&](const LawAt& law) { return law.id == key.first && law.element == key.second; };
+    if (cannot_tell && std::ranges::none_of(effect.indistinguishable, listed)) {
       effect.indistinguishable.push_back(law_at(other));
       if (other.element != effect.what.element) effect.same_elements.push_back(other.element);
     }
@@ -184,7 +189,7 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     effect.what = law_at(best.effects[slot]);
     effect.parameters = parameters_of(best.effects[slot], *best.model, errors);
     effect.engineering_share = engineering_share(effect, *best.effects[slot].law);
-    weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), phi);
+    weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), best.model->misfit, phi);
     const FittedModel* fewer = naming.baseline.get();
     for (const Trial& trial : naming.trials) {
       std::vector<Effect> rest = best.effects;

@@ -349,7 +349,11 @@ class Analysis {
                                 "; an engineer would care from " + number(one->significant) + " " + one->unit + ".");
       return;
     }
-    const bool explained = proven_ && !result_.effects.empty() && result_.explained_share >= kExplainedAtLeast;
+    // Nothing significant is left, or at least half of the excess is gone: the noise's own estimate is not exact enough
+    // for the second alone where the effect is small.
+    const bool nothing_left = !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
+    const bool explained =
+        proven_ && !result_.effects.empty() && (nothing_left || result_.explained_share >= kExplainedAtLeast);
     result_.verdict = explained ? Verdict::mismatch : Verdict::undetermined;
     if (explained && naming_.last.p_value <= options_.false_alarm_rate)
       result_.notes.emplace_back("A remainder beyond the noise stays unexplained.");

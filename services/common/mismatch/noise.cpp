@@ -41,16 +41,11 @@ std::vector<Eigen::VectorXd> pieces_of(const std::vector<double>& values) {
   return pieces;
 }
 
-// What the cubic takes along makes white noise look correlated: E sum_t r_t r_(t+lag) = sigma^2 sum_t M_(t, t+lag).
 void add_covariances(const std::vector<Eigen::VectorXd>& pieces, Covariances& sum, double& samples) {
-  const Eigen::MatrixXd& m = detrending();
   for (const Eigen::VectorXd& piece : pieces) {
-    const double variance = piece.squaredNorm() / m.trace();
-    sum[0] += variance;
-    for (Eigen::Index lag = 1; lag <= kOrder; ++lag)
+    for (Eigen::Index lag = 0; lag <= kOrder; ++lag)
       sum[static_cast<std::size_t>(lag)] +=
-          (piece.head(kPiece - lag).dot(piece.tail(kPiece - lag)) - variance * m.diagonal(lag).sum()) /
-          static_cast<double>(kPiece - lag);
+          piece.head(kPiece - lag).dot(piece.tail(kPiece - lag)) / static_cast<double>(kPiece - lag);
     samples += static_cast<double>(kPiece);
   }
 }
@@ -66,6 +61,38 @@ ChannelColour autoregression(const Covariances& covariance) {
   }
   const Eigen::Matrix<double, kOrder, 1> a = matrix.ldlt().solve(right);
   return {.coefficients = {a.begin(), a.end()}, .innovation_std = std::sqrt(std::max(1e-6, 1.0 - a.dot(right)))};
+}
+
+// Mean products at each lag that detrended pieces of such noise would have: E r r' = M C M, C the noise's covariances.
+Covariances after_detrending(const Covariances& covariance) {
+  const ChannelColour colour = autoregression(covariance);
+  std::vector<double> all(static_cast<std::size_t>(kPiece), 0.0);
+  for (std::size_t lag = 0; lag < all.size(); ++lag) {
+    if (lag <= kOrder) all[lag] = covariance[lag];
+    for (std::size_t k = 1; lag > kOrder && k <= kOrder; ++k) all[lag] += colour.coefficients[k - 1] * all[lag - k];
+  }
+  Eigen::MatrixXd c(kPiece, kPiece);
+  for (Eigen::Index j = 0; j < kPiece; ++j)
+    for (Eigen::Index k = 0; k < kPiece; ++k) c(j, k) = all[static_cast<std::size_t>(std::abs(j - k))];
+  const Eigen::MatrixXd left = detrending() * c * detrending();
+  Covariances seen{};
+  for (Eigen::Index lag = 0; lag <= kOrder; ++lag)
+    seen[static_cast<std::size_t>(lag)] = left.diagonal(lag).sum() / static_cast<double>(kPiece - lag);
+  return seen;
+}
+
+// The noise's covariances from those of the detrended pieces: a cubic takes slow noise along and makes white noise look
+// correlated.
+Covariances undo_detrending(const Covariances& seen) {
+  constexpr int kIterations = 12;
+  Covariances covariance = seen;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Covariances now = after_detrending(covariance);
+    for (std::size_t lag = 0; lag <= kOrder; ++lag) covariance[lag] += seen[lag] - now[lag];
+    for (std::size_t lag = 1; lag <= kOrder; ++lag)
+      covariance[lag] = std::clamp(covariance[lag], -0.98 * covariance[0], 0.98 * covariance[0]);
+  }
+  return covariance;
 }
 
 // Standard deviation of the noise over what third differences make of it as if it were white.
@@ -86,6 +113,7 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
       if (const Series* series = recorded.find(channels[c]))
         add_covariances(pieces_of(series->values), covariance, samples);
     if (!(covariance[0] > 0.0) || samples < 4.0 * kPiece) continue;
+    covariance = undo_detrending(covariance);
     const double correlation = covariance[1] / covariance[0];
     if (std::abs(correlation) < std::max(kLeastCorrelation, kSignificant / std::sqrt(samples))) continue;
     const ChannelColour colour = autoregression(covariance);

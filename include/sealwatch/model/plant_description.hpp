@@ -46,6 +46,13 @@ struct ElementDescription {
   std::string meaning;
 };
 
+/// How many times larger than in `eha` a plant's forces, ways or speeds are: laws give their usual sizes, grids and
+/// what matters to an engineer for `eha`.
+struct LawSize {
+  std::string_view unit;  ///< of a law's parameter: "N", "N s/m"
+  double factor = 1.0;
+};
+
 struct PlantDescription {
   std::string name;  ///< "eha", "eha_switched", "emps", "cascaded_tanks"
   std::string meaning;
@@ -54,10 +61,13 @@ struct PlantDescription {
   std::vector<StateDescription> states;
   std::vector<ElementDescription> elements;
   std::vector<Site> sites = {};  ///< where laws of the catalogue may act
+  std::vector<LawSize> law_sizes = {};
 
   [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
   [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;
   [[nodiscard]] const StateDescription* find_state(std::string_view state) const;
+  /// By what a law's start values of that unit are multiplied in this plant.
+  [[nodiscard]] double law_size(std::string_view unit) const;
   /// Whether recordings differ in a load: phi (1 + Phi), with a load factor Phi of each recording's own.
   [[nodiscard]] bool has_load() const { return find_parameter("phi") != nullptr; }
 };

@@ -27,6 +27,11 @@ const ParameterDescription* PlantDescription::find_parameter(std::string_view pa
 
 const StateDescription* PlantDescription::find_state(std::string_view state) const { return find_row(states, state); }
 
+double PlantDescription::law_size(std::string_view unit) const {
+  const auto size = std::ranges::find(law_sizes, unit, &LawSize::unit);
+  return size == law_sizes.end() ? 1.0 : size->factor;
+}
+
 std::span<const PlantDescription> all_plants() {
   static const std::array plants = {describe_eha(), describe_eha_switched(), describe_emps(),
                                     describe_cascaded_tanks()};

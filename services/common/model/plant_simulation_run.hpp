@@ -3,8 +3,8 @@
 
 namespace sealwatch {
 
-/// Coarser recordings are simulated at points between their samples too, because the sensors' filters take the signal
-/// as linear from point to point.
+/// Where sensors have a low-pass or a lag, coarser recordings are simulated at points between their samples too,
+/// because these filters take the signal as linear from point to point.
 inline constexpr double kLongestPointDistance_s = 0.0051;
 
 template <class Model>
@@ -30,8 +30,11 @@ class PlantSimulationOf<Model>::Run {
                      .maximum_order = Model::kMaximumOrder}),
         point_(integrator_.size(), 0.0),
         signal_(columns_, 0.0) {
-    for (const SimulatedChannel& channel : simulation.channels_)
+    for (const SimulatedChannel& channel : simulation.channels_) {
       filters_.emplace_back(channel.time_constant_s, columns_);
+      filtered_ = filtered_ || channel.time_constant_s > 0.0;
+    }
+    for (const SensorTerm& term : simulation.terms_.sensors) filtered_ = filtered_ || term.kind == SiteKind::sensor_lag;
     if constexpr (WithPhysics)
       for (std::size_t c = 0; c < simulation.channels_.size(); ++c)
         sensors_.emplace_back(simulation.terms_.sensors, simulation.channel_names_[c], values, free, columns_);
@@ -102,7 +105,7 @@ class PlantSimulationOf<Model>::Run {
     if (!integrator_.start(input.segment_begin(segment), point_.data())) return false;
     for (; next_ < input.times().size() && input.times()[next_] <= input.segment_end(segment); ++next_) {
       const double last = input.times()[next_ - 1], distance = input.times()[next_] - last;
-      const int points = static_cast<int>(std::ceil(distance / kLongestPointDistance_s));
+      const int points = filtered_ ? static_cast<int>(std::ceil(distance / kLongestPointDistance_s)) : 1;
       for (int k = 1; k <= points; ++k)
         if (!advance_to(k == points ? input.times()[next_] : last + distance * k / points, distance / points))
           return false;
@@ -118,7 +121,8 @@ class PlantSimulationOf<Model>::Run {
       const double begin = integrator_.time();
       if (!integrator_.step()) return false;
       const double end = integrator_.time();
-      if (end < time && end > filtered_until_ && end - begin < distance) pass_sensors(end, integrator_.values());
+      if (filtered_ && end < time && end > filtered_until_ && end - begin < distance)
+        pass_sensors(end, integrator_.values());
     }
     integrator_.interpolate(time, point_.data());
     pass_sensors(time, point_.data());
@@ -243,6 +247,7 @@ class PlantSimulationOf<Model>::Run {
   SimulatedOutputs outputs_;
   std::size_t next_ = 1;
   double filtered_until_ = 0.0;  ///< time of the sensors' last point
+  bool filtered_ = false;        ///< some channel has a low-pass or a lag
 };
 
 }  // namespace sealwatch

@@ -15,7 +15,7 @@ Law constant_force() {
       .energy = "none: a steady force takes and returns the same work",
       .source = "Janot, Gautier, Brunot, Data set and reference models of EMPS (2019)",
       .parameters = {strength("F_0", "N", "force against +x",
-                              {.usual = 3.0, .significant = 1.0, .max = 1e5, .either_sign = true})},
+                              {.usual = 1200.0, .significant = 600.0, .max = 1e5, .either_sign = true})},
       .evaluate = &evaluate};
 }
 

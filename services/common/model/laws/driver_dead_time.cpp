@@ -17,7 +17,8 @@ Law driver_dead_time() {
           .source = "Jeong, Park, IEEE Trans. Industrial Electronics 38 (1991) 108",
           .parameters = {strength("V_d", "V", "voltage lost", {.usual = 1.0, .significant = 0.3, .max = 20.0}),
                          shape("i_s", "A", "current over which the direction changes", {0.2, 0.05, 1.0}, 0.01, 5.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate,
+          .elements = {"driver"}};
 }
 
 }  // namespace sealwatch::laws

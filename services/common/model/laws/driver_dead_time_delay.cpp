@@ -14,7 +14,8 @@ Law driver_dead_time_delay() {
           .energy = "tau_d >= 0: it answers after the command",
           .source = "first term of the delay's Taylor series",
           .parameters = {strength("tau_d", "s", "delay", {.usual = 2e-3, .significant = 1e-3, .max = 0.1})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate,
+          .elements = {"driver"}};
 }
 
 }  // namespace sealwatch::laws

@@ -15,7 +15,8 @@ Law linear_inflow() {
           .source = "Hagen-Poiseuille",
           .parameters = {strength("k_u", "1/s", "inflow per level above",
                                   {.usual = 5e-3, .significant = 1e-3, .max = 1.0})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate,
+          .elements = {"lower_tank"}};
 }
 
 }  // namespace sealwatch::laws

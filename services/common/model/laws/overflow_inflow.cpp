@@ -18,7 +18,8 @@ Law overflow_inflow() {
           .parameters = {strength("k", "1/s", "inflow per level above the upper rim",
                                   {.usual = 0.5, .significant = 0.05, .max = 100.0}),
                          shape("level_max", "V", "level of the upper tank's rim", {10.0, 9.5, 9.0, 8.0}, 1.0, 20.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate,
+          .elements = {"lower_tank"}};
 }
 
 }  // namespace sealwatch::laws

@@ -62,6 +62,7 @@ const std::map<std::string, double> kOneSign = {
     {"tank_overflow", 1.0},
     {"outflow_exponent", 1.0},
     {"outlet_level_offset", 1.0},
+    {"pump_dead_voltage", 1.0},
     {"overflow_inflow", -1.0},
     {"linear_inflow", -1.0},
     {"unlisted (compliance_power)", 1.0},

@@ -108,10 +108,11 @@ std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedMode
   return parameters;
 }
 
-double engineering_share(const FoundEffect& effect, const Law& law) {
+double engineering_share(const FoundEffect& effect, const Law& law, const PlantDescription& plant) {
   for (std::size_t k = 0; k < law.parameters.size(); ++k)
     if (law.parameters[k].strength && law.parameters[k].significant > 0.0)
-      return std::abs(effect.parameters[k].value) / law.parameters[k].significant;
+      return std::abs(effect.parameters[k].value) /
+             (plant.law_size(law.parameters[k].unit) * law.parameters[k].significant);
   return 0.0;
 }
 
@@ -188,7 +189,8 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     FoundEffect effect;
     effect.what = law_at(best.effects[slot]);
     effect.parameters = parameters_of(best.effects[slot], *best.model, errors);
-    effect.engineering_share = engineering_share(effect, *best.effects[slot].law);
+    effect.engineering_share =
+        engineering_share(effect, *best.effects[slot].law, best.model->problem.recordings.front().simulation->plant());
     weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), best.model->misfit, phi);
     const FittedModel* fewer = naming.baseline.get();
     for (const Trial& trial : naming.trials) {

@@ -93,18 +93,17 @@ bool at_rest(const FittedModel& model, const Data& data) {
                              [](const std::string& name) { return name == "position" || name == "level_voltage"; });
 }
 
-std::vector<Power> power_of(const Screening& screening) {
+std::vector<Power> power_of(const Screening& screening, const PlantDescription& plant) {
   std::vector<Power> power;
   for (const Variant& variant : screening.variants) {
     const Candidate& candidate = screening.candidates[variant.candidate];
     if (variant.point != 0) continue;
     const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
-    const bool bias = candidate.law->kind == SiteKind::sensor_bias;
     power.push_back({.what = law_at({candidate.law, candidate.element}),
                      .minimum_detectable = variant.minimum_detectable,
                      .unit = std::string(strength.unit),
                      .absorbed_share = std::clamp(variant.absorbed, 0.0, 1.0),
-                     .significant = bias ? candidate.strength_scale * strength.start.front() : strength.significant,
+                     .significant = significant_size(candidate, plant),
                      .leakage_shift = variant.leakage_shift});
   }
   std::ranges::stable_sort(power, {}, [](const Power& one) { return one.what.id; });
@@ -292,7 +291,8 @@ class Analysis {
     const double excess_after = best_.model->misfit / best_.model->residuals - 1.0;
     result_.explained_share =
         excess_before > 0.0 ? std::clamp(1.0 - std::max(excess_after, 0.0) / excess_before, 0.0, 1.0) : 0.0;
-    result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last);
+    result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last,
+                             baseline_->problem.recordings.front().simulation->plant());
     if (!best_.effects.empty()) {
       result_.effects = describe_effects(naming_, best_, prepared(fit_), options_);
       result_.location = locate(result_.effects);

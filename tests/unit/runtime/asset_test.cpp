@@ -174,7 +174,8 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   asset.sensors.at("flow") = {1.0 / 3.0, 1e-300, 0.1, -0.1, 1e300};
   asset.seal->threshold = 0.1 + 0.2;
   asset.pst.hold_s = 1.0 / 7.0;
-  asset.physics = {{"coulomb_friction", "piston", {{"F_c", {1.0 / 3.0, 0.0, 1e5, true}}, {"v_s", {1e-4, 1e-5, 1e-3, false}}}}};
+  asset.physics = {
+      {"coulomb_friction", "piston", {{"F_c", {1.0 / 3.0, 0.0, 1e5, true}}, {"v_s", {1e-4, 1e-5, 1e-3, false}}}}};
   asset.alert_limits["hold_decay"] = {1.0 / 3.0, 2.0 / 3.0, 1.0};
   const AssetConfig back = load(asset_to_yaml(asset));
   EXPECT_EQ(asset_to_yaml(back), asset_to_yaml(asset));

@@ -60,11 +60,8 @@ Result<std::vector<TrialStratum>> strata_of(const VerifyMismatchOptions& options
 std::vector<PlannedSet> planned_sets(const VerifyMismatchOptions& options, const std::vector<TrialStratum>& strata,
                                      const verification::Shard& shard) {
   std::vector<PlannedSet> sets;
-  std::uint32_t number = 0;
-  for (int k = 0; k < options.sets; ++k)
-    for (const TrialStratum stratum : strata)
-      if (number++ % shard.of == shard.part - 1)
-        sets.push_back({stratum, options.seed + static_cast<std::uint64_t>(k)});
+  for (std::uint32_t k = shard.part - 1; k < static_cast<std::uint32_t>(options.sets); k += shard.of)
+    for (const TrialStratum stratum : strata) sets.push_back({stratum, options.seed + k});
   return sets;
 }
 
@@ -107,8 +104,8 @@ class Campaign {
  private:
   void work() {
     for (std::size_t k = next_++; k < missing_.size() && !interrupted(); k = next_++) {
-      MismatchRecord record = verification::run_trial(missing_[k].stratum, missing_[k].seed,
-                                                      {.controls = !options_.without_controls, .threads = 1});
+      const bench::TrialPlan plan = bench::plan_trial(missing_[k].stratum, missing_[k].seed);
+      MismatchRecord record = verification::run_trial(plan, {.controls = !options_.without_controls, .threads = 1});
       const std::lock_guard guard(lock_);
       stream_ << to_json_line(record) << "\n" << std::flush;
       progress_.show(++done_, record.stratum + " " + std::to_string(record.seed) + ": " + record.answer.verdict);

@@ -24,6 +24,13 @@ struct LawRecord {
                    same_places)
 };
 
+/// Noise-normalised rms of one channel over the held-out recordings.
+struct HeldOutRecord {
+  std::string channel = {};
+  double before = 0.0, after = 0.0;
+  SEALWATCH_FIELDS(HeldOutRecord, channel, before, after)
+};
+
 /// The engine's answer.
 struct AnswerRecord {
   std::string verdict = {};
@@ -33,10 +40,11 @@ struct AnswerRecord {
   std::vector<std::string> places = {};        ///< location, most probable first
   bool next_test = false;                      ///< it says what to record
   double held_before = 0.0, held_after = 0.0;  ///< noise-normalised rms of the held-out recordings
+  std::vector<HeldOutRecord> held_out = {};    ///< the same of each channel
   std::vector<std::string> rejected = {};      ///< "id element" that physics forbids
   double seconds = 0.0;
   SEALWATCH_FIELDS(AnswerRecord, verdict, p_value, explained_share, found, places, next_test, held_before, held_after,
-                   rejected, seconds)
+                   held_out, rejected, seconds)
 };
 
 /// The same set by other means. Absent (known = false) where the voltage was not recorded.

@@ -43,6 +43,8 @@ AnswerRecord answer_of(const mismatch::Explanation& explanation) {
   answer.next_test = !explanation.next_test.empty();
   answer.held_before = rms_of(explanation.holdout, &mismatch::ChannelComparison::rms_before);
   answer.held_after = rms_of(explanation.holdout, &mismatch::ChannelComparison::rms_after);
+  for (const mismatch::ChannelComparison& channel : explanation.holdout.channels)
+    answer.held_out.push_back({channel.channel, channel.rms_before, channel.rms_after});
   for (const mismatch::Rejected& rejected : explanation.rejected) answer.rejected.push_back(place_of(rejected.what));
   return answer;
 }
@@ -99,8 +101,7 @@ void analyse(const TrialPlan& plan, const TrialOptions& options, MismatchRecord&
 
 }  // namespace
 
-MismatchRecord run_trial(TrialStratum stratum, std::uint64_t seed, const TrialOptions& options) {
-  const TrialPlan plan = bench::plan_trial(stratum, seed);
+MismatchRecord run_trial(const TrialPlan& plan, const TrialOptions& options) {
   MismatchRecord record = record_of(plan);
   try {
     analyse(plan, options, record);

@@ -12,6 +12,6 @@ struct TrialOptions {
 };
 
 /// Never fails: what goes wrong is the record's `error`.
-[[nodiscard]] MismatchRecord run_trial(TrialStratum stratum, std::uint64_t seed, const TrialOptions& options);
+[[nodiscard]] MismatchRecord run_trial(const bench::TrialPlan& plan, const TrialOptions& options);
 
 }  // namespace sealwatch::verification

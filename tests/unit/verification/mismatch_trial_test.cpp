@@ -1,0 +1,140 @@
+// The blind trial: its figures on records made by hand, and a few whole sets.
+#include "services/common/verification/mismatch_trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include "services/common/verification/mismatch_summary.hpp"
+
+namespace sealwatch::verification {
+namespace {
+
+MismatchRecord record(const std::string& stratum, std::uint64_t seed, const std::string& verdict, double p) {
+  MismatchRecord r;
+  r.stratum = stratum;
+  r.seed = seed;
+  r.answer.verdict = verdict;
+  r.answer.p_value = p;
+  return r;
+}
+
+LawRecord law(const std::string& id, const std::string& element) {
+  LawRecord l;
+  l.id = id;
+  l.element = element;
+  return l;
+}
+
+const TrialTally& tally(const std::vector<TrialTally>& tallies, const std::string& name) {
+  for (const TrialTally& t : tallies)
+    if (t.name == name) return t;
+  ADD_FAILURE() << "no tally " << name;
+  return tallies.front();
+}
+
+TEST(MismatchSummary, FalseAlarmsOfNullsHaveAnExactInterval) {
+  std::vector<MismatchRecord> records;
+  for (std::uint64_t k = 0; k < 20; ++k) records.push_back(record("null", k, "consistent", k == 0 ? 0.001 : 0.5));
+  const auto tallies = summarise_trials(records);
+  const TrialTally& t = tally(tallies, "null");
+  EXPECT_EQ(t.detected.count, 1);
+  EXPECT_EQ(t.detected.of, 20);
+  EXPECT_NEAR(t.detected.low, 0.00127, 1e-5);  // 1 of 20: Clopper and Pearson 1934, tables
+  EXPECT_NEAR(t.detected.high, 0.24873, 1e-5);
+  EXPECT_EQ(t.consistent, 20);
+}
+
+TEST(MismatchSummary, NamesCountByPlaceAndBySet) {
+  MismatchRecord right = record("single", 1, "mismatch", 1e-9);
+  right.hidden = {law("coulomb_friction", "piston")};
+  right.answer.places = {"piston"};
+  right.answer.found = {law("coulomb_friction", "piston")};
+  MismatchRecord in_set = record("single", 2, "mismatch", 1e-9);
+  in_set.hidden = {law("coulomb_friction", "piston")};
+  in_set.answer.places = {"piston"};
+  in_set.answer.found = {law("stribeck_friction", "piston")};
+  in_set.answer.found.front().same = {"coulomb_friction piston"};
+  MismatchRecord wrong = record("single", 3, "mismatch", 1e-9);
+  wrong.hidden = {law("external_leakage", "chamber_a")};
+  wrong.answer.places = {"piston_seal"};
+  wrong.answer.found = {law("turbulent_seal_leakage", "piston_seal")};
+  const std::vector<MismatchRecord> records = {right, in_set, wrong};
+  const auto tallies = summarise_trials(records);
+  const TrialTally& t = tally(tallies, "single");
+  EXPECT_EQ(t.element_first.count, 2);
+  EXPECT_EQ(t.law_first.count, 1);
+  EXPECT_EQ(t.law_in_set.count, 2);
+  EXPECT_DOUBLE_EQ(t.set_size, 4.0 / 3.0);
+  const std::string failures = trial_failures(records);
+  EXPECT_EQ(failures.find("single 1:"), std::string::npos);
+  EXPECT_NE(failures.find("single 2:"), std::string::npos);
+  EXPECT_NE(failures.find("single 3:"), std::string::npos);
+}
+
+TEST(MismatchSummary, StrengthsAreComparedWhereTheyMeanTheSame) {
+  MismatchRecord r = record("single", 1, "mismatch", 1e-9);
+  r.hidden = {law("coulomb_friction", "piston")};
+  r.hidden.front().strength = "F_c";
+  r.hidden.front().value = 100.0;
+  r.answer.found = {law("coulomb_friction", "piston")};
+  r.answer.found.front().strength = "F_c";
+  r.answer.found.front().value = 103.0;
+  r.answer.found.front().std_error = 1.6;
+  MismatchRecord off = r;
+  off.seed = 2;
+  off.answer.found.front().std_error = 1.4;
+  MismatchRecord other = r;
+  other.seed = 3;
+  other.hidden.front().strength.clear();
+  const std::vector<MismatchRecord> records = {r, off, other};
+  const auto tallies = summarise_trials(records);
+  const TrialTally& t = tally(tallies, "single");
+  EXPECT_EQ(t.strength_within.of, 2);
+  EXPECT_EQ(t.strength_within.count, 1);
+}
+
+TEST(MismatchSummary, AnUnlistedTruthIsRenamedWhenAListedLawIsClaimed) {
+  MismatchRecord renamed = record("outside", 1, "mismatch", 1e-9);
+  renamed.hidden = {law("unlisted", "piston")};
+  renamed.answer.found = {law("stribeck_friction", "piston")};
+  MismatchRecord honest = renamed;
+  honest.seed = 2;
+  honest.answer.found = {law("unlisted", "piston")};
+  MismatchRecord silent = renamed;
+  silent.seed = 3;
+  silent.answer.verdict = "undetermined";
+  const auto tallies = summarise_trials(std::vector{renamed, honest, silent});
+  EXPECT_EQ(tally(tallies, "outside").renamed.count, 1);
+  EXPECT_EQ(tally(tallies, "outside").renamed.of, 2);
+}
+
+// Whole sets, shortened: two tests to fit, one held out.
+MismatchRecord run_shortened(TrialStratum stratum, std::uint64_t seed) {
+  bench::TrialPlan plan = bench::plan_trial(stratum, seed);
+  plan.fit.resize(2);
+  plan.holdout.resize(1);
+  return run_trial(plan, {.controls = false, .threads = 2});
+}
+
+TEST(MismatchTrial, NothingHiddenIsNoMismatch) {
+  const MismatchRecord r = run_shortened(TrialStratum::null, 1);
+  ASSERT_EQ(r.error, "");
+  EXPECT_TRUE(r.hidden.empty());
+  EXPECT_NE(r.answer.verdict, "mismatch");
+  EXPECT_TRUE(r.answer.found.empty());
+  EXPECT_NEAR(r.answer.held_before, 1.0, 0.05);
+}
+
+TEST(MismatchTrial, AMisreadFlowIsSeenAtItsPlaceAndHelpsOnTheHeldOutRecording) {
+  constexpr std::uint64_t kFlowThreePerCentOff = 34;
+  const MismatchRecord r = run_shortened(TrialStratum::sensor, kFlowThreePerCentOff);
+  ASSERT_EQ(r.error, "");
+  ASSERT_EQ(r.hidden.size(), 1U);
+  EXPECT_EQ(r.hidden.front().element, "sensor:flow") << r.label;
+  EXPECT_LT(r.answer.p_value, 0.01) << r.label;
+  ASSERT_FALSE(r.answer.places.empty());
+  EXPECT_EQ(r.answer.places.front(), r.hidden.front().element) << r.label;
+  EXPECT_LT(r.answer.held_after, r.answer.held_before);
+}
+
+}  // namespace
+}  // namespace sealwatch::verification

@@ -120,6 +120,17 @@ struct ReplacedOptions {
 };
 int run_replaced(const ReplacedOptions& options);
 
+/// An explained model comes into force, or no longer.
+struct AcceptOptions {
+  std::string config;
+  std::string asset_id;
+  std::string discrepancy_id;
+  bool revoke = false;
+  std::string by;
+  std::string remark;
+};
+int run_accept(const AcceptOptions& options);
+
 struct ConfigCheckOptions {
   std::string config;
   bool json = false;

@@ -35,6 +35,7 @@ class CommandLine {
     add_verification();
     add_live();
     add_operator();
+    add_accept();
     add_configuration();
   }
 
@@ -304,6 +305,21 @@ class CommandLine {
     replaced->add_option("--remark", replaced_.remark, "free text");
   }
 
+  void add_accept() {
+    CLI::App* accept = command("accept",
+                               "let the services simulate with the model that the mismatch analysis explained, or "
+                               "--revoke it",
+                               "sealwatch accept --asset-id XT03-MV2 --discrepancy ID --by 'J. Silva'",
+                               [this] { return run_accept(accept_); });
+    add_config(accept, accept_.config);
+    accept->add_option("--asset-id", accept_.asset_id, "asset id")->required();
+    accept->add_option("--discrepancy", accept_.discrepancy_id, "id of the model_discrepancy, as `status` shows it")
+        ->required();
+    accept->add_flag("--revoke", accept_.revoke, "back to the model of the asset's file");
+    accept->add_option("--by", accept_.by, "who")->required();
+    accept->add_option("--remark", accept_.remark, "free text");
+  }
+
   void add_configuration() {
     CLI::App* config = app_.add_subcommand("config", "look at the configuration");
     config->require_subcommand(1);
@@ -345,6 +361,7 @@ class CommandLine {
   StatusOptions status_;
   AcknowledgeOptions acknowledge_;
   ReplacedOptions replaced_;
+  AcceptOptions accept_;
   ConfigCheckOptions config_check_;
   CompletionOptions completion_;
 };

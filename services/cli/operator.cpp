@@ -1,4 +1,4 @@
-// `sealwatch acknowledge` and `sealwatch replaced`: what people tell the system.
+// `sealwatch acknowledge`, `sealwatch replaced` and `sealwatch accept`: what people tell the system.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -105,7 +105,74 @@ class Answer {
   std::optional<Advisory> answer_;
 };
 
+/// The latest word of the mismatch analysis on the asset, if one comes.
+std::optional<ModelDiscrepancy> latest_discrepancy(Bus& bus, const std::string& asset_id) {
+  std::optional<ModelDiscrepancy> latest;
+  const auto end = std::chrono::steady_clock::now() + kPatienceForAnswer;
+  while (std::chrono::steady_clock::now() < end)
+    for (const BusItem& item : bus.receive(std::chrono::milliseconds(100)))
+      if (const auto* message = std::get_if<Message>(&item))
+        if (const auto* found = std::get_if<ModelDiscrepancy>(message); found != nullptr && found->asset_id == asset_id)
+          latest = *found;
+  return latest;
+}
+
+/// Only a model that explains something, and only the latest, comes into force.
+std::optional<Error> objection(const std::optional<ModelDiscrepancy>& latest, const AcceptOptions& options) {
+  Error error{.file = {}, .place = "--discrepancy", .value = options.discrepancy_id, .rule = {}, .advice = {}};
+  if (!latest) {
+    error.rule = "is not known: there is no model_discrepancy for asset " + options.asset_id;
+    error.advice = "is health_assessment running? see `sealwatch status`";
+  } else if (latest->header.message_id != options.discrepancy_id) {
+    error.rule = "is not the latest for asset " + options.asset_id;
+    error.advice = "the latest is " + latest->header.message_id;
+  } else if (!latest->analysed || latest->verdict != DiscrepancyVerdict::mismatch || latest->physics.empty()) {
+    error.rule = "explains nothing that could be accepted";
+    error.advice = latest->analysed ? latest->summary : latest->failure;
+  } else {
+    return std::nullopt;
+  }
+  return error;
+}
+
 }  // namespace
+
+int run_accept(const AcceptOptions& options) {
+  constexpr std::array kDiscrepancy = {Topic::model_discrepancy};
+  std::optional<Session> session = open_session(options.config);
+  if (!session) return kBadInput;
+  ModelAcceptance message;
+  message.asset_id = options.asset_id;
+  message.discrepancy_id = options.discrepancy_id;
+  message.revoked = options.revoke;
+  message.accepted_by = options.by;
+  message.remark = options.remark;
+  message.header.event_time_known = true;
+  message.header.event_time_ns = now_ns();
+  message.header.message_id =
+      "model_acceptance/" + options.asset_id + "/" + std::to_string(message.header.event_time_ns);
+  if (!options.revoke) {
+    if (const Status joined = session->bus->subscribe(kDiscrepancy); !joined) {
+      complain(joined.error());
+      return kInternalFailure;
+    }
+    const std::optional<ModelDiscrepancy> latest = latest_discrepancy(*session->bus, options.asset_id);
+    if (const auto error = objection(latest, options)) {
+      complain(*error);
+      return kAnswerIsNo;
+    }
+    message.version = latest->version;
+    message.discrepancy_time_ns = latest->header.event_time_ns;
+    message.explained = latest->explained;
+    message.header.source_ids = {latest->header.message_id};
+  }
+  const int sent = send(session, options.config, message, {"state_detection", "prognostic_assessment"});
+  if (sent == kOk)
+    std::printf(
+        "received: from the next test on %s is simulated with %s\n", options.asset_id.c_str(),
+        options.revoke ? "its file's model" : "the explained model, and judged against its file's model besides");
+  return sent;
+}
 
 int run_acknowledge(const AcknowledgeOptions& options) {
   Acknowledgement message;

@@ -6,6 +6,8 @@ namespace sealwatch {
 
 namespace {
 
+constexpr std::string_view kOfAccepted = "/accepted_model";  // how the keys of its filters end
+
 /// Off temperature, saturated or with many samples missing: this test alone is in the warning region of one of them.
 bool is_poor_recording(const std::vector<RegionJudgement>& judgements) {
   return std::any_of(judgements.begin(), judgements.end(), [](const RegionJudgement& j) {
@@ -21,12 +23,20 @@ bool concerns_recording(std::string_view quantity) {
 }
 
 AssetHistory::AssetHistory(const RegionOptions& region, const BaselineOptions& baseline)
-    : region_options_(region), baseline_options_(baseline), baseline_(baseline) {}
+    : region_options_(region), baseline_options_(baseline), baseline_(baseline), accepted_baseline_(baseline) {}
 
 void AssetHistory::restart() {
   baseline_ = Baseline(baseline_options_);
   filters_.clear();
   known_channels_.clear();
+  accepted_baseline_ = Baseline(baseline_options_);
+}
+
+void AssetHistory::use_accepted(const std::string& discrepancy_id) {
+  if (discrepancy_id == accepted_) return;
+  accepted_ = discrepancy_id;
+  accepted_baseline_ = Baseline(baseline_options_);
+  std::erase_if(filters_, [](const auto& entry) { return entry.first.ends_with(kOfAccepted); });
 }
 
 void AssetHistory::judge(std::vector<RegionJudgement>& judgements) {
@@ -56,6 +66,8 @@ void AssetHistory::learn(const StateReport& report) {
       known_channels_.insert(judgement.quantity.substr(kChannelQuantity.size()));
     else if (judgement.reference == Reference::own_baseline && judgement.raw_region == AlertRegion::normal && teaches)
       baseline_.learn(judgement.quantity, judgement.value);
+    else if (judgement.reference == Reference::accepted_model && judgement.raw_region == AlertRegion::normal && teaches)
+      accepted_baseline_.learn(judgement.quantity, judgement.value);
   }
 }
 

@@ -21,6 +21,9 @@ class AssetHistory {
 
   /// The actuator is a new one: baseline, regions and known channels start anew.
   void restart();
+  /// The tests from here on are judged with the model of this model_discrepancy besides ("": with none): its baseline
+  /// and regions start anew where it is another than before.
+  void use_accepted(const std::string& discrepancy_id);
   /// Takes one test's judgements into their quantities' filters and fills in their regions. A poor recording is looked
   /// at but moves no filter: warm oil leaks more, and that is no wear.
   void judge(std::vector<RegionJudgement>& judgements);
@@ -28,6 +31,7 @@ class AssetHistory {
   void learn(const StateReport& report);
 
   [[nodiscard]] const Baseline& baseline() const { return baseline_; }
+  [[nodiscard]] const Baseline& accepted_baseline() const { return accepted_baseline_; }
   [[nodiscard]] const std::set<std::string>& known_channels() const { return known_channels_; }
   /// Worst region of all quantities, those included that the last test could not give.
   [[nodiscard]] AlertRegion worst_region() const;
@@ -41,6 +45,8 @@ class AssetHistory {
   RegionOptions region_options_;
   BaselineOptions baseline_options_;
   Baseline baseline_;
+  Baseline accepted_baseline_;
+  std::string accepted_;
   std::map<std::string, RegionFilter> filters_;  // by quantity and reference
   std::set<std::string> known_channels_;         // OK in some judged test
 };

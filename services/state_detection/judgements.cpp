@@ -37,11 +37,12 @@ AlertLimits on_side_of(double value, const Quantity& quantity, const AlertLimits
   return {-limits.advisory, -limits.warning, -limits.alarm};
 }
 
-RegionJudgement judge_by_baseline(const Quantity& quantity, const BaselineRule& rule, const Baseline& baseline) {
+RegionJudgement judge_by_baseline(const Quantity& quantity, const BaselineRule& rule, const Baseline& baseline,
+                                  Reference reference = Reference::own_baseline) {
   const double centre = baseline.centre(quantity.name, quantity.value);
   const double tolerance = std::max(rule.absolute, rule.relative * std::abs(centre));
   const double side = rule.side == Side::above ? std::max(centre, quantity.value) : quantity.value;
-  return judgement_of(quantity, Reference::own_baseline, baseline.limits(quantity.name, side, tolerance));
+  return judgement_of(quantity, reference, baseline.limits(quantity.name, side, tolerance));
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ std::vector<RegionJudgement> judge_indicators(const AssetConfig& asset, const st
 }
 
 std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset, const std::vector<ResidualSummary>& residuals,
-                                             const Baseline& baseline) {
+                                             const Baseline& baseline, const Baseline& accepted_baseline) {
   std::vector<RegionJudgement> judgements;
   for (const ResidualSummary& residual : residuals) {
     const std::string name = "residual." + residual.channel;
@@ -69,7 +70,8 @@ std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset, const std
         judgements.push_back(judgement_of(share, Reference::nominal_model, *limits));
     } else if (const auto rule = baseline_rule(asset, name)) {
       const Quantity rms{name, "1", residual.noise_normalised_rms, false, 0.0};
-      judgements.push_back(judge_by_baseline(rms, *rule, baseline));
+      const bool accepted = residual.reference == Reference::accepted_model;
+      judgements.push_back(judge_by_baseline(rms, *rule, accepted ? accepted_baseline : baseline, residual.reference));
     }
   }
   return judgements;

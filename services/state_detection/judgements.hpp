@@ -18,10 +18,11 @@ namespace sealwatch {
                                                             const Baseline& baseline);
 
 /// "residual.<channel>": of the nominal model in percent of the channel's variation (100 - nrmse_percent; not for a
-/// channel that hardly varies), of the own baseline as noise-normalised rms.
+/// channel that hardly varies), of the own baseline as noise-normalised rms, of the accepted model as the same against
+/// a baseline of its own.
 [[nodiscard]] std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset,
                                                            const std::vector<ResidualSummary>& residuals,
-                                                           const Baseline& baseline);
+                                                           const Baseline& baseline, const Baseline& accepted_baseline);
 
 /// "channel.<name>" for every channel that is OK or was in an earlier test: 0 is there, 1 is lost.
 [[nodiscard]] std::vector<RegionJudgement> judge_channels(const std::vector<ChannelStatus>& channels,

@@ -70,4 +70,14 @@ Result<std::vector<ResidualSummary>> residuals_of(const AssetConfig& asset, cons
   return all;
 }
 
+Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& accepted, const TestWindow& window,
+                                                           std::optional<double> leakage_resistance,
+                                                           const Simulator& simulator) {
+  const TimeSeries recorded = usable_channels(window);
+  const AssetConfig aged = leakage_resistance ? with_leakage(accepted, *leakage_resistance) : accepted;
+  const Result<TimeSeries> simulated = simulator.simulate(aged, recorded);
+  if (!simulated) return tl::unexpected(simulated.error());
+  return summarise_residuals(accepted, recorded, *simulated, Reference::accepted_model);
+}
+
 }  // namespace sealwatch

@@ -29,4 +29,10 @@ namespace sealwatch {
                                                                 std::optional<double> leakage_resistance,
                                                                 const Simulator& simulator);
 
+/// Of the model that an operator accepted, with the piston seal's resistance as measured.
+[[nodiscard]] Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& accepted,
+                                                                         const TestWindow& window,
+                                                                         std::optional<double> leakage_resistance,
+                                                                         const Simulator& simulator);
+
 }  // namespace sealwatch

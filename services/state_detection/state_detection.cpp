@@ -64,7 +64,8 @@ StateDetection::StateDetection(std::span<const AssetConfig> assets, std::shared_
 }
 
 std::span<const Topic> StateDetection::inputs() const {
-  static constexpr std::array kInputs = {Topic::test_features, Topic::test_window, Topic::maintenance_event};
+  static constexpr std::array kInputs = {Topic::test_features, Topic::test_window, Topic::maintenance_event,
+                                         Topic::model_acceptance};
   return kInputs;
 }
 
@@ -74,7 +75,7 @@ std::span<const Topic> StateDetection::outputs() const {
 }
 
 StateDetection::AssetState& StateDetection::state_of(const std::string& asset_id) {
-  return states_.try_emplace(asset_id, AssetState{AssetHistory(options_.region, options_.baseline), {}, {}, {}})
+  return states_.try_emplace(asset_id, AssetState{AssetHistory(options_.region, options_.baseline), {}, {}, {}, {}})
       .first->second;
 }
 
@@ -83,6 +84,7 @@ void StateDetection::restore(const Message& own_output) {
   if (report == nullptr) return;
   AssetHistory& history = state_of(report->asset_id).history;
   if (is_first_after_replacement(*report)) history.restart();
+  if (!report->header.pst_id.empty()) history.use_accepted(report->accepted_discrepancy);
   std::vector<RegionJudgement> judgements = report->judgements;
   history.judge(judgements);
   history.learn(*report);
@@ -95,6 +97,9 @@ Conclusion StateDetection::receive(const Message& input) {
   if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.emplace(window->header.pst_id, *window);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.events.push_back(*event);
   Conclusion conclusion;
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) conclusion.consumed = state.accepted.take(*event);
+  if (const auto* acceptance = std::get_if<ModelAcceptance>(&input))
+    conclusion.consumed = state.accepted.take(*acceptance);
   conclude_ready_tests(state, conclusion);
   return conclusion;
 }
@@ -128,6 +133,8 @@ void StateDetection::conclude(AssetState& state, const TestFeatures& features, c
     state.history.restart();
     if (event.header.event_time_known) state.history.schedule.tested(UtcTime{event.header.event_time_ns});
   }
+  report.accepted_discrepancy = state.accepted.discrepancy_id();
+  state.history.use_accepted(report.accepted_discrepancy);
   const auto asset = assets_.find(features.asset_id);
   if (asset == assets_.end())
     report.verdict_reasons.push_back("asset '" + features.asset_id + "' is not in the configuration");
@@ -160,23 +167,34 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   }
   if (!is_judged(report.verdict)) return;
   report.judgements = judge_indicators(asset, indicators, history.baseline());
-  add_residuals(asset, features, window, report);
-  for (RegionJudgement& judgement : judge_residuals(asset, report.residuals, history.baseline()))
+  add_residuals(state, asset, features, window, report);
+  for (RegionJudgement& judgement :
+       judge_residuals(asset, report.residuals, history.baseline(), history.accepted_baseline()))
     report.judgements.push_back(std::move(judgement));
   for (RegionJudgement& judgement : judge_channels(features.channel_status, history.known_channels()))
     report.judgements.push_back(std::move(judgement));
   history.judge(report.judgements);
 }
 
-void StateDetection::add_residuals(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
-                                   StateReport& report) const {
+void StateDetection::add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
+                                   const TestWindow& window, StateReport& report) const {
   if (simulator_ == nullptr) return;
-  Result<std::vector<ResidualSummary>> residuals =
-      residuals_of(asset, window, feature_of(features, "leakage_resistance"), *simulator_);
-  if (residuals)
-    report.residuals = std::move(*residuals);
-  else
-    report.verdict_reasons.push_back("no simulation residual: " + residuals.error().describe());
+  const std::optional<double> leakage = feature_of(features, "leakage_resistance");
+  const auto add = [&](const char* what, Result<std::vector<ResidualSummary>> residuals) {
+    if (residuals)
+      report.residuals.insert(report.residuals.end(), residuals->begin(), residuals->end());
+    else
+      report.verdict_reasons.push_back(what + residuals.error().describe());
+  };
+  add("no simulation residual: ", residuals_of(asset, window, leakage, *simulator_));
+  if (state.accepted.in_force())
+    add("no residual of the accepted model: ",
+        residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_));
+}
+
+std::size_t StateDetection::held() const {
+  return static_cast<std::size_t>(
+      std::count_if(states_.begin(), states_.end(), [](const auto& one) { return one.second.accepted.in_force(); }));
 }
 
 void StateDetection::note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const {

@@ -12,6 +12,7 @@
 
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/port/accepted_model.hpp"
 #include "sealwatch/port/estimator.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/state_detection/baseline.hpp"
@@ -29,7 +30,7 @@ struct StateDetectionOptions {
 
 /// Concludes each asset's tests in the order of their test_features, each as soon as its test_window is there too. A
 /// maintenance_event starts the asset's history anew with the first test after it; it counts as consumed when a test
-/// after it has been judged.
+/// after it has been judged. While a model_acceptance is in force the accepted model is judged beside the nominal one.
 class StateDetection final : public Layer {
  public:
   /// `simulator` may be null: then there are no residuals. `options` must be valid.
@@ -42,6 +43,7 @@ class StateDetection final : public Layer {
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
   [[nodiscard]] Conclusion tick(UtcTime now) override;
+  [[nodiscard]] std::size_t held() const override;
 
  private:
   struct AssetState {
@@ -49,6 +51,7 @@ class StateDetection final : public Layer {
     std::deque<TestFeatures> tests;             // not concluded yet, in order of receipt
     std::map<std::string, TestWindow> windows;  // by pst_id
     std::vector<MaintenanceEvent> events;       // not consumed yet
+    AcceptedModel accepted;
   };
 
   [[nodiscard]] AssetState& state_of(const std::string& asset_id);
@@ -56,8 +59,8 @@ class StateDetection final : public Layer {
   void conclude(AssetState& state, const TestFeatures& features, const TestWindow& window, Conclusion& conclusion);
   void judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
              StateReport& report) const;
-  void add_residuals(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
-                     StateReport& report) const;
+  void add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
+                     const TestWindow& window, StateReport& report) const;
   void note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const;
   [[nodiscard]] std::optional<StateReport> overdue_report(const std::string& asset_id, const AssetState& state,
                                                           UtcTime now) const;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "services/advisory_generation/advisory_revision.hpp"
+#include "services/advisory_generation/safety_book.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -89,6 +90,12 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   advisory.header.source_ids = source_ids(evidence);
   advisory.reasons = assessment.reasons;
   advisory.reasons.insert(advisory.reasons.end(), recommendation.also.begin(), recommendation.also.end());
+  const AssetConfig* config = configuration_.find_asset(asset_id);
+  advisory.decision = evidence.life.decision;
+  advisory.safety =
+      safety_book(evidence, config, configuration_.decision_of(config ? config->site : std::string()).safety);
+  for (std::string& reason : in_words(advisory.decision, advisory.safety))
+    advisory.reasons.push_back(std::move(reason));
   advisory.reasons.push_back(in_words(assessment.verdict, in_force));
   if (is_replacement(advisory.action)) advisory.request_for_work = {work_order(advisory, recommendation)};
   put_out(std::move(advisory), conclusion);

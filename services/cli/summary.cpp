@@ -257,6 +257,22 @@ std::string AssetView::history_chart() const {
   return "\n  seal condition in % over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
 }
 
+namespace {
+
+std::string decision_table(const std::vector<DecisionOption>& decision) {
+  std::string text;
+  for (const DecisionOption& option : decision) {
+    if (!option.cost_known) return {};  // the probabilities stand above already
+    text += text.empty() ? "  decision         " : "                   ";
+    text += option.label + ", " + date(option.at_ns) + ": fails before " + percent(option.failure_probability) +
+            ", expected cost " + number(option.expected_cost, 3) + " " + option.currency +
+            (option.cheapest ? "  (cheapest)" : "") + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string AssetView::forecast_lines() const {
   if (!life_ || life_->forecasts.empty()) return {};
   if (life_->header.pst_id.empty()) return "  remaining life   " + life_->forecasts.front().explanation + "\n";
@@ -264,7 +280,13 @@ std::string AssetView::forecast_lines() const {
   std::vector<Forecast> shown = {life_->forecasts.front()};
   for (std::size_t k = 1; k < life_->forecasts.size(); ++k)
     if (life_->forecasts[k].method == "ols") shown.push_back(life_->forecasts[k]);
-  return forecast_table(shown);
+  std::string text = forecast_table(shown);
+  if (life_->scored_forecasts > 0)
+    text += "  confidence       " + percent(life_->confidence, 0) + " in the forecaster: of its last " +
+            std::to_string(life_->scored_forecasts) + " forecasts 3 months ahead " + percent(life_->coverage_80, 0) +
+            " came true within 80 %, " + percent(life_->coverage_95, 0) + " within 95 % (CRPS " +
+            number(life_->mean_crps, 2) + ")\n";
+  return text + decision_table(life_->decision);
 }
 
 std::string AssetView::advisory_lines() const {

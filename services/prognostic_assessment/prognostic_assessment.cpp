@@ -4,15 +4,18 @@
 #include <array>
 #include <cmath>
 
+#include "sealwatch/forecast/decision.hpp"
 #include "sealwatch/forecast/words.hpp"
 #include "services/prognostic_assessment/judge_estimate.hpp"
 #include "services/prognostic_assessment/pst_request.hpp"
+#include "services/prognostic_assessment/self_scoring.hpp"
 
 namespace sealwatch::prognostic_assessment {
 namespace {
 
 constexpr const char* kProducer = "prognostic_assessment 0.1.0";
-constexpr std::array kInputs{Topic::health_report, Topic::test_window, Topic::maintenance_event};
+constexpr std::array kInputs{Topic::health_report, Topic::test_window, Topic::maintenance_event,
+                             Topic::model_acceptance};
 constexpr std::array kOutputs{Topic::leakage_estimate, Topic::remaining_life, Topic::pst_request};
 constexpr std::size_t kMostSources = 60;  // five years of monthly estimates: more than any window
 
@@ -77,8 +80,9 @@ Result<std::unique_ptr<PrognosticAssessment>> PrognosticAssessment::make(const C
                                                                          const Options& options) {
   if (const Status valid = options.validate(); !valid) return fail(valid.error());
   auto panel = forecast::ForecastPanel::make(options.forecasters);
+  auto in_charge = forecast::make_forecaster(options.forecasters.front());
   return std::unique_ptr<PrognosticAssessment>(
-      new PrognosticAssessment(configuration, estimator, options, std::move(*panel)));
+      new PrognosticAssessment(configuration, estimator, options, std::move(*panel), std::move(*in_charge)));
 }
 
 std::span<const Topic> PrognosticAssessment::inputs() const { return kInputs; }
@@ -94,6 +98,8 @@ Conclusion PrognosticAssessment::receive(const Message& input) {
   if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health);
   if (const auto* window = std::get_if<TestWindow>(&input)) return join(*window, &Pending::window);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) return replaced(*event);
+  if (const auto* acceptance = std::get_if<ModelAcceptance>(&input))
+    return {.outputs = {}, .consumed = accepted_[acceptance->asset_id].take(*acceptance)};
   return {.outputs = {}, .consumed = {header_of(input).message_id}};
 }
 
@@ -130,10 +136,15 @@ std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, 
 }
 
 LeakageEstimate PrognosticAssessment::estimate(const HealthReport& health, const TestWindow& window) const {
-  if (const AssetConfig* asset = configuration_.find_asset(health.asset_id))
-    return judge_estimate(*asset, health, estimator_.estimate(*asset, window.samples, window.phases),
-                          options_.largest_condition_std);
   LeakageEstimate estimate;
+  if (const AssetConfig* nominal = configuration_.find_asset(health.asset_id)) {
+    const AcceptedModel& model = accepted(health.asset_id);
+    const AssetConfig asset = model.applied_to(*nominal);
+    estimate = judge_estimate(asset, health, estimator_.estimate(asset, window.samples, window.phases),
+                              options_.largest_condition_std);
+    estimate.accepted_discrepancy = model.discrepancy_id();
+    return estimate;
+  }
   estimate.asset_id = health.asset_id;
   estimate.reasons.push_back("asset '" + health.asset_id + "' is not configured");
   return estimate;
@@ -168,6 +179,10 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
     life.condition = answer.used.back().condition;
     life.condition_std = answer.used.back().condition_std;
   }
+  request.history = answer.used;
+  score(*in_charge_, request, life);
+  add_decision(*asset, now, answer, life);
+  if (life.scored_forecasts == 0 && answer.forecasts.front().state != ForecastState::ok) life.confidence = 0.0;
   life.forecasts = std::move(answer.forecasts);
   life.windows_disagree = answer.windows_disagree;
   life.disagreement = answer.disagreement;
@@ -178,8 +193,20 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   return life;
 }
 
+const AcceptedModel& PrognosticAssessment::accepted(const std::string& asset_id) const {
+  static const AcceptedModel none;
+  const auto found = accepted_.find(asset_id);
+  return found == accepted_.end() ? none : found->second;
+}
+
+std::size_t PrognosticAssessment::held() const {
+  return static_cast<std::size_t>(
+      std::count_if(accepted_.begin(), accepted_.end(), [](const auto& one) { return one.second.in_force(); }));
+}
+
 Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
-  Conclusion conclusion{.outputs = {}, .consumed = {event.header.message_id}};
+  Conclusion conclusion{.outputs = {}, .consumed = accepted_[event.asset_id].take(event)};
+  conclusion.consumed.push_back(event.header.message_id);
   if (!event.header.event_time_known) return conclusion;  // without its time it cannot part the history
   RemainingLife life;
   life.asset_id = event.asset_id;
@@ -199,6 +226,37 @@ std::vector<forecast::FailureHorizon> PrognosticAssessment::campaigns(const Asse
   if (const SiteConfig* site = configuration_.find_site(asset.site))
     for (const Campaign& campaign : site->campaigns) horizons.push_back({campaign.label, campaign.start});
   return horizons;
+}
+
+void PrognosticAssessment::add_decision(const AssetConfig& asset, UtcTime now,
+                                        const forecast::ForecastPanel::Answer& answer, RemainingLife& life) const {
+  if (!answer.distributions.front()) return;
+  const SiteConfig* site = configuration_.find_site(asset.site);
+  const std::optional<SiteCosts> given = configuration_.decision_of(asset.site).costs;
+  const SiteCosts costs = given.value_or(SiteCosts{});
+  const forecast::InterventionCosts weights{
+      .planned = costs.planned,
+      .after_failure = costs.after_failure,
+      .failed_month = costs.failed_month,
+      .unused_month = costs.unused_month,
+      .months_to_vessel = site ? site->booking_lead_time_months : SiteConfig{}.booking_lead_time_months};
+  std::vector<forecast::Candidate> candidates{{.label = "now", .months = 0.0}};
+  for (const forecast::FailureHorizon& campaign : campaigns(asset))
+    if (campaign.before > now)
+      candidates.push_back({.label = campaign.label, .months = months_between(now, campaign.before)});
+  const auto decision = forecast::weigh_candidates(*answer.distributions.front(), candidates, weights);
+  if (!decision) return;
+  for (std::size_t k = 0; k < decision->rows.size(); ++k) {
+    const forecast::DecisionRow& row = decision->rows[k];
+    life.decision.push_back({.label = row.label,
+                             .at_ns = add_months(now, row.months).nanoseconds,
+                             .months = row.months,
+                             .failure_probability = row.failure_probability,
+                             .cost_known = given.has_value(),
+                             .expected_cost = given ? row.expected_cost : 0.0,
+                             .currency = costs.currency,
+                             .cheapest = given && k == decision->cheapest});
+  }
 }
 
 std::vector<Forecast> PrognosticAssessment::no_forecast(const std::string& explanation) const {

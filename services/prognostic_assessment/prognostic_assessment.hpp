@@ -3,7 +3,7 @@
 //
 // Driven by health_report, joined with the test_window of the same pst_id, in whatever order they come. A
 // maintenance_event is answered at once by a remaining_life that says so: by it the layer finds the replacement again
-// after a restart.
+// after a restart. Tests that are concluded while a model_acceptance is in force are estimated with the accepted model.
 #pragma once
 
 #include <map>
@@ -14,6 +14,7 @@
 
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/forecast/forecaster.hpp"
+#include "sealwatch/port/accepted_model.hpp"
 #include "sealwatch/port/estimator.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/prognostic_assessment/asset_history.hpp"
@@ -40,6 +41,7 @@ class PrognosticAssessment final : public Layer {
   [[nodiscard]] std::span<const Topic> outputs() const override;
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
+  [[nodiscard]] std::size_t held() const override;
 
  private:
   /// Inputs of one test until both are there.
@@ -49,25 +51,34 @@ class PrognosticAssessment final : public Layer {
   };
 
   PrognosticAssessment(const Configuration& configuration, const Estimator& estimator, const Options& options,
-                       forecast::ForecastPanel panel)
-      : configuration_(configuration), estimator_(estimator), options_(options), panel_(std::move(panel)) {}
+                       forecast::ForecastPanel panel, std::unique_ptr<const forecast::Forecaster> in_charge)
+      : configuration_(configuration),
+        estimator_(estimator),
+        options_(options),
+        panel_(std::move(panel)),
+        in_charge_(std::move(in_charge)) {}
 
   template <class Input>
   [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
   [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
+  [[nodiscard]] const AcceptedModel& accepted(const std::string& asset_id) const;
   [[nodiscard]] LeakageEstimate estimate(const HealthReport& health, const TestWindow& window) const;
   /// Also marks `estimate` when it stands alone.
   [[nodiscard]] RemainingLife remaining_life(LeakageEstimate& estimate) const;
   [[nodiscard]] std::vector<forecast::FailureHorizon> campaigns(const AssetConfig& asset) const;
+  void add_decision(const AssetConfig& asset, UtcTime now, const forecast::ForecastPanel::Answer& answer,
+                    RemainingLife& life) const;
   [[nodiscard]] std::vector<Forecast> no_forecast(const std::string& explanation) const;
 
   Configuration configuration_;
   const Estimator& estimator_;
   Options options_;
   forecast::ForecastPanel panel_;
-  std::map<std::string, Pending> pending_;       ///< by pst_id
-  std::map<std::string, AssetHistory> history_;  ///< by asset_id
+  std::unique_ptr<const forecast::Forecaster> in_charge_;
+  std::map<std::string, Pending> pending_;         ///< by pst_id
+  std::map<std::string, AssetHistory> history_;    ///< by asset_id
+  std::map<std::string, AcceptedModel> accepted_;  ///< by asset_id
 };
 
 }  // namespace sealwatch::prognostic_assessment

@@ -8,6 +8,7 @@
 
 #include "sealwatch/config/advice.hpp"
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/config/site_decision.hpp"
 
 namespace sealwatch {
 
@@ -48,6 +49,7 @@ struct Configuration {
   AdviceOptions advice;
   std::map<std::string, TopicQos> topics;  ///< by topic name
   std::vector<SiteConfig> sites;
+  std::map<std::string, SiteDecision> decisions;  ///< by site; none: neither costs nor proof tests are known
   std::vector<AssetConfig> assets;
 
   [[nodiscard]] const AssetConfig* find_asset(const std::string& asset_id) const {
@@ -59,6 +61,10 @@ struct Configuration {
     for (const SiteConfig& candidate : sites)
       if (candidate.site == site) return &candidate;
     return nullptr;
+  }
+  [[nodiscard]] SiteDecision decision_of(const std::string& site) const {
+    const auto found = decisions.find(site);
+    return found == decisions.end() ? SiteDecision{} : found->second;
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sealwatch/message/common.hpp"
+#include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch {
 
@@ -23,6 +24,25 @@ struct RequestForWork {
   friend bool operator==(const RequestForWork&, const RequestForWork&) = default;
 };
 
+/// Proof tests and what the leak leaves of the valve's closing.
+struct SafetyBook {
+  bool failure_probability_known = false;      ///< the site gives its rate of failures
+  double failure_probability_on_demand = 0.0;  ///< PFDavg
+  bool partial_stroke_known = false;
+  std::int64_t partial_stroke_due_ns = 0;
+  double partial_stroke_overdue_days = 0.0;  ///< by how much this one came late
+  bool full_stroke_known = false;
+  std::int64_t full_stroke_due_ns = 0;
+  double full_stroke_overdue_months = 0.0;  ///< at the time of this test
+  bool margin_known = false;                ///< the test gave an estimate of the leak
+  double closing_time_margin = 0.0;         ///< limit / closing time - 1; -1: it does not close
+  double closing_force_margin = 0.0;        ///< available / needed - 1
+  SEALWATCH_FIELDS(SafetyBook, failure_probability_known, failure_probability_on_demand, partial_stroke_known,
+                   partial_stroke_due_ns, partial_stroke_overdue_days, full_stroke_known, full_stroke_due_ns,
+                   full_stroke_overdue_months, margin_known, closing_time_margin, closing_force_margin)
+  friend bool operator==(const SafetyBook&, const SafetyBook&) = default;
+};
+
 /// Topic advisory: the current recommendation for one asset. A test that changes nothing repeats the advisory_id with a
 /// higher revision; a different recommendation has a new id and names the one it supersedes.
 struct Advisory {
@@ -42,9 +62,11 @@ struct Advisory {
   std::string acknowledged_by;
   std::int64_t acknowledged_at_ns = 0;
   std::string acknowledgement_remark;
+  std::vector<DecisionOption> decision;  ///< of the test's remaining_life
+  SafetyBook safety;
   SEALWATCH_FIELDS(Advisory, asset_id, header, advisory_id, revision, state, supersedes_id, priority, action,
                    recommendation, latest_by_known, latest_by_ns, reasons, request_for_work, acknowledged_by,
-                   acknowledged_at_ns, acknowledgement_remark)
+                   acknowledged_at_ns, acknowledgement_remark, decision, safety)
   friend bool operator==(const Advisory&, const Advisory&) = default;
 };
 

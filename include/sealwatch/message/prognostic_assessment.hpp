@@ -65,8 +65,10 @@ struct LeakageEstimate {
   std::vector<std::string> reasons;  ///< why it was left out
   std::vector<FitReport> fits;       ///< cylinder circuit, and whole actuator where it could be run
   std::string chosen_model;          ///< which fit R_CL was taken from
+  std::string accepted_discrepancy;  ///< model_discrepancy whose model was fitted; "" the asset file's
   SEALWATCH_FIELDS(LeakageEstimate, asset_id, header, estimated, resistance_Pa_s_m3, resistance_std_Pa_s_m3,
-                   condition_known, condition, condition_std, used_for_forecast, reasons, fits, chosen_model)
+                   condition_known, condition, condition_std, used_for_forecast, reasons, fits, chosen_model,
+                   accepted_discrepancy)
   friend bool operator==(const LeakageEstimate&, const LeakageEstimate&) = default;
 };
 
@@ -100,6 +102,21 @@ struct Forecast {
   friend bool operator==(const Forecast&, const Forecast&) = default;
 };
 
+/// One row of the decision table: replacing the seal at a date, or waiting for its failure.
+struct DecisionOption {
+  std::string label;  ///< "now", the campaign's, "wait for failure"
+  std::int64_t at_ns = 0;
+  double months = 0.0;               ///< from the test; for waiting the median remaining life
+  double failure_probability = 0.0;  ///< before that date; for waiting 1
+  bool cost_known = false;           ///< the site gives its costs
+  double expected_cost = 0.0;
+  std::string currency;
+  bool cheapest = false;
+  SEALWATCH_FIELDS(DecisionOption, label, at_ns, months, failure_probability, cost_known, expected_cost, currency,
+                   cheapest)
+  friend bool operator==(const DecisionOption&, const DecisionOption&) = default;
+};
+
 /// Topic remaining_life: one per test.
 struct RemainingLife {
   std::string asset_id;    // key
@@ -112,8 +129,17 @@ struct RemainingLife {
   bool windows_disagree = false;    ///< prediction intervals of two windows do not overlap
   std::string disagreement;
   std::int32_t tests_since_replacement = 0;
+  /// Earlier forecasts of the condition by the forecaster in charge, against the estimates that have come since.
+  std::int32_t scored_forecasts = 0;  ///< 0: the shares and the CRPS say nothing yet
+  double coverage_80 = 0.0;           ///< share of those estimates within the 80 % interval
+  double coverage_95 = 0.0;
+  double mean_crps = 0.0;   ///< of theta [1]
+  double confidence = 0.0;  ///< 0..1 that the forecaster still describes this seal; 0 where nothing is forecast
+  std::vector<DecisionOption>
+      decision;  ///< by the forecaster in charge, in the order of time; empty without a forecast
   SEALWATCH_FIELDS(RemainingLife, asset_id, header, threshold, condition, condition_known, condition_std, forecasts,
-                   windows_disagree, disagreement, tests_since_replacement)
+                   windows_disagree, disagreement, tests_since_replacement, scored_forecasts, coverage_80, coverage_95,
+                   mean_crps, confidence, decision)
   friend bool operator==(const RemainingLife&, const RemainingLife&) = default;
 };
 

@@ -81,6 +81,29 @@ void read_campaigns(YamlMap& site, SiteConfig& config) {
   std::ranges::stable_sort(config.campaigns, {}, &Campaign::start);
 }
 
+SiteDecision read_decision(YamlMap& site) {
+  constexpr NumberRule kShare{.min = 0.0, .max = 1.0, .words = "must be a number from 0 to 1"};
+  SiteDecision decision;
+  if (auto map = site.map("costs")) {
+    SiteCosts& costs = decision.costs.emplace();
+    map->read("planned", costs.planned, kNotNegative);
+    map->read("after_failure", costs.after_failure, kNotNegative);
+    map->read("failed_month", costs.failed_month, kNotNegative);
+    map->read("unused_month", costs.unused_month, kNotNegative);
+    map->read("currency", costs.currency);
+    map->finish();
+  }
+  if (auto map = site.map("safety")) {
+    SiteSafety& safety = decision.safety.emplace();
+    map->read("dangerous_undetected_per_hour", safety.dangerous_undetected_per_hour, kPositive);
+    map->read("partial_stroke_coverage", safety.partial_stroke_coverage, kShare);
+    map->read("full_stroke_interval_months", safety.full_stroke_interval_months, kPositive);
+    if (UtcTime last; map->read("last_full_stroke", last)) safety.last_full_stroke = last;
+    map->finish();
+  }
+  return decision;
+}
+
 void read_sites(YamlMap& root, Configuration& configuration) {
   std::size_t index = 0;
   for (const YAML::Node& node : root.list("sites")) {
@@ -91,6 +114,7 @@ void read_sites(YamlMap& root, Configuration& configuration) {
     if (twice) map.fault("site", site.site, "is there twice", "name each site once");
     map.read("booking_lead_time_months", site.booking_lead_time_months, kNotNegative);
     read_campaigns(map, site);
+    configuration.decisions[site.site] = read_decision(map);
     map.finish();
     if (!twice && !site.site.empty()) configuration.sites.push_back(std::move(site));
   }

@@ -202,5 +202,83 @@ TEST_F(PrognosticAssessmentTest, OptionsAreChecked) {
   EXPECT_FALSE(PrognosticAssessment::make(configuration_, estimator_, {.forecasters = {{"oracle", 36}}}));
 }
 
+TEST_F(PrognosticAssessmentTest, ForecastsThatComeTrueRaiseConfidenceAndADriftTakesIt) {
+  auto life = straight_life(1, 60);
+  const RemainingLife steady = of_kind<RemainingLife>(run(inputs_of(life))).back();
+  EXPECT_EQ(steady.scored_forecasts, 8);
+  EXPECT_GE(steady.coverage_95, 0.75);
+  EXPECT_GT(steady.mean_crps, 0.0);
+  EXPECT_GT(steady.confidence, 0.9);
+  for (std::size_t k = 50; k < life.size(); ++k) life[k].condition -= 0.012 * static_cast<double>(k - 49);
+  const RemainingLife drifting = of_kind<RemainingLife>(run(inputs_of(life))).back();
+  EXPECT_LT(drifting.coverage_80, steady.coverage_80);
+  EXPECT_GT(drifting.mean_crps, steady.mean_crps);
+  EXPECT_LT(drifting.confidence, 0.5);
+}
+
+TEST_F(PrognosticAssessmentTest, NothingScoredIsNoConfidence) {
+  const RemainingLife first = of_kind<RemainingLife>(run(inputs_of(straight_life(1, 1)))).back();
+  EXPECT_EQ(first.scored_forecasts, 0);
+  EXPECT_EQ(first.confidence, 0.0);
+  EXPECT_TRUE(first.decision.empty());
+}
+
+TEST_F(PrognosticAssessmentTest, DecisionTableHasEveryCampaignAndCostsWhereTheSiteGivesThem) {
+  const auto inputs = inputs_of(straight_life(1, 60));
+  const auto without = of_kind<RemainingLife>(run(inputs)).back().decision;
+  ASSERT_EQ(without.size(), 4U);
+  EXPECT_EQ(without[0].label, "now");
+  EXPECT_EQ(without[1].label, "summer 2016");
+  EXPECT_EQ(without[3].label, "wait for failure");
+  EXPECT_EQ(without[3].failure_probability, 1.0);
+  EXPECT_FALSE(without[1].cost_known || without[1].cheapest);
+  configuration_.decisions["north"].costs =
+      SiteCosts{.planned = 10.0, .after_failure = 50.0, .failed_month = 2.0, .unused_month = 0.2, .currency = "MNOK"};
+  const auto with = of_kind<RemainingLife>(run(inputs)).back().decision;
+  ASSERT_EQ(with.size(), 4U);
+  EXPECT_EQ(with[1].failure_probability, without[1].failure_probability);
+  EXPECT_EQ(with[1].currency, "MNOK");
+  EXPECT_NEAR(with[3].expected_cost, 50.0 + 2.0 * 12.0, 1e-9);
+  EXPECT_EQ(std::count_if(with.begin(), with.end(), [](const auto& one) { return one.cheapest; }), 1);
+  EXPECT_TRUE(with[1].cheapest) << "the last campaign that is safe: now wastes 40 months of life";
+}
+
+/// With the accepted friction the estimator finds half the resistance.
+class EstimatorOfPhysics final : public Estimator {
+ public:
+  std::vector<FitReport> estimate(const AssetConfig& asset, const TimeSeries&, std::span<const Phase>) const override {
+    return {fit("eha", asset.physics.empty() ? 2.0e13 : 1.0e13, 1e10)};
+  }
+};
+
+TEST_F(PrognosticAssessmentTest, TheAcceptedModelIsFittedUntilTheActuatorIsReplaced) {
+  const EstimatorOfPhysics estimator;
+  ModelAcceptance acceptance;
+  acceptance.asset_id = kAsset;
+  acceptance.header.message_id = "model_acceptance/1";
+  acceptance.discrepancy_id = "D1";
+  acceptance.discrepancy_time_ns = add_months(kInstalled, 2.0).nanoseconds;
+  acceptance.explained.model = "eha";
+  acceptance.explained.physics = {{.id = "coulomb", .element = "load", .parameters = {}}};
+  std::vector<Message> inputs = inputs_of(straight_life(1, 3));
+  inputs.emplace_back(acceptance);
+  for (const Message& message : inputs_of(straight_life(4, 5))) inputs.push_back(message);
+  inputs.emplace_back(replacement(5.5));
+  for (const Message& message : inputs_of(straight_life(6, 6))) inputs.push_back(message);
+  const auto make_layer = [&]() -> std::unique_ptr<Layer> {
+    return PrognosticAssessment::make(configuration_, estimator).value();
+  };
+  const auto undisturbed = run_layer(make_layer, inputs);
+  const auto estimates = of_kind<LeakageEstimate>(undisturbed);
+  ASSERT_EQ(estimates.size(), 6U);
+  EXPECT_EQ(estimates[2].resistance_Pa_s_m3, 2.0e13);
+  EXPECT_EQ(estimates[2].accepted_discrepancy, "");
+  EXPECT_EQ(estimates[3].resistance_Pa_s_m3, 1.0e13);
+  EXPECT_EQ(estimates[4].accepted_discrepancy, "D1");
+  EXPECT_EQ(estimates[5].resistance_Pa_s_m3, 2.0e13);
+  for (std::size_t death = 0; death < inputs.size(); ++death)
+    ASSERT_EQ(run_layer(make_layer, inputs, death), undisturbed) << death;
+}
+
 }  // namespace
 }  // namespace sealwatch::prognostic_assessment

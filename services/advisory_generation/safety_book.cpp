@@ -1,0 +1,86 @@
+#include "services/advisory_generation/safety_book.hpp"
+
+#include <cstdio>
+
+#include "sealwatch/forecast/safety_margin.hpp"
+#include "sealwatch/forecast/words.hpp"
+
+namespace sealwatch::advisory_generation {
+namespace {
+
+constexpr double kHoursAMonth = 365.25 * 24.0 / 12.0;
+
+void add_intervals(SafetyBook& book, const PstSetting& pst, const SiteSafety& safety, std::optional<UtcTime> now) {
+  const auto probability = forecast::average_failure_probability_on_demand(
+      {.dangerous_undetected_per_hour = safety.dangerous_undetected_per_hour,
+       .partial_stroke_coverage = safety.partial_stroke_coverage,
+       .partial_stroke_interval_h = pst.interval_months * kHoursAMonth,
+       .full_stroke_interval_h = safety.full_stroke_interval_months * kHoursAMonth});
+  book.failure_probability_known = probability.has_value();
+  if (probability) book.failure_probability_on_demand = *probability;
+  if (!safety.last_full_stroke || !now) return;
+  const forecast::TestDue due = forecast::next_test_due(safety.last_full_stroke, *safety.last_full_stroke,
+                                                        safety.full_stroke_interval_months, *now);
+  book.full_stroke_known = true;
+  book.full_stroke_due_ns = due.due.nanoseconds;
+  book.full_stroke_overdue_months = due.overdue_months;
+}
+
+void add_margins(SafetyBook& book, const AssetConfig& asset, const LeakageEstimate& leakage) {
+  const auto has = [&](const char* name) { return asset.parameters.contains(name); };
+  if (!leakage.estimated || !has("A_C") || !has("x_C") || !has("phi")) return;
+  forecast::ClosingConditions conditions;
+  conditions.piston_area_m2 = asset.parameter("A_C");
+  conditions.stroke_m = asset.parameter("x_C");
+  conditions.inlet_flow_m3_s = asset.parameter("A_C") * asset.pst.speed_m_s;
+  conditions.load_N = asset.parameter("phi");
+  const auto margin = forecast::closing_margin(leakage.resistance_Pa_s_m3, conditions);
+  if (!margin) return;
+  book.margin_known = true;
+  book.closing_time_margin = margin->time_margin;
+  book.closing_force_margin = margin->force_margin;
+}
+
+std::string amount(double money) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g", money);
+  return text;
+}
+
+}  // namespace
+
+SafetyBook safety_book(const Evidence& evidence, const AssetConfig* asset, const std::optional<SiteSafety>& safety) {
+  SafetyBook book;
+  if (!asset) return book;
+  std::optional<UtcTime> now;
+  if (evidence.life.header.event_time_known) now = UtcTime{evidence.life.header.event_time_ns};
+  if (now) {
+    const forecast::TestDue due = forecast::next_test_due(now, *now, asset->pst.interval_months, *now);
+    book.partial_stroke_known = true;
+    book.partial_stroke_due_ns = due.due.nanoseconds;
+    book.partial_stroke_overdue_days = evidence.state.overdue_days;
+  }
+  if (safety) add_intervals(book, asset->pst, *safety, now);
+  add_margins(book, *asset, evidence.leakage);
+  return book;
+}
+
+std::vector<std::string> in_words(const std::vector<DecisionOption>& decision, const SafetyBook& book) {
+  std::vector<std::string> words;
+  for (const DecisionOption& option : decision) {
+    if (!option.cheapest) continue;
+    std::string text = "cheapest on average: ";
+    text.append(option.label).append(", ").append(amount(option.expected_cost)).append(" ");
+    text.append(option.currency).append(" expected; now ").append(amount(decision.front().expected_cost));
+    text.append(", waiting for the failure ").append(amount(decision.back().expected_cost));
+    words.push_back(std::move(text));
+  }
+  if (book.failure_probability_known)
+    words.push_back(std::string("average probability of failure on demand ")
+                        .append(forecast::three_digits(book.failure_probability_on_demand)));
+  if (book.full_stroke_known && book.full_stroke_overdue_months > 0.0)
+    words.push_back(std::string("the full stroke test was due on ").append(format_date({book.full_stroke_due_ns})));
+  return words;
+}
+
+}  // namespace sealwatch::advisory_generation

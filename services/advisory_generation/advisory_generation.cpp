@@ -92,9 +92,9 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   advisory.reasons.insert(advisory.reasons.end(), recommendation.also.begin(), recommendation.also.end());
   const AssetConfig* config = configuration_.find_asset(asset_id);
   advisory.decision = evidence.life.decision;
-  advisory.safety =
-      safety_book(evidence, config, configuration_.decision_of(config ? config->site : std::string()).safety);
-  for (std::string& reason : in_words(advisory.decision, advisory.safety))
+  advisory.safety = {
+      safety_book(evidence, config, configuration_.decision_of(config ? config->site : std::string()).safety)};
+  for (std::string& reason : in_words(advisory.decision, advisory.safety.front()))
     advisory.reasons.push_back(std::move(reason));
   advisory.reasons.push_back(in_words(assessment.verdict, in_force));
   if (is_replacement(advisory.action)) advisory.request_for_work = {work_order(advisory, recommendation)};

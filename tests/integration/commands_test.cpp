@@ -112,7 +112,6 @@ TEST_F(Commands, ForecastSaysWhichDateItPassesOver) {
 
 TEST_F(Commands, ForecastSaysWhenItCannotTell) {
   const Finished few = run({"sealwatch", "forecast", "--history", history(5, 0.005), "--json"});
-  EXPECT_EQ(few.status, 1) << few.output;
   EXPECT_EQ(json::parse(few.output)["forecasts"][0]["state"], "insufficient_history");
   EXPECT_FALSE(json::parse(few.output)["forecasts"][0].contains("rul_months"));
   EXPECT_EQ(

@@ -63,7 +63,7 @@ struct Advisory {
   std::int64_t acknowledged_at_ns = 0;
   std::string acknowledgement_remark;
   std::vector<DecisionOption> decision;  ///< of the test's remaining_life
-  SafetyBook safety;
+  std::vector<SafetyBook> safety;        ///< one; none from an older writer (a lone struct would end the reader)
   SEALWATCH_FIELDS(Advisory, asset_id, header, advisory_id, revision, state, supersedes_id, priority, action,
                    recommendation, latest_by_known, latest_by_ns, reasons, request_for_work, acknowledged_by,
                    acknowledged_at_ns, acknowledgement_remark, decision, safety)

@@ -39,24 +39,24 @@ struct CascadedTanks {
     double pump_voltage_V = 0.0;
   };
 
-  /// Where laws of the catalogue may act, in the order of `extra`: voltage that the pump loses, flow that leaves a tank
-  /// (counted in its own level) besides its outlet.
-  static constexpr std::array kSites = {Site{"pump", SiteKind::voltage_command},
-                                        Site{"upper_tank", SiteKind::tank_flow},
-                                        Site{"lower_tank", SiteKind::tank_flow}};
-  enum SiteIndex { kPumpVoltage, kUpperFlow, kLowerFlow };
+  /// Where laws of the catalogue may act, in the order of `extra`: voltage that the pump loses; flow that leaves a tank
+  /// for good, besides its outlet; flow that passes from the upper tank to the lower one, besides its outlet.
+  static constexpr std::array kSites = {
+      Site{"pump", SiteKind::voltage_command}, Site{"upper_tank", SiteKind::tank_flow},
+      Site{"upper_outlet", SiteKind::tank_flow}, Site{"lower_tank", SiteKind::tank_flow}};
+  enum SiteIndex { kPumpVoltage, kUpperFlow, kPassedFlow, kLowerFlow };
 
-  /// What laws see at a site (model/physics.hpp). Nothing is upstream of the upper tank.
+  /// What laws see at a site (model/physics.hpp): the command, or the level of the tank that the flow leaves.
   template <class R, class S, class P, class Extra>
   [[nodiscard]] static std::array<R, kSiteSignals> signals(std::size_t site, const State<S>& y, const Input& input,
                                                            const CascadedTanksParameters<P>&, const Extra&) {
     switch (site) {
       case kPumpVoltage:
         return {R(0.0), R(input.pump_voltage_V), R(0.0), R(0.0)};
-      case kUpperFlow:
-        return {R(y[kUpper]), R(0.0), R(0.0), R(0.0)};
+      case kLowerFlow:
+        return {R(y[kLower]), R(0.0), R(0.0), R(0.0)};
       default:
-        return {R(y[kLower]), R(y[kUpper]), R(0.0), R(0.0)};
+        return {R(y[kUpper]), R(0.0), R(0.0), R(0.0)};
     }
   }
 
@@ -65,11 +65,11 @@ struct CascadedTanks {
   template <class S, class P, class Extra = NoExtra>
   [[nodiscard]] static auto derivatives(const State<S>& y, const Input& input, const CascadedTanksParameters<P>& p,
                                         const Extra& extra = {}) {
-    const auto upper_outflow = p.k1 * laws::signed_root(y[kUpper], kRoundedLevel_V);
+    const auto passed = p.k1 * laws::signed_root(y[kUpper], kRoundedLevel_V) + extra[kPassedFlow];
     const auto lower_outflow = p.k3 * laws::signed_root(y[kLower], kRoundedLevel_V);
     const auto inflow = p.k4 * (input.pump_voltage_V - extra[kPumpVoltage]);
-    const auto upper_rate = inflow - upper_outflow - extra[kUpperFlow];
-    const auto lower_rate = p.area_ratio * upper_outflow - lower_outflow - extra[kLowerFlow];
+    const auto upper_rate = inflow - passed - extra[kUpperFlow];
+    const auto lower_rate = p.area_ratio * passed - lower_outflow - extra[kLowerFlow];
     using R = decltype(upper_rate + lower_rate);
     return State<R>{R(upper_rate), R(lower_rate)};
   }

@@ -40,7 +40,7 @@ namespace sealwatch {
 ///   piston_force     N          speed v, position x, p_A, p_B
 ///   inverse_modulus  1/Pa       absolute pressure                          (added to 1/beta)
 ///   viscosity        1          dissipated power |z i|                     (relative change of viscosity)
-///   tank_flow        V/s        level, level upstream                      (of the tank whose balance it is)
+///   tank_flow        V/s        level                                      (of the tank that the flow leaves)
 ///   sensor_*         channel    the simulated channel
 SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_slip, line_drop, valve_crack, outflow,
                compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, sensor_bias, sensor_gain,

@@ -33,8 +33,7 @@ constexpr SiteWords kModulus{
     "softness of the oil, 1/beta", "1/Pa", {SignalWords{"pressure", "Pa"}, kNone, kNone, kNone}};
 constexpr SiteWords kViscosity{
     "relative change of viscosity", "1", {SignalWords{"dissipated power", "W"}, kNone, kNone, kNone}};
-constexpr SiteWords kTank{
-    "flow out of the tank", "V/s", {SignalWords{"level", "V"}, {"level of the tank above", "V"}, kNone, kNone}};
+constexpr SiteWords kTank{"flow out of the tank", "V/s", {SignalWords{"level", "V"}, kNone, kNone, kNone}};
 constexpr SiteWords kSensor{"shift of the reading", "", {kNone, kNone, kNone, kNone}};
 
 }  // namespace

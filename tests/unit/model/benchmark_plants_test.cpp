@@ -45,9 +45,10 @@ TEST(CascadedTanksEquations, AreTorricellisOutflows) {
   constexpr double kRounding = 1e-4;  // of the root near full tanks: half a millivolt of volts
   EXPECT_NEAR(rate[CascadedTanks::kUpper], 0.05 * 3.0 - 0.06 * 2.0, 0.12 * kRounding * 2.0);
   EXPECT_NEAR(rate[CascadedTanks::kLower], 2.0 * 0.06 * 2.0 - 0.07 * 3.0, 0.24 * kRounding * 2.0);
-  const auto losing = CascadedTanks::derivatives<double, double>({4.0, 9.0}, {3.0}, p, std::array{1.0, 0.01, -0.02});
-  EXPECT_NEAR(losing[CascadedTanks::kUpper] - rate[CascadedTanks::kUpper], -0.05 - 0.01, 1e-15);
-  EXPECT_NEAR(losing[CascadedTanks::kLower] - rate[CascadedTanks::kLower], 0.02, 1e-15);
+  const auto losing =
+      CascadedTanks::derivatives<double, double>({4.0, 9.0}, {3.0}, p, std::array{1.0, 0.01, 0.003, -0.02});
+  EXPECT_NEAR(losing[CascadedTanks::kUpper] - rate[CascadedTanks::kUpper], -0.05 - 0.01 - 0.003, 1e-15);
+  EXPECT_NEAR(losing[CascadedTanks::kLower] - rate[CascadedTanks::kLower], 2.0 * 0.003 + 0.02, 1e-15);
 }
 
 // What leaves the upper tank arrives in the lower one: k4 u - q_2 is the sum of both volumes' rates.

@@ -54,18 +54,11 @@ const std::map<std::string, std::size_t> kDissipate = {
 
 /// Laws without memory whose contribution has one sign: +1 or -1, for levels that are positive.
 const std::map<std::string, double> kOneSign = {
-    {"hose_compliance (constant)", 1.0},
-    {"hose_compliance (stiffening)", 1.0},
-    {"entrained_air (isothermal)", 1.0},
-    {"entrained_air (polytropic)", 1.0},
-    {"entrained_air (dissolving)", 1.0},
-    {"tank_overflow", 1.0},
-    {"outflow_exponent", 1.0},
-    {"outlet_level_offset", 1.0},
-    {"pump_dead_voltage", 1.0},
-    {"overflow_inflow", -1.0},
-    {"linear_inflow", -1.0},
-    {"unlisted (compliance_power)", 1.0},
+    {"hose_compliance (constant)", 1.0}, {"hose_compliance (stiffening)", 1.0},
+    {"entrained_air (isothermal)", 1.0}, {"entrained_air (polytropic)", 1.0},
+    {"entrained_air (dissolving)", 1.0}, {"tank_overflow", 1.0},
+    {"outflow_exponent", 1.0},           {"outlet_level_offset", 1.0},
+    {"pump_dead_voltage", 1.0},          {"unlisted (compliance_power)", 1.0},
 };
 
 /// Forces of position alone: the same work both ways, whatever their sign.

@@ -12,12 +12,12 @@ Law tank_overflow() {
           .form = "",
           .kind = SiteKind::tank_flow,
           .equation = "k max(level - level_max, 0)",
-          .meaning = "water that runs over the rim of this tank",
+          .meaning = "water that runs over the rim: of a tank, and is lost, or into the tank below",
           .energy = "k >= 0: water only leaves over the rim",
           .source = "Schoukens, Mattsson, Wigren, Noel, Cascaded tanks benchmark (2016)",
           .parameters = {strength("k", "1/s", "overflow per level above the rim",
                                   {.usual = 1.0, .significant = 0.05, .max = 100.0}),
-                         shape("level_max", "V", "level of the rim", {10.0, 9.5, 9.0, 8.0}, 1.0, 20.0)},
+                         shape("level_max", "V", "level of the rim", {10.0, 9.0, 8.0, 7.0, 12.0}, 1.0, 20.0)},
           .evaluate = &evaluate};
 }
 

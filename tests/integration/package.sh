@@ -101,7 +101,7 @@ check_programs() {
 check_services() {
   local sealwatch=$root/usr/bin/sealwatch config=$scratch/config
   cp -r "$root/etc/sealwatch" "$config"
-  sed -i 's/advisory_generation: {enabled: true}/advisory_generation: {enabled: false}/' "$config/sealwatch.yaml"
+  sed -i '/^  advisory_generation:/,/enabled:/s/enabled: true/enabled: false/' "$config/sealwatch.yaml"
   "${as_user[@]}" "$sealwatch" simulate --asset "$config/assets/xt03-mv2.yaml" --months 1 --rate 50 --out life >"$scratch/simulated"
   "${as_user[@]}" "$sealwatch" up --config "$config" >"$scratch/up" 2>&1 &
   up=$!

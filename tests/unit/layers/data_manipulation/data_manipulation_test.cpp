@@ -197,7 +197,7 @@ TEST(DataManipulation, NothingUsableIsSaidNotInvented) {
   empty.boundary = BlockBoundary::whole;
   const Result nothing = conclude(std::vector<SampleBlock>{empty});
   EXPECT_FALSE(nothing.window.complete);
-  EXPECT_EQ(nothing.window.abort_reason, "only 0 samples were recorded");
+  EXPECT_EQ(nothing.window.abort_reason, "no sample was recorded");
   EXPECT_TRUE(nothing.features.features.empty());
 
   TimeSeries far = SyntheticPst{}.record();

@@ -44,7 +44,10 @@ namespace sealwatch {
 ///   sensor_*         channel    the simulated channel
 SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_slip, line_drop, valve_crack, outflow,
                compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, sensor_bias, sensor_gain,
-               sensor_lag)
+               sensor_lag, sensor_saturation)
+
+/// Laws of one measurement, which the simulation applies itself.
+[[nodiscard]] constexpr bool is_sensor(SiteKind kind) { return kind >= SiteKind::sensor_bias; }
 
 inline constexpr std::size_t kSiteSignals = 4;
 inline constexpr std::size_t kLawParameters = 4;
@@ -97,6 +100,8 @@ struct Law {
   LawOutput (*evaluate)(const LawInput& input) = nullptr;  ///< null for sensors, which the simulation applies itself
   /// Elements that the law fits beside its kind; empty: all of that kind.
   std::vector<std::string_view> elements = {};
+  /// Id of the plainer law that it comes to where its way is too short or its extra strength too small to be seen.
+  std::string_view limit = {};
 };
 
 /// All laws, in the order of their files (services/common/model/laws).

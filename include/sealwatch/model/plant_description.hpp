@@ -2,7 +2,7 @@
 // recorded channels, its parameters with units, bounds and meaning, its elements.
 #pragma once
 
-#include <span>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,6 +62,9 @@ struct PlantDescription {
   std::vector<ElementDescription> elements;
   std::vector<Site> sites = {};  ///< where laws of the catalogue may act
   std::vector<LawSize> law_sizes = {};
+  /// Where nothing pulls the plant back to its place, what its model lacks adds up and a whole recording ends anywhere:
+  /// the mismatch analysis then looks at pieces of this length, each from an initial state of its own. 0: at the whole.
+  double window_s = 0.0;
 
   [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
   [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;
@@ -72,8 +75,8 @@ struct PlantDescription {
   [[nodiscard]] bool has_load() const { return find_parameter("phi") != nullptr; }
 };
 
-/// The plants that sealwatch knows, in a fixed order.
-[[nodiscard]] std::span<const PlantDescription> all_plants();
+/// The plants that sealwatch knows, in a fixed order; one's own come last (docs/tutorial-plant.md).
+[[nodiscard]] const std::deque<PlantDescription>& all_plants();
 
 /// The plant of that name; an Error naming the nearest one otherwise.
 [[nodiscard]] Result<const PlantDescription*> find_plant(std::string_view name);

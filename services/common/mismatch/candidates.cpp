@@ -6,7 +6,8 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kLargestGrid = 12;
-constexpr double kBiasShare = 0.01;  // usual bias of a sensor, of the range of its channel in the recording
+constexpr Eigen::Index kClipped = 5;  // samples in a row at the largest value of a recording: a sensor at its end
+constexpr double kBiasShare = 0.01;   // usual bias of a sensor, of the range of its channel in the recording
 
 // All combinations of the start values, in the sizes of the plant; for many, the first values of each parameter with
 // the usual ones of the others.
@@ -61,6 +62,15 @@ void add_at_sites(const Law& law, const PlantSimulation& simulation, const std::
   candidates.insert(candidates.end(), found.begin(), found.end());
 }
 
+// A channel that stays at its largest value shows the end of its sensor's range. Without that there is nothing to see.
+bool clipped(const Eigen::Ref<const Eigen::VectorXd>& column) {
+  const double end = column.maxCoeff();
+  if (end - column.minCoeff() <= 0.0) return false;
+  Eigen::Index longest = 0, now = 0;
+  for (const double value : column) longest = std::max(longest, now = value == end ? now + 1 : 0);
+  return longest >= kClipped;
+}
+
 void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
                     std::vector<Candidate>& candidates) {
   for (std::size_t c = 0; c < simulation.channels().size(); ++c) {
@@ -71,8 +81,12 @@ void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std
                         .sites = {},
                         .channel = simulation.channels()[c],
                         .grid = shape_grid(law, simulation.plant())};
+    const Eigen::VectorXd column = simulation.recorded().col(static_cast<Eigen::Index>(c));
+    if (law.kind == SiteKind::sensor_saturation) {
+      if (!clipped(column)) continue;
+      for (std::vector<double>& point : candidate.grid) point[1] = column.maxCoeff();
+    }
     if (law.kind == SiteKind::sensor_bias) {
-      const auto column = simulation.recorded().col(static_cast<Eigen::Index>(c));
       const double size = std::max(column.maxCoeff() - column.minCoeff(), 1e-12);
       candidate.strength_scale = kBiasShare * size / law.parameters.front().start.front();
     }

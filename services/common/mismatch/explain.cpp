@@ -161,7 +161,8 @@ class Analysis {
     result_.notes = find_noise(fit_, channels);
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
-    windowed_ = needs_windows(asset_, fit_.samples.front());
+    window_s_ = window_of(asset_, fit_.samples.front());
+    windowed_ = window_s_ > 0.0;
     if (windowed_ && asset_.model == "eha") fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
     Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
     if (model && windowed_ && asset_.model == "eha") {
@@ -225,7 +226,7 @@ class Analysis {
     return fit_model(with_fixed_parameters(asset), only(data, recording), nullptr, 1);
   }
 
-  [[nodiscard]] Data prepared(const Data& data) const { return windowed_ ? cut_into_windows(data) : data; }
+  [[nodiscard]] Data prepared(const Data& data) const { return windowed_ ? cut_into_windows(data, window_s_) : data; }
 
   void add_gain(RecordingComparison& comparison, const BlockGains& blocks) const {
     const GainInterval interval = gain_interval(blocks, dispersion(*best_.model), options_.seed);
@@ -368,6 +369,7 @@ class Analysis {
   Trial best_;
   bool proven_ = false;
   bool windowed_ = false;
+  double window_s_ = 0.0;
   Explanation result_;
 };
 

@@ -5,16 +5,18 @@
 #include <cmath>
 #include <thread>
 
+#include "services/common/mismatch/plain_laws.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kSingles = 8;        // refits of single laws
+constexpr std::size_t kSecondStarts = 4;   // of laws with a shape, from another point of its grid, in a gross misfit
 constexpr std::size_t kPairs = 4;          // refits of pairs
 constexpr int kFirstRound = 8;             // iterations of every refit
 constexpr std::size_t kSecondRound = 5;    // refits that go on
 constexpr double kHopeful = 10.0;          // times the best misfit: further off a refit does not go on
 constexpr std::size_t kUnlistedForms = 5;  // refits of closed forms
-constexpr double kWorthAnother = 12.0;     // criterion by which another law must improve: it then is e^6 times likelier
 constexpr double kPairAhead =
     0.02;  // of the misfit: a pair that promises less more than the best single is passed over
 constexpr double kSmallestStart = 0.02, kLargestStart = 50.0;  // of a strength's usual size
@@ -36,17 +38,6 @@ LawStart start_of(const Screening& screening, const Variant& variant) {
     value = linear < 0.0 && candidate.law->parameters[strengths[k]].min < 0.0 ? -size : size;
   }
   return start;
-}
-
-// A search that ran out of iterations goes on from where it is.
-Trial polished(Trial trial, const Data& data, int threads) {
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds && !trial.model->optimum.converged; ++round) {
-    Result<FittedModel> further = fit_model(trial.model->asset, data, trial.model.get(), threads);
-    if (!further || further->misfit > trial.model->misfit) break;
-    trial.model = std::make_shared<const FittedModel>(std::move(*further));
-  }
-  return trial;
 }
 
 // f(0), f(1), ... on several threads, in this order.
@@ -85,6 +76,21 @@ std::vector<const Variant*> best_of_each(const Screening& screening) {
   return best;
 }
 
+// Of the best laws another point of their shape's grid: far from a recording the linearised gain says little about
+// where a refit ends, and from one start it may end in a hollow beside the best.
+std::vector<LawStart> second_starts(const Screening& screening) {
+  std::vector<LawStart> starts;
+  for (const Variant* best : best_of_each(screening)) {
+    if (starts.size() == kSecondStarts) break;
+    for (const Variant* other : by_gain(screening)) {
+      if (other == best || other->candidate != best->candidate) continue;
+      starts.push_back(start_of(screening, *other));
+      break;
+    }
+  }
+  return starts;
+}
+
 // The best pairs of different laws that promise clearly more than the best single law.
 std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit) {
   struct Pair {
@@ -108,13 +114,6 @@ std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, doub
     starts.push_back({start_of(screening, *pair.a), start_of(screening, *pair.b)});
   }
   return starts;
-}
-
-const Trial* best_of(const std::vector<Trial>& trials, double phi) {
-  const Trial* best = nullptr;
-  for (const Trial& trial : trials)
-    if (best == nullptr || criterion(*trial.model, phi) < criterion(*best->model, phi)) best = &trial;
-  return best;
 }
 
 double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model) {
@@ -159,13 +158,16 @@ void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
       }
     }
   }
+  const double phi = dispersion(*naming.best.model);
+  if (criterion(*naming.baseline, phi) < criterion(*naming.best.model, phi) + kWorthAnother)
+    naming.best = {{}, naming.baseline};
 }
 
 // Whether the best law of a screening promises, on the linearised model, what another law must bring.
 bool promising(const Screening& screening, const FittedModel& model) {
   const std::vector<const Variant*> order = by_gain(screening);
   const double penalty = std::log(model.residuals);  // of one more parameter
-  return !order.empty() && order.front()->gain / dispersion(model) > kWorthAnother + penalty;
+  return !order.empty() && order.front()->gain / excess(model) > kWorthAnother + penalty;
 }
 
 // Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
@@ -193,17 +195,36 @@ Status try_unlisted(Naming& naming, const Data& data, const ExplainOptions& opti
   return {};
 }
 
-}  // namespace
-
-double dispersion(const FittedModel& best) { return std::max(1.0, best.misfit / best.residuals); }
-
-bool differs(double p_value, const FittedModel& model, double false_alarm_rate) {
-  constexpr double kGross = 2.0;
-  return p_value <= false_alarm_rate || dispersion(model) > kGross;
+// A channel that stays at its largest value shows by itself that its sensor has reached the end of its range. In a
+// gross misfit that comes first: what lies beyond the end would otherwise be asked of the plant.
+Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOptions& options) {
+  if (excess(*naming.baseline) <= kGross) return {};
+  std::vector<LawStart> ends;
+  for (const Candidate& candidate : naming.first.candidates)
+    if (candidate.law->kind == SiteKind::sensor_saturation && ends.empty())
+      ends.push_back({{candidate.law, candidate.element}, candidate.grid.front()});
+  if (ends.empty()) return {};
+  const std::vector<Trial> trials = refit(naming.best, {ends}, data, options.threads);
+  if (trials.empty() || trials.front().model->misfit >= naming.baseline->misfit) return {};
+  naming.best = trials.front();
+  naming.trials.push_back(naming.best);
+  Result<Screening> next = screen(*naming.best.model, data, options);
+  if (!next) return fail(next.error());
+  naming.last = std::move(*next);
+  return {};
 }
 
-double criterion(const FittedModel& model, double dispersion) {
-  return model.misfit / dispersion + static_cast<double>(model.free_shared) * std::log(model.residuals / dispersion);
+}  // namespace
+
+// A search that ran out of iterations goes on from where it is.
+Trial polished(Trial trial, const Data& data, int threads) {
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds && !trial.model->optimum.converged; ++round) {
+    Result<FittedModel> further = fit_model(trial.model->asset, data, trial.model.get(), threads);
+    if (!further || further->misfit > trial.model->misfit) break;
+    trial.model = std::make_shared<const FittedModel>(std::move(*further));
+  }
+  return trial;
 }
 
 std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most) {
@@ -250,22 +271,29 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   Naming naming{
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
   naming.forbidden = forbidden_by_physics(naming.first);
+  if (const Status status = begin_with_what_shows(naming, data, screening); !status) return fail(status.error());
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
     if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||
         !promising(naming.last, *naming.best.model))
       break;
     const std::size_t level = naming.best.effects.size();
+    const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
     std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : ranked_laws(naming.last, level == 0 ? kSingles : kSingles / 2 + 1))
+    for (LawStart& start : ranked_laws(naming.last, level == 0 || gross ? kSingles : kSingles / 2 + 1))
       starts.push_back({std::move(start)});
+    if (gross)
+      for (LawStart& start : second_starts(naming.last)) starts.push_back({std::move(start)});
     if (static_cast<int>(level) + 2 <= options.maximum_laws)
       for (auto& pair : ranked_pairs(naming.last, naming.best.model->misfit)) starts.push_back(std::move(pair));
     const std::vector<Trial> trials = refit(naming.best, starts, data, options.threads);
     naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
     const double phi = smallest_dispersion(trials, *naming.best.model);
     const Trial* best = best_of(trials, phi);
-    if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) break;
+    // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
+    // taken out again.
+    const double worth = gross ? 0.0 : kWorthAnother;
+    if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - worth) break;
     naming.best = polished(*best, data, options.threads);
     naming.trials.push_back(naming.best);
     Result<Screening> next = screen(*naming.best.model, data, screening);
@@ -273,6 +301,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     naming.last = std::move(*next);
   }
   drop_what_is_not_needed(naming, data, options.threads);
+  prefer_plain_laws(naming, data, options.threads);
   if (naming.last.p_value <= options.false_alarm_rate)
     if (const Status status = try_unlisted(naming, data, options); !status) return fail(status.error());
   return naming;

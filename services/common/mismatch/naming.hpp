@@ -1,16 +1,13 @@
 // Which laws: every single law and every pair on the linearised problem, then nonlinear refits of the best of them,
 // law after law, at most three.
-//
-//   criterion = misfit / phi + k ln(N / phi),   phi = max(1, misfit of the best model / N)
-//
-// k: free shared parameters; N: whitened residuals; phi: how much the best model still misses, so that differences are
-// not taken for more than they are. docs/mismatch.md gives the thresholds with their reasons.
+// docs/mismatch.md gives the thresholds with their reasons.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/screening.hpp"
 
 namespace sealwatch::mismatch {
@@ -43,12 +40,6 @@ struct Naming {
   std::vector<Forbidden> forbidden = {};
 };
 
-[[nodiscard]] double criterion(const FittedModel& model, double dispersion);
-[[nodiscard]] double dispersion(const FittedModel& best);
-/// Whether a fitted model and its recordings differ beyond the noise: by the scores of the laws, or grossly (mean
-/// squared residual above twice the noise variance), whatever any law says to it.
-[[nodiscard]] bool differs(double p_value, const FittedModel& model, double false_alarm_rate);
-
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                                           const ExplainOptions& options, const Progress& progress);
 
@@ -59,6 +50,9 @@ struct LawStart {
 };
 [[nodiscard]] std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws,
                                        const Data& data, int threads);
+
+/// A search that ran out of iterations goes on from where it is.
+[[nodiscard]] Trial polished(Trial trial, const Data& data, int threads);
 
 /// Best variants by gain, no law at the same element twice; with start values from the linear step.
 [[nodiscard]] std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most);

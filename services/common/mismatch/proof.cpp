@@ -11,6 +11,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kBlock_s = 1.0;
+constexpr double kLeastBlock = 10.0;  // samples, where they are further apart than a plant for which 1 s is long
 constexpr int kDraws = 1000;
 constexpr double kPastInput_s = 1.0;
 
@@ -53,11 +54,13 @@ BlockGains block_gains(const FittedModel& before, const FittedModel& after, std:
   const std::vector<double>& time_s = before.problem.recordings[recording].time_s;
   const Eigen::Index channels = a.simulated.cols();
   BlockGains blocks;
+  const double spacing_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  const double block_s = std::max(kBlock_s, kLeastBlock * spacing_s);
   double end = time_s.front();
   for (std::size_t row = 0; row < time_s.size(); ++row) {
     if (time_s[row] >= end) {
       blocks.gain.push_back(0.0);
-      end += kBlock_s;
+      end += block_s;
     }
     const auto first = static_cast<Eigen::Index>(row) * channels;
     blocks.gain.back() +=

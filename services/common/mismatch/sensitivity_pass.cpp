@@ -27,13 +27,16 @@ std::vector<LawColumn> law_columns(const std::vector<Candidate>& candidates, con
   return laws;
 }
 
-// d(channel)/d(strength) of a sensor's law: 1, the channel, or minus its slope.
+// d(channel)/d(strength) of a sensor's law: 1, the channel, minus its slope, or minus what exceeds the end of the
+// range.
 void fill_sensor_column(const Candidate& candidate, const PassColumn& column, const RowMatrix& simulated,
                         const std::vector<double>& time_s, Eigen::Index channel, Eigen::Ref<Eigen::VectorXd> result) {
   const Eigen::Index last = simulated.rows() - 1;
   for (Eigen::Index row = 0; row <= last; ++row) {
     double slope = 1.0;
     if (candidate.law->kind == SiteKind::sensor_gain) slope = simulated(row, channel);
+    if (candidate.law->kind == SiteKind::sensor_saturation)
+      slope = -std::max(simulated(row, channel) - candidate.grid[column.point][1], 0.0);
     if (candidate.law->kind == SiteKind::sensor_lag) {
       const Eigen::Index before = std::max<Eigen::Index>(row - 1, 0), after = std::min(row + 1, last);
       slope = -(simulated(after, channel) - simulated(before, channel)) /

@@ -69,6 +69,7 @@ const SiteWords& words_of(SiteKind kind) {
     case SiteKind::sensor_bias:
     case SiteKind::sensor_gain:
     case SiteKind::sensor_lag:
+    case SiteKind::sensor_saturation:
       break;
   }
   return kSensor;

@@ -21,8 +21,4 @@ struct SiteWords {
 
 [[nodiscard]] const SiteWords& words_of(SiteKind kind);
 
-[[nodiscard]] inline bool is_sensor(SiteKind kind) {
-  return kind == SiteKind::sensor_bias || kind == SiteKind::sensor_gain || kind == SiteKind::sensor_lag;
-}
-
 }  // namespace sealwatch::mismatch

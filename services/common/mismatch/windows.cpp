@@ -36,20 +36,22 @@ TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt
 
 }  // namespace
 
-bool needs_windows(const AssetConfig& asset, const TimeSeries& recorded) {
-  return asset.model == "eha_switched" || (asset.model == "eha" && !recorded.has("motor_voltage"));
+double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
+  if (asset.model == "eha" && !recorded.has("motor_voltage")) return kFlowWindow_s;
+  const auto plant = find_plant(asset.model);
+  return plant ? (*plant)->window_s : 0.0;
 }
 
-Data cut_into_windows(const Data& data) {
+Data cut_into_windows(const Data& data, double window_s) {
   Data windows;
   windows.resolution = data.resolution;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const TimeSeries& samples = data.samples[k];
     std::size_t begin = 0;
     while (begin < samples.time_s.size()) {
-      const double end_s = samples.time_s[begin] + kWindow_s;
+      const double end_s = samples.time_s[begin] + window_s;
       auto end = static_cast<std::size_t>(std::ranges::lower_bound(samples.time_s, end_s) - samples.time_s.begin());
-      if (samples.time_s.back() - end_s < kShortest * kWindow_s) end = samples.time_s.size();
+      if (samples.time_s.back() - end_s < kShortest * window_s) end = samples.time_s.size();
       windows.names.push_back(data.names[k]);
       windows.samples.push_back(rows_of(samples, begin, end));
       if (!data.colour.empty()) windows.colour.push_back(data.colour[k]);

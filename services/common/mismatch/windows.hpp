@@ -13,16 +13,16 @@
 
 namespace sealwatch::mismatch {
 
-inline constexpr double kWindow_s = 2.0;
+inline constexpr double kFlowWindow_s = 2.0;
 /// Data::resolution of recordings that are driven by a measured flow: its sensor rounds the corners of a test, and
 /// friction of some 20 N fits that. A tenth of what an engineer would care about is not claimed from such an input.
 inline constexpr double kMeasuredInputResolution = 0.1;
 
-/// Whether the simulation of this recording needs windows: driven by a measured flow, or a plant whose whole records no
-/// model follows (valves that switch).
-[[nodiscard]] bool needs_windows(const AssetConfig& asset, const TimeSeries& recorded);
+/// Length of the windows that the simulation of this recording needs: driven by a measured flow, or a plant that says
+/// so in its table. 0: none.
+[[nodiscard]] double window_of(const AssetConfig& asset, const TimeSeries& recorded);
 
-[[nodiscard]] Data cut_into_windows(const Data& data);
+[[nodiscard]] Data cut_into_windows(const Data& data, double window_s);
 
 /// Raises noise_std of `data`'s output channels by what the noise of its inputs makes of them.
 void add_input_noise(Data& data, const FittedModel& model, const Data& windows, std::uint64_t seed);

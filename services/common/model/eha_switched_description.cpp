@@ -140,7 +140,8 @@ PlantDescription describe_eha_switched() {
                          .parameters = parameters(),
                          .states = states(),
                          .elements = elements(),
-                         .sites = {EhaSwitched::kSites.begin(), EhaSwitched::kSites.end()}};
+                         .sites = {EhaSwitched::kSites.begin(), EhaSwitched::kSites.end()},
+                         .window_s = 2.0};
   add_sensor_elements(plant);
   return plant;
 }

@@ -61,7 +61,8 @@ PlantDescription describe_emps() {
       .states = {{"x", "m", "carriage position"}, {"v", "m/s", "carriage velocity"}},
       .elements = {{"driver", "force of the motor from its voltage command"}, {"piston", "force on the carriage"}},
       .sites = {Emps::kSites.begin(), Emps::kSites.end()},
-      .law_sizes = law_sizes()};
+      .law_sizes = law_sizes(),
+      .window_s = 2.0};
   add_sensor_elements(plant);
   return plant;
 }

@@ -7,10 +7,6 @@
 namespace sealwatch {
 namespace {
 
-bool is_sensor(SiteKind kind) {
-  return kind == SiteKind::sensor_bias || kind == SiteKind::sensor_gain || kind == SiteKind::sensor_lag;
-}
-
 tl::unexpected<Error> misplaced(const AssetConfig& asset, const PhysicsTerm& term, std::string rule,
                                 std::string advice = {}) {
   return fail(Error{.file = {},

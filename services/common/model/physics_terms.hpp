@@ -26,7 +26,7 @@ struct ActiveTerm {
 struct SensorTerm {
   SiteKind kind = SiteKind::sensor_bias;
   std::string channel;
-  std::size_t parameter = 0;  ///< in ModelValues::parameters
+  std::size_t parameter = 0;  ///< the law's first, in ModelValues::parameters
 };
 
 struct PhysicsTerms {

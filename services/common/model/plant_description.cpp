@@ -1,7 +1,6 @@
 #include "sealwatch/model/plant_description.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/model/plant_tables.hpp"
@@ -32,11 +31,13 @@ double PlantDescription::law_size(std::string_view unit) const {
   return size == law_sizes.end() ? 1.0 : size->factor;
 }
 
-std::span<const PlantDescription> all_plants() {
-  static const std::array plants = {describe_eha(), describe_eha_switched(), describe_emps(),
-                                    describe_cascaded_tanks()};
+std::deque<PlantDescription>& known_plants() {
+  static std::deque<PlantDescription> plants = {describe_eha(), describe_eha_switched(), describe_emps(),
+                                                describe_cascaded_tanks()};
   return plants;
 }
+
+const std::deque<PlantDescription>& all_plants() { return known_plants(); }
 
 Result<const PlantDescription*> find_plant(std::string_view name) {
   std::vector<std::string> names;

@@ -13,6 +13,9 @@ namespace sealwatch {
 [[nodiscard]] PlantDescription describe_emps();
 [[nodiscard]] PlantDescription describe_cascaded_tanks();
 
+/// The tables of all plants, to which one's own are added.
+[[nodiscard]] std::deque<PlantDescription>& known_plants();
+
 /// A positive parameter without published bounds: a tenth to ten times its default.
 [[nodiscard]] inline ParameterDescription scale_parameter(std::string name, std::string unit, double value,
                                                           std::string meaning, bool estimate = false) {

@@ -1,7 +1,9 @@
 // Laws of one sensor, applied to its simulated signal s (after the low-pass that the asset gives the sensor):
 //
 //   lag    tau dr/dt = s - r        d r/d tau = q,  tau dq/dt = -(s - r)/tau - q
-//   gain   y = (1 + g) r + b        d y/d g = r,    d y/d b = 1
+//   gain   z = (1 + g) r + b        d z/d g = r,    d z/d b = 1
+//   end    y = z - k max(z - y_max, 0)   d y/d z = 1 - k, d y/d k = -(z - y_max), d y/d y_max = k beyond y_max
+//          (as sharp as the end of a converter's range; a search over y_max needs samples on both sides)
 //
 // All columns of sensitivities pass through the same linear operations.
 #pragma once
@@ -23,12 +25,14 @@ class SensorLaws {
       : output_(columns, 0.0) {
     for (const SensorTerm& term : terms) {
       if (term.channel != channel) continue;
-      Part part{.value = values.parameters[term.parameter]};
-      for (std::size_t k = 0; k < free.size(); ++k)
-        if (free[k].kind == FreeQuantity::Kind::parameter && free[k].index == term.parameter) part.column = 1 + k;
+      const Part part = part_of(term.parameter, values, free);
       if (term.kind == SiteKind::sensor_bias) bias_ = part;
       if (term.kind == SiteKind::sensor_gain) gain_ = part;
       if (term.kind == SiteKind::sensor_lag) lag_ = part;
+      if (term.kind == SiteKind::sensor_saturation) {
+        saturation_ = part;
+        end_ = part_of(term.parameter + 1, values, free);
+      }
     }
     if (lag_.value > 0.0) {
       filters_.emplace_back(lag_.value, columns);
@@ -50,6 +54,7 @@ class SensorLaws {
     output_[0] += bias_.value;
     if (gain_.column != 0) output_[gain_.column] += before;
     if (bias_.column != 0) output_[bias_.column] += 1.0;
+    saturate();
   }
 
   [[nodiscard]] const std::vector<double>& output() const { return output_; }
@@ -59,7 +64,25 @@ class SensorLaws {
     double value = 0.0;
     std::size_t column = 0;  ///< of the sensitivities; 0: not free
   };
-  Part bias_, gain_, lag_;
+
+  static Part part_of(std::size_t parameter, const ModelValues& values, std::span<const FreeQuantity> free) {
+    Part part{.value = values.parameters[parameter]};
+    for (std::size_t k = 0; k < free.size(); ++k)
+      if (free[k].kind == FreeQuantity::Kind::parameter && free[k].index == parameter) part.column = 1 + k;
+    return part;
+  }
+
+  void saturate() {
+    const bool absent = saturation_.value == 0.0 && saturation_.column == 0;
+    const double beyond = output_[0] - end_.value;
+    if (absent || beyond <= 0.0) return;
+    for (double& value : output_) value *= 1.0 - saturation_.value;
+    output_[0] += saturation_.value * end_.value;
+    if (saturation_.column != 0) output_[saturation_.column] -= beyond;
+    if (end_.column != 0) output_[end_.column] += saturation_.value;
+  }
+
+  Part bias_, gain_, lag_, saturation_, end_;
   std::vector<SensorFilter> filters_;
   std::vector<double> output_;
 };

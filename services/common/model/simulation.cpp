@@ -1,12 +1,12 @@
 #include "sealwatch/model/simulation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <numeric>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/eha_circuit.hpp"
+#include "services/common/model/plant_tables.hpp"
 #include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
 
@@ -25,17 +25,14 @@ Status check_recording(const PlantDescription& plant, const TimeSeries& recorded
   return {};
 }
 
-using Simulate = std::unique_ptr<PlantSimulation> (*)(const PlantDescription&, const AssetConfig&, const TimeSeries&,
-                                                      PhysicsTerms);
-struct Plant {
-  std::string_view model;
-  std::vector<std::string> inputs;  ///< that must be recorded
-  Simulate simulate;
-};
-const std::array kPlants = {Plant{"eha", {"motor_voltage"}, &simulate_eha},
-                            Plant{"eha_switched", {"motor_duty", "valve_state"}, &simulate_eha_switched},
-                            Plant{"emps", {"motor_voltage"}, &simulate_emps},
-                            Plant{"cascaded_tanks", {"pump_voltage"}, &simulate_cascaded_tanks}};
+std::deque<PlantSimulator>& plant_simulators() {
+  static std::deque<PlantSimulator> simulators = {
+      {"eha", {"motor_voltage"}, &simulate_eha},
+      {"eha_switched", {"motor_duty", "valve_state"}, &simulate_eha_switched},
+      {"emps", {"motor_voltage"}, &simulate_emps},
+      {"cascaded_tanks", {"pump_voltage"}, &simulate_cascaded_tanks}};
+  return simulators;
+}
 
 /// The cylinder circuit knows nothing of the motor and the pump, and of their laws.
 AssetConfig of_circuit(AssetConfig asset) {
@@ -98,6 +95,18 @@ std::optional<double> mean_value(const TimeSeries& recorded, std::string_view ch
   return mean_of(series->values, series->values.size());
 }
 
+Status add_plant(PlantDescription description, PlantSimulator simulator) {
+  if (find_plant(description.name))
+    return fail(Error{.file = {},
+                      .place = "add_plant",
+                      .value = description.name,
+                      .rule = "is the name of a plant that is known already",
+                      .advice = "give it another"});
+  known_plants().push_back(std::move(description));
+  plant_simulators().push_back(std::move(simulator));
+  return {};
+}
+
 Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConfig& asset, const TimeSeries& recorded) {
   const auto plant = find_plant(asset.model);
   if (!plant) return fail(plant.error());
@@ -107,7 +116,7 @@ Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConf
                                        : resolve_physics(**plant, (*plant)->sites, asset);
   if (!terms) return fail(terms.error());
   if (circuit) return simulate_eha_circuit(**plant, asset, recorded, std::move(*terms));
-  for (const auto& [model, inputs, simulate] : kPlants) {
+  for (const auto& [model, inputs, simulate] : plant_simulators()) {
     if (asset.model != model) continue;
     if (const Status status = check_input(**plant, recorded, inputs); !status) return fail(status.error());
     return simulate(**plant, asset, recorded, std::move(*terms));

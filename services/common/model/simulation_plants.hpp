@@ -23,4 +23,16 @@ namespace sealwatch {
                                                                        const AssetConfig& asset,
                                                                        const TimeSeries& recorded, PhysicsTerms terms);
 
+using SimulatePlant = std::unique_ptr<PlantSimulation> (*)(const PlantDescription&, const AssetConfig&,
+                                                           const TimeSeries&, PhysicsTerms);
+
+struct PlantSimulator {
+  std::string model;                ///< name of the plant
+  std::vector<std::string> inputs;  ///< that must be recorded
+  SimulatePlant simulate = nullptr;
+};
+
+/// An Error when a plant of that name is known already.
+Status add_plant(PlantDescription description, PlantSimulator simulator);
+
 }  // namespace sealwatch

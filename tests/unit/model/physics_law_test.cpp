@@ -203,7 +203,8 @@ TEST(PhysicsLaws, HoldEveryIdThatUsersScriptAgainst) {
                                     "viscosity_warm_up",
                                     "sensor_bias",
                                     "sensor_gain",
-                                    "sensor_lag"})
+                                    "sensor_lag",
+                                    "sensor_saturation"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 

@@ -23,7 +23,8 @@ Law presliding_friction_dahl() {
                                   {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                          shape("delta", "m", "deflection at which the contacts slide", {5e-5, 5e-6, 2e-4}, 1e-6, 5e-4)},
           .hidden = HiddenState{.name = "bristle", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate,
+          .limit = "coulomb_friction"};
 }
 
 }  // namespace sealwatch::laws

@@ -27,7 +27,8 @@ Law presliding_friction_lugre() {
                          strength("sigma_1", "N s/m", "damping of the bristles",
                                   {.usual = 1e5, .significant = 4e5, .max = 1e7})},
           .hidden = HiddenState{.name = "bristle", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate,
+          .limit = "coulomb_friction"};
 }
 
 }  // namespace sealwatch::laws

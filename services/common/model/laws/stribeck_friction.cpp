@@ -23,7 +23,8 @@ Law stribeck_friction() {
                               {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      shape("v_st", "m/s", "speed at which the film forms", {5e-4, 1e-4, 2e-3}, 2e-5, 5e-2),
                      reversal_speed()},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate,
+      .limit = "coulomb_friction"};
 }
 
 }  // namespace sealwatch::laws

@@ -17,7 +17,7 @@ Law tank_overflow() {
           .source = "Schoukens, Mattsson, Wigren, Noel, Cascaded tanks benchmark (2016)",
           .parameters = {strength("k", "1/s", "overflow per level above the rim",
                                   {.usual = 1.0, .significant = 0.05, .max = 100.0}),
-                         shape("level_max", "V", "level of the rim", {10.0, 9.0, 8.0, 7.0, 12.0}, 1.0, 20.0)},
+                         shape("level_max", "V", "level of the rim", {10.0, 9.0, 8.0, 7.0, 12.0}, 1.0, 60.0)},
           .evaluate = &evaluate};
 }
 

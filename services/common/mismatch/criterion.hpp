@@ -1,0 +1,29 @@
+// How well a fitted model does, so that models with more and fewer parameters compare.
+//
+//   criterion = misfit / phi + k max(ln(N / phi), 2),   phi = max(1, misfit of the best model / N)
+//
+// k: free shared parameters; N: whitened residuals; phi: how much the best model still misses, so that differences are
+// not taken for more than they are. A model that misses grossly (misfit / N above 2) leaves not noise but a course,
+// neighbouring samples of which say the same: its phi is multiplied by the residuals' correlation time in samples,
+// tau = 1 + 2 sum rho_k up to the first rho_k <= 0. docs/mismatch.md gives the thresholds with their reasons.
+#pragma once
+
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Misfit over the noise's share of it above which what is left is not noise.
+inline constexpr double kGross = 2.0;
+/// Criterion by which another law must improve: it then is e^6 times likelier.
+inline constexpr double kWorthAnother = 12.0;
+
+/// Misfit over the noise's share of it, at least 1.
+[[nodiscard]] double excess(const FittedModel& model);
+[[nodiscard]] double criterion(const FittedModel& model, double dispersion);
+/// phi of the model.
+[[nodiscard]] double dispersion(const FittedModel& best);
+/// Whether a fitted model and its recordings differ beyond the noise: by the scores of the laws, or grossly (mean
+/// squared residual above twice the noise variance), whatever any law says to it.
+[[nodiscard]] bool differs(double p_value, const FittedModel& model, double false_alarm_rate);
+
+}  // namespace sealwatch::mismatch

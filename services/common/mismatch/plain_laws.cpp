@@ -1,0 +1,77 @@
+#include "services/common/mismatch/plain_laws.hpp"
+
+#include <algorithm>
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kRoughly = 2.0;     // factor by which the criterion may be off in a gross misfit
+constexpr double kCannotTell = 6.0;  // criterion within which two laws are not told apart
+
+// Whether some law's shape is at the end of its range: there a law is the limit of another one (bristles that bend by
+// nothing are plain dry friction).
+bool at_a_limit(const Trial& trial) {
+  const PemProblem& problem = trial.model->problem;
+  const PlantSimulation& simulation = *problem.recordings.front().simulation;
+  for (const PhysicsParameter& parameter : simulation.physics_parameters()) {
+    if (parameter.parameter->strength || !parameter.setting.estimate) continue;
+    const std::optional<double> value = estimate_of(*trial.model, parameter.name);
+    if (!value) continue;
+    const double margin = 1e-6 * (parameter.setting.max - parameter.setting.min);
+    if (*value - parameter.setting.min < margin || parameter.setting.max - *value < margin) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+// In a gross misfit the criterion is rough, as what is left is no noise: a law that comes to a plainer one at the end
+// of its range (bristles that bend by micrometres: plain dry friction) is claimed only where it is clearly better.
+const Trial* best_of(const std::vector<Trial>& trials, double phi) {
+  const Trial* best = nullptr;
+  for (const Trial& trial : trials)
+    if (best == nullptr || criterion(*trial.model, phi) < criterion(*best->model, phi)) best = &trial;
+  if (best == nullptr || !at_a_limit(*best)) return best;
+  // Of laws that these recordings cannot tell apart, the one that is not merely at the limit of another's shape.
+  const Trial* plain = nullptr;
+  for (const Trial& trial : trials)
+    if (trial.effects.size() <= best->effects.size() && !at_a_limit(trial) &&
+        criterion(*trial.model, phi) < criterion(*best->model, phi) + kCannotTell &&
+        (plain == nullptr || criterion(*trial.model, phi) < criterion(*plain->model, phi)))
+      plain = &trial;
+  return plain == nullptr ? best : plain;
+}
+
+void prefer_plain_laws(Naming& naming, const Data& data, int threads) {
+  if (excess(*naming.best.model) <= kGross) return;
+  for (std::size_t slot = 0; slot < naming.best.effects.size(); ++slot) {
+    const Effect rich = naming.best.effects[slot];
+    const auto plain = std::ranges::find(all_laws(), rich.law->limit, &Law::id);
+    if (plain == all_laws().end()) continue;
+    Trial trial = naming.best;
+    AssetConfig asset = trial.model->asset;
+    const auto term = asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot);
+    std::vector<double> parameters;
+    for (const LawParameter& parameter : plain->parameters) {
+      const auto known = term->parameters.find(std::string(parameter.name));
+      const double least = trial.model->problem.recordings.front().simulation->plant().law_size(parameter.unit) *
+                           std::ranges::min(parameter.start);
+      parameters.push_back(known == term->parameters.end() ? least : known->second.value);
+    }
+    asset.physics.erase(term);
+    trial.effects.erase(trial.effects.begin() + static_cast<std::ptrdiff_t>(slot));
+    trial.effects.push_back({&*plain, rich.element});
+    asset = with_law(std::move(asset), *plain, rich.element, parameters);
+    Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
+    if (!model) continue;
+    trial.model = std::make_shared<const FittedModel>(std::move(*model));
+    trial = polished(std::move(trial), data, threads);
+    naming.trials.push_back(trial);
+    const double phi = std::min(dispersion(*naming.best.model), dispersion(*trial.model));
+    if (criterion(*trial.model, phi) > criterion(*naming.best.model, phi) + kRoughly * kWorthAnother) continue;
+    naming.best = std::move(trial);
+    slot = 0;
+  }
+}
+
+}  // namespace sealwatch::mismatch

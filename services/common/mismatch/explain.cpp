@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/gross_mismatch.hpp"
 #include "services/common/mismatch/missing_term.hpp"
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/noise.hpp"
@@ -130,6 +131,7 @@ class Analysis {
     result_.model = asset_.model;
     result_.fit_recordings = fit_.names;
     result_.holdout_recordings = holdout_.names;
+    if (auto gross = explain_gross_mismatch(asset_, fit_, holdout_, options_, progress_)) return std::move(*gross);
     if (const Status status = fit_baseline(); !status) return fail(status.error());
     tell("looking for what is missing", 0.15);
     Result<Naming> naming = name_effects(baseline_, prepared(fit_), options_, progress_);

@@ -12,7 +12,7 @@ struct EhaSwitchedModel {
   using Equations = EhaSwitched;
   static constexpr std::array<std::string_view, EhaSwitched::kStates> kStateNames = {
       "i", "omega", "theta", "p_P", "p_A", "p_B", "p_T", "v", "x"};
-  static constexpr std::array<std::string_view, 2> kSlowStates = {"p_A", "p_B"};
+  static constexpr std::array<std::string_view, 3> kSlowStates = {"p_A", "p_B", "p_T"};
   // The bench waits at rest with its motor off: only the motor and the supply line find their own state.
   static constexpr std::array<bool, EhaSwitched::kStates> kQuasiSteady = {true,  true,  false, true, false,
                                                                           false, false, false, false};
@@ -36,15 +36,17 @@ struct EhaSwitchedModel {
     return input.valve_state * y[EhaSwitched::kOmega];
   }
 
-  /// Pressures and position from the first samples; the accumulator a little above its preload; the load from the mean
-  /// balance of forces while the piston extends.
+  /// Pressures and position from the first samples, that of the accumulator from the chamber that the valves join to it
+  /// (at rest from the lower one); the load from the mean balance of forces while the piston extends.
   static ModelValues start(const PlantDescription& plant, const AssetConfig& asset, const TimeSeries& recorded) {
     ModelValues values;
     values.parameters = parameter_values(plant, asset);
     const auto parameter = [&](std::string_view name) { return parameter_value(plant, values, name); };
     const auto first = [&](std::string_view channel) { return first_value(recorded, channel); };
-    const double p_T = 1.25 * parameter("p_preload");
-    const double p_A = first("pressure_a").value_or(p_T), p_B = first("pressure_b").value_or(p_T);
+    const double preloaded = 1.25 * parameter("p_preload");
+    const double p_A = first("pressure_a").value_or(preloaded), p_B = first("pressure_b").value_or(preloaded);
+    const double valves = first("valve_state").value_or(0.0);
+    const double p_T = valves > 0.5 ? p_B : valves < -0.5 ? p_A : std::min(p_A, p_B);
     values.load_factor =
         mean_load(recorded, parameter("A_A"), parameter("A_B")).value_or(parameter("phi")) / parameter("phi") - 1.0;
     values.initial_state = {0.0, 0.0, first("pump_angle").value_or(0.0), p_T, p_A, p_B,

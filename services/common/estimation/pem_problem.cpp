@@ -210,6 +210,14 @@ void whiten(const NoiseColour& colour, Linearisation& at) {
   }
 }
 
+void leave_out(const std::vector<Eigen::Index>& samples, Linearisation& at) {
+  const Eigen::Index channels = at.simulated.cols();
+  for (const Eigen::Index sample : samples) {
+    at.residual.segment(sample * channels, channels).setZero();
+    at.jacobian.middleRows(sample * channels, channels).setZero();
+  }
+}
+
 Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                 const std::vector<double>& own) {
   const PemRecording& part = problem.recordings[recording];
@@ -236,6 +244,7 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
     result.jacobian = std::move(wide);
   }
   whiten(part.colour, result);
+  leave_out(part.left_out, result);
   if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");
   return result;
 }

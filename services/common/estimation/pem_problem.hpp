@@ -39,9 +39,10 @@ struct PemRecording {
   std::unique_ptr<PlantSimulation> simulation;
   Eigen::VectorXd noise_std;  ///< per channel; infinite: the channel is left out
   std::vector<double> time_s;
-  int group = 0;             ///< windows of one recording share its load
-  NoiseColour colour = {};   ///< by which residuals are whitened beside their standard deviation
-  std::vector<Unknown> own;  ///< load, slow initial states
+  int group = 0;                            ///< windows of one recording share its load
+  NoiseColour colour = {};                  ///< by which residuals are whitened beside their standard deviation
+  std::vector<Eigen::Index> left_out = {};  ///< samples that do not count
+  std::vector<Unknown> own;                 ///< load, slow initial states
 };
 
 struct PemProblem {
@@ -77,6 +78,9 @@ struct FreeOfRecording {
 
 /// Whitens residual and Jacobian of coloured noise, in place.
 void whiten(const NoiseColour& colour, Linearisation& at);
+
+/// Residuals and derivatives of these samples become 0.
+void leave_out(const std::vector<Eigen::Index>& samples, Linearisation& at);
 
 /// An Error when the simulation fails there.
 [[nodiscard]] Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording,

@@ -38,6 +38,14 @@ class RecordingCost final : public ceres::CostFunction {
     return true;
   }
 
+  void remember(const std::vector<double>& shared, const std::vector<double>& own, Linearisation linearisation) {
+    shared_ = shared;
+    own_ = own;
+    linearisation_ = std::move(linearisation);
+    compressed_ = compress(linearisation_);
+    known_ = true;
+  }
+
   /// At the given point, which usually is the one that was evaluated last.
   [[nodiscard]] Result<Linearisation> take_linearisation(const std::vector<double>& shared,
                                                          const std::vector<double>& own) const {
@@ -141,13 +149,15 @@ PemPoint start_point(const PemProblem& problem, double factor) {
   return point;
 }
 
-Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options) {
+Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options,
+                          std::vector<Linearisation> at_start) {
   silence_ceres();
   PemOptimum optimum{.point = std::move(start), .at_optimum = {}, .termination = {}};
   ceres::Problem ceres_problem;
   std::vector<RecordingCost*> costs;
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
     costs.push_back(new RecordingCost(problem, k));  // owned by ceres_problem
+    if (k < at_start.size()) costs.back()->remember(optimum.point.shared, optimum.point.own[k], std::move(at_start[k]));
     std::vector<double*> blocks;
     if (!problem.shared.empty()) blocks.push_back(optimum.point.shared.data());
     blocks.push_back(optimum.point.own[k].data());

@@ -38,7 +38,9 @@ struct PemOptimum {
                                                    std::span<const TimeSeries> recordings,
                                                    const ActuatorFitOptions& options);
 
-/// An Error when the simulation cannot even be run at the start.
-[[nodiscard]] Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options);
+/// An Error when the simulation cannot even be run at the start. `at_start`: linearisations there, where they are
+/// known.
+[[nodiscard]] Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options,
+                                        std::vector<Linearisation> at_start = {});
 
 }  // namespace sealwatch

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/common/mismatch/input_jumps.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -43,25 +45,18 @@ void continue_from(const FittedModel& start, const PemProblem& problem, PemPoint
       }
 }
 
-}  // namespace
-
-Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
-                              int iterations) {
-  const ActuatorFitOptions options = search_options(threads, iterations);
+Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const ActuatorFitOptions& options) {
   Result<PemProblem> problem = make_pem_problem(asset, data.samples, data.groups);
-  if (!problem) return fail(problem.error());
+  if (!problem) return problem;
   for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
+  for (std::size_t k = 0; k < data.samples.size(); ++k)
+    problem->recordings[k].left_out = samples_after_jumps(data.samples[k]);
   problem->simulation_options = simulation_options(data.samples, options);
-  Result<PemOptimum> optimum = fail("not searched");
-  if (start == nullptr) {
-    optimum = search_from_asset(*problem, asset, data.samples, options);
-  } else {
-    PemPoint point = start_point(*problem, 1.0);
-    continue_from(*start, *problem, point);
-    optimum = search(*problem, std::move(point), options);
-  }
-  if (!optimum) return fail(optimum.error());
-  FittedModel model{.asset = asset, .problem = std::move(*problem), .optimum = std::move(*optimum)};
+  return problem;
+}
+
+FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum optimum) {
+  FittedModel model{.asset = asset, .problem = std::move(problem), .optimum = std::move(optimum)};
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
     const Unknown& unknown = model.problem.shared[k];
     set_value(model.asset, unknown.name, unknown.to_value(model.optimum.point.shared[k]));
@@ -74,6 +69,34 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
     model.residuals += static_cast<double>(at.simulated.rows() * known);
   }
   return model;
+}
+
+}  // namespace
+
+Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
+                              int iterations) {
+  const ActuatorFitOptions options = search_options(threads, iterations);
+  Result<PemProblem> problem = problem_of(asset, data, options);
+  if (!problem) return fail(problem.error());
+  Result<PemOptimum> optimum = fail("not searched");
+  if (start == nullptr) {
+    optimum = search_from_asset(*problem, asset, data.samples, options);
+  } else {
+    PemPoint point = start_point(*problem, 1.0);
+    continue_from(*start, *problem, point);
+    optimum = search(*problem, std::move(point), options);
+  }
+  if (!optimum) return fail(optimum.error());
+  return model_at(asset, std::move(*problem), std::move(*optimum));
+}
+
+Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations) {
+  const ActuatorFitOptions options = search_options(threads, iterations);
+  Result<PemProblem> problem = problem_of(model.asset, data, options);
+  if (!problem) return fail(problem.error());
+  Result<PemOptimum> optimum = search(*problem, model.optimum.point, options, model.optimum.at_optimum);
+  if (!optimum) return fail(optimum.error());
+  return model_at(model.asset, std::move(*problem), std::move(*optimum));
 }
 
 AssetConfig with_fixed_parameters(AssetConfig asset) {

@@ -16,9 +16,9 @@ struct Data {
   std::vector<TimeSeries> samples;
   std::vector<NoiseColour> colour;  ///< per recording
   std::vector<int> groups = {};     ///< which recording a window was cut from; empty: whole recordings
-  /// Share of a significant strength (model/physics.hpp) that errors of a measured input can feign: a law must want
-  /// more than that to count.
-  double resolution = 0.0;
+  /// Share of a significant strength (model/physics.hpp) that the simulation's own errors (input between samples,
+  /// integration, rounding) can feign, or those of a measured input: a law must want more than that to count.
+  double resolution = 0.01;
 };
 
 struct FittedModel {
@@ -34,6 +34,9 @@ struct FittedModel {
 /// search sets out. `threads`: recordings that are simulated at once.
 [[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
                                             int threads, int iterations = 30);
+
+/// Goes on with the search that ended at `model`, with the same unknowns.
+[[nodiscard]] Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations);
 
 /// As it is, but every shared parameter stays what it is: only load and initial state of each recording are fitted.
 [[nodiscard]] AssetConfig with_fixed_parameters(AssetConfig asset);

@@ -189,6 +189,7 @@ Status try_unlisted(Naming& naming, const Data& data, const ExplainOptions& opti
   const Trial* best = best_of(trials, phi);
   if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) return {};
   naming.best = polished(*best, data, options.threads);
+  drop_what_is_not_needed(naming, data, options.threads);
   const auto next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});
   if (!next) return fail(next.error());
   naming.last = *next;
@@ -218,9 +219,9 @@ Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOp
 
 // A search that ran out of iterations goes on from where it is.
 Trial polished(Trial trial, const Data& data, int threads) {
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 3, kIterations = 30;
   for (int round = 0; round < kRounds && !trial.model->optimum.converged; ++round) {
-    Result<FittedModel> further = fit_model(trial.model->asset, data, trial.model.get(), threads);
+    Result<FittedModel> further = continue_fit(*trial.model, data, threads, kIterations);
     if (!further || further->misfit > trial.model->misfit) break;
     trial.model = std::make_shared<const FittedModel>(std::move(*further));
   }
@@ -258,8 +259,8 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
   const double best = trials.front().model->misfit;
   const auto hopeful = std::ranges::find_if(trials, [&](const Trial& t) { return t.model->misfit > kHopeful * best; });
   const auto count = std::min(static_cast<std::size_t>(hopeful - trials.begin()), kSecondRound);
-  std::vector<Trial> further = in_parallel(count, threads, [&](std::size_t k) { return polished(trials[k], data, 1); });
-  std::ranges::move(further, trials.begin());
+  std::vector<Trial> last = in_parallel(count, threads, [&](std::size_t k) { return polished(trials[k], data, 1); });
+  std::ranges::move(last, trials.begin());
   return trials;
 }
 

@@ -13,32 +13,51 @@ namespace {
 
 constexpr Eigen::Index kPiece = 64;
 constexpr Eigen::Index kOrder = 3;
+constexpr Eigen::Index kPolynomials = 8;  // taken off each piece
+constexpr Eigen::Index kStraight = 3;     // of them, those that a steady motion fills as well
 constexpr double kQuietShare = 0.25;
-constexpr double kLeastCorrelation = 0.08;  // below it whitening would change no variance by more than 1 %
-constexpr double kSignificant = 4.0;        // standard errors of a correlation
+constexpr double kLeastCorrelation = 0.05;  // below it whitening would change no variance by more than 0.3 %
+constexpr double kSignificant = 3.0;        // standard errors of a correlation
 
 using Covariances = std::array<double, kOrder + 1>;
 
-// Takes the cubic off a piece.
-const Eigen::MatrixXd& detrending() {
+// Orthonormal polynomials of degree 0..7 over a piece.
+const Eigen::MatrixXd& polynomials() {
   static const Eigen::MatrixXd matrix = [] {
-    Eigen::MatrixXd powers(kPiece, 4);
+    Eigen::MatrixXd powers(kPiece, kPolynomials);
     for (Eigen::Index row = 0; row < kPiece; ++row)
-      for (Eigen::Index k = 0; k < 4; ++k)
+      for (Eigen::Index k = 0; k < kPolynomials; ++k)
         powers(row, k) = std::pow(2.0 * static_cast<double>(row) / (kPiece - 1) - 1.0, static_cast<double>(k));
-    const Eigen::MatrixXd q = powers.householderQr().householderQ() * Eigen::MatrixXd::Identity(kPiece, 4);
-    return Eigen::MatrixXd(Eigen::MatrixXd::Identity(kPiece, kPiece) - q * q.transpose());
+    return Eigen::MatrixXd(powers.householderQr().householderQ() * Eigen::MatrixXd::Identity(kPiece, kPolynomials));
   }();
   return matrix;
 }
 
-std::vector<Eigen::VectorXd> pieces_of(const std::vector<double>& values) {
-  std::vector<Eigen::VectorXd> pieces;
-  for (std::size_t begin = 0; begin + kPiece <= values.size(); begin += kPiece)
-    pieces.emplace_back(detrending() * Eigen::Map<const Eigen::VectorXd>(values.data() + begin, kPiece));
-  std::ranges::sort(pieces, {}, [](const Eigen::VectorXd& piece) { return piece.squaredNorm(); });
+// Takes them off a piece.
+const Eigen::MatrixXd& detrending() {
+  static const Eigen::MatrixXd matrix =
+      Eigen::MatrixXd::Identity(kPiece, kPiece) - polynomials() * polynomials().transpose();
+  return matrix;
+}
+
+// The quietest pieces, detrended. What moves shows in the upper polynomials; what is left of a piece has no part in
+// the choice, so that quiet noise is not preferred to loud noise.
+std::vector<Eigen::VectorXd> quiet_pieces_of(const std::vector<double>& values) {
+  struct Piece {
+    Eigen::VectorXd rest;
+    double motion;
+  };
+  std::vector<Piece> pieces;
+  for (std::size_t begin = 0; begin + kPiece <= values.size(); begin += kPiece) {
+    const Eigen::Map<const Eigen::VectorXd> piece(values.data() + begin, kPiece);
+    pieces.push_back(
+        {detrending() * piece, (polynomials().rightCols(kPolynomials - kStraight).transpose() * piece).squaredNorm()});
+  }
+  std::ranges::stable_sort(pieces, {}, &Piece::motion);
   pieces.resize(static_cast<std::size_t>(std::ceil(kQuietShare * static_cast<double>(pieces.size()))));
-  return pieces;
+  std::vector<Eigen::VectorXd> quiet;
+  for (Piece& piece : pieces) quiet.push_back(std::move(piece.rest));
+  return quiet;
 }
 
 void add_covariances(const std::vector<Eigen::VectorXd>& pieces, Covariances& sum, double& samples) {
@@ -81,10 +100,10 @@ Covariances after_detrending(const Covariances& covariance) {
   return seen;
 }
 
-// The noise's covariances from those of the detrended pieces: a cubic takes slow noise along and makes white noise look
-// correlated.
+// The noise's covariances from those of the detrended pieces: polynomials take slow noise along and make white noise
+// look correlated.
 Covariances undo_detrending(const Covariances& seen) {
-  constexpr int kIterations = 12;
+  constexpr int kIterations = 30;
   Covariances covariance = seen;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Covariances now = after_detrending(covariance);
@@ -95,10 +114,15 @@ Covariances undo_detrending(const Covariances& seen) {
   return covariance;
 }
 
-// Standard deviation of the noise over what third differences make of it as if it were white.
-double growth(const Covariances& covariance) {
-  const double seen = 20.0 - (30.0 * covariance[1] - 12.0 * covariance[2] + 2.0 * covariance[3]) / covariance[0];
-  return std::sqrt(20.0 / std::max(seen, 1.0));
+// Mean square of the recordings' floors by third differences: of one channel, over all recordings.
+double pooled_floor(const Data& data, const std::string& channel) {
+  double squares = 0.0, count = 0.0;
+  for (const TimeSeries& recorded : data.samples)
+    if (const Series* series = recorded.find(channel)) {
+      squares += std::pow(estimate_noise_floor(series->values).standard_deviation, 2);
+      count += 1.0;
+    }
+  return std::sqrt(squares / std::max(count, 1.0));
 }
 
 }  // namespace
@@ -111,17 +135,19 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
     double samples = 0.0;
     for (const TimeSeries& recorded : data.samples)
       if (const Series* series = recorded.find(channels[c]))
-        add_covariances(pieces_of(series->values), covariance, samples);
+        add_covariances(quiet_pieces_of(series->values), covariance, samples);
     if (!(covariance[0] > 0.0) || samples < 4.0 * kPiece) continue;
     covariance = undo_detrending(covariance);
     const double correlation = covariance[1] / covariance[0];
     if (std::abs(correlation) < std::max(kLeastCorrelation, kSignificant / std::sqrt(samples))) continue;
     const ChannelColour colour = autoregression(covariance);
+    // Differences do not see slow noise; how much louder one recording is than another they do.
+    const double growth = std::sqrt(covariance[0] / (samples / kPiece)) / pooled_floor(data, channels[c]);
     for (std::size_t k = 0; k < data.samples.size(); ++k) {
       data.colour[k][c] = colour;
       for (Series& series : data.samples[k].channels)
         if (series.name == channels[c] && series.noise_std <= 0.0)
-          series.noise_std = growth(covariance) * estimate_noise_floor(series.values).standard_deviation;
+          series.noise_std = growth * estimate_noise_floor(series.values).standard_deviation;
     }
     char sentence[160];
     std::snprintf(sentence, sizeof sentence,

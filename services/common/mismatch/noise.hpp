@@ -1,10 +1,12 @@
 // Noise of the recordings from the recordings alone: standard deviation per channel (estimation/noise_floor.hpp, unless
 // the sidecar gives it) and its colour.
 //
-//   quiet pieces     the quarter of all pieces of 64 samples whose scatter about a cubic is least
-//   colour           autocovariance of what the cubic leaves, pooled over pieces and recordings; AR(p) by Yule and
-//   Walker
-//                    with p up to 3, only where the correlation is significant
+//   quiet pieces     the quarter of all pieces of 64 samples in which least moves (polynomials of degree 3 to 7); what
+//   is
+//                    beyond these polynomials has no part in the choice
+//   colour           autocovariance of that rest, pooled over pieces and recordings; AR(3) by Yule and Walker, only
+//   where
+//                    the correlation is significant
 //   standard deviation   that of the coloured noise, where colour was found: differences do not see slow noise
 //
 // Never from a model's residuals. Source: docs/mismatch.md.

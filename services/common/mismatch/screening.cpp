@@ -6,6 +6,7 @@
 #include <cmath>
 #include <future>
 #include <random>
+#include <utility>
 
 #include "services/common/mismatch/sensitivity_pass.hpp"
 #include "services/common/mismatch/tail.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double kDetectable = 27.0;  // lambda: noncentrality that is seen with 80 % power at 1 % over the catalogue
 constexpr double kAbsurd = 100.0;     // usual sizes
+constexpr double kMeasured = 0.05;    // resolution above which the input must have been measured
 constexpr double kRidge = 1e-10;      // of a normal matrix with unit diagonal: directions that the data do not show
 
 // X (X'X)^-1 X'Y taken off Y, in place.
@@ -112,6 +114,25 @@ Eigen::MatrixXd block_sums(const RowMatrix& laws, const Eigen::VectorXd& residua
   return sums;
 }
 
+// s~_b' s~_b of each variant per block, its entries one after the other: what a law itself adds to its blocks' scores.
+Eigen::MatrixXd block_grams(const RowMatrix& laws, const std::vector<Variant>& variants, Eigen::Index rows_per_block) {
+  const Eigen::Index blocks = std::max<Eigen::Index>(1, laws.rows() / rows_per_block);
+  Eigen::Index entries = 0;
+  for (const Variant& variant : variants)
+    entries += static_cast<Eigen::Index>(variant.columns.size() * variant.columns.size());
+  Eigen::MatrixXd grams(blocks, entries);
+  for (Eigen::Index b = 0; b < blocks; ++b) {
+    const Eigen::Index begin = b * rows_per_block;
+    const Eigen::Index count = b + 1 == blocks ? laws.rows() - begin : rows_per_block;
+    const RowMatrix block = laws.middleRows(begin, count);
+    Eigen::Index entry = 0;
+    for (const Variant& variant : variants)
+      for (const Eigen::Index j : variant.columns)
+        for (const Eigen::Index k : variant.columns) grams(b, entry++) = block.col(j).dot(block.col(k));
+  }
+  return grams;
+}
+
 Eigen::MatrixXd submatrix(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& at) {
   const auto n = static_cast<Eigen::Index>(at.size());
   Eigen::MatrixXd sub(n, n);
@@ -192,27 +213,47 @@ Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant
   return least;
 }
 
+// V: covariance of the blocks' scores once the law's own best share is taken off them. An effect that acts in few
+// blocks would otherwise hide in the scatter that it makes.
+Eigen::MatrixXd variance_without(const Screening& screening, const Variant& variant,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& block_gram, const Eigen::VectorXd& strength) {
+  const auto n = static_cast<Eigen::Index>(variant.columns.size());
+  Eigen::MatrixXd rest(screening.block_scores.rows(), n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    rest.col(j) = screening.block_scores.col(variant.columns[static_cast<std::size_t>(j)]) -
+                  block_gram.middleCols(j * n, n) * strength;
+  rest.rowwise() -= rest.colwise().mean().eval();
+  return rest.transpose() * rest;
+}
+
+// The smaller of two scores: by the scatter between blocks, which knows noise of any colour but not from a few blocks,
+// and by the noise as it was estimated.
 double score_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, const Eigen::MatrixXd& variance,
                 const Eigen::VectorXd& resolution, const Eigen::VectorXd& strength) {
   if (gradient.size() == 1) {
     const double beyond = std::max(0.0, std::abs(gradient(0)) - resolution(0) * gram(0, 0));
-    return beyond * beyond / std::max(variance(0, 0), 1e-300);
+    return beyond * beyond / std::max({variance(0, 0), gram(0, 0), 1e-300});
   }
   const bool within = (strength.cwiseAbs().array() <= resolution.array()).all();
-  return within && resolution.maxCoeff() > 0.0 ? 0.0 : quadratic(variance, gradient);
+  return within && resolution.maxCoeff() > 0.0 ? 0.0
+                                               : std::min(quadratic(variance, gradient), quadratic(gram, gradient));
 }
 
-void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& variance,
-              double resolution) {
+void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& grams, double resolution) {
+  Eigen::Index entry = 0;
   for (Variant& variant : screening.variants) {
     const Eigen::VectorXd gradient = subvector(screening.gradient, variant.columns);
     const Eigen::MatrixXd gram = submatrix(screening.gram, variant.columns);
     const LinearStep step = bounded_step(gram, gradient, sign_bounds(screening, variant));
-    variant.score = score_of(gram, gradient, submatrix(variance, variant.columns),
-                             resolution_of(screening, variant, resolution), step.strength);
+    const Eigen::VectorXd least = resolution_of(screening, variant, resolution);
+    const auto entries = static_cast<Eigen::Index>(variant.columns.size() * variant.columns.size());
+    const Eigen::VectorXd own = bounded_step(gram, gradient, std::vector<bool>(variant.columns.size(), false)).strength;
+    const Eigen::MatrixXd variance =
+        variance_without(screening, variant, grams.middleCols(std::exchange(entry, entry + entries), entries), own);
+    variant.score = score_of(gram, gradient, variance, least, step.strength);
     // With an input that is itself measured only what a law could be counts: its sign, and no absurd size.
     const bool possible = step.free && step.strength.cwiseAbs().maxCoeff() < kAbsurd;
-    if ((resolution > 0.0 && !possible) || !std::isfinite(variant.score)) variant.score = 0.0;
+    if ((resolution > kMeasured && !possible) || !std::isfinite(variant.score)) variant.score = 0.0;
     variant.p_value = chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
     variant.gain = std::isfinite(step.gain) ? step.gain : 0.0;  // columns of zeros: the law cannot act here
     variant.physical = step.free;
@@ -221,32 +262,36 @@ void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen
           step.strength(k) * screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
     const Eigen::Index first = variant.columns.front();
     variant.absorbed = raw_norm(first) > 0.0 ? 1.0 - gram(0, 0) / raw_norm(first) : 1.0;
-    variant.minimum_detectable = gram(0, 0) > 0.0 ? std::sqrt(kDetectable / gram(0, 0)) *
+    variant.minimum_detectable = gram(0, 0) > 0.0 ? (std::sqrt(kDetectable / gram(0, 0)) + least(0)) *
                                                         std::abs(screening.unit[static_cast<std::size_t>(first)])
                                                   : std::numeric_limits<double>::infinity();
   }
 }
 
-// Smallest p-value under random signs of the blocks; how many independent tests it stands for.
-void calibrate(Screening& screening, const Eigen::MatrixXd& centred, const Eigen::MatrixXd& variance,
-               const ScreeningOptions& options) {
+// Smallest p-value of all variants when g is nothing but noise, N(0, G); how many independent tests it stands for.
+void calibrate(Screening& screening, const ScreeningOptions& options) {
+  const Eigen::VectorXd scale = screening.gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  Eigen::MatrixXd correlation = scale.cwiseInverse().asDiagonal() * screening.gram * scale.cwiseInverse().asDiagonal();
+  correlation.diagonal().array() += kRidge;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(correlation);
+  const Eigen::VectorXd roots = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
   std::mt19937_64 random(options.seed);
+  std::normal_distribution<double> normal;
   std::vector<double> smallest;
   std::vector<Eigen::MatrixXd> inverse;
   for (const Variant& variant : screening.variants) {
-    Eigen::MatrixXd v = submatrix(variance, variant.columns);
-    v.diagonal() *= 1.0 + 1e-9;
-    v.diagonal().array() += 1e-300;
-    inverse.push_back(v.inverse());
+    Eigen::MatrixXd own = submatrix(correlation, variant.columns);
+    own.diagonal().array() += 1e-9;
+    inverse.push_back(own.inverse());
   }
   for (int draw = 0; draw < options.draws; ++draw) {
-    Eigen::VectorXd signs(centred.rows());
-    for (double& sign : signs) sign = (random() >> 63) != 0 ? 1.0 : -1.0;
-    const Eigen::VectorXd drawn = centred.transpose() * signs;
+    Eigen::VectorXd white(roots.size());
+    for (double& value : white) value = normal(random);
+    const Eigen::VectorXd drawn =
+        factor.transpositionsP().transpose() * Eigen::VectorXd(factor.matrixL() * roots.cwiseProduct(white));
     double least = 1.0;
     for (std::size_t k = 0; k < screening.variants.size(); ++k) {
-      const Variant& variant = screening.variants[k];
-      const Eigen::VectorXd g = subvector(drawn, variant.columns);
+      const Eigen::VectorXd g = subvector(drawn, screening.variants[k].columns);
       least = std::min(least, chi_squared_tail(g.dot(inverse[k] * g), static_cast<double>(g.size())));
     }
     smallest.push_back(least);
@@ -286,6 +331,16 @@ std::vector<Variant> make_variants(const std::vector<PassColumn>& columns, const
     variants.back().columns.insert(variants.back().columns.end(), layout.of_pass[k].begin(), layout.of_pass[k].end());
   }
   return variants;
+}
+
+Eigen::MatrixXd stacked(const std::vector<Eigen::MatrixXd>& parts, Eigen::Index rows) {
+  Eigen::MatrixXd all(rows, parts.front().cols());
+  Eigen::Index at = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    all.middleRows(at, part.rows()) = part;
+    at += part.rows();
+  }
+  return all;
 }
 
 Result<std::vector<Reduced>> reduce_all(const FittedModel& model, const std::vector<Candidate>& candidates,
@@ -335,7 +390,7 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
           raw_norm(layout.of_pass[c][j]) += part.raw_norm(static_cast<Eigen::Index>(c));
   }
   screening.gram = Eigen::MatrixXd::Zero(layout.size, layout.size);
-  std::vector<Eigen::MatrixXd> sums;
+  std::vector<Eigen::MatrixXd> sums, grams;
   Eigen::Index blocks = 0;
   for (std::size_t k = 0; k < parts->size(); ++k) {
     Reduced& part = (*parts)[k];
@@ -349,22 +404,16 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
                         (data.samples[k].time_s.back() - data.samples[k].time_s.front());
     const auto rows = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(options.block_s * rate)) * part.channels;
     sums.push_back(block_sums(part.laws, part.residual, rows));
+    grams.push_back(block_grams(part.laws, screening.variants, rows));
     blocks += sums.back().rows();
     part.laws.resize(0, 0);
   }
   screening.gram.triangularView<Eigen::StrictlyUpper>() = screening.gram.transpose();
-  screening.block_scores.resize(blocks, layout.size);
-  Eigen::Index at = 0;
-  for (const Eigen::MatrixXd& part : sums) {
-    screening.block_scores.middleRows(at, part.rows()) = part;
-    at += part.rows();
-  }
+  screening.block_scores = stacked(sums, blocks);
   screening.gradient = screening.block_scores.colwise().sum();
   if (shared > 0) find_leakage_shifts(screening, model, gram, cross);
-  const Eigen::MatrixXd centred = screening.block_scores.rowwise() - screening.block_scores.colwise().mean();
-  const Eigen::MatrixXd variance = centred.transpose() * centred;
-  evaluate(screening, raw_norm, variance, data.resolution);
-  calibrate(screening, centred, variance, options);
+  evaluate(screening, raw_norm, stacked(grams, blocks), data.resolution);
+  calibrate(screening, options);
   return screening;
 }
 

@@ -47,11 +47,13 @@ Result<const Law*> find_law(std::string_view id, const std::vector<std::string>&
 
 LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters) {
   LawInput input;
-  for (std::size_t k = 0; k < signals.size(); ++k)
-    input.signal[k] = LawScalar::variable(signals[k], static_cast<int>(k));
-  input.hidden = LawScalar::variable(hidden, static_cast<int>(kSiteSignals));
-  for (std::size_t k = 0; k < parameters.size(); ++k)
-    input.parameter[k] = LawScalar::variable(parameters[k], static_cast<int>(kSiteSignals + 1 + k));
+  auto set = [direction = std::size_t{0}](LawScalar& variable, double value) mutable {
+    variable.value = value;  // in place: this runs in every evaluation of every law
+    variable.derivative[direction++] = 1.0;
+  };
+  for (std::size_t k = 0; k < kSiteSignals; ++k) set(input.signal[k], k < signals.size() ? signals[k] : 0.0);
+  set(input.hidden, hidden);
+  for (std::size_t k = 0; k < parameters.size(); ++k) set(input.parameter[k], parameters[k]);
   return input;
 }
 

@@ -155,7 +155,8 @@ class PlantSimulationOf<Model>::Run {
 
   void compute_output(int output, const double* point) {
     if constexpr (WithPhysics)
-      output_with_physics(output, point);
+      injected_ != nullptr ? output_with_physics<kStates + static_cast<int>(System::kSites)>(output, point)
+                           : output_with_physics<kStates>(output, point);
     else
       output_of_blocks(output, point);
   }
@@ -197,22 +198,24 @@ class PlantSimulationOf<Model>::Run {
   }
 
   // The same with what the laws add, and for the injected columns through the gradients by state and by site.
+  template <int Directions>
   void output_with_physics(int output, const double* point) {
-    using Gradient = Dual<kStates + static_cast<int>(System::kSites)>;
+    using Gradient = Dual<Directions>;
     const std::size_t stride = integrator_.stride();
     const auto input = system_.input_at(integrator_.time());
     typename System::template State<Gradient> state;
     for (int k = 0; k < kStates; ++k) state[k] = Gradient::variable(point[k * stride], k);
     auto extra = system_.template extra<Gradient>(state, input, system_.values());
-    for (std::size_t site = 0; site < System::kSites; ++site)
-      extra[site].derivative[static_cast<std::size_t>(kStates) + site] += 1.0;
+    if constexpr (Directions > kStates)
+      for (std::size_t site = 0; site < System::kSites; ++site)
+        extra[site].derivative[static_cast<std::size_t>(kStates) + site] += 1.0;
     const Gradient result = evaluate_output(output, System::plant_state(state), input, system_.values().plant, extra);
     signal_[0] = result.value;
     std::fill(signal_.begin() + 1, signal_.end(), 0.0);
     for (int k = 0; k < kStates; ++k)
       for (std::size_t column = 1; column < columns_; ++column)
         signal_[column] += result.derivative[static_cast<std::size_t>(k)] * point[k * stride + column];
-    if (injected_ != nullptr)
+    if constexpr (Directions > kStates)
       for (std::size_t e = 0; e < injected_->entries().size(); ++e) {
         const auto [column, site] = injected_->entries()[e];
         signal_[1 + free_.size() + column] +=

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sealwatch/estimation/cylinder_circuit.hpp"
+#include "services/common/estimation/closed_valves.hpp"
 #include "services/common/estimation/fit_report.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/estimation/pem_search.hpp"
@@ -101,6 +102,10 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   if (!optimum) return failed(optimum.error());
   JointFit fit = report_fit(asset, *problem, *optimum, recordings);
   judge_admissibility(fit.report, options.admissibility);
+  // What the recording says of the seal where the model does not come near it.
+  for (const TimeSeries& recorded : recordings)
+    if (const auto leakage = fit.report.admissible ? std::nullopt : closed_valve_leakage(asset, recorded))
+      fit.report.reasons.push_back(in_words(*leakage));
   return fit;
 }
 

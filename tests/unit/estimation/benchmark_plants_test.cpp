@@ -8,6 +8,8 @@
 #include <random>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
+#include "sealwatch/model/eha_switched.hpp"
+#include "services/common/estimation/closed_valves.hpp"
 #include "tests/unit/estimation/recordings.hpp"
 
 namespace sealwatch {
@@ -95,6 +97,49 @@ TEST(EmpsFit, SaysHowFarTheNaiveModelIsFromTheRealDrive) {
   // An independent fit (Runge-Kutta, held voltage) ends at 0.0432 m and 47.7 %.
   EXPECT_NEAR(rms_error(samples, fit.recordings.at(0), "position"), 0.0432, 5e-4);
   EXPECT_NEAR(fit.report.channels.at(0).nrmse_percent, 47.7, 0.5);
+}
+
+// Four seconds with closed valves; the chambers exchange oil through a leak of 1 / R_CL.
+TimeSeries closed_valves(const AssetConfig& asset, double conductance, double noise_std) {
+  using Plant = EhaSwitched;
+  EhaSwitchedParameters<double> p{};
+  EhaSwitchedParameters<double>::visit(
+      [&](std::string_view name, double& value) {
+        if (name != "load_factor") value = asset.parameters.at(std::string(name)).value;
+      },
+      p);
+  std::mt19937 random(7);
+  std::normal_distribution noise(0.0, noise_std);
+  TimeSeries samples;
+  samples.channels = {{"valve_state", "1", 0.0, {}},
+                      {"pressure_a", "Pa", 0.0, {}},
+                      {"pressure_b", "Pa", 0.0, {}},
+                      {"position", "m", 0.0, {}}};
+  const double x = 0.03, pipe = p.V_0 + Plant::pipe_volume(p.l_chamber, p);
+  double p_A = 3e6, p_B = 5e5;
+  for (int row = 0; row < 400; ++row) {
+    samples.time_s.push_back(0.01 * row);
+    const std::array<double, 4> values = {0.0, p_A + noise(random), p_B + noise(random), x};
+    for (std::size_t c = 0; c < values.size(); ++c) samples.channels[c].values.push_back(values[c]);
+    const double leak = conductance * (p_A - p_B) * 0.01;
+    p_A -= leak * Plant::bulk_modulus(p_A, p) / (pipe + p.A_A * x);
+    p_B += leak * Plant::bulk_modulus(p_B, p) / (pipe + p.A_B * (p.x_C - x));
+  }
+  return samples;
+}
+
+TEST(ClosedValves, TellTheLeakOrFromWhereOnItWouldNotShow) {
+  const AssetConfig asset = test::nominal_asset("eha_switched");
+  constexpr double kLeak = 1.0 / 1e14;
+  const auto leaking = closed_valve_leakage(asset, closed_valves(asset, kLeak, 1e4));
+  ASSERT_TRUE(leaking);
+  EXPECT_NEAR(leaking->conductance, kLeak, 0.05 * kLeak + 3.0 * leaking->conductance_std);
+  EXPECT_GT(leaking->conductance, 10.0 * leaking->conductance_std);
+  const auto tight = closed_valve_leakage(asset, closed_valves(asset, 0.0, 1e4));
+  ASSERT_TRUE(tight);
+  EXPECT_LT(std::abs(tight->conductance), 3.0 * tight->conductance_std);
+  EXPECT_THAT(in_words(*tight), testing::HasSubstr("R_CL is above"));
+  EXPECT_FALSE(closed_valve_leakage(test::nominal_asset("eha"), closed_valves(asset, kLeak, 1e4)));
 }
 
 }  // namespace

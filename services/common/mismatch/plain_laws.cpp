@@ -6,6 +6,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kRoughly = 2.0;     // factor by which the criterion may be off in a gross misfit
+constexpr double kAsGood = 1.0;      // criterion within which two searches ended at the same
 constexpr double kCannotTell = 6.0;  // criterion within which two laws are not told apart
 
 // Whether some law's shape is at the end of its range: there a law is the limit of another one (bristles that bend by
@@ -21,6 +22,50 @@ bool at_a_limit(const Trial& trial) {
     if (*value - parameter.setting.min < margin || parameter.setting.max - *value < margin) return true;
   }
   return false;
+}
+
+// Where the search for the plain law sets out: at what the rich one ended with, by name, or by being the strength.
+double start_value(const LawParameter& parameter, const Law& rich, const PhysicsTerm& term,
+                   const PlantDescription& plant) {
+  if (const auto known = term.parameters.find(std::string(parameter.name)); known != term.parameters.end())
+    return known->second.value;
+  if (parameter.strength)
+    return term.parameters.at(std::string(rich.parameters[strengths_of(rich).front()].name)).value;
+  return plant.law_size(parameter.unit) * std::ranges::min(parameter.start);
+}
+
+// The trial with the plain law in place of the rich one.
+Trial with_plain_law(const Trial& rich, std::size_t slot, const Law& plain, AssetConfig& asset) {
+  Trial trial = rich;
+  asset = rich.model->asset;
+  const auto term = asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot);
+  const PlantDescription& plant = rich.model->problem.recordings.front().simulation->plant();
+  std::vector<double> parameters;
+  for (const LawParameter& parameter : plain.parameters)
+    parameters.push_back(start_value(parameter, *trial.effects[slot].law, *term, plant));
+  const std::string element = trial.effects[slot].element;
+  asset.physics.erase(term);
+  trial.effects.erase(trial.effects.begin() + static_cast<std::ptrdiff_t>(slot));
+  trial.effects.push_back({&plain, element});
+  asset = with_law(std::move(asset), plain, element, parameters);
+  return trial;
+}
+
+bool put_plain_law(Naming& naming, std::size_t slot, const Data& data, int threads) {
+  const auto plain = std::ranges::find(all_laws(), naming.best.effects[slot].law->limit, &Law::id);
+  if (plain == all_laws().end()) return false;
+  AssetConfig asset;
+  Trial trial = with_plain_law(naming.best, slot, *plain, asset);
+  Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
+  if (!model) return false;
+  trial.model = std::make_shared<const FittedModel>(std::move(*model));
+  trial = polished(std::move(trial), data, threads);
+  naming.trials.push_back(trial);
+  const double phi = std::min(dispersion(*naming.best.model), dispersion(*trial.model));
+  const double ahead = excess(*naming.best.model) > kGross ? kRoughly * kWorthAnother : kAsGood;
+  if (criterion(*trial.model, phi) > criterion(*naming.best.model, phi) + ahead) return false;
+  naming.best = std::move(trial);
+  return true;
 }
 
 }  // namespace
@@ -43,35 +88,8 @@ const Trial* best_of(const std::vector<Trial>& trials, double phi) {
 }
 
 void prefer_plain_laws(Naming& naming, const Data& data, int threads) {
-  if (excess(*naming.best.model) <= kGross) return;
-  for (std::size_t slot = 0; slot < naming.best.effects.size(); ++slot) {
-    const Effect rich = naming.best.effects[slot];
-    const auto plain = std::ranges::find(all_laws(), rich.law->limit, &Law::id);
-    if (plain == all_laws().end()) continue;
-    Trial trial = naming.best;
-    AssetConfig asset = trial.model->asset;
-    const auto term = asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot);
-    std::vector<double> parameters;
-    for (const LawParameter& parameter : plain->parameters) {
-      const auto known = term->parameters.find(std::string(parameter.name));
-      const double least = trial.model->problem.recordings.front().simulation->plant().law_size(parameter.unit) *
-                           std::ranges::min(parameter.start);
-      parameters.push_back(known == term->parameters.end() ? least : known->second.value);
-    }
-    asset.physics.erase(term);
-    trial.effects.erase(trial.effects.begin() + static_cast<std::ptrdiff_t>(slot));
-    trial.effects.push_back({&*plain, rich.element});
-    asset = with_law(std::move(asset), *plain, rich.element, parameters);
-    Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
-    if (!model) continue;
-    trial.model = std::make_shared<const FittedModel>(std::move(*model));
-    trial = polished(std::move(trial), data, threads);
-    naming.trials.push_back(trial);
-    const double phi = std::min(dispersion(*naming.best.model), dispersion(*trial.model));
-    if (criterion(*trial.model, phi) > criterion(*naming.best.model, phi) + kRoughly * kWorthAnother) continue;
-    naming.best = std::move(trial);
-    slot = 0;
-  }
+  for (std::size_t slot = 0; slot < naming.best.effects.size();)
+    if (!put_plain_law(naming, slot, data, threads)) ++slot;  // else the plain law is now the last one
 }
 
 }  // namespace sealwatch::mismatch

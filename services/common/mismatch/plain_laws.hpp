@@ -5,9 +5,10 @@
 
 namespace sealwatch::mismatch {
 
-/// In a gross misfit the criterion is rough, as what is left is no noise: a law that comes to a plainer one at the end
-/// of its range (bristles that bend by micrometres: plain dry friction; Law::limit) is claimed only where it is clearly
-/// better. Puts the plain law into `naming.best` otherwise, and every refit into `naming.trials`.
+/// A law that comes to a plainer one at the end of its range (dry friction without a peak at standstill; Law::limit) is
+/// claimed only where the plain one, sought from where the rich one ended, does worse. In a gross misfit the criterion
+/// is rough, as what is left is no noise: there the rich law has to be clearly better. Puts the plain law into
+/// `naming.best` otherwise, and every refit into `naming.trials`.
 void prefer_plain_laws(Naming& naming, const Data& data, int threads);
 
 /// The best trial by its criterion; of laws that these recordings cannot tell apart, one whose shape is not at the end

@@ -25,7 +25,8 @@ Law hysteretic_load() {
       .parameters = {strength("F_h", "N", "load once it has yielded", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      shape("x_y", "m", "way over which it yields", {2e-3, 5e-4, 6e-3}, 1e-4, 5e-2)},
       .hidden = HiddenState{.name = "memory", .unit = "1", .scale = 1.0},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate,
+      .limit = "coulomb_friction"};
 }
 
 }  // namespace sealwatch::laws

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/gross_mismatch.hpp"
 #include "services/common/mismatch/missing_term.hpp"
@@ -311,7 +312,19 @@ class Analysis {
       effect.evidence = evidence_of(effect, excess_before + 1.0, excess_after + 1.0);
     result_.next_test = next_test_of(result_);
     result_.summary = summary_of(result_);
+    say_what_changed_between_tests();
     return {};
+  }
+
+  // A seal that ages from test to test is no physics that a test lacks.
+  void say_what_changed_between_tests() {
+    const bool unexplained = result_.verdict == Verdict::undetermined && result_.statistically_significant;
+    if (!unexplained || windowed_ || fit_.samples.size() < 2) return;
+    const auto change = change_between_tests(asset_, fit_);
+    if (!change) return;
+    result_.notes.push_back(*change);
+    result_.summary = *change;
+    result_.next_test = "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
   }
 
   // The missing term of each effect, over the recording in which it did most.

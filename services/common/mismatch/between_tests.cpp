@@ -1,0 +1,58 @@
+#include "services/common/mismatch/between_tests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/telling.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kAgrees = 1.5;    // mean square over the noise's, of one recording by itself
+constexpr double kChanged = 10.0;  // standard errors between the smallest and the largest value
+
+struct Course {
+  double least = INFINITY, most = -INFINITY, largest_std = 0.0;
+  std::string unit;
+  [[nodiscard]] double standard_errors() const { return largest_std > 0.0 ? (most - least) / largest_std : 0.0; }
+};
+
+}  // namespace
+
+std::optional<std::string> change_between_tests(const AssetConfig& asset, const Data& data) {
+  std::map<std::string, Course> courses;
+  double largest_misfit = 0.0;
+  for (std::size_t k = 0; k < data.samples.size(); ++k) {
+    Data one{.names = {data.names[k]},
+             .samples = {data.samples[k]},
+             .colour = {},
+             .groups = {},
+             .resolution = data.resolution};
+    if (!data.colour.empty()) one.colour = {data.colour[k]};
+    const Result<FittedModel> model = fit_model(asset, one, nullptr, 1);
+    if (!model || model->misfit > kAgrees * model->residuals) return std::nullopt;
+    largest_misfit = std::max(largest_misfit, model->misfit / model->residuals);
+    for (const ParameterShift& parameter : parameter_shifts(asset, *model, *model)) {
+      if (!std::isfinite(parameter.after_std)) continue;
+      Course& course = courses[parameter.name];
+      course.least = std::min(course.least, parameter.after);
+      course.most = std::max(course.most, parameter.after);
+      course.largest_std = std::max(course.largest_std, parameter.after_std);
+      course.unit = parameter.unit;
+    }
+  }
+  const auto changed =
+      std::ranges::max_element(courses, {}, [](const auto& entry) { return entry.second.standard_errors(); });
+  if (changed == courses.end() || changed->second.standard_errors() < kChanged) return std::nullopt;
+  std::string text = "Each recording alone agrees with the model (mean squared residual at most ";
+  text.append(number(largest_misfit)).append(" times the noise's), all together do not: ").append(changed->first);
+  text.append(" runs from ").append(number(changed->second.least)).append(" to ").append(number(changed->second.most));
+  text.append(" ").append(changed->second.unit).append(" from test to test, ");
+  text.append(number(changed->second.standard_errors()));
+  text.append(" standard errors. The asset changed between these tests; no physics is missing within one.");
+  return text;
+}
+
+}  // namespace sealwatch::mismatch

@@ -33,6 +33,24 @@ double correlation_time(const FittedModel& model) {
 
 }  // namespace
 
+NoiseColour residual_colour(const FittedModel& model) {
+  constexpr double kMost = 0.98;
+  const Eigen::Index channels = model.optimum.at_optimum.front().simulated.cols();
+  Eigen::ArrayXd together = Eigen::ArrayXd::Zero(channels), alone = Eigen::ArrayXd::Constant(channels, 1e-300);
+  for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k) {
+    const RowMatrix left = model.problem.recordings[k].simulation->recorded() - model.optimum.at_optimum[k].simulated;
+    const Eigen::Index rows = left.rows();
+    together += (left.topRows(rows - 1).array() * left.bottomRows(rows - 1).array()).colwise().sum().transpose();
+    alone += left.array().square().colwise().sum().transpose();
+  }
+  NoiseColour colour;
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    const double rho = std::clamp(together(c) / alone(c), 0.0, kMost);
+    colour.push_back({.coefficients = {rho}, .innovation_std = std::sqrt(1.0 - rho * rho)});
+  }
+  return colour;
+}
+
 double excess(const FittedModel& model) { return std::max(1.0, model.misfit / model.residuals); }
 
 double dispersion(const FittedModel& best) {

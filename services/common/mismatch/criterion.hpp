@@ -26,4 +26,7 @@ inline constexpr double kWorthAnother = 12.0;
 /// squared residual above twice the noise variance), whatever any law says to it.
 [[nodiscard]] bool differs(double p_value, const FittedModel& model, double false_alarm_rate);
 
+/// Correlation from sample to sample of what the model leaves, per channel, as a first-order autoregression.
+[[nodiscard]] NoiseColour residual_colour(const FittedModel& model);
+
 }  // namespace sealwatch::mismatch

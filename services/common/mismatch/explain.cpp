@@ -145,6 +145,7 @@ class Analysis {
       tell("proving on recordings that took no part", 0.75);
       if (const Status status = prove(); !status) return fail(status.error());
     }
+    if (const Status status = look_again(); !status) return fail(status.error());
     if (const Status status = finish(); !status) return fail(status.error());
     draw_what_is_missing();
     tell("done", 1.0);
@@ -154,6 +155,28 @@ class Analysis {
  private:
   void tell(std::string_view step, double share) const {
     if (progress_) progress_(step, share);
+  }
+
+  // Where everything found still misses grossly, what is left is a slow course, to which slow laws bend best. Weighed
+  // by its own colour, corners and episodes count for what they are.
+  Status look_again() {
+    const bool little = best_.model->misfit > kExplainedAtLeast * baseline_->misfit;
+    if (windowed_ || !little || excess(*best_.model) <= kGross) return {};
+    const NoiseColour colour = residual_colour(*baseline_);
+    fit_.colour.assign(fit_.samples.size(), colour);
+    holdout_.colour.assign(holdout_.samples.size(), colour);
+    Result<FittedModel> model = fit_model(baseline_->asset, prepared(fit_), nullptr, options_.threads);
+    if (!model) return fail(model.error());
+    baseline_ = std::make_shared<const FittedModel>(std::move(*model));
+    tell("looking again, weighed by the colour of what is left", 0.5);
+    Result<Naming> naming = name_effects(baseline_, prepared(fit_), options_, progress_);
+    if (!naming) return fail(naming.error());
+    naming_ = std::move(*naming);
+    best_ = naming_.best;
+    proven_ = false;
+    result_.notes.emplace_back(
+        "All models miss grossly: laws were weighed by the colour of what the fitted model leaves.");
+    return best_.effects.empty() ? Status{} : prove();
   }
 
   Status fit_baseline() {

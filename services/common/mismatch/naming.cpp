@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kSingles = 8;        // refits of single laws
 constexpr std::size_t kSecondStarts = 4;   // of laws with a shape, from another point of its grid, in a gross misfit
+constexpr double kWorthRoughly = 2.0;      // criterion that a law must bring in a gross misfit
 constexpr std::size_t kPairs = 4;          // refits of pairs
 constexpr int kFirstRound = 8;             // iterations of every refit
 constexpr std::size_t kSecondRound = 5;    // refits that go on
@@ -138,6 +139,12 @@ std::vector<Forbidden> forbidden_by_physics(const Screening& screening) {
   return found;
 }
 
+// What a law must bring to stay. In a gross misfit the criterion, with its correlation time from the residuals, is wary
+// enough: there the recordings that took no part decide.
+double worth_keeping(const Naming& naming) {
+  return excess(*naming.best.model) > kGross ? kWorthRoughly : kWorthAnother;
+}
+
 // Laws whose removal does not cost what another law must bring are taken out again.
 void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
   for (bool dropped = true; dropped && naming.best.effects.size() > 1;) {
@@ -152,14 +159,14 @@ void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
       fewer.model = std::make_shared<const FittedModel>(std::move(*model));
       naming.trials.push_back(fewer);
       const double phi = dispersion(*naming.best.model);
-      if (criterion(*fewer.model, phi) < criterion(*naming.best.model, phi) + kWorthAnother) {
+      if (criterion(*fewer.model, phi) < criterion(*naming.best.model, phi) + worth_keeping(naming)) {
         naming.best = fewer;
         dropped = true;
       }
     }
   }
   const double phi = dispersion(*naming.best.model);
-  if (criterion(*naming.baseline, phi) < criterion(*naming.best.model, phi) + kWorthAnother)
+  if (criterion(*naming.baseline, phi) < criterion(*naming.best.model, phi) + worth_keeping(naming))
     naming.best = {{}, naming.baseline};
 }
 

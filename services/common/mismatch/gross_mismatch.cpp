@@ -2,76 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "services/common/estimation/channel_noise.hpp"
 #include "services/common/mismatch/balance_words.hpp"
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/error_floor.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kGross = 20.0;       // times the noise: as where a fit is given up (ActuatorFitOptions::hopeless_rms)
-constexpr double kErrorFloor = 0.02;  // of a channel's spread
+constexpr double kGross = 20.0;  // times the noise: as where a fit is given up (ActuatorFitOptions::hopeless_rms)
 constexpr double kExplainedAtLeast = 0.5;  // of the misfit, as for laws
 constexpr int kPolishIterations = 15;
 constexpr std::size_t kPolished = 4;  // recordings that the simulation is fitted to: those that move furthest
 constexpr int kOwnIterations = 10;    // for load and initial state
-
-using Scales = std::map<std::string, double>;
-
-Scales spread_of(const Data& data) {
-  std::map<std::string, std::array<double, 3>> sums;  // count, sum, squares
-  for (const TimeSeries& samples : data.samples)
-    for (const Series& channel : samples.channels)
-      for (const double value : channel.values) {
-        auto& [count, sum, squares] = sums[channel.name];
-        count += 1.0, sum += value, squares += value * value;
-      }
-  Scales spread;
-  for (const auto& [name, sum] : sums)
-    spread[name] = std::sqrt(std::max(0.0, sum[2] / sum[0] - std::pow(sum[1] / sum[0], 2)));
-  return spread;
-}
-
-Data with_error_floor(const AssetConfig& asset, Data data, const Scales& spread) {
-  data.colour.clear();
-  for (TimeSeries& samples : data.samples)
-    for (Series& channel : samples.channels)
-      channel.noise_std = std::max(noise_std_of(asset, channel), kErrorFloor * spread.at(channel.name));
-  return data;
-}
-
-Data one_of(const Data& data, std::size_t k) {
-  return {.names = {data.names[k]}, .samples = {data.samples[k]}, .colour = {}, .groups = {}, .resolution = 0.0};
-}
-
-Data all_but(const Data& data, std::size_t k) {
-  Data rest = data;
-  rest.names.erase(rest.names.begin() + static_cast<std::ptrdiff_t>(k));
-  rest.samples.erase(rest.samples.begin() + static_cast<std::ptrdiff_t>(k));
-  return rest;
-}
-
-// Root mean square of all residuals over the sensors' noise.
-double rms_in_noise(const FittedModel& model, const AssetConfig& asset, const Data& data) {
-  double squares = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < data.samples.size(); ++k) {
-    const PemRecording& part = model.problem.recordings[k];
-    for (Eigen::Index c = 0; c < part.noise_std.size(); ++c) {
-      Series channel = *data.samples[k].find(part.simulation->channels()[static_cast<std::size_t>(c)]);
-      const double noise_std = noise_std_of(asset, channel);
-      const auto difference = part.simulation->recorded().col(c) - model.optimum.at_optimum[k].simulated.col(c);
-      if (noise_std > 0.0) squares += difference.squaredNorm() / (noise_std * noise_std);
-      count += static_cast<double>(difference.size());
-    }
-  }
-  return std::sqrt(squares / std::max(count, 1.0));
-}
 
 // Of the mean square misfit, in the median channel: one channel's rare outliers do not speak for all.
 double typical_share(const PooledFit& fit) {
@@ -88,7 +37,7 @@ class GrossMismatch {
   GrossMismatch(const AssetConfig& asset, const PlantDescription& plant, const Data& fit, const Data& holdout,
                 const ExplainOptions& options, const Progress& progress)
       : asset_(asset), plant_(plant), noise_fit_(fit), noise_holdout_(holdout), options_(options), progress_(progress) {
-    const Scales spread = spread_of(fit);
+    const ChannelScales spread = spread_of(fit);
     fit_ = with_error_floor(asset, fit, spread);
     holdout_ = with_error_floor(asset, holdout, spread);
   }
@@ -145,8 +94,37 @@ class GrossMismatch {
                                                   .min = finding.what.min,
                                                   .max = finding.what.max,
                                                   .estimate = true};
+    for (PhysicsTerm& term : asset.physics)  // two sensors side by side say it better than the simulation
+      if (term.element.starts_with("sensor:"))
+        for (auto& [name, setting] : term.parameters) setting.estimate = false;
     const Result<FittedModel> polished = fit_model(asset, data, &*start, options_.threads, kPolishIterations);
     if (polished && polished->misfit < start->misfit) model.asset = polished->asset;
+  }
+
+  // The values that the simulation ended with; their error contains how far it went from the balances'. A law that it
+  // does not want, beside the others, is not claimed.
+  void take_over_values() {
+    std::vector<BalanceFinding> kept;
+    for (BalanceFinding& finding : found_.findings) {
+      const double value = value_of(found_.model, finding.what);
+      if (finding.what.law != nullptr && value == 0.0) {
+        result_.notes.push_back("Once the simulation is fitted, " + finding.what.element + " does without its " +
+                                std::string(finding.what.law->id) + ": it is not claimed.");
+        put_back(found_.model, asset_, finding.what);
+        continue;
+      }
+      finding.std_error = std::hypot(finding.std_error, value - finding.value);
+      finding.value = value;
+      if (at_bound(found_.model, finding.what)) finding.std_error = std::numeric_limits<double>::infinity();
+      kept.push_back(std::move(finding));
+    }
+    found_.findings = std::move(kept);
+    for (BalanceParameter& parameter : found_.free) {
+      const double value = found_.model.asset.parameters.at(parameter.name).value;
+      parameter.after_std = std::hypot(parameter.after_std, value - parameter.after);
+      parameter.after = value;
+      parameter.before = found_.baseline.asset.parameters.at(parameter.name).value;
+    }
   }
 
   // False where the model as it is follows the recordings, or cannot be simulated at all.
@@ -155,6 +133,7 @@ class GrossMismatch {
     const Result<FittedModel> before = simulated(found_.baseline.asset, fit_);
     if (!before || rms_in_noise(*before, asset_, noise_fit_) < kGross) return false;
     polish(found_.model);
+    take_over_values();
     const Result<FittedModel> after = simulated(found_.model.asset, fit_);
     misfit_before_ = before->misfit / before->residuals;
     misfit_after_ = after ? after->misfit / after->residuals : misfit_before_;

@@ -122,4 +122,9 @@ std::vector<std::size_t> strengths_of(const Law& law) {
   return strengths;
 }
 
+std::string unit_of(const LawParameter& parameter, std::string_view element, const PlantDescription& plant) {
+  if (parameter.unit != "channel") return std::string(parameter.unit);
+  return plant.find_channel(std::string(element.substr(element.find(':') + 1)))->unit;
+}
+
 }  // namespace sealwatch::mismatch

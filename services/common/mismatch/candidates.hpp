@@ -28,6 +28,10 @@ inline constexpr std::string_view kUnlisted = "unlisted";
 /// Size of its first strength from which an engineer of this plant would care.
 [[nodiscard]] double significant_size(const Candidate& candidate, const PlantDescription& plant);
 
+/// Unit of a law's parameter: that of the channel, for a law of its sensor that says so.
+[[nodiscard]] std::string unit_of(const LawParameter& parameter, std::string_view element,
+                                  const PlantDescription& plant);
+
 /// Indices of the law's strengths.
 [[nodiscard]] std::vector<std::size_t> strengths_of(const Law& law);
 

@@ -89,11 +89,9 @@ std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedMode
   std::vector<FoundParameter> parameters;
   for (const LawParameter& parameter : effect.law->parameters) {
     const std::string name = physics_parameter_name(effect.element, effect.law->id, parameter.name);
-    FoundParameter found{.name = std::string(parameter.name), .unit = std::string(parameter.unit)};
-    if (found.unit == "channel") {
-      const std::string channel = effect.element.substr(effect.element.find(':') + 1);
-      found.unit = model.problem.recordings.front().simulation->plant().find_channel(channel)->unit;
-    }
+    FoundParameter found{
+        .name = std::string(parameter.name),
+        .unit = unit_of(parameter, effect.element, model.problem.recordings.front().simulation->plant())};
     for (const PhysicsTerm& term : model.asset.physics)
       if (term.id == effect.law->id && term.element == effect.element)
         if (const auto setting = term.parameters.find(found.name); setting != term.parameters.end())
@@ -205,6 +203,21 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
   return effects;
 }
 
+namespace {
+
+std::string against_elsewhere(const FoundEffect& effect) {
+  const Alternative* best = nullptr;
+  for (const Alternative& other : effect.alternatives)
+    if (other.what.element != effect.what.element &&
+        (best == nullptr || other.misfit_above_best < best->misfit_above_best))
+      best = &other;
+  if (best == nullptr) return "No law that sits elsewhere came near it.";
+  return "The best law that sits elsewhere (" + best->what.id + " at " + best->what.element + ") leaves " +
+         number(best->misfit_above_best) + " more (misfit with penalty; 12 counts as decisive).";
+}
+
+}  // namespace
+
 std::vector<Location> locate(const std::vector<FoundEffect>& effects) {
   std::vector<Location> places;
   for (const FoundEffect& effect : effects) {
@@ -212,7 +225,7 @@ std::vector<Location> locate(const std::vector<FoundEffect>& effects) {
     places.push_back({.element = effect.what.element,
                       .probability = effect.element_probability,
                       .indistinguishable_from = effect.same_elements,
-                      .evidence = "The best law that sits elsewhere fits worse; see the alternatives."});
+                      .evidence = against_elsewhere(effect)});
   }
   for (const FoundEffect& effect : effects)
     for (const Alternative& other : effect.alternatives) {

@@ -103,7 +103,7 @@ std::vector<Power> power_of(const Screening& screening, const PlantDescription& 
     const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
     power.push_back({.what = law_at({candidate.law, candidate.element}),
                      .minimum_detectable = variant.minimum_detectable,
-                     .unit = std::string(strength.unit),
+                     .unit = unit_of(strength, candidate.element, plant),
                      .absorbed_share = std::clamp(variant.absorbed, 0.0, 1.0),
                      .significant = significant_size(candidate, plant),
                      .leakage_shift = variant.leakage_shift});

@@ -94,7 +94,9 @@ Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int
   const ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(model.asset, data, options);
   if (!problem) return fail(problem.error());
-  Result<PemOptimum> optimum = search(*problem, model.optimum.point, options, model.optimum.at_optimum);
+  const bool known = model.optimum.at_optimum.front().jacobian.size() > 0;
+  Result<PemOptimum> optimum =
+      search(*problem, model.optimum.point, options, known ? model.optimum.at_optimum : std::vector<Linearisation>{});
   if (!optimum) return fail(optimum.error());
   return model_at(model.asset, std::move(*problem), std::move(*optimum));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "services/common/mismatch/plain_laws.hpp"
@@ -15,7 +16,8 @@ constexpr std::size_t kSecondStarts = 4;   // of laws with a shape, from another
 constexpr double kWorthRoughly = 2.0;      // criterion that a law must bring in a gross misfit
 constexpr std::size_t kPairs = 4;          // refits of pairs
 constexpr int kFirstRound = 8;             // iterations of every refit
-constexpr std::size_t kSecondRound = 5;    // refits that go on
+constexpr std::size_t kSecondRound = 5;    // refits that go on,
+constexpr int kLastRound = 30;             // so many iterations more
 constexpr double kHopeful = 10.0;          // times the best misfit: further off a refit does not go on
 constexpr std::size_t kUnlistedForms = 5;  // refits of closed forms
 constexpr double kPairAhead =
@@ -41,10 +43,30 @@ LawStart start_of(const Screening& screening, const Variant& variant) {
   return start;
 }
 
+// A trial while it is being worked on.
+struct Refit {
+  std::vector<Effect> effects;
+  std::shared_ptr<FittedModel> model;
+};
+
+// Only those near the best keep their derivatives: ten recordings' worth of them take as much memory as all else.
+std::vector<Trial> trials_of(std::vector<Refit> refits) {
+  constexpr double kNear = 1.05;
+  double best = std::numeric_limits<double>::infinity();
+  for (const Refit& refit : refits) best = std::min(best, refit.model->misfit);
+  std::vector<Trial> trials;
+  for (Refit& refit : refits) {
+    if (refit.model->misfit > kNear * best)
+      for (Linearisation& at : refit.model->optimum.at_optimum) at.jacobian.resize(0, 0);
+    trials.push_back({std::move(refit.effects), std::move(refit.model)});
+  }
+  return trials;
+}
+
 // f(0), f(1), ... on several threads, in this order.
-template <class F>
-std::vector<Trial> in_parallel(std::size_t count, int threads, const F& f) {
-  std::vector<Trial> results(count);
+template <class Item, class F>
+std::vector<Item> in_parallel(std::size_t count, int threads, const F& f) {
+  std::vector<Item> results(count);
   std::atomic<std::size_t> next = 0;
   std::vector<std::jthread> workers;
   for (int worker = 0; worker < threads; ++worker)
@@ -246,29 +268,34 @@ std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most) 
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
                          int threads) {
-  const auto one = [&](const std::vector<LawStart>& added) -> Trial {
-    Trial trial{.effects = from.effects, .model = nullptr};
+  const auto one = [&](const std::vector<LawStart>& added) -> Refit {
+    Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
     for (const LawStart& start : added) {
-      trial.effects.push_back(start.effect);
+      refit.effects.push_back(start.effect);
       asset = with_law(std::move(asset), *start.effect.law, start.effect.element, start.parameters);
     }
     Result<FittedModel> model = fit_model(asset, data, from.model.get(), 1, kFirstRound);
-    if (model) trial.model = std::make_shared<const FittedModel>(std::move(*model));
-    return trial;
+    if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
+    return refit;
   };
-  std::vector<Trial> trials;
-  for (Trial& trial : in_parallel(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); }))
-    if (trial.model) trials.push_back(std::move(trial));
-  if (trials.empty()) return trials;
-  // Those that are not far from the best go on until they have converged.
-  std::ranges::stable_sort(trials, {}, [](const Trial& trial) { return trial.model->misfit; });
-  const double best = trials.front().model->misfit;
-  const auto hopeful = std::ranges::find_if(trials, [&](const Trial& t) { return t.model->misfit > kHopeful * best; });
-  const auto count = std::min(static_cast<std::size_t>(hopeful - trials.begin()), kSecondRound);
-  std::vector<Trial> last = in_parallel(count, threads, [&](std::size_t k) { return polished(trials[k], data, 1); });
-  std::ranges::move(last, trials.begin());
-  return trials;
+  // Those that are not far from the best go on.
+  const auto further = [&](Refit refit) -> Refit {
+    if (refit.model->optimum.converged) return refit;
+    Result<FittedModel> model = continue_fit(*refit.model, data, 1, kLastRound);
+    if (model && model->misfit <= refit.model->misfit) refit.model = std::make_shared<FittedModel>(std::move(*model));
+    return refit;
+  };
+  std::vector<Refit> refits = in_parallel<Refit>(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); });
+  std::erase_if(refits, [](const Refit& refit) { return refit.model == nullptr; });
+  if (refits.empty()) return {};
+  std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
+  const double limit = kHopeful * refits.front().model->misfit;
+  const auto far = std::ranges::find_if(refits, [&](const Refit& refit) { return refit.model->misfit > limit; });
+  const auto count = std::min(static_cast<std::size_t>(far - refits.begin()), kSecondRound);
+  std::ranges::move(in_parallel<Refit>(count, threads, [&](std::size_t k) { return further(refits[k]); }),
+                    refits.begin());
+  return trials_of(std::move(refits));
 }
 
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,

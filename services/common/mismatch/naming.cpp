@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "services/common/mismatch/plain_laws.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 constexpr std::size_t kSingles = 8;        // refits of single laws
 constexpr std::size_t kSecondStarts = 4;   // of laws with a shape, from another point of its grid, in a gross misfit
 constexpr double kWorthRoughly = 2.0;      // criterion that a law must bring in a gross misfit
+constexpr std::size_t kOtherShapes = 8;    // refits of the best law from other points of its grid
 constexpr std::size_t kPairs = 4;          // refits of pairs
 constexpr int kFirstRound = 8;             // iterations of every refit
 constexpr std::size_t kSecondRound = 5;    // refits that go on,
@@ -298,6 +300,46 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
   return trials_of(std::move(refits));
 }
 
+namespace {
+
+std::vector<double> usual_size(const Candidate& candidate, std::size_t point) {
+  std::vector<double> parameters = candidate.grid[point];
+  for (const std::size_t k : strengths_of(*candidate.law)) parameters[k] *= candidate.strength_scale;
+  return parameters;
+}
+
+// Each law that was just added, alone, at its usual size and from all points of its shape's grid: where something is
+// left beyond the noise, its refit from the linear step may have ended in a hollow, which another law was or would be
+// asked to fill.
+Status from_other_shapes(Naming& naming, const Trial& before, const Screening& asked, const Data& data,
+                         const ExplainOptions& options) {
+  if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
+  std::vector<std::vector<LawStart>> starts;
+  for (std::size_t added = before.effects.size(); added < naming.best.effects.size(); ++added) {
+    std::vector<std::vector<LawStart>> own;
+    for (const Variant* variant : by_gain(asked)) {
+      const Candidate& candidate = asked.candidates[variant->candidate];
+      const Effect& effect = naming.best.effects[added];
+      if (candidate.law == effect.law && candidate.element == effect.element && own.size() < kOtherShapes)
+        own.push_back({{effect, usual_size(candidate, variant->point)}});
+    }
+    starts.insert(starts.end(), own.begin(), own.end());
+  }
+  if (starts.empty()) return {};
+  const std::vector<Trial> trials = refit(before, starts, data, options.threads);
+  const double phi = smallest_dispersion(trials, *naming.best.model);
+  const Trial* best = best_of(trials, phi);
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return {};
+  naming.best = polished(*best, data, options.threads);
+  naming.trials.push_back(naming.best);
+  Result<Screening> next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});
+  if (!next) return fail(next.error());
+  naming.last = std::move(*next);
+  return {};
+}
+
+}  // namespace
+
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                             const ExplainOptions& options, const Progress& progress) {
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
@@ -329,11 +371,13 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;
     if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - worth) break;
-    naming.best = polished(*best, data, options.threads);
+    const Trial before = std::exchange(naming.best, polished(*best, data, options.threads));
     naming.trials.push_back(naming.best);
     Result<Screening> next = screen(*naming.best.model, data, screening);
     if (!next) return fail(next.error());
-    naming.last = std::move(*next);
+    const Screening asked = std::exchange(naming.last, std::move(*next));
+    if (const Status status = from_other_shapes(naming, before, asked, data, options); !status)
+      return fail(status.error());
   }
   drop_what_is_not_needed(naming, data, options.threads);
   prefer_plain_laws(naming, data, options.threads);

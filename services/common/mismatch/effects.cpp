@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {

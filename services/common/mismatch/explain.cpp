@@ -5,10 +5,12 @@
 
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/gross_mismatch.hpp"
 #include "services/common/mismatch/missing_term.hpp"
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/noise.hpp"
+#include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/regime.hpp"
 #include "services/common/mismatch/telling.hpp"
@@ -17,109 +19,7 @@
 namespace sealwatch::mismatch {
 namespace {
 
-// Laws that hide in free parameters, how much larger than an engineer's limit they would have to be to show, and how
-// far they would then have moved the seal's estimate, before the data is said to be too poor.
-constexpr double kConcealed = 0.5;
-constexpr double kTooLarge = 1.0;
-constexpr double kLeakageMatters = 0.1;    // of R_CL: the standard error above which a fit is not admissible either
 constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
-constexpr double kRest = 5.0;              // a channel moves if it spans more than this many noise standard deviations
-
-Data data_of(std::span<const Recording> recordings) {
-  Data data;
-  for (const Recording& recording : recordings) {
-    data.names.push_back(recording.recording_id.empty() ? recording.file : recording.recording_id);
-    data.samples.push_back(recording.samples);
-  }
-  return data;
-}
-
-Data without(const Data& data, std::size_t left_out) {
-  Data rest = data;
-  const auto at = static_cast<std::ptrdiff_t>(left_out);
-  rest.names.erase(rest.names.begin() + at);
-  rest.samples.erase(rest.samples.begin() + at);
-  if (!rest.colour.empty()) rest.colour.erase(rest.colour.begin() + at);
-  return rest;
-}
-
-Data only(const Data& data, std::size_t one) {
-  Data single{.names = {data.names[one]},
-              .samples = {data.samples[one]},
-              .colour = {},
-              .groups = {},
-              .resolution = data.resolution};
-  if (!data.colour.empty()) single.colour = {data.colour[one]};
-  return single;
-}
-
-Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span<const Recording> holdout) {
-  if (fit.empty()) return fail("there is no recording to fit", "give at least one");
-  for (const auto& list : {fit, holdout})
-    for (const Recording& recording : list) {
-      if (!recording.asset_id.empty() && recording.asset_id != asset.asset_id)
-        return fail(Error{.file = recording.file,
-                          .place = "asset_id",
-                          .value = recording.asset_id,
-                          .rule = "is not the asset " + asset.asset_id,
-                          .advice = "one analysis is about one asset"});
-      const auto simulation = PlantSimulation::create(asset, recording.samples);
-      if (!simulation) {
-        Error error = simulation.error();
-        if (error.file.empty()) error.file = recording.file;
-        return fail(std::move(error));
-      }
-    }
-  for (const Recording& one : holdout)
-    for (const Recording& other : fit)
-      if (!one.content_hash.empty() && one.content_hash == other.content_hash)
-        return fail(Error{.file = one.file,
-                          .place = {},
-                          .value = {},
-                          .rule = "is held out and fitted at once: it has the same content as " + other.file,
-                          .advice = "a recording that took part in the fit proves nothing"});
-  return {};
-}
-
-bool at_rest(const FittedModel& model, const Data& data) {
-  for (std::size_t k = 0; k < data.samples.size(); ++k) {
-    const PemRecording& part = model.problem.recordings[k];
-    for (Eigen::Index c = 0; c < part.noise_std.size(); ++c) {
-      const std::string& name = part.simulation->channels()[static_cast<std::size_t>(c)];
-      if (name != "position" && name != "level_voltage") continue;
-      const auto column = part.simulation->recorded().col(c);
-      if (column.maxCoeff() - column.minCoeff() > 2.0 * kRest * part.noise_std(c)) return false;
-    }
-  }
-  return std::ranges::any_of(model.problem.recordings.front().simulation->channels(),
-                             [](const std::string& name) { return name == "position" || name == "level_voltage"; });
-}
-
-std::vector<Power> power_of(const Screening& screening, const PlantDescription& plant) {
-  std::vector<Power> power;
-  for (const Variant& variant : screening.variants) {
-    const Candidate& candidate = screening.candidates[variant.candidate];
-    if (variant.point != 0) continue;
-    const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
-    power.push_back({.what = law_at({candidate.law, candidate.element}),
-                     .minimum_detectable = variant.minimum_detectable,
-                     .unit = unit_of(strength, candidate.element, plant),
-                     .absorbed_share = std::clamp(variant.absorbed, 0.0, 1.0),
-                     .significant = significant_size(candidate, plant),
-                     .leakage_shift = variant.leakage_shift});
-  }
-  std::ranges::stable_sort(power, {}, [](const Power& one) { return one.what.id; });
-  return power;
-}
-
-std::vector<const Power*> could_not_show(const std::vector<Power>& power) {
-  std::vector<const Power*> blind;
-  for (const Power& one : power)
-    if (one.absorbed_share > kConcealed && one.minimum_detectable > kTooLarge * one.significant &&
-        one.leakage_shift > kLeakageMatters && one.significant > 0.0)
-      blind.push_back(&one);
-  return blind;
-}
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {

@@ -1,13 +1,12 @@
 #include "services/common/mismatch/screening.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <future>
 #include <random>
 #include <utility>
 
+#include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/sensitivity_pass.hpp"
 #include "services/common/mismatch/tail.hpp"
 
@@ -17,34 +16,6 @@ namespace {
 constexpr double kDetectable = 27.0;  // lambda: noncentrality that is seen with 80 % power at 1 % over the catalogue
 constexpr double kAbsurd = 100.0;     // usual sizes
 constexpr double kMeasured = 0.05;    // resolution above which the input must have been measured
-constexpr double kRidge = 1e-10;      // of a normal matrix with unit diagonal: directions that the data do not show
-
-// X (X'X)^-1 X'Y taken off Y, in place.
-class Projection {
- public:
-  explicit Projection(const RowMatrix& x) : x_(x), gram_(x.transpose() * x) { prepare(); }
-  Projection(const RowMatrix& x, Eigen::MatrixXd gram) : x_(x), gram_(std::move(gram)) { prepare(); }
-  template <class Y>
-  [[nodiscard]] Eigen::MatrixXd coefficients(const Y& cross) const {
-    return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * cross);
-  }
-  template <class Y>
-  void remove_from(Y& y) const {
-    if (x_.cols() > 0) y.noalias() -= x_ * coefficients(x_.transpose() * y);
-  }
-
- private:
-  void prepare() {
-    scale_ = gram_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd scaled = scale_.asDiagonal() * gram_ * scale_.asDiagonal();
-    scaled.diagonal().array() += kRidge;
-    factor_.compute(scaled);
-  }
-  const RowMatrix& x_;
-  Eigen::MatrixXd gram_;
-  Eigen::VectorXd scale_;
-  Eigen::LDLT<Eigen::MatrixXd> factor_;
-};
 
 // One recording with its own unknowns taken off.
 struct Reduced {
@@ -133,53 +104,6 @@ Eigen::MatrixXd block_grams(const RowMatrix& laws, const std::vector<Variant>& v
   return grams;
 }
 
-Eigen::MatrixXd submatrix(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& at) {
-  const auto n = static_cast<Eigen::Index>(at.size());
-  Eigen::MatrixXd sub(n, n);
-  for (Eigen::Index j = 0; j < n; ++j)
-    for (Eigen::Index k = 0; k < n; ++k)
-      sub(j, k) = matrix(at[static_cast<std::size_t>(j)], at[static_cast<std::size_t>(k)]);
-  return sub;
-}
-
-Eigen::VectorXd subvector(const Eigen::VectorXd& vector, const std::vector<Eigen::Index>& at) {
-  Eigen::VectorXd sub(static_cast<Eigen::Index>(at.size()));
-  for (Eigen::Index k = 0; k < sub.size(); ++k) sub(k) = vector(at[static_cast<std::size_t>(k)]);
-  return sub;
-}
-
-struct LinearStep {
-  Eigen::VectorXd strength;
-  double gain = 0.0;
-  bool free = true;  ///< no bound was in the way
-};
-
-// max over strengths of 2 g'k - k'G k, those with a lower bound of 0 kept at or above it.
-LinearStep bounded_step(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient,
-                        const std::vector<bool>& positive) {
-  LinearStep step;
-  std::vector<bool> held(positive.size(), false);
-  for (std::size_t round = 0; round <= positive.size(); ++round) {
-    Eigen::MatrixXd g = gram;
-    Eigen::VectorXd right = gradient;
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
-      const double diagonal = std::max(gram(row, row), 1e-300);
-      if (held[k]) g.row(row).setZero(), g.col(row).setZero(), right(row) = 0.0;
-      g(row, row) = held[k] ? 1.0 : diagonal * (1.0 + kRidge);
-    }
-    step.strength = g.ldlt().solve(right);
-    step.gain = right.dot(step.strength);
-    bool violated = false;
-    for (std::size_t k = 0; k < held.size(); ++k)
-      if (positive[k] && !held[k] && step.strength(static_cast<Eigen::Index>(k)) < 0.0) held[k] = violated = true;
-    if (!violated) return step;
-    step.free = false;
-  }
-  step.gain = 0.0;
-  return step;
-}
-
 std::vector<bool> sign_bounds(const Screening& screening, const Variant& variant) {
   const Candidate& candidate = screening.candidates[variant.candidate];
   const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
@@ -187,14 +111,6 @@ std::vector<bool> sign_bounds(const Screening& screening, const Variant& variant
   if (positive.size() == strengths.size())  // else a free angle: sine and cosine of either sign
     for (std::size_t k = 0; k < strengths.size(); ++k) positive[k] = candidate.law->parameters[strengths[k]].min >= 0.0;
   return positive;
-}
-
-double quadratic(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& vector) {
-  const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-9;
-  const Eigen::VectorXd right = scale.asDiagonal() * vector;
-  return right.dot(scaled.ldlt().solve(right));
 }
 
 // Strengths, in usual sizes, that errors of a measured input can feign.

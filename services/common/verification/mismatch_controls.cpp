@@ -6,6 +6,7 @@
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/ranking.hpp"
 
 namespace sealwatch::verification {
 namespace {

@@ -1,0 +1,22 @@
+// What `explain` is given: recordings as data, and what is refused.
+#pragma once
+
+#include <span>
+
+#include "sealwatch/core/recording.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+[[nodiscard]] Data data_of(std::span<const Recording> recordings);
+[[nodiscard]] Data without(const Data& data, std::size_t left_out);
+[[nodiscard]] Data only(const Data& data, std::size_t one);
+
+/// Recordings of another asset, channels that the plant does not know, a holdout that is fitted too.
+[[nodiscard]] Status check(const AssetConfig& asset, std::span<const Recording> fit,
+                           std::span<const Recording> holdout);
+
+/// Whether nothing moves in any recording.
+[[nodiscard]] bool at_rest(const FittedModel& model, const Data& data);
+
+}  // namespace sealwatch::mismatch

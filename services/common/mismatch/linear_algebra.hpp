@@ -1,0 +1,57 @@
+// Small least-squares problems of the screening, scaled so that columns of any size go together.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <vector>
+
+#include "sealwatch/model/simulation.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Added to a normal matrix with unit diagonal: directions that the data do not show.
+inline constexpr double kRidge = 1e-10;
+
+// X (X'X)^-1 X'Y taken off Y, in place.
+class Projection {
+ public:
+  explicit Projection(const RowMatrix& x) : x_(x), gram_(x.transpose() * x) { prepare(); }
+  Projection(const RowMatrix& x, Eigen::MatrixXd gram) : x_(x), gram_(std::move(gram)) { prepare(); }
+  template <class Y>
+  [[nodiscard]] Eigen::MatrixXd coefficients(const Y& cross) const {
+    return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * cross);
+  }
+  template <class Y>
+  void remove_from(Y& y) const {
+    if (x_.cols() > 0) y.noalias() -= x_ * coefficients(x_.transpose() * y);
+  }
+
+ private:
+  void prepare() {
+    scale_ = gram_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd scaled = scale_.asDiagonal() * gram_ * scale_.asDiagonal();
+    scaled.diagonal().array() += kRidge;
+    factor_.compute(scaled);
+  }
+  const RowMatrix& x_;
+  Eigen::MatrixXd gram_;
+  Eigen::VectorXd scale_;
+  Eigen::LDLT<Eigen::MatrixXd> factor_;
+};
+
+struct LinearStep {
+  Eigen::VectorXd strength;
+  double gain = 0.0;
+  bool free = true;  ///< no bound was in the way
+};
+
+/// max over strengths of 2 g'k - k'G k, those with a lower bound of 0 kept at or above it.
+[[nodiscard]] LinearStep bounded_step(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient,
+                                      const std::vector<bool>& positive);
+
+/// v' M^-1 v
+[[nodiscard]] double quadratic(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& vector);
+
+[[nodiscard]] Eigen::MatrixXd submatrix(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& at);
+[[nodiscard]] Eigen::VectorXd subvector(const Eigen::VectorXd& vector, const std::vector<Eigen::Index>& at);
+
+}  // namespace sealwatch::mismatch

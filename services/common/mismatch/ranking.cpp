@@ -1,0 +1,111 @@
+#include "services/common/mismatch/ranking.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "services/common/mismatch/criterion.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr std::size_t kSecondStarts = 4;  // of laws with a shape, from another point of its grid, in a gross misfit
+constexpr std::size_t kPairs = 4;         // refits of pairs
+constexpr double kPairAhead =
+    0.02;  // of the misfit: a pair that promises less more than the best single is passed over
+constexpr double kSmallestStart = 0.02, kLargestStart = 50.0;  // of a strength's usual size
+
+LawStart start_of(const Screening& screening, const Variant& variant) {
+  const Candidate& candidate = screening.candidates[variant.candidate];
+  LawStart start{.effect = {candidate.law, candidate.element}, .parameters = candidate.grid[variant.point]};
+  const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
+  for (std::size_t k = 0; k < strengths.size(); ++k) {
+    double& value = start.parameters[strengths[k]];
+    const double usual = std::abs(candidate.strength_scale * value);
+    // The strength of a free angle comes as sine and cosine.
+    const double linear = variant.strength.size() == strengths.size()
+                              ? variant.strength[k]
+                              : std::hypot(variant.strength[0], variant.strength[1]);
+    const double size = std::clamp(std::abs(linear), kSmallestStart * usual, kLargestStart * usual);
+    value = linear < 0.0 && candidate.law->parameters[strengths[k]].min < 0.0 ? -size : size;
+  }
+  return start;
+}
+
+// Of each law at each element its best variant, best first.
+std::vector<const Variant*> best_of_each(const Screening& screening) {
+  std::vector<const Variant*> best;
+  for (const Variant* variant : by_gain(screening)) {
+    const Candidate& candidate = screening.candidates[variant->candidate];
+    const bool known = std::ranges::any_of(best, [&](const Variant* other) {
+      const Candidate& taken = screening.candidates[other->candidate];
+      return taken.law == candidate.law && taken.element == candidate.element;
+    });
+    if (!known) best.push_back(variant);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<const Variant*> by_gain(const Screening& screening) {
+  std::vector<const Variant*> order;
+  for (const Variant& variant : screening.variants)
+    if (variant.gain > 0.0) order.push_back(&variant);
+  std::ranges::stable_sort(order, std::greater<>(), [](const Variant* variant) { return variant->gain; });
+  return order;
+}
+
+std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most) {
+  std::vector<LawStart> starts;
+  for (const Variant* variant : best_of_each(screening)) {
+    if (starts.size() == most) break;
+    starts.push_back(start_of(screening, *variant));
+  }
+  return starts;
+}
+
+std::vector<LawStart> second_starts(const Screening& screening) {
+  std::vector<LawStart> starts;
+  for (const Variant* best : best_of_each(screening)) {
+    if (starts.size() == kSecondStarts) break;
+    for (const Variant* other : by_gain(screening)) {
+      if (other == best || other->candidate != best->candidate) continue;
+      starts.push_back(start_of(screening, *other));
+      break;
+    }
+  }
+  return starts;
+}
+
+std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit) {
+  struct Pair {
+    const Variant *a, *b;
+    double gain;
+  };
+  const std::vector<const Variant*> singles = best_of_each(screening);
+  std::vector<Pair> pairs;
+  for (std::size_t j = 0; j < singles.size(); ++j)
+    for (std::size_t k = j + 1; k < singles.size(); ++k) {
+      const Candidate &a = screening.candidates[singles[j]->candidate],
+                      &b = screening.candidates[singles[k]->candidate];
+      if (a.law->id == b.law->id && a.element == b.element) continue;
+      pairs.push_back({singles[j], singles[k], pair_gain(screening, *singles[j], *singles[k])});
+    }
+  std::ranges::stable_sort(pairs, std::greater<>(), &Pair::gain);
+  std::vector<std::vector<LawStart>> starts;
+  for (const Pair& pair : pairs) {
+    if (starts.size() == kPairs || pair.gain < singles.front()->gain + std::max(kWorthAnother, kPairAhead * misfit))
+      break;
+    starts.push_back({start_of(screening, *pair.a), start_of(screening, *pair.b)});
+  }
+  return starts;
+}
+
+std::vector<double> usual_size(const Candidate& candidate, std::size_t point) {
+  std::vector<double> parameters = candidate.grid[point];
+  for (const std::size_t k : strengths_of(*candidate.law)) parameters[k] *= candidate.strength_scale;
+  return parameters;
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,27 @@
+// What a screening says of the laws, best first, with start values for their refits.
+#pragma once
+
+#include <vector>
+
+#include "services/common/mismatch/refits.hpp"
+#include "services/common/mismatch/screening.hpp"
+
+namespace sealwatch::mismatch {
+
+/// All variants that promise something, by their gain.
+[[nodiscard]] std::vector<const Variant*> by_gain(const Screening& screening);
+
+/// Best variants by gain, no law at the same element twice; with start values from the linear step.
+[[nodiscard]] std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most);
+
+/// Of the best laws another point of their shape's grid: far from a recording the linearised gain says little about
+/// where a refit ends, and from one start it may end in a hollow beside the best.
+[[nodiscard]] std::vector<LawStart> second_starts(const Screening& screening);
+
+/// The best pairs of different laws that promise clearly more than the best single law.
+[[nodiscard]] std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit);
+
+/// All parameters of a candidate at a point of its grid, strengths at their usual size.
+[[nodiscard]] std::vector<double> usual_size(const Candidate& candidate, std::size_t point);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,95 @@
+#include "services/common/mismatch/refits.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <thread>
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr int kFirstRound = 8;           // iterations of every refit
+constexpr std::size_t kSecondRound = 5;  // refits that go on,
+constexpr int kLastRound = 30;           // so many iterations more
+constexpr double kHopeful = 10.0;        // times the best misfit: further off a refit does not go on
+
+// A trial while it is being worked on.
+struct Refit {
+  std::vector<Effect> effects;
+  std::shared_ptr<FittedModel> model;
+};
+
+// Only those near the best keep their derivatives: ten recordings' worth of them take as much memory as all else.
+std::vector<Trial> trials_of(std::vector<Refit> refits) {
+  constexpr double kNear = 1.05;
+  double best = std::numeric_limits<double>::infinity();
+  for (const Refit& refit : refits) best = std::min(best, refit.model->misfit);
+  std::vector<Trial> trials;
+  for (Refit& refit : refits) {
+    if (refit.model->misfit > kNear * best)
+      for (Linearisation& at : refit.model->optimum.at_optimum) at.jacobian.resize(0, 0);
+    trials.push_back({std::move(refit.effects), std::move(refit.model)});
+  }
+  return trials;
+}
+
+// f(0), f(1), ... on several threads, in this order.
+template <class Item, class F>
+std::vector<Item> in_parallel(std::size_t count, int threads, const F& f) {
+  std::vector<Item> results(count);
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::jthread> workers;
+  for (int worker = 0; worker < threads; ++worker)
+    workers.emplace_back([&] {
+      for (std::size_t k = next++; k < count; k = next++) results[k] = f(k);
+    });
+  workers.clear();
+  return results;
+}
+
+}  // namespace
+
+// A search that ran out of iterations goes on from where it is.
+Trial polished(Trial trial, const Data& data, int threads) {
+  constexpr int kRounds = 3, kIterations = 30;
+  for (int round = 0; round < kRounds && !trial.model->optimum.converged; ++round) {
+    Result<FittedModel> further = continue_fit(*trial.model, data, threads, kIterations);
+    if (!further || further->misfit > trial.model->misfit) break;
+    trial.model = std::make_shared<const FittedModel>(std::move(*further));
+  }
+  return trial;
+}
+
+std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
+                         int threads) {
+  const auto one = [&](const std::vector<LawStart>& added) -> Refit {
+    Refit refit{.effects = from.effects, .model = nullptr};
+    AssetConfig asset = from.model->asset;
+    for (const LawStart& start : added) {
+      refit.effects.push_back(start.effect);
+      asset = with_law(std::move(asset), *start.effect.law, start.effect.element, start.parameters);
+    }
+    Result<FittedModel> model = fit_model(asset, data, from.model.get(), 1, kFirstRound);
+    if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
+    return refit;
+  };
+  // Those that are not far from the best go on.
+  const auto further = [&](Refit refit) -> Refit {
+    if (refit.model->optimum.converged) return refit;
+    Result<FittedModel> model = continue_fit(*refit.model, data, 1, kLastRound);
+    if (model && model->misfit <= refit.model->misfit) refit.model = std::make_shared<FittedModel>(std::move(*model));
+    return refit;
+  };
+  std::vector<Refit> refits = in_parallel<Refit>(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); });
+  std::erase_if(refits, [](const Refit& refit) { return refit.model == nullptr; });
+  if (refits.empty()) return {};
+  std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
+  const double limit = kHopeful * refits.front().model->misfit;
+  const auto far = std::ranges::find_if(refits, [&](const Refit& refit) { return refit.model->misfit > limit; });
+  const auto count = std::min(static_cast<std::size_t>(far - refits.begin()), kSecondRound);
+  std::ranges::move(in_parallel<Refit>(count, threads, [&](std::size_t k) { return further(refits[k]); }),
+                    refits.begin());
+  return trials_of(std::move(refits));
+}
+
+}  // namespace sealwatch::mismatch

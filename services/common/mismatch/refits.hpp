@@ -1,0 +1,37 @@
+// The fitted model with some laws more, refitted: start values in, trials out.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+/// A law at an element that was added, or could be.
+struct Effect {
+  const Law* law = nullptr;
+  std::string element;
+};
+
+/// The model refitted with some laws.
+struct Trial {
+  std::vector<Effect> effects;
+  std::shared_ptr<const FittedModel> model;
+};
+
+/// A law with start values of all its parameters.
+struct LawStart {
+  Effect effect;
+  std::vector<double> parameters;
+};
+
+/// Refits of `laws` (each with its start values) added to `from`, on `threads` threads; those that fail are left out.
+[[nodiscard]] std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws,
+                                       const Data& data, int threads);
+
+/// A search that ran out of iterations goes on from where it is.
+[[nodiscard]] Trial polished(Trial trial, const Data& data, int threads);
+
+}  // namespace sealwatch::mismatch

@@ -1,5 +1,6 @@
 #include "services/common/mismatch/screening.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <future>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/forecast/predictive_distribution.hpp"
 #include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch::forecast {
@@ -86,6 +87,24 @@ struct PrognosticHorizon {
 /// not after t_lambda. None when no number was ever given.
 [[nodiscard]] std::optional<bool> alpha_lambda_accuracy(std::span<const ScoredMonth> months, double alpha,
                                                         double lambda);
+
+/// A month with the whole distribution behind its number. A number without one (past the threshold: 0) is certain.
+struct PredictedMonth {
+  ScoredMonth scored;
+  std::optional<PredictiveDistribution> distribution = {};
+};
+
+/// pi = F((1 + alpha) r*) - F((1 - alpha) r*): probability that the forecast gives to the tolerated interval; 0 in a
+/// month without a number.
+[[nodiscard]] double probability_within(const PredictedMonth& month, double alpha);
+
+/// The same metric for distributions: pi >= beta in the month in which alpha_lambda_accuracy is judged.
+struct AlphaLambdaMass {
+  double probability = 0.0;  ///< pi
+  bool accurate = false;
+};
+[[nodiscard]] std::optional<AlphaLambdaMass> alpha_lambda_mass(std::span<const PredictedMonth> months, double alpha,
+                                                               double lambda, double beta = 0.5);
 
 /// RA = 1 - |e| / r*, of the remaining life, not of the date: 1 is perfect, negative is worse than saying 0.
 [[nodiscard]] std::optional<double> relative_accuracy(const ScoredMonth& month);

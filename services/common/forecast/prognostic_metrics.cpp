@@ -28,6 +28,18 @@ std::vector<ScoredMonth> with_number(std::span<const ScoredMonth> months) {
   return given;
 }
 
+/// Index of the last month not after t_lambda = t_P + lambda (EoL - t_P); none when no number was ever given.
+template <class Month, class Scored>
+std::optional<std::size_t> judged_month(std::span<const Month> months, double lambda, const Scored& scored) {
+  const auto first =
+      std::find_if(months.begin(), months.end(), [&](const Month& m) { return scored(m).rul_months.has_value(); });
+  if (first == months.end()) return std::nullopt;
+  const double t_lambda = scored(*first).time_months + lambda * scored(*first).true_rul_months;
+  auto judged = static_cast<std::size_t>(first - months.begin());
+  while (judged + 1 < months.size() && scored(months[judged + 1]).time_months <= t_lambda) ++judged;
+  return judged;
+}
+
 }  // namespace
 
 ScoredMonth scored_month(const Forecast& forecast, double time_months, double true_rul_months) {
@@ -117,13 +129,27 @@ PrognosticHorizon prognostic_horizon(std::span<const ScoredMonth> months, double
 }
 
 std::optional<bool> alpha_lambda_accuracy(std::span<const ScoredMonth> months, double alpha, double lambda) {
-  const auto first = std::find_if(months.begin(), months.end(), [](const auto& m) { return m.rul_months.has_value(); });
-  if (first == months.end()) return std::nullopt;
-  const double t_lambda = first->time_months + lambda * first->true_rul_months;
-  const ScoredMonth* judged = &*first;
-  for (const ScoredMonth& month : months)
-    if (month.time_months >= first->time_months && month.time_months <= t_lambda) judged = &month;
-  return Tolerance{.floor_months = 0.0, .share = alpha}.holds(*judged);
+  const auto judged = judged_month(
+      months, lambda, [](const ScoredMonth& month) -> const auto& { return month; });
+  if (!judged) return std::nullopt;
+  return Tolerance{.floor_months = 0.0, .share = alpha}.holds(months[*judged]);
+}
+
+double probability_within(const PredictedMonth& month, double alpha) {
+  const ScoredMonth& scored = month.scored;
+  if (!scored.rul_months) return 0.0;
+  if (!month.distribution) return Tolerance{.floor_months = 0.0, .share = alpha}.holds(scored) ? 1.0 : 0.0;
+  const double r = scored.true_rul_months;
+  return month.distribution->cdf((1.0 + alpha) * r) - month.distribution->cdf((1.0 - alpha) * r);
+}
+
+std::optional<AlphaLambdaMass> alpha_lambda_mass(std::span<const PredictedMonth> months, double alpha, double lambda,
+                                                 double beta) {
+  const auto judged = judged_month(
+      months, lambda, [](const PredictedMonth& month) -> const auto& { return month.scored; });
+  if (!judged) return std::nullopt;
+  const double probability = probability_within(months[*judged], alpha);
+  return AlphaLambdaMass{.probability = probability, .accurate = probability >= beta};
 }
 
 std::optional<double> relative_accuracy(const ScoredMonth& month) {

@@ -66,6 +66,60 @@ TEST(Saxena, AlphaLambdaIsJudgedOnTheWayFromTheFirstNumber) {
   EXPECT_EQ(alpha_lambda_accuracy(life(100.0, 30.0, 10.0, {std::nullopt}), 0.3, 0.5), std::nullopt);
 }
 
+/// One month with 30 months left, whose forecast is this distribution.
+PredictedMonth predicted(std::vector<PredictiveDistribution::Point> points, double true_rul_months = 30.0) {
+  PredictedMonth month{.scored = {.time_months = 70.0, .true_rul_months = true_rul_months, .rul_months = {}},
+                       .distribution = PredictiveDistribution::make(std::move(points)).value()};
+  month.scored.rul_months = month.distribution->quantile(0.5);
+  return month;
+}
+
+// Uniform on 20 .. 40 months: 24 .. 36 holds 12 of 20. Uniform on 20 .. 24 and 36 .. 40: nothing, though the interval
+// between the two halves has its median.
+TEST(Saxena, ProbabilityWithinIsTheShareOfTheDistribution) {
+  EXPECT_NEAR(probability_within(predicted({{20.0, 0.0}, {40.0, 1.0}}), 0.2), 0.6, kRounding);
+  EXPECT_NEAR(probability_within(predicted({{20.0, 0.0}, {24.0, 0.5}, {36.0, 0.5}, {40.0, 1.0}}), 0.2), 0.0, kRounding);
+  // Late ends are cut at 50 months with F = 0.8, and count there: of 36 .. 54 it holds 1 - 0.8 * 26/40.
+  EXPECT_NEAR(probability_within(predicted({{10.0, 0.0}, {50.0, 0.8}}, 45.0), 0.2), 0.48, kRounding);
+}
+
+TEST(Saxena, ANumberWithoutDistributionIsCertain) {
+  PredictedMonth month{.scored = {.time_months = 70.0, .true_rul_months = 30.0, .rul_months = 35.0}};
+  EXPECT_EQ(probability_within(month, 0.2), 1.0);
+  EXPECT_EQ(probability_within(month, 0.1), 0.0);
+  month.scored.rul_months = 0.0;  // past the threshold
+  EXPECT_EQ(probability_within(month, 0.2), 0.0);
+  month.scored.rul_months.reset();  // silent
+  EXPECT_EQ(probability_within(month, 0.2), 0.0);
+}
+
+// The median meets the truth, so that the yes-or-no form is content; but F(33) = 0.6 + 0.4 * 2/69 and F(27) =
+// 0.4 * 17/19, so that only a quarter of the forecast lies within 10 %.
+TEST(Saxena, AlphaLambdaMassAsksTheDistributionNotItsMedian) {
+  const PredictedMonth vague = predicted({{10.0, 0.0}, {29.0, 0.4}, {31.0, 0.6}, {100.0, 1.0}});
+  EXPECT_EQ(alpha_lambda_accuracy({&vague.scored, 1}, 0.1, 0.5), true);
+  const auto judged = alpha_lambda_mass({&vague, 1}, 0.1, 0.5);
+  ASSERT_TRUE(judged);
+  EXPECT_NEAR(judged->probability, 0.6 + 0.8 / 69.0 - 6.8 / 19.0, kRounding);
+  EXPECT_FALSE(judged->accurate);
+  EXPECT_TRUE(alpha_lambda_mass({&vague, 1}, 0.1, 0.5, 0.25)->accurate);
+  const PredictedMonth exactly_half = predicted({{20.0, 0.0}, {25.0, 0.25}, {35.0, 0.75}, {40.0, 1.0}});
+  EXPECT_TRUE(alpha_lambda_mass({&exactly_half, 1}, 1.0 / 6.0, 0.5, 0.5 - kRounding)->accurate);
+}
+
+// As above: t_P = 40, half of the way to 100 is 70. The months before and after it say something else.
+TEST(Saxena, AlphaLambdaMassIsJudgedInTheSameMonth) {
+  std::vector<PredictedMonth> months;
+  for (const ScoredMonth& scored : life(100.0, 30.0, 10.0, {std::nullopt, 50.0, 40.0, 30.0, 8.0, 5.0, 5.0}))
+    months.push_back({.scored = scored});
+  months[4].distribution = predicted({{20.0, 0.0}, {40.0, 1.0}}).distribution;
+  EXPECT_NEAR(alpha_lambda_mass(months, 0.2, 0.5)->probability, 0.6, kRounding);
+  EXPECT_EQ(alpha_lambda_mass(months, 0.2, 0.0)->probability, 0.0);
+  months[4] = {.scored = {.time_months = 70.0, .true_rul_months = 30.0, .rul_months = std::nullopt}};
+  EXPECT_FALSE(alpha_lambda_mass(months, 0.2, 0.5)->accurate);
+  EXPECT_FALSE(alpha_lambda_mass({months.data(), 1}, 0.2, 0.5));
+}
+
 TEST(Saxena, LateForecastsCostMore) {
   EXPECT_NEAR(*asymmetric_score(life(100.0, 50.0, 10.0, {10.0})), std::exp(1.0) - 1.0, kRounding);
   EXPECT_NEAR(*asymmetric_score(life(100.0, 50.0, 10.0, {-13.0})), std::exp(1.0) - 1.0, kRounding);

@@ -100,8 +100,9 @@ class ForecastPanel {
     std::vector<ConditionSample> used;      ///< in the order of time
     std::vector<ConditionSample> left_out;  ///< isolated outliers (condition_history.hpp), and what is no number
   };
-  /// Sorts the history by time and leaves out first: isolated outliers, samples that are not finite or have a negative
-  /// standard error, and all but one of equal samples (a test that was delivered twice).
+  /// Sorts the history by time and leaves out first: isolated outliers, samples that are no number of a condition (not
+  /// finite, beyond a thousand, a negative standard error), and all but one of equal samples (a test that was delivered
+  /// twice).
   [[nodiscard]] Answer forecast(ForecastRequest request) const;
 
  private:

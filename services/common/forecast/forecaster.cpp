@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kStraightLine = "ols";
 constexpr double kSlopeDrift = 0.20;
 constexpr int kFewestTestsWithFleet = 3;  // the fleet says the rest
+constexpr double kNoCondition = 1e3;      // theta is a share of one; squares of such figures drown all others
 
 std::vector<ConditionSample> take_outliers(std::vector<ConditionSample>& history) {
   const std::vector<bool> outlier = isolated_outliers(history);
@@ -32,7 +33,8 @@ std::vector<ConditionSample> take_unusable(std::vector<ConditionSample>& history
                    [](const ConditionSample& a, const ConditionSample& b) { return a.time < b.time; });
   history.erase(std::unique(history.begin(), history.end()), history.end());
   const auto unusable = std::stable_partition(history.begin(), history.end(), [](const ConditionSample& sample) {
-    return std::isfinite(sample.condition) && std::isfinite(sample.condition_std) && sample.condition_std >= 0.0;
+    return std::abs(sample.condition) < kNoCondition && sample.condition_std >= 0.0 &&
+           sample.condition_std < kNoCondition;
   });
   std::vector<ConditionSample> taken(unusable, history.end());
   history.erase(unusable, history.end());

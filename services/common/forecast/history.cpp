@@ -148,7 +148,12 @@ class HistoryParser {
     if (*std_error < 0.0)
       return fail(at(columns_.header[*columns_.std_error], cells[*columns_.std_error], "must not be negative", {}));
     if (!columns_.resistance) return ConditionSample{*time, *value, *std_error};
-    return ConditionSample{*time, seal_->condition(*value), seal_->condition_std(*std_error)};
+    const double condition = seal_->condition(*value);
+    if (!(condition <= kLargestCondition))
+      return fail(at(columns_.header[columns_.value], cells[columns_.value],
+                     "is a seal condition above 2 by the asset's `seal:` resistances",
+                     "do the file's unit, Pa s/m3, and the asset fit?"));
+    return ConditionSample{*time, condition, seal_->condition_std(*std_error)};
   }
 
   const std::string& file_;

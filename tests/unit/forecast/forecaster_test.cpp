@@ -268,10 +268,24 @@ TEST(Panel, WhatIsNoNumberIsLeftOut) {
   spoiled.push_back(clean[20]);  // delivered twice
   spoiled.push_back({month(30.5), std::nan(""), 0.001});
   spoiled.push_back({month(31.5), 0.9, -0.001});
+  spoiled.push_back({month(32.5), 1e287, 0.001});  // finite, but its square is not
+  spoiled.push_back({month(33.5), 0.9, 1e287});
   const auto answer = panel->forecast({.history = spoiled, .threshold = 0.60, .now = month(60)});
-  EXPECT_EQ(answer.left_out.size(), 2u);
+  EXPECT_EQ(answer.left_out.size(), 4u);
   EXPECT_EQ(answer.used.size(), 60u);
   EXPECT_EQ(answer.forecasts, panel->forecast({.history = clean, .threshold = 0.60, .now = month(60)}).forecasts);
+}
+
+TEST(Panel, AHistoryOfNoNumbersIsNoHistory) {
+  const auto panel = ForecastPanel::make(default_forecasters());
+  std::vector<ConditionSample> nonsense;
+  for (int k = 1; k <= 30; ++k) nonsense.push_back({month(k), 1e287, 0.001});
+  const auto answer = panel->forecast({.history = nonsense, .threshold = 0.60, .now = month(30)});
+  EXPECT_TRUE(answer.used.empty());
+  for (const Forecast& forecast : answer.forecasts) {
+    EXPECT_EQ(forecast.state, ForecastState::insufficient_history) << forecast.method;
+    expect_no_numbers(forecast);
+  }
 }
 
 TEST(Panel, EachNumberComesWithItsDistribution) {

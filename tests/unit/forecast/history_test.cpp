@@ -82,6 +82,12 @@ TEST(History, RefusesNegativeResistance) {
               AllOf(HasSubstr("row 2"), HasSubstr("R_CL[Pa s/m3]"), HasSubstr("must be positive")));
 }
 
+// Unlike theta[1], which a percentage would exceed, a resistance in another unit is off by orders of magnitude.
+TEST(History, RefusesResistancesThatAreNoCondition) {
+  EXPECT_THAT(error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,2e13\n2031-02-05,1e300\n", SealSetting{}),
+              AllOf(HasSubstr("row 3"), HasSubstr("R_CL[Pa s/m3]"), HasSubstr("1e300"), HasSubstr("above 2")));
+}
+
 TEST(History, RefusesFilesWithoutTheColumns) {
   EXPECT_THAT(error_of(""), HasSubstr("empty"));
   EXPECT_THAT(error_of(kHeader), HasSubstr("no row"));

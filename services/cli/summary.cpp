@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sealwatch/core/time.hpp"
+#include "services/cli/forecast_text.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
 
@@ -134,41 +135,6 @@ std::string one_line(const ServiceStatus& status) {
 
 namespace {
 
-std::string forecast_row(const Forecast& forecast, bool in_charge) {
-  char line[200];
-  const std::string method = forecast.method + (in_charge ? " *" : "");
-  std::snprintf(line, sizeof line, "                   %-14s %2d months  ", method.c_str(), forecast.window_months);
-  if (forecast.state != ForecastState::ok)
-    return line + words(name_of(forecast.state)) + ": " + forecast.explanation + "\n";
-  char figures[200];
-  std::snprintf(figures, sizeof figures, "%6.1f     %6.1f .. %-6.1f   %5.1f / %5.1f / %5.1f   %s\n",
-                forecast.rul_months, forecast.interval_95_low_months, forecast.interval_95_high_months,
-                forecast.rul_p10_months, forecast.rul_p50_months, forecast.rul_p90_months,
-                date(forecast.end_of_life_ns).c_str());
-  return std::string(line) + figures;
-}
-
-}  // namespace
-
-std::string forecast_table(const std::vector<Forecast>& forecasts) {
-  if (forecasts.empty()) return {};
-  std::string text =
-      "  remaining life   method         window     forecast   95 % interval      P10 /   P50 /   P90   end of life\n";
-  for (const Forecast& forecast : forecasts) text += forecast_row(forecast, &forecast == &forecasts.front());
-  text += "                   (months from the last test; * in charge)\n";
-  bool first = true;
-  for (const FailureProbability& item : forecasts.front().failure_probability) {
-    text += first ? "  P(failure)       before " : "                   before ";
-    text += (item.label == date(item.before_ns) ? item.label : item.label + ", " + date(item.before_ns)) + ": " +
-            percent(item.probability) + "\n";
-    first = false;
-    if (item.probability > 0.9995) break;  // later ones are certain too
-  }
-  return text;
-}
-
-namespace {
-
 /// Keeps the word on the latest test: a test that is replayed late does not take its place.
 template <typename T>
 void keep_latest(std::optional<T>& kept, const T& next) {
@@ -257,22 +223,6 @@ std::string AssetView::history_chart() const {
   return "\n  seal condition in % over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
 }
 
-namespace {
-
-std::string decision_table(const std::vector<DecisionOption>& decision) {
-  std::string text;
-  for (const DecisionOption& option : decision) {
-    if (!option.cost_known) return {};  // the probabilities stand above already
-    text += text.empty() ? "  decision         " : "                   ";
-    text += option.label + ", " + date(option.at_ns) + ": fails before " + percent(option.failure_probability) +
-            ", expected cost " + number(option.expected_cost, 3) + " " + option.currency +
-            (option.cheapest ? "  (cheapest)" : "") + "\n";
-  }
-  return text;
-}
-
-}  // namespace
-
 std::string AssetView::forecast_lines() const {
   if (!life_ || life_->forecasts.empty()) return {};
   if (life_->header.pst_id.empty()) return "  remaining life   " + life_->forecasts.front().explanation + "\n";
@@ -286,7 +236,7 @@ std::string AssetView::forecast_lines() const {
             std::to_string(life_->scored_forecasts) + " forecasts 3 months ahead " + percent(life_->coverage_80, 0) +
             " came true within 80 %, " + percent(life_->coverage_95, 0) + " within 95 % (CRPS " +
             number(life_->mean_crps, 2) + ")\n";
-  return text + decision_table(life_->decision);
+  return text + decision_chart(life_->decision);
 }
 
 std::string AssetView::advisory_lines() const {

@@ -14,9 +14,6 @@ namespace sealwatch::cli {
 [[nodiscard]] std::string one_line(const Message& message);
 [[nodiscard]] std::string one_line(const ServiceStatus& status);
 
-/// Forecasts side by side, with intervals and failure probabilities.
-[[nodiscard]] std::string forecast_table(const std::vector<Forecast>& forecasts);
-
 /// The last word of every layer on one asset, and the history of its seal.
 class AssetView {
  public:

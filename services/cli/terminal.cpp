@@ -52,6 +52,26 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t indent
   return result;
 }
 
+std::size_t letters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string padded(std::string_view text, std::size_t width) {
+  std::string result(text);
+  const std::size_t length = letters(text);
+  if (length < width) result.append(width - length, ' ');
+  return result;
+}
+
+std::string bar(double share, std::size_t cells) {
+  constexpr double kNothing = 0.0005;  // shown as 0.0 %
+  if (!(share > 0.0)) share = 0.0;
+  const auto marks = static_cast<std::size_t>(std::lround(std::min(share, 1.0) * static_cast<double>(cells)));
+  const std::string filled = marks == 0 && share >= kNothing ? "." : std::string(marks, '#');
+  return padded(std::string("|").append(filled), cells + 1).append("|");
+}
+
 void Progress::show(std::size_t done, std::string_view remark) {
   const std::size_t tenth = total_ == 0 ? 10 : 10 * done / total_;
   if (isatty(STDERR_FILENO) != 0) {

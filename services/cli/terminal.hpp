@@ -19,6 +19,14 @@ namespace sealwatch::cli {
 /// Breaks `text` into lines of at most `width` characters at blanks, each later line behind `indent` blanks.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width, std::size_t indent);
 
+/// Characters of UTF-8 text.
+[[nodiscard]] std::size_t letters(std::string_view text);
+/// `text` and blanks up to `width` characters.
+[[nodiscard]] std::string padded(std::string_view text, std::size_t width);
+/// "|#####               |": a share of one, cut to 0 .. 1. What is too little for a whole mark, but not nothing, is a
+/// dot.
+[[nodiscard]] std::string bar(double share, std::size_t cells = 20);
+
 /// One line on standard error that is overwritten, when that is a terminal; otherwise a line every ten percent.
 class Progress {
  public:

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sealwatch/core/time.hpp"
+#include "services/cli/forecast_text.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -57,6 +58,52 @@ TEST(ForecastTable, ShowsNumbersOnlyWhereThereIsAForecast) {
   EXPECT_THAT(table, HasSubstr("16.0 .. 21.0"));
   EXPECT_THAT(table, HasSubstr("insufficient history: 12 of 24 tests"));
   EXPECT_THAT(table, HasSubstr("before summer, 2031-06-01: 25.0 %"));
+}
+
+DecisionOption option_of(const std::string& label, const std::string& day, double probability, double cost) {
+  return {.label = label,
+          .at_ns = parse_utc(day).value().nanoseconds,
+          .failure_probability = probability,
+          .cost_known = true,
+          .expected_cost = cost,
+          .currency = "MNOK"};
+}
+
+// Twenty marks stand for certain failure and for the dearest row: 74 MNOK, so that 12 MNOK are 3.2 marks.
+TEST(DecisionChart, DrawsProbabilitiesOutOfOneAndCostsOutOfTheDearest) {
+  std::vector<DecisionOption> decision = {option_of("now", "2031-04-12", 0.001, 12.0),
+                                          option_of("v\xC3\xA5r 2032", "2032-06-01", 0.25, 9.25),
+                                          option_of("wait for failure", "2033-01-20", 1.0, 74.0)};
+  decision[1].cheapest = true;
+  EXPECT_EQ(
+      decision_chart(decision),
+      "  decision         replacement                   fails before                          expected cost, MNOK\n"
+      "                   now               2031-04-12  0.1 %         |.                   |  12.0                 "
+      "|###                 |\n"
+      "                   v\xC3\xA5r 2032          2032-06-01  25.0 %        |#####               |  9.25              "
+      "   "
+      "|###                 |  cheapest\n"
+      "                   wait for failure  2033-01-20  100.0 %       |####################|  74.0                 "
+      "|####################|\n");
+  decision[2].cost_known = false;
+  EXPECT_EQ(decision_chart(decision), "");
+  EXPECT_EQ(decision_chart({}), "");
+}
+
+TEST(DecisionChart, NeedsNoCostAboveZero) {
+  EXPECT_THAT(decision_chart({option_of("now", "2031-04-12", 0.0, 0.0)}), HasSubstr("|                    |"));
+}
+
+TEST(AssetView, ShowsTheDecisionOfTheLastTest) {
+  RemainingLife life;
+  life.asset_id = "A";
+  life.header = header_of_test("2031-04-12");
+  life.forecasts = {forecast_of(18.0)};
+  life.decision = {option_of("now", "2031-04-12", 0.0, 12.0), option_of("wait for failure", "2033-01-20", 1.0, 74.0)};
+  AssetView view;
+  view.take(Message(life));
+  EXPECT_THAT(view.screen(), HasSubstr("wait for failure  2033-01-20  100.0 %       |####################|"));
+  EXPECT_THAT(view.screen(), HasSubstr("before summer, 2031-06-01: 25.0 %  |#####               |"));
 }
 
 TEST(AssetView, KeepsTheActiveAdvisoryAndNamesWhatWasLeftOut) {

@@ -25,6 +25,20 @@ TEST(Terminal, WrappedLinesStayWithinTheWidth) {
   EXPECT_EQ(wrapped("averyveryverylongword", 10, 0), "averyveryverylongword");
 }
 
+TEST(Terminal, BarsTellNothingFromALittle) {
+  EXPECT_EQ(bar(0.0, 4), "|    |");
+  EXPECT_EQ(bar(0.01, 4), "|.   |");
+  EXPECT_EQ(bar(0.0001, 4), "|    |");  // 0.0 %
+  EXPECT_EQ(bar(0.5, 4), "|##  |");
+  EXPECT_EQ(bar(2.0, 4), "|####|");
+  EXPECT_EQ(bar(std::nan(""), 4), "|    |");
+}
+
+TEST(Terminal, PaddingCountsLettersNotBytes) {
+  EXPECT_EQ(padded("v\xC3\xA5r", 5), "v\xC3\xA5r  ");
+  EXPECT_EQ(padded("summer", 3), "summer");
+}
+
 TEST(Terminal, ChartShowsEachPointAndTheThreshold) {
   ChartOptions options;
   options.width = 5;

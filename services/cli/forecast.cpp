@@ -22,9 +22,9 @@ using forecast::ConditionSample;
 struct Question {
   forecast::ForecastRequest request;
   std::size_t tests = 0;  ///< of the whole history
-  UtcTime first, last;
-  std::vector<ConditionSample> vague;  ///< left out as the services would leave them out
-  std::size_t without_error = 0;       ///< tests whose standard error is not known
+  UtcTime first = {}, last = {};
+  std::vector<ConditionSample> vague = {};  ///< left out as the services would leave them out
+  std::size_t without_error = 0;            ///< tests whose standard error is not known
 };
 
 /// Whether the answer gives the probability of failure before a date.

@@ -79,7 +79,7 @@ std::string decision_chart(const std::vector<DecisionOption>& decision) {
   }
   if (decision.empty()) return {};
   std::vector<std::vector<std::string>> rows{
-      {"replacement", "", "fails before", "", "expected cost, " + decision.front().currency}};
+      {"replacement", "", "", "fails before", "", "expected cost, " + decision.front().currency}};
   for (const DecisionOption& option : decision)
     rows.push_back({option.label, date(option.at_ns), percent(option.failure_probability),
                     bar(option.failure_probability), number(option.expected_cost, 3),

@@ -16,6 +16,9 @@ int run_up(const UpOptions& options) {
       service_programs(options.config, options.state_directory, session->configuration);
   catch_interrupts();
   if (!free_to_start(*session, names_of(programs))) return kBadInput;
+  if (session->configuration.assets.empty())
+    std::fprintf(stderr, "sealwatch: %s: no asset is configured: every recording will be passed over\n",
+                 options.config.c_str());
   session.reset();
   Supervisor supervisor(programs);
   if (const Status started = supervisor.start(); !started) {

@@ -124,6 +124,37 @@ TEST_F(Commands, ForecastSaysWhenItCannotTell) {
       "past_threshold");
 }
 
+TEST_F(Commands, ForecastSaysWhichTestsItDoesNotBelieveOrKnowTheErrorOf) {
+  std::string known = "time[iso8601],theta[1],theta_std[1]\n";
+  std::string unknown = "time[iso8601],theta[1]\n";
+  for (int k = 0; k < 30; ++k) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%d-%02d-10,%.4f", 2020 + k / 12, k % 12 + 1, 0.95 - 0.005 * k);
+    known.append(line).append(k == 20 ? ",0.5\n" : ",0.001\n");  // a test that says nothing
+    unknown.append(line).append("\n");
+  }
+  const Finished vague = run({"sealwatch", "forecast", "--history", write("vague.csv", known), "--json"});
+  ASSERT_EQ(vague.status, 0) << vague.output;
+  EXPECT_EQ(json::parse(vague.output)["left_out"], json::array({"2021-09-10T00:00:00Z"}));
+  EXPECT_EQ(json::parse(vague.output)["tests"], 30);
+  EXPECT_EQ(json::parse(vague.output)["tests_without_standard_error"], 0);
+  const Finished without = run({"sealwatch", "forecast", "--history", write("without.csv", unknown)});
+  ASSERT_EQ(without.status, 0) << without.output;
+  EXPECT_THAT(without.output, HasSubstr("standard errors: not known of 30 of 30 tests"));
+}
+
+TEST_F(Commands, ForecastTellsNoProbabilityWithoutAForecast) {
+  const Finished steady = run({"sealwatch", "forecast", "--history", history(48, 0.0), "--before", "2025-06-01"});
+  EXPECT_EQ(steady.status, 1);
+  EXPECT_THAT(steady.output, HasSubstr("P(failure)       cannot be told"));
+  const Finished failed =
+      run({"sealwatch", "forecast", "--history", history(48, 0.01), "--before", "2025-06-01", "--json"});
+  EXPECT_EQ(failed.status, 1);
+  const json in_charge = json::parse(failed.output)["forecasts"][0];
+  EXPECT_EQ(in_charge["state"], "past_threshold");
+  EXPECT_EQ(in_charge["failure_probability_before"]["2025-06-01"], 1.0);
+}
+
 TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
   const auto refused = [this](const std::vector<std::string>& arguments) {
     const Finished finished = run(arguments);
@@ -140,6 +171,11 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
       refused({"sealwatch", "forecast", "--history",
                write("twice.csv", "time[iso8601],theta[1],theta_std[1]\n2020-02-01,0.9,0.01\n2020-01-01,0.9,0.01\n")}),
       ::testing::AllOf(HasSubstr("twice.csv"), HasSubstr("row 3")));
+  EXPECT_THAT(refused({"sealwatch", "forecast", "--asset", asset(), "--history",
+                       write("unit.csv", "time[iso8601],R_CL[Pa s/m3]\n2020-01-01,2e13\n2020-02-01,2e300\n")}),
+              ::testing::AllOf(HasSubstr("unit.csv"), HasSubstr("row 3"), HasSubstr("2e300")));
+  EXPECT_THAT(refused({"sealwatch", "forecast", "--history", history(48, 0.005), "--threshold", "nan"}),
+              HasSubstr("--threshold"));
   EXPECT_THAT(refused({"sealwatch", "watch", "advisries"}), HasSubstr("did you mean 'advisory'?"));
   EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--speed", "fast", text_in_number}),
               HasSubstr("--speed"));

@@ -2,6 +2,8 @@
 // file.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -22,6 +24,11 @@ constexpr const char* kExitStatus =
     "Exit status: 0 ok; 1 it ran and the answer is \"no\"; 2 bad usage or input; 3 internal failure.";
 
 std::string not_negative(const std::string& text) { return text.starts_with("-") ? "must not be negative" : ""; }
+
+/// CLI::Range lets what is not a number pass.
+std::string a_number(const std::string& text) {
+  return std::isnan(std::strtod(text.c_str(), nullptr)) ? "must be a number" : "";
+}
 
 /// The command line: its options, and what to run when it has been parsed.
 class CommandLine {
@@ -96,17 +103,21 @@ class CommandLine {
         ->capture_default_str();
     simulate->add_option("--rate", simulate_.sample_rate_Hz, "samples a second")
         ->check(CLI::Range(10.0, 5000.0))
+        ->check(a_number)
         ->capture_default_str();
     simulate->add_option("--condition", simulate_.condition, "seal condition theta at the first test")
         ->check(CLI::Range(0.05, 1.2))
+        ->check(a_number)
         ->capture_default_str();
     simulate->add_flag("--ageing", simulate_.ageing,
                        "let the seal age from month to month until it fails or the months are over");
     simulate->add_option("--missing", simulate_.missing_share, "share of the months that are never tested")
         ->check(CLI::Range(0.0, 0.9))
+        ->check(a_number)
         ->capture_default_str();
     simulate->add_option("--cut", simulate_.cut_share, "share of the tests that are cut short")
         ->check(CLI::Range(0.0, 1.0))
+        ->check(a_number)
         ->capture_default_str();
   }
 
@@ -144,6 +155,7 @@ class CommandLine {
     forecast->add_option("--before", forecast_.before, "dates to give the probability of failure for");
     forecast->add_option("--threshold", forecast_.threshold, "seal condition at which it has failed")
         ->check(CLI::Range(0.0, 1.0))
+        ->check(a_number)
         ->capture_default_str()
         ->each([this](const std::string&) { forecast_.threshold_given = true; });
     forecast->add_flag("--json", forecast_.json, "machine-readable result (schema sealwatch.forecast/1)");
@@ -277,6 +289,7 @@ class CommandLine {
     add_config(status, status_.config);
     status->add_option("--seconds", status_.seconds, "how long to listen")
         ->check(CLI::Range(0.5, 60.0))
+        ->check(a_number)
         ->capture_default_str();
     status->add_flag("--json", status_.json, "machine-readable result (schema sealwatch.status/1)");
   }

@@ -176,6 +176,10 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
               ::testing::AllOf(HasSubstr("unit.csv"), HasSubstr("row 3"), HasSubstr("2e300")));
   EXPECT_THAT(refused({"sealwatch", "forecast", "--history", history(48, 0.005), "--threshold", "nan"}),
               HasSubstr("--threshold"));
+  for (const char* option : {"--condition", "--rate", "--missing", "--cut"})
+    EXPECT_THAT(
+        refused({"sealwatch", "simulate", "--asset", asset(), option, "nan", "--ageing", "--out", folder_.string()}),
+        ::testing::AllOf(HasSubstr(option), HasSubstr("must be a number")));
   EXPECT_THAT(refused({"sealwatch", "watch", "advisries"}), HasSubstr("did you mean 'advisory'?"));
   EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--speed", "fast", text_in_number}),
               HasSubstr("--speed"));

@@ -32,9 +32,13 @@ bool allowed(const Law& law, std::string_view element) {
   return law.elements.empty() || std::ranges::find(law.elements, element) != law.elements.end();
 }
 
+// A law or one that contains it: beside each other the two would share one effect between them at will.
 bool present_already(const std::vector<PhysicsTerm>& present, const Law& law, std::string_view element) {
-  return std::ranges::any_of(present,
-                             [&](const PhysicsTerm& term) { return term.id == law.id && term.element == element; });
+  return std::ranges::any_of(present, [&](const PhysicsTerm& term) {
+    if (term.element != element) return false;
+    return std::ranges::any_of(all_laws(),
+                               [&](const Law& other) { return other.id == term.id && overlap(other, law); });
+  });
 }
 
 // With a load of each recording's own, a constant force is no mismatch.
@@ -121,6 +125,8 @@ std::vector<std::size_t> strengths_of(const Law& law) {
     if (law.parameters[k].strength) strengths.push_back(k);
   return strengths;
 }
+
+bool overlap(const Law& a, const Law& b) { return a.id == b.id || a.limit == b.id || b.limit == a.id; }
 
 std::string unit_of(const LawParameter& parameter, std::string_view element, const PlantDescription& plant) {
   if (parameter.unit != "channel") return std::string(parameter.unit);

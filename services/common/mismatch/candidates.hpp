@@ -25,6 +25,9 @@ struct Candidate {
 
 inline constexpr std::string_view kUnlisted = "unlisted";
 
+/// The same law, or one of them comes to the other at the end of its range (Law::limit).
+[[nodiscard]] bool overlap(const Law& a, const Law& b);
+
 /// Size of its first strength from which an engineer of this plant would care.
 [[nodiscard]] double significant_size(const Candidate& candidate, const PlantDescription& plant);
 

@@ -126,25 +126,24 @@ Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOp
 
 namespace {
 
-// Each law that was just added, alone, at its usual size and from all points of its shape's grid: where something is
-// left beyond the noise, its refit from the linear step may have ended in a hollow, which another law was or would be
-// asked to fill.
-Status from_other_shapes(Naming& naming, const Trial& before, const Screening& asked, const Data& data,
+// Each law that was just added (from effect `before` on) or one that contains it, in its place, at its usual size and
+// from all points of its shape's grid: where something is left beyond the noise, its refit from the linear step may
+// have ended in a hollow, which another law was or would be asked to fill.
+Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
                          const ExplainOptions& options) {
   if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
-  std::vector<std::vector<LawStart>> starts;
-  for (std::size_t added = before.effects.size(); added < naming.best.effects.size(); ++added) {
-    std::vector<std::vector<LawStart>> own;
+  std::vector<Trial> trials;
+  for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
+    const Effect& effect = naming.best.effects[added];
+    std::vector<std::vector<LawStart>> starts;
     for (const Variant* variant : by_gain(asked)) {
       const Candidate& candidate = asked.candidates[variant->candidate];
-      const Effect& effect = naming.best.effects[added];
-      if (candidate.law == effect.law && candidate.element == effect.element && own.size() < kOtherShapes)
-        own.push_back({{effect, usual_size(candidate, variant->point)}});
+      const bool same_or_richer = candidate.law == effect.law || candidate.law->limit == effect.law->id;
+      if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
+        starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
     }
-    starts.insert(starts.end(), own.begin(), own.end());
+    for (Trial& trial : refit(naming.best, starts, data, options.threads, added)) trials.push_back(std::move(trial));
   }
-  if (starts.empty()) return {};
-  const std::vector<Trial> trials = refit(before, starts, data, options.threads);
   const double phi = smallest_dispersion(trials, *naming.best.model);
   const Trial* best = best_of(trials, phi);
   if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return {};
@@ -189,12 +188,12 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;
     if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - worth) break;
-    const Trial before = std::exchange(naming.best, polished(*best, data, options.threads));
+    naming.best = polished(*best, data, options.threads);
     naming.trials.push_back(naming.best);
     Result<Screening> next = screen(*naming.best.model, data, screening);
     if (!next) return fail(next.error());
     const Screening asked = std::exchange(naming.last, std::move(*next));
-    if (const Status status = from_other_shapes(naming, before, asked, data, options); !status)
+    if (const Status status = from_other_shapes(naming, level, asked, data, options); !status)
       return fail(status.error());
   }
   drop_what_is_not_needed(naming, data, options.threads);

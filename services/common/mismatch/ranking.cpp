@@ -89,7 +89,7 @@ std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, doub
     for (std::size_t k = j + 1; k < singles.size(); ++k) {
       const Candidate &a = screening.candidates[singles[j]->candidate],
                       &b = screening.candidates[singles[k]->candidate];
-      if (a.law->id == b.law->id && a.element == b.element) continue;
+      if (overlap(*a.law, *b.law) && a.element == b.element) continue;
       pairs.push_back({singles[j], singles[k], pair_gain(screening, *singles[j], *singles[k])});
     }
   std::ranges::stable_sort(pairs, std::greater<>(), &Pair::gain);

@@ -61,10 +61,14 @@ Trial polished(Trial trial, const Data& data, int threads) {
 }
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
-                         int threads) {
+                         int threads, std::optional<std::size_t> in_place_of) {
   const auto one = [&](const std::vector<LawStart>& added) -> Refit {
     Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
+    if (in_place_of) {
+      asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(from.effects.size() - *in_place_of));
+      refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(*in_place_of));
+    }
     for (const LawStart& start : added) {
       refit.effects.push_back(start.effect);
       asset = with_law(std::move(asset), *start.effect.law, start.effect.element, start.parameters);

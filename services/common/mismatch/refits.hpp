@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,9 @@ struct LawStart {
 };
 
 /// Refits of `laws` (each with its start values) added to `from`, on `threads` threads; those that fail are left out.
+/// `in_place_of`: index of an effect of `from` that is taken out first.
 [[nodiscard]] std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws,
-                                       const Data& data, int threads);
+                                       const Data& data, int threads, std::optional<std::size_t> in_place_of = {});
 
 /// A search that ran out of iterations goes on from where it is.
 [[nodiscard]] Trial polished(Trial trial, const Data& data, int threads);

@@ -146,7 +146,7 @@ Status from_other_shapes(Naming& naming, std::size_t before, const Screening& as
   }
   const double phi = smallest_dispersion(trials, *naming.best.model);
   const Trial* best = best_of(trials, phi);
-  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return {};
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) return {};
   naming.best = polished(*best, data, options.threads);
   naming.trials.push_back(naming.best);
   Result<Screening> next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});

@@ -92,7 +92,7 @@ TEST(RealPlants, CascadedTanksRunOverAndTheirSensorSaturates) {
                     *saturation = find_effect(*found, "sensor_saturation", "sensor:level_voltage");
   ASSERT_NE(overflow, nullptr) << found->summary;
   ASSERT_NE(saturation, nullptr) << found->summary;
-  EXPECT_NEAR(value_of(*saturation, "y_max"), 10.0, 0.5);
+  EXPECT_NEAR(value_of(*saturation, "y_max"), 10.0, 0.8);  // its standard error is 0.3 V
   const ChannelComparison& level = found->holdout.channels.at(0);
   EXPECT_LT(level.rms_after, 0.8 * level.rms_before);
 }

@@ -114,8 +114,26 @@ std::vector<bool> sign_bounds(const Screening& screening, const Variant& variant
   return positive;
 }
 
+// What the simulation's own errors can feign.
+struct Resolution {
+  double share = 0.0;     ///< of a significant strength
+  double timing_s = 0.0;  ///< of delays and lags
+};
+
+// An input that is not held may change anywhere between two samples: when, is known to a part of their distance.
+Resolution resolution_of(const Data& data) {
+  constexpr double kShareOfInterval = 0.05;
+  Resolution resolution{.share = data.resolution};
+  for (const TimeSeries& recorded : data.samples) {
+    const double interval_s =
+        (recorded.time_s.back() - recorded.time_s.front()) / static_cast<double>(recorded.time_s.size());
+    if (!recorded.input_hold) resolution.timing_s = std::max(resolution.timing_s, kShareOfInterval * interval_s);
+  }
+  return resolution;
+}
+
 // Strengths, in usual sizes, that errors of a measured input can feign.
-Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant, double share) {
+Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant, const Resolution& resolution) {
   const Candidate& candidate = screening.candidates[variant.candidate];
   const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
   Eigen::VectorXd least = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(variant.columns.size()));
@@ -125,7 +143,8 @@ Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant
     const double unit =
         std::abs(screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
     const bool bias = candidate.law->kind == SiteKind::sensor_bias;
-    least(k) = share * (bias ? 1.0 : strength.significant / unit);
+    least(k) = resolution.share * (bias ? 1.0 : strength.significant / unit);
+    if (strength.unit == "s") least(k) = std::max(least(k), resolution.timing_s / unit);
   }
   return least;
 }
@@ -156,7 +175,8 @@ double score_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, co
                                                : std::min(quadratic(variance, gradient), quadratic(gram, gradient));
 }
 
-void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& grams, double resolution) {
+void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen::MatrixXd& grams,
+              const Resolution& resolution) {
   Eigen::Index entry = 0;
   for (Variant& variant : screening.variants) {
     const Eigen::VectorXd gradient = subvector(screening.gradient, variant.columns);
@@ -170,7 +190,7 @@ void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen
     variant.score = score_of(gram, gradient, variance, least, step.strength);
     // With an input that is itself measured only what a law could be counts: its sign, and no absurd size.
     const bool possible = step.free && step.strength.cwiseAbs().maxCoeff() < kAbsurd;
-    if ((resolution > kMeasured && !possible) || !std::isfinite(variant.score)) variant.score = 0.0;
+    if ((resolution.share > kMeasured && !possible) || !std::isfinite(variant.score)) variant.score = 0.0;
     variant.p_value = chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
     variant.gain = std::isfinite(step.gain) ? step.gain : 0.0;  // columns of zeros: the law cannot act here
     variant.physical = step.free;
@@ -329,7 +349,7 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
   screening.block_scores = stacked(sums, blocks);
   screening.gradient = screening.block_scores.colwise().sum();
   if (shared > 0) find_leakage_shifts(screening, model, gram, cross);
-  evaluate(screening, raw_norm, stacked(grams, blocks), data.resolution);
+  evaluate(screening, raw_norm, stacked(grams, blocks), resolution_of(data));
   calibrate(screening, options);
   return screening;
 }

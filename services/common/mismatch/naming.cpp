@@ -131,7 +131,10 @@ namespace {
 // have ended in a hollow, which another law was or would be asked to fill.
 Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
                          const ExplainOptions& options) {
-  if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
+  // What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
+  constexpr double kLeft = 1.1;
+  const bool at_the_noise = naming.best.model->misfit < kLeft * naming.best.model->residuals;
+  if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
   std::vector<Trial> trials;
   for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
     const Effect& effect = naming.best.effects[added];
@@ -146,7 +149,8 @@ Status from_other_shapes(Naming& naming, std::size_t before, const Screening& as
   }
   const double phi = smallest_dispersion(trials, *naming.best.model);
   const Trial* best = best_of(trials, phi);
-  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) return {};
+  // In a gross misfit the criterion hardly rises: any gain counts, as no law comes in.
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return {};
   naming.best = polished(*best, data, options.threads);
   naming.trials.push_back(naming.best);
   Result<Screening> next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});

@@ -88,7 +88,7 @@ TEST(Explain, FindsTheLeakInChamberAAndWhatItHadDoneToTheSeal) {
   EXPECT_EQ(explanation->missing[0].element, "chamber_a");
 }
 
-// Cut to 31 s the refit from the linear step ends in a hollow, which drag and bristles would have filled.
+// Cut to 31 s the refit from the linear step has ended in a hollow, which drag and bristles then filled.
 TEST(Explain, FindsStribeckFrictionAndNothingBesideIt) {
   LOAD_OR_SKIP(bench, "stribeck");
   for (auto* recordings : {&bench.fit, &bench.holdout})

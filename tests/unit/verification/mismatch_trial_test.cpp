@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "services/common/verification/mismatch_summary.hpp"
 
 namespace sealwatch::verification {
@@ -134,6 +136,31 @@ TEST(MismatchTrial, AMisreadFlowIsSeenAtItsPlaceAndHelpsOnTheHeldOutRecording) {
   ASSERT_FALSE(r.answer.places.empty());
   EXPECT_EQ(r.answer.places.front(), r.hidden.front().element) << r.label;
   EXPECT_LT(r.answer.held_after, r.answer.held_before);
+}
+
+// Sets of the campaign that once came out wrong.
+MismatchRecord answered(TrialStratum stratum, std::uint64_t seed) {
+  return run_trial(bench::plan_trial(stratum, seed), {.controls = false, .threads = 2});
+}
+
+// Its search stopped early, where no law's score sees what is left.
+TEST(MismatchTrial, ASearchThatStoppedEarlyStartsAgain) {
+  const MismatchRecord set = answered(TrialStratum::sensor, 4);
+  ASSERT_EQ(set.error, "");
+  ASSERT_EQ(set.answer.verdict, "mismatch");
+  ASSERT_EQ(set.answer.found.size(), 1U);
+  EXPECT_EQ(set.answer.found[0].id, "sensor_gain");
+  EXPECT_EQ(set.answer.found[0].element, "sensor:shaft_speed");
+  EXPECT_NEAR(set.answer.found[0].value, set.hidden[0].value, 0.02 * std::abs(set.hidden[0].value));
+  EXPECT_LT(set.answer.held_after, 1.05);
+}
+
+// Nothing is hidden; what the voltage does between two samples looked like a delay of the driver.
+TEST(MismatchTrial, TimingBetweenTwoSamplesIsNoDelay) {
+  const MismatchRecord set = answered(TrialStratum::null, 53);
+  ASSERT_EQ(set.error, "");
+  EXPECT_EQ(set.answer.verdict, "consistent");
+  EXPECT_GT(set.answer.p_value, 0.01);
 }
 
 }  // namespace

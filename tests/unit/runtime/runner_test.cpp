@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 
 #include "tests/unit/runtime/harness.hpp"
 
@@ -259,30 +260,44 @@ TEST_F(RunnerTest, TakesLocalInputsOnce) {
   EXPECT_THAT(process->outputs(), SizeIs(2));
 }
 
-/// Computes for a while.
+/// Computes for a while and reports when it has done so, before anything of it can have been committed.
 class SlowLayer final : public JoiningLayer {
  public:
+  explicit SlowLayer(std::function<void()> computed) : computed_(std::move(computed)) {}
   Conclusion receive(const Message& input) override {
     std::this_thread::sleep_for(milliseconds(200));
+    computed_();
     return JoiningLayer::receive(input);
   }
+
+ private:
+  std::function<void()> computed_;
 };
 
 TEST_F(RunnerTest, BeatsWhileTheLayerComputesAndClaimsNothingThatIsNotCommitted) {
+  std::vector<ServiceStatus> while_computing;
+  const auto computed = [&] {
+    listener_.listen();
+    while_computing = std::move(listener_.statuses);
+    listener_.statuses.clear();
+  };
   Process process(
-      network_, [] { return std::make_unique<SlowLayer>(); }, place_.connection());
+      network_, [&] { return std::make_unique<SlowLayer>(computed); }, place_.connection());
   process.start();
   send(features("p1", 1));
   std::this_thread::sleep_for(milliseconds(30));
   listener_.listen();
   listener_.statuses.clear();
   process.step();
-  listener_.listen();
-  EXPECT_THAT(listener_.statuses, SizeIs(Gt(10U))) << "a beat every 5 ms, over 200 ms";
-  for (const ServiceStatus& status : listener_.statuses)
+  EXPECT_THAT(while_computing, SizeIs(Gt(10U))) << "a beat every 5 ms, over 200 ms";
+  for (const ServiceStatus& status : while_computing)
     for (const StreamPosition& position : status.received) EXPECT_EQ(position.sequence, 0U);
-  listener_.statuses.clear();
-  ASSERT_TRUE(step_until([&] { return !listener_.statuses.empty(); }, [&] { listener_.listen(milliseconds(5)); }));
+  ASSERT_TRUE(step_until(
+      [&] {
+        return !listener_.statuses.empty() && !listener_.statuses.back().received.empty() &&
+               listener_.statuses.back().received.front().sequence == 1U;
+      },
+      [&] { listener_.listen(milliseconds(5)); }));
   EXPECT_THAT(listener_.statuses.back().received, ElementsAre(StreamPosition{"test_features", "upstream", 1}));
   EXPECT_EQ(listener_.statuses.back().pending_inputs, 1U);
 }

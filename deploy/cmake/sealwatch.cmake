@@ -8,7 +8,7 @@ add_library(sealwatch_flags INTERFACE)
 target_compile_options(sealwatch_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror>)
 if(SEALWATCH_SANITIZE)
-  target_compile_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE} -fno-omit-frame-pointer -g)
+  target_compile_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
   target_link_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE})
 endif()
 

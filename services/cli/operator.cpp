@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "sealwatch/core/text.hpp"
 #include "sealwatch/core/time.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
@@ -24,19 +25,53 @@ std::int64_t now_ns() {
       .count();
 }
 
+/// A message about an asset, by somebody, now.
+template <typename M>
+M said_by(const std::string& who, const std::string& asset_id, const std::string& subject) {
+  M message;
+  message.asset_id = asset_id;
+  message.header.event_time_known = true;
+  message.header.event_time_ns = now_ns();
+  message.header.message_id = std::string(name_of(topic_of(Message(message)))) + "/" + subject + "/" +
+                              std::to_string(message.header.event_time_ns);
+  if constexpr (requires { message.accepted_by; })
+    message.accepted_by = who;
+  else
+    message.acknowledged_by = who;
+  return message;
+}
+
+/// Somebody speaks of an asset that there is.
+std::optional<Error> objection(const Configuration& configuration, const std::string& config,
+                               const std::string& asset_id, const std::string& who) {
+  if (who.find_first_not_of(" \t") == std::string::npos)
+    return Error{
+        .file = {}, .place = "--by", .value = who, .rule = "must say who", .advice = "a name, or a position on shift"};
+  if (configuration.find_asset(asset_id) != nullptr) return std::nullopt;
+  std::vector<std::string> known;
+  for (const AssetConfig& asset : configuration.assets) known.push_back(asset.asset_id);
+  return Error{.file = config,
+               .place = "assets",
+               .value = asset_id,
+               .rule = "is not a configured asset",
+               .advice = suggest(asset_id, known)};
+}
+
+/// The bus, when there is nothing to object to.
+std::optional<Session> open_for(const std::string& config, const std::string& asset_id, const std::string& who) {
+  std::optional<Session> session = open_session(config);
+  if (!session) return std::nullopt;
+  if (const auto error = objection(session->configuration, config, asset_id, who)) {
+    complain(*error);
+    return std::nullopt;
+  }
+  return session;
+}
+
 /// Publishes one message as a stream of its own and waits until every one of `readers` has journaled it. What else
 /// comes on the bus meanwhile goes to `look`.
-int send(std::optional<Session>& session, const std::string& config, Message message, std::vector<std::string> readers,
+int send(std::optional<Session>& session, Message message, std::vector<std::string> readers,
          const std::function<void(const Message&)>& look = {}) {
-  if (!session) return kBadInput;
-  if (session->configuration.find_asset(asset_of(message)) == nullptr) {
-    complain(Error{.file = config,
-                   .place = "assets",
-                   .value = asset_of(message),
-                   .rule = "is not a configured asset",
-                   .advice = {}});
-    return kBadInput;
-  }
   const std::string topic(name_of(topic_of(message)));
   Header& header = header_of(message);
   header.writer_id = unique_name("operator");
@@ -105,25 +140,37 @@ class Answer {
   std::optional<Advisory> answer_;
 };
 
-/// The latest word of the mismatch analysis on the asset, if one comes.
-std::optional<ModelDiscrepancy> latest_discrepancy(Bus& bus, const std::string& asset_id) {
+/// What the mismatch analysis said of the asset last, and whose model it is estimated with.
+struct Explained {
   std::optional<ModelDiscrepancy> latest;
-  const auto end = std::chrono::steady_clock::now() + kPatienceForAnswer;
-  while (std::chrono::steady_clock::now() < end)
-    for (const BusItem& item : bus.receive(std::chrono::milliseconds(100)))
-      if (const auto* message = std::get_if<Message>(&item))
-        if (const auto* found = std::get_if<ModelDiscrepancy>(message); found != nullptr && found->asset_id == asset_id)
-          latest = *found;
-  return latest;
-}
+  std::string accepted_id;  ///< of the last test; "" when none is
 
-/// Only a model that explains something, and only the latest, comes into force.
-std::optional<Error> objection(const std::optional<ModelDiscrepancy>& latest, const AcceptOptions& options) {
+  explicit Explained(Bus& bus, const std::string& asset_id) {
+    const auto end = std::chrono::steady_clock::now() + kPatienceForAnswer;
+    while (std::chrono::steady_clock::now() < end)
+      for (const BusItem& item : bus.receive(std::chrono::milliseconds(100)))
+        if (const auto* message = std::get_if<Message>(&item); message != nullptr && asset_of(*message) == asset_id) {
+          if (const auto* found = std::get_if<ModelDiscrepancy>(message)) latest = *found;
+          if (const auto* estimate = std::get_if<LeakageEstimate>(message))
+            accepted_id = estimate->accepted_discrepancy;
+        }
+  }
+};
+
+/// Only a model that explains something, and only the latest, comes into force; only one that can be is revoked.
+std::optional<Error> objection(const Explained& explained, const AcceptOptions& options) {
+  const std::optional<ModelDiscrepancy>& latest = explained.latest;
   Error error{.file = {}, .place = "--discrepancy", .value = options.discrepancy_id, .rule = {}, .advice = {}};
-  if (!latest) {
+  const bool is_latest = latest && latest->header.message_id == options.discrepancy_id;
+  const bool is_accepted = !explained.accepted_id.empty() && explained.accepted_id == options.discrepancy_id;
+  if (options.revoke && (is_latest || is_accepted)) return std::nullopt;
+  if (options.revoke && !explained.accepted_id.empty()) {
+    error.rule = "is not what was accepted for asset " + options.asset_id;
+    error.advice = "its last test was estimated with " + explained.accepted_id;
+  } else if (!latest) {
     error.rule = "is not known: there is no model_discrepancy for asset " + options.asset_id;
     error.advice = "is health_assessment running? see `sealwatch status`";
-  } else if (latest->header.message_id != options.discrepancy_id) {
+  } else if (!is_latest) {
     error.rule = "is not the latest for asset " + options.asset_id;
     error.advice = "the latest is " + latest->header.message_id;
   } else if (!latest->analysed || latest->verdict != DiscrepancyVerdict::mismatch || latest->physics.empty()) {
@@ -138,35 +185,29 @@ std::optional<Error> objection(const std::optional<ModelDiscrepancy>& latest, co
 }  // namespace
 
 int run_accept(const AcceptOptions& options) {
-  constexpr std::array kDiscrepancy = {Topic::model_discrepancy};
-  std::optional<Session> session = open_session(options.config);
+  constexpr std::array kExplained = {Topic::model_discrepancy, Topic::leakage_estimate};
+  std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
-  ModelAcceptance message;
-  message.asset_id = options.asset_id;
+  auto message = said_by<ModelAcceptance>(options.by, options.asset_id, options.asset_id);
   message.discrepancy_id = options.discrepancy_id;
   message.revoked = options.revoke;
-  message.accepted_by = options.by;
   message.remark = options.remark;
-  message.header.event_time_known = true;
-  message.header.event_time_ns = now_ns();
-  message.header.message_id =
-      "model_acceptance/" + options.asset_id + "/" + std::to_string(message.header.event_time_ns);
-  if (!options.revoke) {
-    if (const Status joined = session->bus->subscribe(kDiscrepancy); !joined) {
-      complain(joined.error());
-      return kInternalFailure;
-    }
-    const std::optional<ModelDiscrepancy> latest = latest_discrepancy(*session->bus, options.asset_id);
-    if (const auto error = objection(latest, options)) {
-      complain(*error);
-      return kAnswerIsNo;
-    }
-    message.version = latest->version;
-    message.discrepancy_time_ns = latest->header.event_time_ns;
-    message.explained = latest->explained;
-    message.header.source_ids = {latest->header.message_id};
+  if (const Status joined = session->bus->subscribe(kExplained); !joined) {
+    complain(joined.error());
+    return kInternalFailure;
   }
-  const int sent = send(session, options.config, message, {"state_detection", "prognostic_assessment"});
+  const Explained explained(*session->bus, options.asset_id);
+  if (const auto error = objection(explained, options)) {
+    complain(*error);
+    return kAnswerIsNo;
+  }
+  if (!options.revoke) {
+    message.version = explained.latest->version;
+    message.discrepancy_time_ns = explained.latest->header.event_time_ns;
+    message.explained = explained.latest->explained;
+    message.header.source_ids = {explained.latest->header.message_id};
+  }
+  const int sent = send(session, message, {"state_detection", "prognostic_assessment"});
   if (sent == kOk)
     std::printf(
         "received: from the next test on %s is simulated with %s\n", options.asset_id.c_str(),
@@ -175,24 +216,18 @@ int run_accept(const AcceptOptions& options) {
 }
 
 int run_acknowledge(const AcknowledgeOptions& options) {
-  Acknowledgement message;
-  message.asset_id = options.asset_id;
+  std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
+  if (!session) return kBadInput;
+  auto message = said_by<Acknowledgement>(options.by, options.asset_id, options.advisory_id);
   message.advisory_id = options.advisory_id;
-  message.acknowledged_by = options.by;
   message.remark = options.remark;
-  message.header.event_time_known = true;
-  message.header.event_time_ns = now_ns();
-  message.header.message_id =
-      "acknowledgement/" + options.advisory_id + "/" + std::to_string(message.header.event_time_ns);
-  std::optional<Session> session = open_session(options.config);
-  if (session)
-    if (const Status joined = session->bus->subscribe(kAdvisory); !joined) {
-      complain(joined.error());
-      return kInternalFailure;
-    }
+  if (const Status joined = session->bus->subscribe(kAdvisory); !joined) {
+    complain(joined.error());
+    return kInternalFailure;
+  }
   Answer answer(message);
   const auto look = [&answer](const Message& other) { answer.look(other); };
-  if (const int sent = send(session, options.config, message, {"advisory_generation"}, look); sent != kOk) return sent;
+  if (const int sent = send(session, message, {"advisory_generation"}, look); sent != kOk) return sent;
   // One that is acknowledged already, or of an asset without advice, gets no answer.
   const auto end = std::chrono::steady_clock::now() + kPatienceForAnswer;
   while (!answer.given() && std::chrono::steady_clock::now() < end)
@@ -224,9 +259,9 @@ int run_replaced(const ReplacedOptions& options) {
   message.header.event_time_known = true;
   message.header.event_time_ns = at->nanoseconds;
   message.header.message_id = "maintenance_event/" + options.asset_id + "/" + format_utc(*at);
-  std::optional<Session> session = open_session(options.config);
-  const int sent =
-      send(session, options.config, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
+  if (!session) return kBadInput;
+  const int sent = send(session, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
   if (sent == kOk)
     std::printf("received: the history of %s begins anew on %s\n", options.asset_id.c_str(),
                 date(at->nanoseconds).c_str());

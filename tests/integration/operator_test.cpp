@@ -70,6 +70,11 @@ TEST_F(Operator, IsToldWhatBecameOfIt) {
   EXPECT_THAT(known.output, HasSubstr("acknowledged by operator"));
   EXPECT_EQ(acknowledge(advisory).status, 0) << "twice is as once";
 
+  const Finished revoked = run({"sealwatch", "accept", "--config", config(), "--asset-id", "XT03-MV2", "--discrepancy",
+                                "model_discrepancy/never-given", "--revoke", "--by", "operator"});
+  EXPECT_EQ(revoked.status, 1) << revoked.output;
+  EXPECT_THAT(revoked.output, HasSubstr("is not known"));
+
   EXPECT_THAT(run({"sealwatch", "status", "--config", config()}).output, HasSubstr("R_CL"));
   const Finished replaced =
       run({"sealwatch", "replaced", "--config", config(), "XT03-MV2", "--at", "2020-01-01", "--by", "operator"});

@@ -216,7 +216,10 @@ int run_replay(const ReplayOptions& options) {
   catch_interrupts();
   const int result = options.offline ? replay_offline(std::move(*layers), *source, log)
                                      : replay_live(options, *layers, *source, log, *speed);
-  log.finish();
+  if (const Status written = log.finish(); !written) {
+    complain(written.error());
+    return kBadInput;
+  }
   return source->failures() > 0 && result == kOk ? kBadInput : result;
 }
 

@@ -49,13 +49,15 @@ void ReplayLog::remark(const std::string& text) {
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
+std::string ReplayLog::results_file(Topic topic) const {
+  return (std::filesystem::path(options_.results_directory) / (std::string(name_of(topic)) + ".jsonl")).string();
+}
+
 void ReplayLog::write(const Message& message) {
   if (options_.results_directory.empty()) return;
   const Topic topic = topic_of(message);
   std::unique_ptr<std::ofstream>& file = results_[topic];
-  if (!file)
-    file = std::make_unique<std::ofstream>(std::filesystem::path(options_.results_directory) /
-                                           (std::string(name_of(topic)) + ".jsonl"));
+  if (!file) file = std::make_unique<std::ofstream>(results_file(topic));
   // Publishing time and stream stamps differ from run to run; everything else does not.
   Message plain = message;
   Header& header = header_of(plain);
@@ -65,9 +67,19 @@ void ReplayLog::write(const Message& message) {
   *file << to_json(plain) << "\n";
 }
 
-void ReplayLog::finish() {
+Status ReplayLog::written() {
+  for (auto& [topic, file] : results_)
+    if (!file->flush())
+      return fail(Error{.file = results_file(topic),
+                        .place = "--results",
+                        .value = {},
+                        .rule = "cannot be written to: what is there is not all",
+                        .advice = "make room, and replay again"});
+  return {};
+}
+
+Status ReplayLog::finish() {
   progress_.finish();
-  for (auto& [topic, file] : results_) file->flush();
   for (const auto& [asset, view] : assets_) {
     if (options_.json)
       std::printf("%s\n", view.json().c_str());
@@ -81,6 +93,7 @@ void ReplayLog::finish() {
         "sealwatch: nothing was written to %s: the services had concluded from all these tests before, and say "
         "nothing twice; replay --offline, or with another --state, writes everything\n",
         options_.results_directory.c_str());
+  return written();
 }
 
 }  // namespace sealwatch::cli

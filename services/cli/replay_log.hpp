@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "sealwatch/core/result.hpp"
 #include "sealwatch/message/topics.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/summary.hpp"
@@ -25,12 +26,15 @@ class ReplayLog {
   void take_earlier(const Message& message) { assets_[asset_of(message)].take(message); }
   /// Something that happened besides, like a service that was started again.
   void remark(const std::string& text);
-  /// The final screen: each asset's forecast, interval, reasons, and where to look further.
-  void finish();
+  /// The final screen: each asset's forecast, interval, reasons, and where to look further. An error when the files of
+  /// results are not complete.
+  [[nodiscard]] Status finish();
 
  private:
   void show_advisory(const Advisory& advisory, const Message& message);
+  [[nodiscard]] std::string results_file(Topic topic) const;
   void write(const Message& message);
+  [[nodiscard]] Status written();
 
   ReplayOptions options_;
   Progress progress_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sealwatch/message/provenance.hpp"
 #include "sealwatch/signal/features.hpp"
 #include "sealwatch/signal/test_record.hpp"
 #include "services/data_manipulation/alignment_check.hpp"
@@ -12,18 +13,6 @@ namespace sealwatch {
 namespace {
 
 constexpr const char* kProducer = "data_manipulation 0.1.0";
-
-Header header_for(const std::vector<SampleBlock>& blocks, const std::string& topic) {
-  const Header& last = blocks.back().header;
-  Header header;
-  header.message_id = topic + "/" + last.pst_id;
-  header.pst_id = last.pst_id;
-  header.producer = kProducer;
-  header.event_time_known = last.event_time_known;
-  header.event_time_ns = last.event_time_ns;
-  header.replay = last.replay;
-  return header;
-}
 
 bool has_begin(const std::vector<SampleBlock>& blocks) {
   return std::any_of(blocks.begin(), blocks.end(), [](const SampleBlock& block) {
@@ -39,7 +28,7 @@ TestWindow describe(const std::vector<SampleBlock>& blocks) {
   const SampleBlock& last = blocks.back();
   TestWindow window;
   window.asset_id = last.asset_id;
-  window.header = header_for(blocks, "test_window");
+  window.header = concluded_from(last.header, "test_window", kProducer);
   for (const SampleBlock& block : blocks) {
     window.header.source_ids.push_back(block.header.message_id);
     window.aborted = window.aborted || block.aborted;

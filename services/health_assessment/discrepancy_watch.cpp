@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "sealwatch/message/provenance.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -46,17 +48,6 @@ Recording recording_of(const TestWindow& window) {
     if (status.state != ChannelState::OK)
       std::erase_if(recording.samples.channels, [&](const Series& series) { return series.name == status.channel; });
   return recording;
-}
-
-Header header_after(const Header& last_test) {
-  Header header;
-  header.message_id = "model_discrepancy/" + last_test.pst_id;
-  header.pst_id = last_test.pst_id;
-  header.producer = kProducer;
-  header.event_time_known = last_test.event_time_known;
-  header.event_time_ns = last_test.event_time_ns;
-  header.replay = last_test.replay;
-  return header;
 }
 
 }  // namespace
@@ -196,7 +187,7 @@ std::function<Conclusion()> DiscrepancyWatch::analysis(const AssetConfig& asset,
   known.version = ++era.version;
   known.asset_id = asset.asset_id;
   known.reasons = persistent_residuals(row_.back().report);
-  known.header = header_after(row_.back().report.header);
+  known.header = concluded_from(row_.back().report.header, "model_discrepancy", kProducer);
   const std::size_t fitted = row_.size() - row_.size() / 3;
   for (const StoredTest& test : row_) {
     (windows.size() < fitted ? known.fit_tests : known.holdout_tests).push_back(test.report.header.pst_id);

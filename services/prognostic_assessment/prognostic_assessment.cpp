@@ -6,6 +6,7 @@
 
 #include "sealwatch/forecast/decision.hpp"
 #include "sealwatch/forecast/words.hpp"
+#include "sealwatch/message/provenance.hpp"
 #include "services/prognostic_assessment/judge_estimate.hpp"
 #include "services/prognostic_assessment/pst_request.hpp"
 #include "services/prognostic_assessment/self_scoring.hpp"
@@ -18,18 +19,6 @@ constexpr std::array kInputs{Topic::health_report, Topic::test_window, Topic::ma
                              Topic::model_acceptance};
 constexpr std::array kOutputs{Topic::leakage_estimate, Topic::remaining_life, Topic::pst_request};
 constexpr std::size_t kMostSources = 60;  // five years of monthly estimates: more than any window
-
-Header header_for(const std::string& topic, const Header& cause, std::vector<std::string> source_ids) {
-  Header header;
-  header.message_id = topic + "/" + (cause.pst_id.empty() ? cause.message_id : cause.pst_id);
-  header.pst_id = cause.pst_id;
-  header.source_ids = std::move(source_ids);
-  header.producer = kProducer;
-  header.event_time_known = cause.event_time_known;
-  header.event_time_ns = cause.event_time_ns;
-  header.replay = cause.replay;
-  return header;
-}
 
 std::string estimate_id(const std::string& pst_id) { return "leakage_estimate/" + pst_id; }
 
@@ -120,7 +109,8 @@ Conclusion PrognosticAssessment::join(const Input& input, std::optional<Input> P
 
 std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, const TestWindow& window) {
   LeakageEstimate leakage = estimate(health, window);
-  leakage.header = header_for("leakage_estimate", health.header, {health.header.message_id, window.header.message_id});
+  leakage.header = concluded_from(health.header, "leakage_estimate", kProducer,
+                                  {health.header.message_id, window.header.message_id});
   const RemainingLife life = remaining_life(leakage);
   std::vector<Message> outputs{leakage, life};
   AssetHistory& history = history_[leakage.asset_id];
@@ -128,7 +118,7 @@ std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, 
   const bool latest = leakage.header.event_time_known && !history.has_later_than({leakage.header.event_time_ns});
   if (asset && latest) {
     PstRequest request = next_test(*asset, leakage);
-    request.header = header_for("pst_request", health.header, {leakage.header.message_id});
+    request.header = concluded_from(health.header, "pst_request", kProducer, {leakage.header.message_id});
     outputs.emplace_back(std::move(request));
   }
   history.add(leakage);
@@ -153,7 +143,7 @@ LeakageEstimate PrognosticAssessment::estimate(const HealthReport& health, const
 RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) const {
   RemainingLife life;
   life.asset_id = leakage.asset_id;
-  life.header = header_for("remaining_life", leakage.header, {leakage.header.message_id});
+  life.header = concluded_from(leakage.header, "remaining_life", kProducer, {leakage.header.message_id});
   const AssetConfig* asset = configuration_.find_asset(leakage.asset_id);
   if (!asset || !asset->seal || !leakage.header.event_time_known) {
     life.forecasts = no_forecast(leakage.reasons.empty() ? "no estimate" : leakage.reasons.back());
@@ -169,7 +159,12 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
                                     .horizons = campaigns(*asset)};
   for (const HistoryEntry& test : tests)
     if (test.eligible) request.history.push_back(test.sample);
-  forecast::ForecastPanel::Answer answer = panel_.forecast(request);
+  auto answered = panel_.forecast(request);
+  if (!answered) {
+    life.forecasts = no_forecast(answered.error().describe());
+    return life;
+  }
+  forecast::ForecastPanel::Answer& answer = *answered;
   mark_unconfirmed(leakage, answer.left_out);
   life.threshold = asset->seal->threshold;
   life.tests_since_replacement = static_cast<std::int32_t>(tests.size());
@@ -210,7 +205,7 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   if (!event.header.event_time_known) return conclusion;  // without its time it cannot part the history
   RemainingLife life;
   life.asset_id = event.asset_id;
-  life.header = header_for("remaining_life", event.header, {event.header.message_id});
+  life.header = concluded_from(event.header, "remaining_life", kProducer, {event.header.message_id});
   life.header.pst_id.clear();
   const UtcTime time{event.header.event_time_ns};
   const AssetConfig* asset = configuration_.find_asset(event.asset_id);

@@ -188,6 +188,11 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
               HasSubstr("--condition"));
   EXPECT_THAT(refused({"sealwatch", "replaced", "--config", config(), "XT03-MV2", "--at", "2999-01-01", "--by", "me"}),
               HasSubstr("--at"));
+  EXPECT_THAT(refused({"sealwatch", "acknowledge", "--config", config(), "XT03-MV2", "any", "--by", " "}),
+              HasSubstr("--by"));
+  EXPECT_THAT(refused({"sealwatch", "accept", "--config", config(), "--asset-id", "XT03-MV3", "--discrepancy", "any",
+                       "--by", "me"}),
+              HasSubstr("did you mean 'XT03-MV2'?"));
 }
 
 TEST_F(Commands, ReplayPassesOverABadRecordingAndSaysSo) {
@@ -197,6 +202,17 @@ TEST_F(Commands, ReplayPassesOverABadRecordingAndSaysSo) {
   EXPECT_EQ(replay.status, 2) << replay.output;
   EXPECT_THAT(replay.output, HasSubstr("empty.csv"));
   EXPECT_THAT(replay.output, HasSubstr("R_CL")) << "the good recording is concluded all the same";
+}
+
+TEST_F(Commands, ReplayWhoseResultsFindNoRoomSaysSo) {
+  const auto [recording, truth] = worn_test();
+  const auto results = folder_ / "results";
+  std::filesystem::create_directory(results);
+  std::filesystem::create_symlink("/dev/full", results / "advisory.jsonl");
+  const Finished replay = run(
+      {"sealwatch", "replay", "--config", config(), "--offline", "--quiet", "--results", results.string(), recording});
+  EXPECT_EQ(replay.status, 2) << replay.output;
+  EXPECT_THAT(replay.output, ::testing::AllOf(HasSubstr("advisory.jsonl"), HasSubstr("make room")));
 }
 
 TEST_F(Commands, ReplayWithoutServicesSaysWhatToDo) {

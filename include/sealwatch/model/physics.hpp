@@ -95,6 +95,7 @@ struct Law {
   std::string_view meaning;   ///< for an engineer: what it is
   std::string_view energy;    ///< the condition that keeps it physical
   std::string_view source;
+  bool closed_form = false;  ///< searched only where the other laws leave something beyond the noise
   std::vector<LawParameter> parameters;
   std::optional<HiddenState> hidden = {};
   LawOutput (*evaluate)(const LawInput& input) = nullptr;  ///< null for sensors, which the simulation applies itself

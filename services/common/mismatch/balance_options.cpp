@@ -18,7 +18,7 @@ BalanceUnknown datasheet_unknown(const AssetConfig& asset, const DatasheetValue&
 }
 
 bool tried_with_balances(const Law& law, const PlantDescription& plant) {
-  if (law.id == kUnlisted || law.hidden || law.id == "constant_force") return false;
+  if (law.closed_form || law.hidden || law.id == "constant_force") return false;
   if (law.evaluate == nullptr) return law.kind == SiteKind::sensor_bias || law.kind == SiteKind::sensor_gain;
   return strengths_of(law).size() == 1 && plant.has_load();
 }

@@ -101,10 +101,10 @@ void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std
 }  // namespace
 
 std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
-                                       bool unlisted) {
+                                       bool closed_forms) {
   std::vector<Candidate> candidates;
   for (const Law& law : all_laws()) {
-    if ((law.id == kUnlisted) != unlisted) continue;
+    if (law.closed_form != closed_forms) continue;
     if (law.evaluate == nullptr)
       add_at_sensors(law, simulation, present, candidates);
     else

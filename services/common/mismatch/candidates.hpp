@@ -19,11 +19,9 @@ struct Candidate {
 };
 
 /// All candidates for a simulation's plant and recorded channels; those in `present` (element and id) are left out.
-/// Either the laws that have a name, or the closed forms that have none (id `unlisted`).
+/// Either the laws with an equation of their own, or the closed forms (most of them without a name: id `unlisted`).
 [[nodiscard]] std::vector<Candidate> find_candidates(const PlantSimulation& simulation,
-                                                     const std::vector<PhysicsTerm>& present, bool unlisted);
-
-inline constexpr std::string_view kUnlisted = "unlisted";
+                                                     const std::vector<PhysicsTerm>& present, bool closed_forms);
 
 /// The same law, or one of them comes to the other at the end of its range (Law::limit).
 [[nodiscard]] bool overlap(const Law& a, const Law& b);

@@ -126,7 +126,7 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
     const double behind = criterion(*trial.model, phi) - best_criterion;
     // A richer law of the same element that fits no worse cannot be excluded by data, only by thrift.
     const bool contains =
-        other.element == effect.what.element && other.law->id != kUnlisted && trial.model->misfit <= best_misfit + phi;
+        other.element == effect.what.element && !other.law->closed_form && trial.model->misfit <= best_misfit + phi;
     const bool cannot_tell = behind < kCannotTell || contains;
     const std::pair key{std::string(other.law->id), other.element};
     if (key.first == effect.what.id && key.second == effect.what.element) {

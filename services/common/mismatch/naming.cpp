@@ -4,16 +4,17 @@
 #include <cmath>
 #include <utility>
 
+#include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr std::size_t kSingles = 8;        // refits of single laws
-constexpr double kWorthRoughly = 2.0;      // criterion that a law must bring in a gross misfit
-constexpr std::size_t kOtherShapes = 8;    // refits of the best law from other points of its grid
-constexpr std::size_t kUnlistedForms = 5;  // refits of closed forms
+constexpr std::size_t kSingles = 8;      // refits of single laws
+constexpr double kWorthRoughly = 2.0;    // criterion that a law must bring in a gross misfit
+constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid
+constexpr std::size_t kClosedForms = 5;  // refits of closed forms
 
 bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
 
@@ -78,8 +79,8 @@ bool promising(const Screening& screening, const FittedModel& model) {
 }
 
 // Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
-Status try_unlisted(Naming& naming, const Data& data, const ExplainOptions& options) {
-  const ScreeningOptions forms{.seed = options.seed, .threads = options.threads, .unlisted = true};
+Status try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& options) {
+  const ScreeningOptions forms{.seed = options.seed, .threads = options.threads, .closed_forms = true};
   std::vector<Trial> trials;
   for (const Trial& from : {Trial{{}, naming.baseline}, naming.best}) {
     if (static_cast<int>(from.effects.size()) == options.maximum_laws) continue;
@@ -87,7 +88,7 @@ Status try_unlisted(Naming& naming, const Data& data, const ExplainOptions& opti
     if (!screening) return fail(screening.error());
     if (!promising(*screening, *from.model)) continue;
     std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : ranked_laws(*screening, kUnlistedForms)) starts.push_back({std::move(start)});
+    for (LawStart& start : ranked_laws(*screening, kClosedForms)) starts.push_back({std::move(start)});
     for (Trial& trial : refit(from, starts, data, options.threads)) trials.push_back(std::move(trial));
     if (naming.best.effects.empty()) break;
   }
@@ -126,25 +127,38 @@ Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOp
 
 namespace {
 
-// Each law that was just added (from effect `before` on) or one that contains it, in its place, at its usual size and
-// from all points of its shape's grid: where something is left beyond the noise, its refit from the linear step may
-// have ended in a hollow, which another law was or would be asked to fill.
+// Start values of the law of an effect, or of one that contains it, at its usual size and on its shape's grid; with
+// `forms` also of the closed forms that bear its id.
+std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Screening& asked,
+                                                const std::vector<Candidate>& forms) {
+  std::vector<std::vector<LawStart>> starts;
+  for (const Variant* variant : by_gain(asked)) {
+    const Candidate& candidate = asked.candidates[variant->candidate];
+    const bool same_or_richer = candidate.law == effect.law || candidate.law->limit == effect.law->id;
+    if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
+      starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
+  }
+  for (const Candidate& form : forms)
+    if (form.law->id == effect.law->id && form.law != effect.law && form.element == effect.element)
+      for (std::size_t point = 0; point < form.grid.size(); ++point)
+        starts.push_back({{{form.law, effect.element}, usual_size(form, point)}});
+  return starts;
+}
+
+// Each law that was just added (from effect `before` on) starts again in its place: where something is left beyond the
+// noise, its refit from the linear step may have ended in a hollow, or the law has another form than the catalogue's,
+// and another law was or would be asked to fill that.
 Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
                          const ExplainOptions& options) {
   // What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
   constexpr double kLeft = 1.1;
   const bool at_the_noise = naming.best.model->misfit < kLeft * naming.best.model->residuals;
   if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
+  const std::vector<Candidate> forms =
+      find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
   std::vector<Trial> trials;
   for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
-    const Effect& effect = naming.best.effects[added];
-    std::vector<std::vector<LawStart>> starts;
-    for (const Variant* variant : by_gain(asked)) {
-      const Candidate& candidate = asked.candidates[variant->candidate];
-      const bool same_or_richer = candidate.law == effect.law || candidate.law->limit == effect.law->id;
-      if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
-        starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
-    }
+    const auto starts = other_starts(naming.best.effects[added], asked, forms);
     for (Trial& trial : refit(naming.best, starts, data, options.threads, added)) trials.push_back(std::move(trial));
   }
   const double phi = smallest_dispersion(trials, *naming.best.model);
@@ -203,7 +217,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   drop_what_is_not_needed(naming, data, options.threads);
   prefer_plain_laws(naming, data, options.threads);
   if (naming.last.p_value <= options.false_alarm_rate)
-    if (const Status status = try_unlisted(naming, data, options); !status) return fail(status.error());
+    if (const Status status = try_closed_forms(naming, data, options); !status) return fail(status.error());
   return naming;
 }
 

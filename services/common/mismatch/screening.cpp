@@ -301,7 +301,7 @@ Result<std::vector<Reduced>> reduce_all(const FittedModel& model, const std::vec
 
 Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
   Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
-                                                    options.unlisted)};
+                                                    options.closed_forms)};
   const std::vector<PassColumn> columns = pass_columns(screening.candidates);
   const Layout layout = lay_out(columns, data.samples.size());
   screening.variants = make_variants(columns, layout);

@@ -59,7 +59,7 @@ struct ScreeningOptions {
   int draws = 999;
   std::uint64_t seed = 1;
   int threads = 2;
-  bool unlisted = false;  ///< closed forms without a name instead of the listed laws
+  bool closed_forms = false;  ///< closed forms instead of the other laws
 };
 
 /// An Error when the model cannot be simulated at its estimates.

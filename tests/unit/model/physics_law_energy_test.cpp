@@ -13,11 +13,15 @@ namespace {
 /// Laws without memory that dissipate: the signal s with contribution * s >= 0 for any signals.
 const std::map<std::string, std::size_t> kDissipate = {
     {"coulomb_friction", 0},
+    {"coulomb_friction (rounded)", 0},
     {"stribeck_friction", 0},
     {"pressure_dependent_friction (sum)", 0},
     {"pressure_dependent_friction (difference)", 0},
+    {"pressure_dependent_friction (sum_rounded)", 0},
+    {"pressure_dependent_friction (difference_rounded)", 0},
     {"quadratic_drag", 0},
     {"shaft_coulomb_friction", 0},
+    {"shaft_coulomb_friction (rounded)", 0},
     {"pressure_dependent_shaft_friction", 0},
     {"torque_saturation (knee)", 2},
     {"torque_saturation (cubic)", 2},
@@ -36,29 +40,28 @@ const std::map<std::string, std::size_t> kDissipate = {
     {"linear_outflow", 0},
     {"unlisted (speed_power)", 0},
     {"unlisted (directional_friction)", 0},
-    {"unlisted (pressure_friction)", 0},
+    {"pressure_dependent_friction (power)", 0},
     {"unlisted (tight_spot)", 0},
     {"unlisted (position_drag)", 0},
-    {"unlisted (pressure_drag)", 0},
+    {"pressure_dependent_friction (drag)", 0},
     {"unlisted (leakage_power)", 0},
     {"unlisted (local_leakage)", 0},
     {"unlisted (moving_leakage)", 0},
     {"unlisted (slip_power)", 0},
-    {"unlisted (turning_slip)", 0},
+    {"speed_dependent_pump_slip (power)", 0},
     {"unlisted (torque_power)", 0},
-    {"unlisted (pressure_torque)", 0},
+    {"pressure_dependent_shaft_friction (power)", 0},
     {"unlisted (resistance_power)", 0},
     {"unlisted (command_power)", 1},
-    {"unlisted (outflow_power)", 0},
+    {"external_leakage (power)", 0},
 };
 
 /// Laws without memory whose contribution has one sign: +1 or -1, for levels that are positive.
 const std::map<std::string, double> kOneSign = {
-    {"hose_compliance (constant)", 1.0}, {"hose_compliance (stiffening)", 1.0},
-    {"entrained_air (isothermal)", 1.0}, {"entrained_air (polytropic)", 1.0},
-    {"entrained_air (dissolving)", 1.0}, {"tank_overflow", 1.0},
-    {"outflow_exponent", 1.0},           {"outlet_level_offset", 1.0},
-    {"pump_dead_voltage", 1.0},          {"unlisted (compliance_power)", 1.0},
+    {"hose_compliance (constant)", 1.0}, {"hose_compliance (stiffening)", 1.0}, {"entrained_air (isothermal)", 1.0},
+    {"entrained_air (polytropic)", 1.0}, {"entrained_air (dissolving)", 1.0},   {"tank_overflow", 1.0},
+    {"outflow_exponent", 1.0},           {"outlet_level_offset", 1.0},          {"pump_dead_voltage", 1.0},
+    {"hose_compliance (power)", 1.0},
 };
 
 /// Forces of position alone: the same work both ways, whatever their sign.
@@ -149,7 +152,7 @@ TEST(PhysicsLaws, LineResistanceDissipatesWithItsLag) {
   const auto flow = [](double phase) { return std::array{8e-6 * std::cos(phase), 0.0, 0.0, 0.0}; };
   EXPECT_NEAR(run_cycles(law_of("line_resistance", {"R"}), std::array{2e10}, flow).work, 0.5 * 2e10 * 6.4e-11, 1e-3);
   EXPECT_GT(run_cycles(law_of("line_resistance", {"k"}), std::array{3e15}, flow).work, 0.0);
-  EXPECT_GT(run_cycles(law_of("unlisted", {"D_q", "a_q"}), std::array{2e5, 1.5}, flow).work, 0.0);
+  EXPECT_GT(run_cycles(law_of("line_resistance", {"D_q", "a_q"}), std::array{2e5, 1.5}, flow).work, 0.0);
 }
 
 TEST(PhysicsLaws, FrictionThatWearsOffCostsItsForceTimesTheWayOverWhichItDoes) {
@@ -200,9 +203,10 @@ TEST(PhysicsLaws, OilAndWindingWarmTowardsTheirSteadyState) {
 }
 
 TEST(PhysicsLaws, ValveMemoryNeverLowersTheCrackingPressureBelowZero) {
-  for (const auto& names : {std::vector<std::string>{"dp_h", "tau"}, {"dp_f", "tau_f"}}) {
+  for (const auto& names : {std::vector<std::string>{"dp_h", "tau", "D_o"}, {"dp_f", "tau_f"}}) {
     const Law& law = law_of("valve_hysteresis", names);
-    const std::array parameters{law.parameters[0].max, law.parameters[1].start[0]};
+    std::vector<double> parameters{law.parameters[0].max};
+    for (std::size_t k = 1; k < law.parameters.size(); ++k) parameters.push_back(law.parameters[k].start[0]);
     const auto open_and_close = [](double phase) { return std::array{1e5 * std::sin(phase), 0.0, 0.0, 0.0}; };
     const Cycle cycle = run_cycles(law, parameters, open_and_close);
     for (const double memory : {cycle.lowest, cycle.highest}) {

@@ -1,6 +1,7 @@
-// Closed forms for what no listed law describes: products of powers of signals over fixed reference sizes, so that
-// every strength has the unit of what it scales and every exponent is a plain number. All forms share the id
-// `unlisted`; their grids start away from the exponents of listed laws.
+// Closed forms for what no other law describes: products of powers of signals over fixed reference sizes, so that
+// every strength has the unit of what it scales and every exponent is a plain number. A form whose signals are those of
+// a listed id bears that id (a leak of the pump by any power of its speed is a speed-dependent slip); the others share
+// the id `unlisted`. Their grids start away from the exponents of the other laws.
 //
 //   signed power     sgn(s) |s / S|^a  ~  (s / S) ((s / S)^2 + w^2)^((a - 1) / 2)
 //   even power       |s / S|^b         ~          ((s / S)^2 + w^2)^(b / 2)
@@ -16,7 +17,8 @@
 namespace sealwatch::laws {
 
 inline constexpr std::string_view kUnlisted = "unlisted";
-inline constexpr std::string_view kUnlistedSource = "closed form, dimensionally consistent, for what no law describes";
+inline constexpr std::string_view kClosedFormSource =
+    "closed form, dimensionally consistent, for what no other law describes";
 
 // Reference sizes, S.
 inline constexpr double kSpeed_m_s = 1e-3;
@@ -37,6 +39,20 @@ inline constexpr double kCorner = 0.02;
 
 [[nodiscard]] inline LawScalar signed_power(const LawScalar& signal, double reference, const LawScalar& exponent) {
   return signal / reference * even_power(signal, reference, exponent - 1.0);
+}
+
+/// Dry friction's change of direction with any sharpness m: v / (|v|^m + w^m)^(1/m), about v / w at rest, 1 far away. m
+/// = 2 is the algebraic root; a smaller m has the long tail of an arctangent, a larger one the corner of a clamp.
+[[nodiscard]] inline LawScalar rounded_sign(const LawScalar& speed, const LawScalar& width,
+                                            const LawScalar& sharpness) {
+  const LawScalar ratio = speed / width;
+  const LawScalar power = exp(0.5 * sharpness * log(ratio * ratio + kCorner * kCorner));
+  return ratio * exp(-log(1.0 + power) / sharpness);
+}
+
+/// Sharpness of a change of direction, m.
+[[nodiscard]] inline LawParameter sharpness() {
+  return shape("m", "1", "sharpness of the change of direction", {2.0, 1.0, 5.0}, 0.5, 10.0);
 }
 
 /// A free exponent, searched on a grid.

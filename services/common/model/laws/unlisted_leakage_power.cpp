@@ -14,7 +14,8 @@ Law unlisted_leakage_power() {
           .equation = "q_s sgn(p_A - p_B) abs((p_A - p_B) / 10 MPa)^a_s",
           .meaning = "leakage past the piston that follows a power of the pressure difference",
           .energy = "q_s >= 0: oil leaks from the higher pressure to the lower",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("q_s", "m3/s", "flow at 10 MPa", {.usual = 3e-7, .significant = 8e-8, .max = 1e-4}),
                          exponent("a_s", {1.5, 2.0, 3.0}, 0.2, 5.0)},
           .evaluate = &evaluate};

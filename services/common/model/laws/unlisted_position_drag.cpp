@@ -16,7 +16,8 @@ Law unlisted_position_drag() {
       .equation = "c_x v abs(x / 50 mm)^b_x",
       .meaning = "viscous friction that changes along the stroke",
       .energy = "c_x >= 0: it always opposes the motion",
-      .source = kUnlistedSource,
+      .source = kClosedFormSource,
+      .closed_form = true,
       .parameters = {strength("c_x", "N s/m", "friction at 50 mm", {.usual = 1e6, .significant = 4.5e5, .max = 1e8}),
                      exponent("b_x", {4.0, -2.0}, -3.0, 8.0)},
       .evaluate = &evaluate};

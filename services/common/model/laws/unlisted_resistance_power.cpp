@@ -16,7 +16,8 @@ Law unlisted_resistance_power() {
       .equation = "R_i i abs(i / 1 A)^a_i",
       .meaning = "voltage drop of the winding that does not follow the current in proportion: contacts, brushes",
       .energy = "R_i >= 0: power V i is lost, never won",
-      .source = kUnlistedSource,
+      .source = kClosedFormSource,
+      .closed_form = true,
       .parameters = {strength("R_i", "ohm", "resistance at 1 A", {.usual = 0.05, .significant = 0.012, .max = 10.0}),
                      exponent("a_i", {1.0, 2.0, -0.5}, -0.9, 4.0)},
       .evaluate = &evaluate};

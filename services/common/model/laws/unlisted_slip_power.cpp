@@ -14,7 +14,8 @@ Law unlisted_slip_power() {
           .equation = "q_p sgn(p_1 - p_2) abs((p_1 - p_2) / 10 MPa)^a_p",
           .meaning = "leakage of the pump that follows a power of the pressure difference",
           .energy = "q_p >= 0: oil leaks from the higher pressure to the lower",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("q_p", "m3/s", "flow at 10 MPa", {.usual = 2e-7, .significant = 8e-8, .max = 1e-4}),
                          exponent("a_p", {1.5, 2.0, 3.0}, 0.2, 5.0)},
           .evaluate = &evaluate};

@@ -14,7 +14,8 @@ Law unlisted_speed_power() {
           .equation = "k_v sgn(v) abs(v / 1 mm/s)^a_v",
           .meaning = "force against the motion that follows a power of speed",
           .energy = "k_v >= 0: it always opposes the motion",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("k_v", "N", "force at 1 mm/s", {.usual = 1e3, .significant = 400.0, .max = 1e5}),
                          exponent("a_v", {1.5, 0.5, 3.0}, 0.2, 5.0)},
           .evaluate = &evaluate};

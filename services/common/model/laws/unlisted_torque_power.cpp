@@ -15,7 +15,8 @@ Law unlisted_torque_power() {
       .equation = "T_w sgn(omega) abs(omega / 100 rad/s)^a_w",
       .meaning = "torque against the rotation that follows a power of speed: churning oil, a fan",
       .energy = "T_w >= 0: it always opposes the rotation",
-      .source = kUnlistedSource,
+      .source = kClosedFormSource,
+      .closed_form = true,
       .parameters = {strength("T_w", "N m", "torque at 100 rad/s", {.usual = 0.01, .significant = 2e-3, .max = 5.0}),
                      exponent("a_w", {2.0, 0.5, 3.0}, 0.2, 5.0)},
       .evaluate = &evaluate};

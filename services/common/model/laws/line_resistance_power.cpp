@@ -10,14 +10,15 @@ static LawOutput evaluate(const LawInput& in) {
           .rate = (in.signal[0] - q_f) / kLag_s};
 }
 
-Law unlisted_drop_power() {
-  return {.id = kUnlisted,
-          .form = "drop_power",
+Law line_resistance_power() {
+  return {.id = "line_resistance",
+          .form = "power",
           .kind = SiteKind::line_drop,
           .equation = "D_q sgn(q_f) abs(q_f / 1e-5 m3/s)^a_q, 1 ms dq_f/dt = q - q_f",
           .meaning = "pressure drop between port and chamber that follows a power of the flow",
           .energy = "D_q >= 0: it always opposes the flow",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("D_q", "Pa", "drop at 1e-5 m3/s", {.usual = 2e5, .significant = 1e5, .max = 1e8}),
                          exponent("a_q", {1.5, 3.0}, 0.5, 5.0)},
           .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6, .settled = true},

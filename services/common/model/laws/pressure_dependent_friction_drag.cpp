@@ -8,15 +8,16 @@ static LawOutput evaluate(const LawInput& in) {
   return {.contribution = in.parameter[0] * v * even_power(p_A - p_B, kPressure_Pa, in.parameter[1]), .rate = {}};
 }
 
-Law unlisted_pressure_drag() {
+Law pressure_dependent_friction_drag() {
   return {
-      .id = kUnlisted,
-      .form = "pressure_drag",
+      .id = "pressure_dependent_friction",
+      .form = "drag",
       .kind = SiteKind::piston_force,
       .equation = "c_p v abs((p_A - p_B) / 10 MPa)^b_d",
       .meaning = "viscous friction that changes with the pressure across the piston",
       .energy = "c_p >= 0: it always opposes the motion",
-      .source = kUnlistedSource,
+      .source = kClosedFormSource,
+      .closed_form = true,
       .parameters = {strength("c_p", "N s/m", "friction at 10 MPa", {.usual = 1e6, .significant = 4.5e5, .max = 1e8}),
                      exponent("b_d", {1.0, 2.0, -1.0}, -2.0, 4.0)},
       .evaluate = &evaluate};

@@ -8,14 +8,15 @@ static LawOutput evaluate(const LawInput& in) {
           .rate = {}};
 }
 
-Law unlisted_turning_slip() {
-  return {.id = kUnlisted,
-          .form = "turning_slip",
+Law speed_dependent_pump_slip_power() {
+  return {.id = "speed_dependent_pump_slip",
+          .form = "power",
           .kind = SiteKind::pump_slip,
           .equation = "G_w (p_1 - p_2) abs(omega / 100 rad/s)^b_w",
           .meaning = "leakage of the pump that follows a power of its speed",
           .energy = "G_w >= 0: oil leaks from the higher pressure to the lower",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("G_w", "m3/(s Pa)", "flow per pressure at 100 rad/s",
                                   {.usual = 2e-14, .significant = 8e-15, .max = 1e-10}),
                          exponent("b_w", {2.0, 0.5, -0.5}, -1.0, 4.0)},

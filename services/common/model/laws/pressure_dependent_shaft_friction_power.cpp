@@ -8,14 +8,15 @@ static LawOutput evaluate(const LawInput& in) {
           .rate = {}};
 }
 
-Law unlisted_pressure_torque() {
-  return {.id = kUnlisted,
-          .form = "pressure_torque",
+Law pressure_dependent_shaft_friction_power() {
+  return {.id = "pressure_dependent_shaft_friction",
+          .form = "power",
           .kind = SiteKind::shaft_torque,
           .equation = "c_w omega abs((p_1 - p_2) / 10 MPa)^b_t",
           .meaning = "viscous torque of the pump that grows with its pressure",
           .energy = "c_w >= 0: it always opposes the rotation",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("c_w", "N m s/rad", "torque per speed at 10 MPa",
                                   {.usual = 1e-4, .significant = 2.5e-5, .max = 0.05}),
                          exponent("b_t", {1.0, 2.0, 0.5}, 0.1, 4.0)},

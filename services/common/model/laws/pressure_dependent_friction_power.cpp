@@ -10,15 +10,16 @@ static LawOutput evaluate(const LawInput& in) {
           .rate = {}};
 }
 
-Law unlisted_pressure_friction() {
+Law pressure_dependent_friction_power() {
   return {
-      .id = kUnlisted,
-      .form = "pressure_friction",
+      .id = "pressure_dependent_friction",
+      .form = "power",
       .kind = SiteKind::piston_force,
       .equation = "F_p tanh(v / v_p) abs((p_A - p_B) / 10 MPa)^b_p",
       .meaning = "dry friction that follows a power of the pressure across the piston",
       .energy = "F_p >= 0: it always opposes the motion",
-      .source = kUnlistedSource,
+      .source = kClosedFormSource,
+      .closed_form = true,
       .parameters = {strength("F_p", "N", "friction force at 10 MPa", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      exponent("b_p", {2.0, 0.5}, -1.0, 4.0),
                      shape("v_p", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},

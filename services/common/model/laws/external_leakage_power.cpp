@@ -7,14 +7,15 @@ static LawOutput evaluate(const LawInput& in) {
   return {.contribution = in.parameter[0] * signed_power(in.signal[0], kPressure_Pa, in.parameter[1]), .rate = {}};
 }
 
-Law unlisted_outflow_power() {
-  return {.id = kUnlisted,
-          .form = "outflow_power",
+Law external_leakage_power() {
+  return {.id = "external_leakage",
+          .form = "power",
           .kind = SiteKind::outflow,
           .equation = "q_o sgn(p - p_0) abs((p - p_0) / 10 MPa)^a_o",
           .meaning = "oil that leaves the chamber by a power of its pressure",
           .energy = "q_o >= 0: oil leaks from the higher pressure to the lower",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("q_o", "m3/s", "flow at 10 MPa", {.usual = 3e-7, .significant = 8e-8, .max = 1e-4}),
                          exponent("a_o", {1.5, 2.0, 3.0}, 0.2, 5.0)},
           .evaluate = &evaluate};

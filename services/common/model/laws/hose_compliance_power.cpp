@@ -8,14 +8,15 @@ static LawOutput evaluate(const LawInput& in) {
           .rate = {}};
 }
 
-Law unlisted_compliance_power() {
-  return {.id = kUnlisted,
-          .form = "compliance_power",
+Law hose_compliance_power() {
+  return {.id = "hose_compliance",
+          .form = "power",
           .kind = SiteKind::compliance,
           .equation = "C_p (p / 10 MPa)^-b_h",
           .meaning = "a volume that gives way by a power of pressure",
           .energy = "C_p >= 0: it widens with pressure",
-          .source = kUnlistedSource,
+          .source = kClosedFormSource,
+          .closed_form = true,
           .parameters = {strength("C_p", "m3/Pa", "volume per pressure at 10 MPa",
                                   {.usual = 2e-14, .significant = 4e-15, .max = 1e-10}),
                          exponent("b_h", {0.5, 1.5, -1.0}, -2.0, 3.0)},

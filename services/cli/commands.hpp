@@ -59,6 +59,9 @@ struct ForecastOptions {
   std::string history_file;
   std::string asset_file;
   std::vector<std::string> before;  ///< dates to give the probability of failure for
+  std::string config;               ///< whose campaigns, costs and forecasters are taken; "": none
+  std::vector<double> costs;        ///< planned, after failure, a failed month, an unused month; empty: not known
+  std::string page;                 ///< HTML file to write; "": none
   double threshold = 0.60;
   bool threshold_given = false;
   bool json = false;

@@ -1,36 +1,21 @@
 // `sealwatch forecast`: remaining useful life from a history of estimates (INTERFACES section 6).
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "sealwatch/forecast/forecaster.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/forecast_page.hpp"
+#include "services/cli/forecast_question.hpp"
 #include "services/cli/forecast_text.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
-#include "services/common/forecast/history.hpp"
-#include "services/common/runtime/asset_file.hpp"
-#include "services/prognostic_assessment/prognostic_assessment.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using forecast::ConditionSample;
-
-/// What is asked, and which rows of the history do not count for it.
-struct Question {
-  forecast::ForecastRequest request;
-  std::size_t tests = 0;  ///< of the whole history
-  UtcTime first = {}, last = {};
-  std::vector<ConditionSample> vague = {};  ///< left out as the services would leave them out
-  std::size_t without_error = 0;            ///< tests whose standard error is not known
-};
-
-/// Whether the answer gives the probability of failure before a date.
-bool tells_probability(const Forecast& forecast) {
-  return forecast.state == ForecastState::ok || forecast.state == ForecastState::past_threshold;
-}
 
 Json forecast_json(const Forecast& forecast) {
   Json json = {{"method", forecast.method},
@@ -51,62 +36,25 @@ Json forecast_json(const Forecast& forecast) {
   return json;
 }
 
-/// Takes out the tests that are too vague for the services' forecasts, so that both tell the same.
-std::vector<ConditionSample> take_vague(std::vector<ConditionSample>& history) {
-  const double largest = prognostic_assessment::Options{}.largest_condition_std;
-  const auto vague = std::stable_partition(
-      history.begin(), history.end(), [&](const ConditionSample& sample) { return sample.condition_std <= largest; });
-  std::vector<ConditionSample> taken(vague, history.end());
-  history.erase(vague, history.end());
-  return taken;
-}
-
-bool take_horizons(const ForecastOptions& options, forecast::ForecastRequest& request) {
-  for (const std::string& text : options.before) {
-    Result<UtcTime> before = parse_utc(text);
-    if (!before) {
-      before.error().place = "--before";
-      complain(before.error());
-      return false;
+Json decision_json(const std::vector<DecisionOption>& decision) {
+  Json json = Json::array();
+  for (const DecisionOption& option : decision) {
+    Json row = {{"replacement", option.label},
+                {"at", date(option.at_ns)},
+                {"months", option.months},
+                {"failure_probability_before", option.failure_probability}};
+    if (option.cost_known) {
+      row["expected_cost"] = option.expected_cost;
+      row["currency"] = option.currency;
+      row["cheapest"] = option.cheapest;
     }
-    if (*before <= request.now)
-      std::fprintf(stderr, "sealwatch: --before %s: passed over, as it is not after the last test (%s)\n", text.c_str(),
-                   format_date(request.now).c_str());
-    request.horizons.push_back({.label = text, .before = *before});
+    json.push_back(std::move(row));
   }
-  return true;
+  return json;
 }
 
-std::optional<Question> question_of(const ForecastOptions& options, const std::optional<AssetConfig>& asset) {
-  const std::optional<SealSetting> seal = asset ? asset->seal : std::nullopt;
-  auto history = forecast::read_history(options.history_file, seal);
-  if (!history) {
-    complain(history.error());
-    return std::nullopt;
-  }
-  Question question{.request = {.history = std::move(*history),
-                                .threshold = options.threshold_given || !seal ? options.threshold : seal->threshold}};
-  forecast::ForecastRequest& request = question.request;
-  if (!(request.threshold > 0.0 && request.threshold <= 1.0)) {
-    complain(Error{.file = {},
-                   .place = "--threshold",
-                   .value = number(request.threshold),
-                   .rule = "must be above 0, at most 1",
-                   .advice = "0.6 for a seal that has failed at 60 % of its elastic modulus"});
-    return std::nullopt;
-  }
-  question.tests = request.history.size();
-  question.first = request.history.front().time;
-  question.last = request.now = request.history.back().time;
-  question.vague = take_vague(request.history);
-  question.without_error = static_cast<std::size_t>(
-      std::count_if(request.history.begin(), request.history.end(),
-                    [](const ConditionSample& sample) { return sample.condition_std == 0.0; }));
-  if (!take_horizons(options, request)) return std::nullopt;
-  return question;
-}
-
-void print_json(const Question& question, const forecast::ForecastPanel::Answer& answer) {
+void print_json(const ForecastQuestion& question, const forecast::ForecastPanel::Answer& answer,
+                const std::vector<DecisionOption>& decision) {
   Json json = {{"schema", "sealwatch.forecast/1"},
                {"at", format_utc(question.last)},
                {"threshold", question.request.threshold},
@@ -114,6 +62,7 @@ void print_json(const Question& question, const forecast::ForecastPanel::Answer&
                {"tests_without_standard_error", question.without_error},
                {"windows_disagree", answer.windows_disagree},
                {"forecasts", Json::array()},
+               {"decision", decision_json(decision)},
                {"left_out", Json::array()}};
   for (const Forecast& forecast : answer.forecasts) json["forecasts"].push_back(forecast_json(forecast));
   for (const auto* samples : {&answer.left_out, &question.vague})
@@ -121,10 +70,12 @@ void print_json(const Question& question, const forecast::ForecastPanel::Answer&
   std::printf("%s\n", json.dump(1).c_str());
 }
 
-void print_text(const Question& question, const forecast::ForecastPanel::Answer& answer) {
-  std::printf("%zu %s, %s to %s; the seal fails at %s\n%s", question.tests, question.tests == 1 ? "test" : "tests",
+void print_text(const ForecastQuestion& question, const forecast::ForecastPanel::Answer& answer,
+                const std::vector<DecisionOption>& decision) {
+  std::printf("%zu %s, %s to %s; the seal fails at %s\n%s%s", question.tests, question.tests == 1 ? "test" : "tests",
               format_date(question.first).c_str(), format_date(question.last).c_str(),
-              percent(question.request.threshold, 0).c_str(), forecast_table(answer.forecasts).c_str());
+              percent(question.request.threshold, 0).c_str(), forecast_table(answer.forecasts).c_str(),
+              decision_chart(decision).c_str());
   if (!question.request.horizons.empty() && !tells_probability(answer.forecasts.front()))
     std::printf("  P(failure)       cannot be told before any date without a forecast\n");
   if (question.without_error > 0)
@@ -139,20 +90,39 @@ void print_text(const Question& question, const forecast::ForecastPanel::Answer&
   if (answer.windows_disagree) std::printf("windows disagree: %s\n", answer.disagreement.c_str());
 }
 
+Status write_page(const std::string& file, const Result<std::string>& page) {
+  if (!page) return fail(page.error());
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << *page;
+  stream.close();
+  if (stream) return {};
+  return fail(Error{.file = file, .place = "--page", .value = {}, .rule = "cannot be written", .advice = {}});
+}
+
 }  // namespace
 
 int run_forecast(const ForecastOptions& options) {
-  std::optional<AssetConfig> asset;
-  if (!options.asset_file.empty() && !(asset = load_asset_or_explain(options.asset_file))) return kBadInput;
-  const auto question = question_of(options, asset);
+  const auto question = forecast_question(options);
   if (!question) return kBadInput;
-  const auto panel = forecast::ForecastPanel::make(forecast::default_forecasters());
+  const auto panel = forecast::ForecastPanel::make(question->forecasters);
   if (!panel) {
     complain(panel.error());
     return kInternalFailure;
   }
-  const auto answer = panel->forecast(question->request);
-  options.json ? print_json(*question, answer) : print_text(*question, answer);
+  const auto answered = panel->forecast(question->request);
+  if (!answered) {
+    complain(answered.error());
+    return kBadInput;
+  }
+  const forecast::ForecastPanel::Answer& answer = *answered;
+  const std::vector<DecisionOption> decision = decision_of(*question, answer);
+  if (!options.page.empty())
+    if (const Status written = write_page(options.page, forecast_page(*question, answer, decision)); !written) {
+      complain(written.error());
+      return kBadInput;
+    }
+  options.json ? print_json(*question, answer, decision) : print_text(*question, answer, decision);
+  if (!options.page.empty() && !options.json) std::printf("in %s: all of it with plots\n", options.page.c_str());
   const bool any = std::any_of(answer.forecasts.begin(), answer.forecasts.end(),
                                [](const Forecast& forecast) { return forecast.state == ForecastState::ok; });
   return any ? kOk : kAnswerIsNo;

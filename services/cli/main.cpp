@@ -153,6 +153,13 @@ class CommandLine {
     forecast->add_option("--asset", forecast_.asset_file, "asset file: seal resistances and threshold")
         ->check(CLI::ExistingFile);
     forecast->add_option("--before", forecast_.before, "dates to give the probability of failure for");
+    forecast->add_option("--config", forecast_.config,
+                         "configuration file or directory: campaigns, costs and forecasters of the asset's site");
+    forecast
+        ->add_option("--costs", forecast_.costs,
+                     "what replacements cost: PLANNED,AFTER_FAILURE,FAILED_MONTH,UNUSED_MONTH")
+        ->delimiter(',');
+    forecast->add_option("--page", forecast_.page, "HTML file to write: history, forecast, decision, reasons");
     forecast->add_option("--threshold", forecast_.threshold, "seal condition at which it has failed")
         ->check(CLI::Range(0.0, 1.0))
         ->check(a_number)
@@ -222,6 +229,10 @@ class CommandLine {
                     "published_ln_t (default), published_t, bench, or NAME=NUMBER; several");
     rul->add_option("--missing", o.missing_share, "share of the months without a test")->capture_default_str();
     rul->add_option("--cut", o.cut_share, "share of the tests that are cut short")->capture_default_str();
+    rul->add_option("--scenario", o.scenarios,
+                    "reference, outliers, missing, aborted, replaced, load_change, contamination; several with commas, "
+                    "or all: one table of them")
+        ->delimiter(',');
     rul->add_flag("--direct", o.direct, "recordings go to the estimator directly, not through the first two layers");
     rul->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
     rul->add_flag("--json", o.json, "machine-readable result (schema sealwatch.verification/1)");

@@ -21,7 +21,8 @@ struct VerifyRulOptions {
   std::vector<std::string> degradation;  ///< NAME=NUMBER
   double missing_share = 0.0;
   double cut_share = 0.0;
-  bool direct = false;  ///< without data acquisition and data manipulation
+  std::vector<std::string> scenarios;  ///< several, or "all": one table of them; empty: the reference
+  bool direct = false;                 ///< without data acquisition and data manipulation
   bool resume = false;
   bool json = false;
 };

@@ -76,6 +76,8 @@ Json json_of(const MethodSummary& method) {
                {"prognostic_horizon_stable_months", json_of(method.horizon_stable_months)},
                {"prognostic_horizon_stable_share", json_of(method.horizon_stable)},
                {"alpha_lambda_share", json_of(method.alpha_lambda)},
+               {"alpha_lambda_by_mass_share", json_of(method.alpha_lambda_by_mass)},
+               {"alpha_lambda_mass", json_of(method.alpha_lambda_mass)},
                {"cumulative_relative_accuracy", json_of(method.cumulative_relative_accuracy)},
                {"convergence_distance", json_of(method.convergence_distance)},
                {"asymmetric_score", json_of(method.asymmetric_score)}};
@@ -148,16 +150,16 @@ std::string verification_table(const Summary& summary) {
       summary.lives, summary.censored, static_cast<long long>(summary.tests), summary.lifetime_years.at[0],
       summary.lifetime_years.at[2], summary.lifetime_years.at[4]);
   std::string text = line;
-  constexpr const char* kRow = "%-17s %14s %14s %14s %13s %12s %12s %13s %13s %13s\n";
+  constexpr const char* kRow = "%-17s %14s %14s %14s %13s %12s %12s %13s %13s %13s %13s\n";
   std::snprintf(line, sizeof line, kRow, "method", "converged", "reliable", "timely", "antecedence", "error",
-                "last year", "95% width", "false pos.", "false neg.");
+                "last year", "95% width", "false pos.", "false neg.", "a-l mass");
   text += line;
   for (const MethodSummary& method : summary.methods) {
     std::snprintf(line, sizeof line, kRow, method.label.c_str(), cell(method.converged).c_str(),
                   cell(method.reliable).c_str(), cell(method.timely).c_str(), cell(method.antecedence, 1).c_str(),
                   cell(method.error, 2).c_str(), cell(method.last_year_error, 2).c_str(),
                   cell(method.last_year_width, 1).c_str(), cell(method.false_positive, 3).c_str(),
-                  cell(method.false_negative, 3).c_str());
+                  cell(method.false_negative, 3).c_str(), cell(method.alpha_lambda_mass, 2).c_str());
     text += line;
   }
   return text;

@@ -38,12 +38,13 @@ std::string verification_main_table(const Summary& summary) {
 
 std::string verification_alarm_table(const Summary& summary) {
   report::Table table({"method", ">false positive", ">false negative", ">failed before P10", ">error over oracle's",
-                       ">prognostic horizon, first", ">stable", ">alpha-lambda %", ">cumulative relative accuracy",
-                       ">asymmetric score"});
+                       ">prognostic horizon, first", ">stable", ">alpha-lambda %", ">by mass %", ">mass",
+                       ">cumulative relative accuracy", ">asymmetric score"});
   for (const MethodSummary& m : summary.methods)
     table.row({m.label, mean_cell(m.false_positive), mean_cell(m.false_negative), mean_cell(m.before_p10),
                mean_cell(m.oracle_ratio), mean_cell(m.horizon_first_months), mean_cell(m.horizon_stable_months),
-               percent_cell(m.alpha_lambda), mean_cell(m.cumulative_relative_accuracy), mean_cell(m.asymmetric_score)});
+               percent_cell(m.alpha_lambda), percent_cell(m.alpha_lambda_by_mass), mean_cell(m.alpha_lambda_mass),
+               mean_cell(m.cumulative_relative_accuracy), mean_cell(m.asymmetric_score)});
   return table.html();
 }
 

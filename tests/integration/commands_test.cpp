@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/integration/six_services.hpp"
 
@@ -141,6 +142,82 @@ TEST_F(Commands, ForecastSaysWhichTestsItDoesNotBelieveOrKnowTheErrorOf) {
   const Finished without = run({"sealwatch", "forecast", "--history", write("without.csv", unknown)});
   ASSERT_EQ(without.status, 0) << without.output;
   EXPECT_THAT(without.output, HasSubstr("standard errors: not known of 30 of 30 tests"));
+}
+
+TEST_F(Commands, ForecastRefusesAHistoryThatIsNoneWithRowAndColumn) {
+  const auto refused = [this](const std::string& text, const std::vector<std::string>& says, bool with_asset = false) {
+    std::vector<std::string> command{"sealwatch", "forecast", "--history", write("bad.csv", text)};
+    if (with_asset) command.insert(command.end(), {"--asset", asset()});
+    const Finished finished = run(command);
+    EXPECT_EQ(finished.status, 2) << finished.output;
+    for (const std::string& part : says) EXPECT_THAT(finished.output, HasSubstr(part));
+  };
+  const std::string head = "time[iso8601],theta[1],theta_std[1]\n2020-01-10,0.95,0.001\n";
+  refused(head + "2020-02-10,0.94,0.001\n2020-02-10,0.94,0.001\n", {"row 4", "2020-02-10", "comes not after"});
+  refused(head + "2020-03-10,0.94,0.001\n2020-02-10,0.93,0.001\n", {"row 4", "2020-02-10", "sort the rows"});
+  refused(head + "2020-02-10,0.94,\n", {"row 3", "theta_std[1]", "is missing"});
+  refused(head + "2020-02-10,0.94,-0.001\n", {"row 3", "theta_std[1]", "-0.001"});
+  refused(head + "2020-02-10,nan,0.001\n", {"row 3", "theta[1]", "nan", "must be a finite number"});
+  refused("", {"bad.csv", "is empty"});
+  refused("time[iso8601],theta[1],theta_std[1]\n", {"bad.csv", "has no row of data"});
+  refused("time[iso8601],R_CL[Pa s/m3]\n2020-01-10,2e13\n2020-02-10,-2e13\n", {"row 3", "R_CL[Pa s/m3]", "-2e13"},
+          true);
+  refused("time[iso8601],R_CL[Pa s/m3]\n2020-01-10,2e13\n2020-02-10,0\n", {"row 3", "R_CL[Pa s/m3]"}, true);
+}
+
+TEST_F(Commands, ForecastWritesAPageWithTheDecision) {
+  const std::string page = (folder_ / "page.html").string();
+  const std::vector<std::string> command{"sealwatch",   "forecast",   "--history",  history(48, 0.005),
+                                         "--before",    "2024-12-01", "2027-06-01", "--costs",
+                                         "10,50,2,0.2", "--page",     page};
+  const Finished text = run(command);
+  ASSERT_EQ(text.status, 0) << text.output;
+  EXPECT_THAT(text.output, ::testing::AllOf(HasSubstr("expected cost"), HasSubstr("cheapest"), HasSubstr(page)));
+  std::ostringstream html;
+  html << std::ifstream(page).rdbuf();
+  for (const char* part :
+       {"</html>", "Seal condition", "end of life, 80 %", "Probability of failure before the replacement",
+        "Expected cost of the replacement", "wait for failure", "cheapest", "state space 240"})
+    EXPECT_THAT(html.str(), HasSubstr(part));
+  for (const char* outside : {"src=", "href=", "<link", "@import", "url("})
+    EXPECT_EQ(html.str().find(outside), std::string::npos) << "not self-contained: " << outside;
+  // In figures: 23 months are left; the second date is after them, the first before.
+  std::vector<std::string> as_json = command;
+  as_json.emplace_back("--json");
+  const json decision = json::parse(run(as_json).output)["decision"];
+  ASSERT_EQ(decision.size(), 4U);
+  EXPECT_EQ(decision[0]["replacement"], "now");
+  EXPECT_NEAR(decision[0]["expected_cost"].get<double>(), 10.0 + 0.2 * 23.0, 0.3);
+  EXPECT_EQ(decision[1]["cheapest"], true);
+  EXPECT_NEAR(decision[2]["failure_probability_before"].get<double>(), 1.0, 0.01);
+  EXPECT_EQ(decision[3]["expected_cost"], 50.0 + 2.0 * 12.0);
+
+  // Without a forecast there is a page too, which says so.
+  const Finished steady = run({"sealwatch", "forecast", "--history", history(48, 0.0), "--page", page});
+  EXPECT_EQ(steady.status, 1) << steady.output;
+  std::ostringstream silent;
+  silent << std::ifstream(page).rdbuf();
+  EXPECT_THAT(silent.str(), HasSubstr("Without a forecast no date can be weighed"));
+}
+
+TEST_F(Commands, ForecastTakesCampaignsFromTheConfiguration) {
+  const Finished forecast = run(
+      {"sealwatch", "forecast", "--history", history(48, 0.005), "--asset", asset(), "--config", config(), "--json"});
+  ASSERT_EQ(forecast.status, 0) << forecast.output;
+  const json decision = json::parse(forecast.output)["decision"];
+  EXPECT_EQ(decision[1]["replacement"], "summer 2025");
+  EXPECT_FALSE(decision[1].contains("expected_cost")) << "the site gives no costs";
+  const auto refused = [this](const std::vector<std::string>& more, const char* says) {
+    std::vector<std::string> command{"sealwatch", "forecast", "--history", history(48, 0.005)};
+    command.insert(command.end(), more.begin(), more.end());
+    const Finished finished = run(command);
+    EXPECT_EQ(finished.status, 2) << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr(says));
+  };
+  refused({"--config", config()}, "needs --asset");
+  refused({"--costs", "10,50,2"}, "must be four numbers");
+  refused({"--costs", "10,50,-2,0"}, "must not be negative");
+  refused({"--page", (folder_ / "none" / "page.html").string()}, "cannot be written");
 }
 
 TEST_F(Commands, ForecastTellsNoProbabilityWithoutAForecast) {

@@ -73,6 +73,8 @@ TEST_F(Verify, ShardsAndThreadsGiveTheResultOfOneRun) {
   const json& oracle = summary["methods"][2];
   EXPECT_EQ(oracle["convergence_rate"]["of"], 10);
   EXPECT_LT(oracle["last_year_error_months"]["value"], 2.0);
+  EXPECT_GT(oracle["alpha_lambda_mass"]["value"], 0.3);
+  EXPECT_EQ(oracle["alpha_lambda_by_mass_share"]["of"], 10);
   EXPECT_NEAR(summary["estimate"]["mean_squared_error_over_variance"]["value"].get<double>(), 1.0, 0.3);
   for (const char* plot : {"<svg", "Degradation of the first lives", "Estimate against truth", "Convergence rate",
                            "Timely share", "Final error", "Width of the 95 % interval", "PIT", "Worst lives"})
@@ -92,6 +94,47 @@ TEST_F(Verify, GoesOnWithAnInterruptedRunAndNothingElse) {
   EXPECT_EQ(contents(place("begun/results.json")), contents(place("whole/results.json")));
 }
 
+TEST_F(Verify, ScenariosStandInOneTableWhateverTheShards) {
+  const std::vector<std::string> several{
+      "--scenario", "reference,outliers,missing,aborted,replaced,load_change,contamination", "--lives", "4"};
+  const Finished whole = verify("all", several);
+  ASSERT_EQ(whole.status, 0) << whole.output;
+  const json table = json::parse(contents(place("all/scenarios.json")));
+  EXPECT_EQ(table["schema"], "sealwatch.verification_scenarios/1");
+  ASSERT_EQ(table["scenarios"].size(), 7U);
+  for (const json& scenario : table["scenarios"]) {
+    EXPECT_THAT(whole.output, HasSubstr(scenario["scenario"].get<std::string>()));
+    ASSERT_EQ(scenario["methods"].size(), 3U) << scenario["scenario"];
+    EXPECT_EQ(scenario["lives"], 4);
+    for (const json& method : scenario["methods"])
+      EXPECT_EQ(method["last_year_error_months"]["interval_95"].size(), 2U) << method;
+  }
+  EXPECT_THAT(contents(place("all/scenarios.html")), HasSubstr("<svg"));
+  // The reference is the run without any scenario.
+  ASSERT_EQ(verify("plain", {"--lives", "4"}).status, 0);
+  EXPECT_EQ(contents(place("all/reference/results.json")), contents(place("plain/results.json")));
+  EXPECT_NE(contents(place("all/outliers/lives/000000.life")), contents(place("plain/lives/000000.life")));
+
+  for (const char* shard : {"1/2", "2/2"}) {
+    std::vector<std::string> part = several;
+    part.insert(part.end(), {"--shard", shard});
+    ASSERT_EQ(verify("part" + std::string(1, shard[0]), part).status, 0);
+  }
+  const Finished merged = merge({"part2", "part1"}, "together");
+  ASSERT_EQ(merged.status, 0) << merged.output;
+  EXPECT_EQ(contents(place("together/scenarios.json")), contents(place("all/scenarios.json")));
+  EXPECT_EQ(contents(place("together/scenarios.html")), contents(place("all/scenarios.html")));
+}
+
+TEST_F(Verify, AOneScenarioRunIsAnOrdinaryOne) {
+  const Finished one = verify("one", {"--scenario", "outliers", "--lives", "2"});
+  ASSERT_EQ(one.status, 0) << one.output;
+  EXPECT_EQ(json::parse(contents(place("one/results.json")))["setting"]["scenario"], "outliers");
+  const Finished other = verify("one", {"--lives", "2", "--resume"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.output, HasSubstr("'scenario = outliers' against 'scenario = reference'"));
+}
+
 TEST_F(Verify, BadInputIsRefusedWithItsRule) {
   const auto refused = [&](const std::vector<std::string>& more, const char* rule) {
     const Finished finished = verify("bad", more);
@@ -101,6 +144,7 @@ TEST_F(Verify, BadInputIsRefusedWithItsRule) {
   refused({"--lives", "0"}, "an empty fleet");
   refused({"--shard", "3/2"}, "1 <= k <= n");
   refused({"--truth", "circus"}, "circuit");
+  refused({"--scenario", "outlier"}, "did you mean 'outliers'?");
   refused({"--forecaster", "olss"}, "did you mean");
   refused({"--degradation", "n0=3"}, "did you mean");
   refused({"--months", "0"}, "months");

@@ -27,13 +27,13 @@ class AverageForecaster final : public Forecaster {
   /// state_space over the window of the settings, ols_drift over 24, 36 and 48 months.
   [[nodiscard]] static std::vector<ForecasterSettings> default_members(const ForecasterSettings& settings);
 
-  [[nodiscard]] PredictiveForecast predict(const ForecastRequest& request) const override;
   [[nodiscard]] std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,
                                                                   std::span<const UtcTime> when) const override;
   /// In the order of the members, sum 1.
   [[nodiscard]] std::vector<double> weights(const ForecastRequest& request) const;
 
  private:
+  [[nodiscard]] PredictiveForecast answer(const ForecastRequest& request) const override;
   AverageForecaster() = default;
 
   int window_months_ = 0;

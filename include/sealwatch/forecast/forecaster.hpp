@@ -29,12 +29,14 @@ struct FailureHorizon {
   UtcTime before;
 };
 
+/// A threshold outside (0, 1], or not a number, is an Error of whoever is asked.
 struct ForecastRequest {
   std::vector<ConditionSample> history = {};  ///< since the last replacement, in the order of time
   double threshold = 0.60;                    ///< theta_max
   UtcTime now = {};                           ///< from where the remaining life counts
   std::optional<UtcTime> installed = {};      ///< when the seal was new; unknown: one month before its first test
   std::vector<FailureHorizon> horizons = {};  ///< those not after `now` are passed over
+  [[nodiscard]] Status validate() const;
 };
 
 /// The message and, in state ok, the whole distribution that its numbers are quantiles of.
@@ -58,11 +60,15 @@ struct ConditionForecast {
 class Forecaster {
  public:
   virtual ~Forecaster() = default;
-  [[nodiscard]] virtual PredictiveForecast predict(const ForecastRequest& request) const = 0;
+  /// An Error for a request that does not validate.
+  [[nodiscard]] Result<PredictiveForecast> predict(const ForecastRequest& request) const;
   /// The condition at each time of `when`, none before `request.now`; empty when there are too few tests.
   [[nodiscard]] virtual std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,
                                                                           std::span<const UtcTime> when) const = 0;
-  [[nodiscard]] Forecast forecast(const ForecastRequest& request) const { return predict(request).forecast; }
+  [[nodiscard]] Result<Forecast> forecast(const ForecastRequest& request) const;
+
+ private:
+  [[nodiscard]] virtual PredictiveForecast answer(const ForecastRequest& valid_request) const = 0;
 };
 
 /// Which forecaster, by name:
@@ -102,8 +108,8 @@ class ForecastPanel {
   };
   /// Sorts the history by time and leaves out first: isolated outliers, samples that are no number of a condition (not
   /// finite, beyond a thousand, a negative standard error), and all but one of equal samples (a test that was delivered
-  /// twice).
-  [[nodiscard]] Answer forecast(ForecastRequest request) const;
+  /// twice). An Error for a request that does not validate.
+  [[nodiscard]] Result<Answer> forecast(ForecastRequest request) const;
 
  private:
   std::vector<std::unique_ptr<const Forecaster>> forecasters_;

@@ -33,11 +33,11 @@ struct OlsOptions {
 class OlsForecaster final : public Forecaster {
  public:
   [[nodiscard]] static Result<std::unique_ptr<const Forecaster>> make(const OlsOptions& options);
-  [[nodiscard]] PredictiveForecast predict(const ForecastRequest& request) const override;
   [[nodiscard]] std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,
                                                                   std::span<const UtcTime> when) const override;
 
  private:
+  [[nodiscard]] PredictiveForecast answer(const ForecastRequest& request) const override;
   explicit OlsForecaster(OlsOptions options) : options_(std::move(options)) {}
   OlsOptions options_;
 };

@@ -83,8 +83,11 @@ struct PrognosticHorizon {
 };
 [[nodiscard]] PrognosticHorizon prognostic_horizon(std::span<const ScoredMonth> months, double alpha);
 
-/// |e| <= alpha r* at t_lambda = t_P + lambda (EoL - t_P), t_P the first month with a number; judged at the last month
-/// not after t_lambda. None when no number was ever given.
+/// The month in which alpha-lambda metrics are judged: the last one not after t_lambda = t_P + lambda (EoL - t_P), t_P
+/// the first month with a number. None when no number was ever given.
+[[nodiscard]] std::optional<std::size_t> alpha_lambda_month(std::span<const ScoredMonth> months, double lambda);
+
+/// |e| <= alpha r* in that month.
 [[nodiscard]] std::optional<bool> alpha_lambda_accuracy(std::span<const ScoredMonth> months, double alpha,
                                                         double lambda);
 

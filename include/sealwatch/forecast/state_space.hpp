@@ -35,11 +35,11 @@ struct StateSpaceOptions {
 class StateSpaceForecaster final : public Forecaster {
  public:
   [[nodiscard]] static Result<std::unique_ptr<const Forecaster>> make(const StateSpaceOptions& options);
-  [[nodiscard]] PredictiveForecast predict(const ForecastRequest& request) const override;
   [[nodiscard]] std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,
                                                                   std::span<const UtcTime> when) const override;
 
  private:
+  [[nodiscard]] PredictiveForecast answer(const ForecastRequest& request) const override;
   explicit StateSpaceForecaster(StateSpaceOptions options) : options_(std::move(options)) {}
   StateSpaceOptions options_;
 };

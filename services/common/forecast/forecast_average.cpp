@@ -107,7 +107,7 @@ std::vector<double> AverageForecaster::weights(const ForecastRequest& request) c
   return log_weights;
 }
 
-PredictiveForecast AverageForecaster::predict(const ForecastRequest& request) const {
+PredictiveForecast AverageForecaster::answer(const ForecastRequest& request) const {
   Forecast forecast;
   forecast.method = "average";
   forecast.window_months = window_months_;
@@ -121,7 +121,7 @@ PredictiveForecast AverageForecaster::predict(const ForecastRequest& request) co
   double speaking_weight = 0.0;
   for (std::size_t m = 0; m < members_.size(); ++m) {
     if (weight[m] < kMatters) continue;
-    PredictiveForecast member = members_[m]->predict(request);
+    PredictiveForecast member = std::move(*members_[m]->predict(request));  // a valid request is answered
     forecast.tests_used = std::max(forecast.tests_used, member.forecast.tests_used);
     if (!member.distribution) {
       const bool has_opinion = member.forecast.state != ForecastState::insufficient_history;

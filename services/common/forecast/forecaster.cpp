@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/forecast/forecast_average.hpp"
@@ -70,6 +71,26 @@ std::string disagreement(const std::vector<Forecast>& forecasts) {
 
 }  // namespace
 
+Status ForecastRequest::validate() const {
+  if (threshold > 0.0 && threshold <= 1.0) return {};
+  return fail(Error{.file = {},
+                    .place = "threshold",
+                    .value = std::to_string(threshold),
+                    .rule = "must be above 0, at most 1",
+                    .advice = "0.6 for a seal that has failed at 60 % of its elastic modulus"});
+}
+
+Result<PredictiveForecast> Forecaster::predict(const ForecastRequest& request) const {
+  if (const Status valid = request.validate(); !valid) return fail(valid.error());
+  return answer(request);
+}
+
+Result<Forecast> Forecaster::forecast(const ForecastRequest& request) const {
+  Result<PredictiveForecast> predicted = predict(request);
+  if (!predicted) return fail(predicted.error());
+  return std::move(predicted->forecast);
+}
+
 const std::vector<std::string>& forecast_methods() {
   static const std::vector<std::string> methods{"ols",         "ols_log_time", "ols_drift", "ols_fieller",
                                                 "state_space", "fleet",        "average"};
@@ -127,14 +148,16 @@ Result<ForecastPanel> ForecastPanel::make(const std::vector<ForecasterSettings>&
   return panel;
 }
 
-ForecastPanel::Answer ForecastPanel::forecast(ForecastRequest request) const {
+Result<ForecastPanel::Answer> ForecastPanel::forecast(ForecastRequest request) const {
+  if (const Status valid = request.validate(); !valid) return fail(valid.error());
   Answer answer;
   answer.left_out = take_unusable(request.history);
   for (const ConditionSample& outlier : take_outliers(request.history)) answer.left_out.push_back(outlier);
   for (const auto& forecaster : forecasters_) {
-    PredictiveForecast predicted = forecaster->predict(request);
-    answer.forecasts.push_back(std::move(predicted.forecast));
-    answer.distributions.push_back(std::move(predicted.distribution));
+    Result<PredictiveForecast> predicted = forecaster->predict(request);
+    if (!predicted) return fail(predicted.error());
+    answer.forecasts.push_back(std::move(predicted->forecast));
+    answer.distributions.push_back(std::move(predicted->distribution));
   }
   answer.used = std::move(request.history);
   answer.disagreement = disagreement(answer.forecasts);

@@ -135,7 +135,7 @@ Result<std::unique_ptr<const Forecaster>> OlsForecaster::make(const OlsOptions& 
   return std::unique_ptr<const Forecaster>(new OlsForecaster(options));
 }
 
-PredictiveForecast OlsForecaster::predict(const ForecastRequest& request) const {
+PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
   Forecast forecast;
   forecast.method = options_.method;
   forecast.window_months = options_.window_months;

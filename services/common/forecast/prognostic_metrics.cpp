@@ -128,9 +128,13 @@ PrognosticHorizon prognostic_horizon(std::span<const ScoredMonth> months, double
   return horizon;
 }
 
-std::optional<bool> alpha_lambda_accuracy(std::span<const ScoredMonth> months, double alpha, double lambda) {
-  const auto judged = judged_month(
+std::optional<std::size_t> alpha_lambda_month(std::span<const ScoredMonth> months, double lambda) {
+  return judged_month(
       months, lambda, [](const ScoredMonth& month) -> const auto& { return month; });
+}
+
+std::optional<bool> alpha_lambda_accuracy(std::span<const ScoredMonth> months, double alpha, double lambda) {
+  const auto judged = alpha_lambda_month(months, lambda);
   if (!judged) return std::nullopt;
   return Tolerance{.floor_months = 0.0, .share = alpha}.holds(months[*judged]);
 }

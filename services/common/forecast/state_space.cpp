@@ -145,7 +145,7 @@ Result<std::unique_ptr<const Forecaster>> StateSpaceForecaster::make(const State
   return std::unique_ptr<const Forecaster>(new StateSpaceForecaster(options));
 }
 
-PredictiveForecast StateSpaceForecaster::predict(const ForecastRequest& request) const {
+PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) const {
   Forecast forecast;
   forecast.method = options_.method;
   forecast.window_months = options_.window_months;

@@ -6,7 +6,7 @@
 namespace sealwatch::verification {
 namespace {
 
-constexpr std::string_view kMagic = "SWLIFE1\n";
+constexpr std::string_view kMagic = "SWLIFE2\n";
 static_assert(std::endian::native == std::endian::little, "records are little-endian");
 
 std::uint64_t sum_of(std::string_view bytes) {  // FNV-1a
@@ -46,7 +46,7 @@ class Reader {
 template <class Visitor, class Answer>
 void visit_numbers(Visitor&& visitor, Answer& answer) {
   for (auto* number : {&answer.rul, &answer.interval_95_low, &answer.interval_95_high, &answer.p10, &answer.p90,
-                       &answer.pit, &answer.crps})
+                       &answer.pit, &answer.crps, &answer.mass_within_alpha})
     visitor(*number);
 }
 

@@ -25,6 +25,8 @@ struct RecordedTest {
   friend bool operator==(const RecordedTest&, const RecordedTest&) = default;
 };
 
+inline constexpr double kAlphaLambdaAlpha = 0.2;  ///< share of the true remaining life that a forecast may be off
+
 /// One forecaster's answer at one test. Months; numbers only in state ok, and all zero in past_threshold.
 struct RecordedAnswer {
   ForecastState state = ForecastState::insufficient_history;
@@ -33,14 +35,16 @@ struct RecordedAnswer {
   float p10 = 0.0F, p90 = 0.0F;
   float pit = 0.0F;   ///< F(true remaining life), F the predictive distribution; 1 in past_threshold
   float crps = 0.0F;  ///< of F at the true remaining life
+  /// F((1 + alpha) r*) - F((1 - alpha) r*), r* the true remaining life, alpha kAlphaLambdaAlpha; 0 in past_threshold.
+  float mass_within_alpha = 0.0F;
   friend bool operator==(const RecordedAnswer&, const RecordedAnswer&) = default;
 };
 
 struct LifeRecord {
   std::uint32_t life = 0;  ///< number within the run, from 0
   double end_of_life_months = 0.0;
-  bool censored = false;  ///< the end of life comes after the months of service
-  std::vector<RecordedTest> tests;
+  bool censored = false;                             ///< the end of life comes after the months of service
+  std::vector<RecordedTest> tests;                   ///< from where the scenario is scored
   std::vector<std::vector<RecordedAnswer>> answers;  ///< of each method, one for each test
   [[nodiscard]] double true_rul_months(std::size_t test) const { return end_of_life_months - tests[test].time_months; }
   friend bool operator==(const LifeRecord&, const LifeRecord&) = default;

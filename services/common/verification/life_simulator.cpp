@@ -1,6 +1,6 @@
 #include "services/common/verification/life_simulator.hpp"
 
-#include <cassert>
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -10,36 +10,9 @@
 namespace sealwatch::verification {
 namespace {
 
-constexpr int kLongestLife_months = 2400;
 // Of 1/R_CL at 50 Hz and the mean load, whatever R_CL is: what the estimator reports on the cylinder circuit. The
 // pressure difference that the leak has to show itself against is proportional to the load.
 constexpr double kConductanceStd_m3_Pa_s = 1.04e-16;
-
-/// A seal's state month by month up to its failure; element n is month n.
-struct SealLife {
-  std::vector<forecast::TrueState> months;
-  double end_of_life_months = 0.0;
-};
-
-SealLife age(std::uint64_t life_seed, const forecast::DegradationSetting& setting, double threshold) {
-  forecast::Degradation seal(bench::sub_seed(life_seed, "seal"), setting);  // the stream that plan_life takes
-  SealLife life;
-  const auto state = [&seal] {
-    return forecast::TrueState{static_cast<double>(seal.month()), seal.condition(), seal.gamma(),
-                               seal.steepening_limit()};
-  };
-  life.months.push_back(state());
-  while (seal.condition() > threshold && seal.month() < kLongestLife_months) {
-    seal.advance();
-    life.months.push_back(state());
-  }
-  const std::size_t last = life.months.size() - 1;
-  const double before = life.months[last - 1].condition;
-  const double after = life.months[last].condition;
-  // Between two months the condition falls straight.
-  life.end_of_life_months = static_cast<double>(last - 1) + (before - threshold) / (before - after);
-  return life;
-}
 
 RecordedAnswer recorded(const Forecast& forecast, const std::optional<forecast::PredictiveDistribution>& distribution,
                         double true_rul_months) {
@@ -56,12 +29,14 @@ RecordedAnswer recorded(const Forecast& forecast, const std::optional<forecast::
   answer.p90 = static_cast<float>(forecast.rul_p90_months);
   answer.pit = static_cast<float>(distribution->cdf(true_rul_months));
   answer.crps = static_cast<float>(distribution->crps(true_rul_months));
+  answer.mass_within_alpha = static_cast<float>(distribution->cdf((1.0 + kAlphaLambdaAlpha) * true_rul_months) -
+                                                distribution->cdf((1.0 - kAlphaLambdaAlpha) * true_rul_months));
   return answer;
 }
 
-RecordedAnswer oracle_answer(const forecast::TrueState& state, const VerificationSetting& setting,
-                             double true_rul_months) {
-  const auto distribution = forecast::oracle_distribution(state, setting.asset.seal->threshold, setting.degradation);
+RecordedAnswer oracle_answer(const forecast::TrueState& state, double threshold,
+                             const forecast::DegradationSetting& law, double true_rul_months) {
+  const auto distribution = forecast::oracle_distribution(state, threshold, law);
   if (!distribution) return {};
   Forecast forecast;
   forecast.state = ForecastState::ok;
@@ -111,46 +86,62 @@ Result<std::optional<forecast::ConditionSample>> LifeSimulator::estimate(const b
                                  : estimate_condition(asset, samples, test.start_time);
 }
 
-void LifeSimulator::add_answers(const forecast::ForecastRequest& request, const forecast::TrueState& state,
-                                LifeRecord& record) const {
+Status LifeSimulator::add_answers(const forecast::ForecastRequest& request, const SealLife& seal, int month,
+                                  LifeRecord& record) const {
   const double true_rul_months = record.true_rul_months(record.tests.size() - 1);
-  const forecast::ForecastPanel::Answer answer = panel_.forecast(request);
-  for (std::size_t k = 0; k < answer.forecasts.size(); ++k)
-    record.answers[k].push_back(recorded(answer.forecasts[k], answer.distributions[k], true_rul_months));
-  record.answers.back().push_back(oracle_answer(state, setting_, true_rul_months));
+  const Result<forecast::ForecastPanel::Answer> answer = panel_.forecast(request);
+  if (!answer) return fail(answer.error());
+  for (std::size_t k = 0; k < answer->forecasts.size(); ++k)
+    record.answers[k].push_back(recorded(answer->forecasts[k], answer->distributions[k], true_rul_months));
+  record.answers.back().push_back(
+      oracle_answer(seal.months[static_cast<std::size_t>(month)], request.threshold, seal.law, true_rul_months));
+  return {};
+}
+
+bench::LifeSetting LifeSimulator::calendar(std::uint32_t number) const {
+  const ScenarioShares shares = shares_of(setting_.scenario);
+  return {.seed = bench::sub_seed(setting_.seed, "life " + std::to_string(number)),
+          .months = setting_.months,
+          .day_scatter = 0.0,
+          .load_range = setting_.load_range,
+          .missing_share = std::max(setting_.missing_share, shares.missing),
+          .cut_share = std::max(setting_.cut_share, shares.cut),
+          // The seal is seal_life's; here nothing ages, so that every month of service is planned.
+          .degradation = {.initial_gamma = {0.0, 0.0}, .steepening_limit = {0.0, 0.0}, .irregularity = {0.0, 0.0}}};
 }
 
 Result<LifeRecord> LifeSimulator::run(std::uint32_t number) const {
-  const bench::LifeSetting life{.seed = bench::sub_seed(setting_.seed, "life " + std::to_string(number)),
-                                .months = setting_.months,
-                                .day_scatter = 0.0,
-                                .load_range = setting_.load_range,
-                                .missing_share = setting_.missing_share,
-                                .cut_share = setting_.cut_share,
-                                .degradation = setting_.degradation};
+  bench::LifeSetting life = calendar(number);
+  const double threshold = setting_.asset.seal->threshold;
+  const SealLife seal = seal_life(life.seed, setting_.degradation, threshold, setting_.scenario);
+  life.months += static_cast<int>(seal.installed_months);  // months of service of the seal that fails
   const auto plan = bench::plan_life(setting_.asset, life);
   if (!plan) return fail(plan.error());
-  const SealLife seal = age(life.seed, setting_.degradation, setting_.asset.seal->threshold);
   LifeRecord record;
   record.life = number;
   record.end_of_life_months = seal.end_of_life_months;
-  record.censored = seal.end_of_life_months > setting_.months;
+  record.censored = seal.end_of_life_months > life.months;
   record.answers.resize(setting_.forecasters.size() + 1);
-  forecast::ForecastRequest request{.threshold = setting_.asset.seal->threshold, .installed = life.installed};
-  for (const bench::PlannedTest& test : *plan) {
-    const double time_months = months_between(life.installed, test.start_time);
-    if (test.recorded_share <= 0.0 || time_months >= seal.end_of_life_months) continue;
+  forecast::ForecastRequest request{.threshold = threshold, .installed = life.installed};
+  for (const bench::PlannedTest& planned : *plan) {
+    const double time_months = months_between(life.installed, planned.start_time);
+    if (time_months >= seal.end_of_life_months) break;
+    if (planned.recorded_share <= 0.0) continue;
+    const bench::PlannedTest test = as_it_comes(planned, *setting_.asset.seal, seal, life.seed, setting_.scenario);
     const auto estimated = estimate(life, test);
     if (!estimated) return fail(estimated.error());
-    RecordedTest& kept = record.tests.emplace_back(
-        RecordedTest{.time_months = time_months, .condition = test.condition, .usable = estimated->has_value()});
+    if (*estimated) request.history.push_back(**estimated);
+    if (time_months < seal.scored_from_months) continue;
+    RecordedTest& kept =
+        record.tests.emplace_back(RecordedTest{.time_months = time_months,
+                                               .condition = seal.months[static_cast<std::size_t>(test.month)].condition,
+                                               .usable = estimated->has_value()});
     if (*estimated) {
       kept.estimate = (*estimated)->condition;
       kept.estimate_std = (*estimated)->condition_std;
-      request.history.push_back(**estimated);
     }
     request.now = test.start_time;
-    add_answers(request, seal.months[static_cast<std::size_t>(test.month)], record);
+    if (const Status added = add_answers(request, seal, test.month, record); !added) return fail(added.error());
   }
   return record;
 }

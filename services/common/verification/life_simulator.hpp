@@ -26,8 +26,10 @@ class LifeSimulator {
 
   [[nodiscard]] Result<std::optional<forecast::ConditionSample>> estimate(const bench::LifeSetting& life,
                                                                           const bench::PlannedTest& test) const;
-  void add_answers(const forecast::ForecastRequest& request, const forecast::TrueState& state,
-                   LifeRecord& record) const;
+  [[nodiscard]] Status add_answers(const forecast::ForecastRequest& request, const SealLife& seal, int month,
+                                   LifeRecord& record) const;
+  /// Dates, loads and what is missing of a life's tests.
+  [[nodiscard]] bench::LifeSetting calendar(std::uint32_t life) const;
 
   VerificationSetting setting_;
   CircuitTruth truth_;

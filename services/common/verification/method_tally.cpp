@@ -58,6 +58,7 @@ void MethodTally::add(const LifeRecord& record, std::size_t method, std::size_t 
   const std::vector<ScoredMonth> months = scored_months(record, method);
   add_verdict(months);
   add_published_metrics(months);
+  add_alpha_lambda(months, record.answers[method]);
   add_errors(record, months, scored_months(record, oracle));
   add_horizons(record, method);
   add_curve(months);
@@ -90,11 +91,18 @@ void MethodTally::add_published_metrics(std::span<const ScoredMonth> months) {
   add_value(horizon_first_, horizon.first);
   add_value(horizon_last_, horizon.stable);
   horizon_stable_ += horizon.stable ? 1 : 0;
-  alpha_lambda_ +=
-      forecast::alpha_lambda_accuracy(months, kAlphaLambdaAlpha, kAlphaLambdaLambda).value_or(false) ? 1 : 0;
   add_value(relative_accuracy_, forecast::cumulative_relative_accuracy(months));
   add_value(convergence_, forecast::convergence_distance(months));
   add_value(asymmetric_, forecast::asymmetric_score(months));
+}
+
+void MethodTally::add_alpha_lambda(std::span<const ScoredMonth> months, std::span<const RecordedAnswer> answers) {
+  alpha_lambda_ +=
+      forecast::alpha_lambda_accuracy(months, kAlphaLambdaAlpha, kAlphaLambdaLambda).value_or(false) ? 1 : 0;
+  const auto judged = forecast::alpha_lambda_month(months, kAlphaLambdaLambda);
+  const double mass = judged ? answers[*judged].mass_within_alpha : 0.0;  // silence gives it none
+  alpha_lambda_mass_.push_back({mass, 1});
+  alpha_lambda_by_mass_ += mass >= kAlphaLambdaBeta ? 1 : 0;
 }
 
 void MethodTally::add_errors(const LifeRecord& record, std::span<const ScoredMonth> months,
@@ -185,6 +193,7 @@ MethodSummary MethodTally::finish() const {
   summary.timely_of_converged = share_of(std::min(timely_, converged_), converged_);
   summary.horizon_stable = share_of(horizon_stable_, lives_);
   summary.alpha_lambda = share_of(alpha_lambda_, lives_);
+  summary.alpha_lambda_by_mass = share_of(alpha_lambda_by_mass_, lives_);
   for (auto [mean, lives] : {std::pair{&summary.antecedence, &antecedence_},
                              {&summary.error, &error_},
                              {&summary.error_since_converged, &error_since_converged_},
@@ -196,6 +205,7 @@ MethodSummary MethodTally::finish() const {
                              {&summary.false_negative, &false_negative_},
                              {&summary.before_p10, &before_p10_},
                              {&summary.oracle_ratio, &oracle_ratio_},
+                             {&summary.alpha_lambda_mass, &alpha_lambda_mass_},
                              {&summary.horizon_first_months, &horizon_first_},
                              {&summary.horizon_stable_months, &horizon_last_},
                              {&summary.cumulative_relative_accuracy, &relative_accuracy_},

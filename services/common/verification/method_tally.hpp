@@ -37,16 +37,17 @@ class MethodTally {
   void add_errors(const LifeRecord& record, std::span<const forecast::ScoredMonth> months,
                   std::span<const forecast::ScoredMonth> oracle);
   void add_horizons(const LifeRecord& record, std::size_t method);
+  void add_alpha_lambda(std::span<const forecast::ScoredMonth> months, std::span<const RecordedAnswer> answers);
   void add_curve(std::span<const forecast::ScoredMonth> months);
   [[nodiscard]] HorizonSummary finish(const AtHorizon& horizon, double months) const;
 
   std::string label_;
   int lives_ = 0;
   int converged_ = 0, reliable_ = 0, timely_ = 0, horizon_stable_ = 0;
-  int alpha_lambda_ = 0;
+  int alpha_lambda_ = 0, alpha_lambda_by_mass_ = 0;
   Clusters antecedence_, error_, error_since_converged_, final_error_, last_year_error_, last_year_width_, all_errors_;
   Clusters false_positive_, false_negative_, before_p10_, oracle_ratio_;
-  Clusters horizon_first_, horizon_last_, relative_accuracy_, convergence_, asymmetric_;
+  Clusters alpha_lambda_mass_, horizon_first_, horizon_last_, relative_accuracy_, convergence_, asymmetric_;
   std::vector<double> final_errors_, antecedences_;
   std::array<AtHorizon, kHorizons_months.size()> horizons_;
   std::vector<double> pit_;

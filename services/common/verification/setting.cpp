@@ -191,7 +191,7 @@ Status set_constant(forecast::DegradationSetting& degradation, const std::string
 }
 
 std::string describe(const VerificationSetting& setting) {
-  std::string text = "format = sealwatch verification 1\n";
+  std::string text = "format = sealwatch verification 2\n";
   const auto line = [&text](const std::string& key, const std::string& value) {
     text.append(key).append(" = ").append(value).append("\n");
   };
@@ -206,6 +206,7 @@ std::string describe(const VerificationSetting& setting) {
   line("load_range", exact(setting.load_range));
   line("missing_share", exact(setting.missing_share));
   line("cut_share", exact(setting.cut_share));
+  line("scenario", std::string(name_of(setting.scenario)));
   for (const auto& [name, value] : constants(setting.degradation)) line(name, exact(*value));
   for (const std::string& label : method_labels(setting)) line("method", label);
   return text;

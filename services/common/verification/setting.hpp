@@ -10,6 +10,7 @@
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/forecast/degradation.hpp"
 #include "sealwatch/forecast/forecaster.hpp"
+#include "services/common/verification/scenario.hpp"
 
 namespace sealwatch::verification {
 
@@ -34,6 +35,7 @@ struct VerificationSetting {
   double load_range = 0.2;      ///< Phi of each test is uniform in +- this
   double missing_share = 0.0;   ///< of the months: no test
   double cut_share = 0.0;       ///< of the tests: recording cut short
+  Scenario scenario = Scenario::reference;
   forecast::DegradationSetting degradation = published_ln_t();
   std::vector<forecast::ForecasterSettings> forecasters = {};
 };

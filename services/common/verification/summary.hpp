@@ -22,9 +22,9 @@ namespace sealwatch::verification {
 inline constexpr std::array<double, 4> kHorizons_months{36.0, 24.0, 12.0, 6.0};
 inline constexpr int kPitBins = 20;
 inline constexpr int kCurveMonths = 120;
-inline constexpr double kHorizonAlpha = 0.05;     ///< prognostic horizon: |e| <= alpha of the life
-inline constexpr double kAlphaLambdaAlpha = 0.2;  ///< |e| <= alpha of the true remaining life at half of the way
-inline constexpr double kAlphaLambdaLambda = 0.5;
+inline constexpr double kHorizonAlpha = 0.05;      ///< prognostic horizon: |e| <= alpha of the life
+inline constexpr double kAlphaLambdaLambda = 0.5;  ///< judged at half of the way, with kAlphaLambdaAlpha
+inline constexpr double kAlphaLambdaBeta = 0.5;    ///< probability mass that counts as accurate
 
 struct Share {
   int of = 0;
@@ -74,6 +74,8 @@ struct MethodSummary {
   std::array<int, kPitBins> pit{};        ///< at all horizons
   std::vector<double> reliable_by_month;  ///< share of lives that are reliable from k months before failure on
   Share horizon_stable, alpha_lambda;
+  Share alpha_lambda_by_mass;  ///< lives whose mass then is at least kAlphaLambdaBeta
+  Mean alpha_lambda_mass;      ///< the mass itself
   Mean horizon_first_months, horizon_stable_months, cumulative_relative_accuracy, convergence_distance,
       asymmetric_score;
   std::vector<WorstLife> worst;

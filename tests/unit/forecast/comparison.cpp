@@ -159,7 +159,7 @@ int main(int argc, char** argv) {
       request.history = without_outliers(request.history);  // as the panel does
       for (std::size_t f = 0; f < forecasters.size(); ++f) {
         const std::clock_t begin = std::clock();
-        const PredictiveForecast predicted = forecasters[f]->predict(request);
+        const PredictiveForecast predicted = forecasters[f]->predict(request).value();
         tallies[f].seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
         ++tallies[f].forecasts;
         score(tallies[f], of_life[f], scored_month(predicted.forecast, month.state.month, left),

@@ -45,7 +45,7 @@ Coverage run(const Case& c, int lives, DegradationTime kind) {
       request.history.push_back({test::month(m), theta, c.pem_std});
     }
     request.horizons = {{"true end of life", test::month(end)}};
-    const Forecast f = (*forecaster)->forecast(request);
+    const Forecast f = (*forecaster)->forecast(request).value();
     if (f.state != ForecastState::ok) continue;
     ++coverage.ok;
     coverage.of_80 += f.rul_p10_months <= c.rul_months && c.rul_months <= f.rul_p90_months;

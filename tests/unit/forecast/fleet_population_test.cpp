@@ -73,9 +73,9 @@ TEST(FleetPopulation, TellsYoungSealsMoreThanTheReferenceDoes) {
     ForecastRequest request{.threshold = 0.6, .now = test::month(12), .installed = test::kInstalled};
     for (int n = 0; n < 12; ++n) request.history.push_back(*life.months[static_cast<std::size_t>(n)].sample);
     const double left = life.end_months - 12.0;
-    error_fitted += std::abs(make_forecaster(fitted).value()->forecast(request).rul_months - left);
+    error_fitted += std::abs(make_forecaster(fitted).value()->forecast(request).value().rul_months - left);
     error_reference +=
-        std::abs(make_forecaster({"fleet", kWholeLife_months}).value()->forecast(request).rul_months - left);
+        std::abs(make_forecaster({"fleet", kWholeLife_months}).value()->forecast(request).value().rul_months - left);
   }
   EXPECT_LT(error_fitted, 0.5 * error_reference);
 }

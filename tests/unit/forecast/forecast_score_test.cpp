@@ -119,17 +119,17 @@ TEST(Average, MembersAreChecked) {
   settings.members = {{"olz", 36}};
   EXPECT_THAT(make_forecaster(settings).error().describe(), testing::HasSubstr("did you mean 'ols'"));
   settings.members = {{"ols", 24}, {"ols", 48}};
-  const Forecast f = make_forecaster(settings).value()->forecast(history_of(1, "reference", 60));
+  const Forecast f = make_forecaster(settings).value()->forecast(history_of(1, "reference", 60)).value();
   ASSERT_EQ(f.state, ForecastState::ok) << f.explanation;
   EXPECT_THAT(f.explanation, testing::HasSubstr("weights by past scores: ols 24"));
 }
 
 TEST(Average, SaysTheStateOfItsMembersWhereNoneHasANumber) {
   ForecastRequest past{.history = test::straight_life(103, 0.004, 0.001), .threshold = 0.6, .now = month(103)};
-  EXPECT_EQ(make_forecaster({"average", kWholeLife_months}).value()->forecast(past).state,
+  EXPECT_EQ(make_forecaster({"average", kWholeLife_months}).value()->forecast(past).value().state,
             ForecastState::past_threshold);
   past.history.clear();
-  EXPECT_EQ(make_forecaster({"average", kWholeLife_months}).value()->forecast(past).state,
+  EXPECT_EQ(make_forecaster({"average", kWholeLife_months}).value()->forecast(past).value().state,
             ForecastState::insufficient_history);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sealwatch/forecast/ols.hpp"
 #include "tests/unit/forecast/lives.hpp"
@@ -27,7 +28,8 @@ Forecast ask(const std::string& method, int window, std::vector<ConditionSample>
                   .threshold = 0.60,
                   .now = now,
                   .installed = test::kInstalled,
-                  .horizons = std::move(horizons)});
+                  .horizons = std::move(horizons)})
+      .value();
 }
 
 void expect_no_numbers(const Forecast& f) {
@@ -144,8 +146,9 @@ TEST(Ols, MissingMonthsAreSimplyMissing) {
 
 TEST(Ols, RemainingLifeCountsFromNowNotFromTheLastTest) {
   auto forecaster = make_forecaster({"ols", 36});
-  const Forecast f =
-      (*forecaster)->forecast({.history = straight_life(40, 0.004, 0.001), .threshold = 0.60, .now = month(45)});
+  const Forecast f = (*forecaster)
+                         ->forecast({.history = straight_life(40, 0.004, 0.001), .threshold = 0.60, .now = month(45)})
+                         .value();
   EXPECT_NEAR(f.rul_months, 55.0, kNanosecondRounding_months);
   EXPECT_THAT(f.explanation, HasSubstr("5.0 months ago"));
 }
@@ -226,11 +229,11 @@ TEST(Panel, WindowsThatSeeDifferentRatesDisagree) {
   const auto panel = ForecastPanel::make({{"ols", 24}, {"ols", 48}});
   auto life = straight_life(48, 0.002, 0.0005);
   for (int n = 49; n <= 66; ++n) life.push_back({month(n), life[47].condition - 0.008 * (n - 48), 0.0005});
-  const auto answer = panel->forecast({.history = life, .threshold = 0.60, .now = life.back().time});
+  const auto answer = panel->forecast({.history = life, .threshold = 0.60, .now = life.back().time}).value();
   EXPECT_TRUE(answer.windows_disagree);
   EXPECT_THAT(answer.disagreement, HasSubstr("ageing faster of late: by its last 24 months"));
   const auto steady =
-      panel->forecast({.history = straight_life(66, 0.004, 0.001), .threshold = 0.60, .now = month(66)});
+      panel->forecast({.history = straight_life(66, 0.004, 0.001), .threshold = 0.60, .now = month(66)}).value();
   EXPECT_FALSE(steady.windows_disagree);
 }
 
@@ -239,12 +242,12 @@ TEST(Panel, OrderOfArrivalDoesNotMatterAndOutliersAreNamed) {
   std::mt19937_64 random(8);
   auto life = test::with_noise(straight_life(60, 0.004, 0.002), 0.002, random);
   life[50].condition = 0.95;
-  const auto in_order = panel->forecast({.history = life, .threshold = 0.60, .now = month(60)});
+  const auto in_order = panel->forecast({.history = life, .threshold = 0.60, .now = month(60)}).value();
   EXPECT_THAT(in_order.left_out, testing::ElementsAre(life[50]));
   EXPECT_EQ(in_order.forecasts.front().method, "state_space");
   EXPECT_EQ(in_order.forecasts.front().window_months, kWholeLife_months);
   std::shuffle(life.begin(), life.end(), random);
-  const auto shuffled = panel->forecast({.history = life, .threshold = 0.60, .now = month(60)});
+  const auto shuffled = panel->forecast({.history = life, .threshold = 0.60, .now = month(60)}).value();
   EXPECT_EQ(shuffled.forecasts, in_order.forecasts);
 }
 
@@ -253,10 +256,12 @@ TEST(Panel, StraightHistoriesDoNotDisagree) {
   const auto panel = ForecastPanel::make(default_forecasters());
   std::mt19937_64 random(5);
   for (int trial = 0; trial < 20; ++trial) {
-    const auto answer = panel->forecast({.history = test::with_noise(straight_life(66, 0.004, 0.001), 0.001, random),
-                                         .threshold = 0.60,
-                                         .now = month(66),
-                                         .installed = test::kInstalled});
+    const auto answer = panel
+                            ->forecast({.history = test::with_noise(straight_life(66, 0.004, 0.001), 0.001, random),
+                                        .threshold = 0.60,
+                                        .now = month(66),
+                                        .installed = test::kInstalled})
+                            .value();
     EXPECT_FALSE(answer.windows_disagree) << answer.disagreement;
   }
 }
@@ -270,17 +275,18 @@ TEST(Panel, WhatIsNoNumberIsLeftOut) {
   spoiled.push_back({month(31.5), 0.9, -0.001});
   spoiled.push_back({month(32.5), 1e287, 0.001});  // finite, but its square is not
   spoiled.push_back({month(33.5), 0.9, 1e287});
-  const auto answer = panel->forecast({.history = spoiled, .threshold = 0.60, .now = month(60)});
+  const auto answer = panel->forecast({.history = spoiled, .threshold = 0.60, .now = month(60)}).value();
   EXPECT_EQ(answer.left_out.size(), 4u);
   EXPECT_EQ(answer.used.size(), 60u);
-  EXPECT_EQ(answer.forecasts, panel->forecast({.history = clean, .threshold = 0.60, .now = month(60)}).forecasts);
+  EXPECT_EQ(answer.forecasts,
+            panel->forecast({.history = clean, .threshold = 0.60, .now = month(60)}).value().forecasts);
 }
 
 TEST(Panel, AHistoryOfNoNumbersIsNoHistory) {
   const auto panel = ForecastPanel::make(default_forecasters());
   std::vector<ConditionSample> nonsense;
   for (int k = 1; k <= 30; ++k) nonsense.push_back({month(k), 1e287, 0.001});
-  const auto answer = panel->forecast({.history = nonsense, .threshold = 0.60, .now = month(30)});
+  const auto answer = panel->forecast({.history = nonsense, .threshold = 0.60, .now = month(30)}).value();
   EXPECT_TRUE(answer.used.empty());
   for (const Forecast& forecast : answer.forecasts) {
     EXPECT_EQ(forecast.state, ForecastState::insufficient_history) << forecast.method;
@@ -291,7 +297,7 @@ TEST(Panel, AHistoryOfNoNumbersIsNoHistory) {
 TEST(Panel, EachNumberComesWithItsDistribution) {
   const auto panel = ForecastPanel::make(default_forecasters());
   const auto answer =
-      panel->forecast({.history = straight_life(60, 0.004, 0.001), .threshold = 0.60, .now = month(60)});
+      panel->forecast({.history = straight_life(60, 0.004, 0.001), .threshold = 0.60, .now = month(60)}).value();
   ASSERT_EQ(answer.distributions.size(), answer.forecasts.size());
   for (std::size_t i = 0; i < answer.forecasts.size(); ++i) {
     ASSERT_TRUE(answer.distributions[i]) << answer.forecasts[i].method;
@@ -308,6 +314,22 @@ TEST(Panel, SettingsAreChecked) {
   EXPECT_FALSE(ForecastPanel::make({{"ols", 2}}));
   EXPECT_FALSE(OlsForecaster::make({.significance = 0.2}));
   EXPECT_FALSE(OlsForecaster::make({.slope_drift = -0.1}));
+}
+
+TEST(Panel, AThresholdThatIsNoneIsAnError) {
+  const auto panel = ForecastPanel::make(default_forecasters());
+  const auto life = straight_life(60, 0.004, 0.001);
+  for (const double threshold : {std::nan(""), 0.0, -0.6, 1.5, std::numeric_limits<double>::infinity()}) {
+    const ForecastRequest request{.history = life, .threshold = threshold, .now = month(60)};
+    const auto answer = panel->forecast(request);
+    ASSERT_FALSE(answer) << threshold;
+    EXPECT_THAT(answer.error().describe(), HasSubstr("must be above 0, at most 1"));
+    for (const std::string& method : forecast_methods()) {
+      const auto forecaster = make_forecaster({method, 36}).value();
+      EXPECT_FALSE(forecaster->predict(request)) << method << " at " << threshold;
+      EXPECT_FALSE(forecaster->forecast(request)) << method << " at " << threshold;
+    }
+  }
 }
 
 }  // namespace

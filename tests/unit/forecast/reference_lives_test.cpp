@@ -38,8 +38,10 @@ Outcome forecast_lives(const ForecasterSettings& settings, double rul_months) {
     life.resize(tests);
     std::mt19937_64 random(seed);
     life = test::with_noise(life, kNoise, random);
-    const Forecast f = forecaster->forecast(
-        {.history = life, .threshold = 0.6, .now = life.back().time, .installed = test::kInstalled});
+    const Forecast f =
+        forecaster
+            ->forecast({.history = life, .threshold = 0.6, .now = life.back().time, .installed = test::kInstalled})
+            .value();
     if (f.state != ForecastState::ok) continue;
     const double left = end - static_cast<double>(tests);
     ++outcome.forecasts;

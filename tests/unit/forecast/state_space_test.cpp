@@ -36,7 +36,7 @@ Cut cut(std::uint64_t seed, const std::string& scenario, double months_before_en
 }
 
 Forecast ask(const std::string& method, const ForecastRequest& request) {
-  return make_forecaster({method, kWholeLife_months}).value()->forecast(request);
+  return make_forecaster({method, kWholeLife_months}).value()->forecast(request).value();
 }
 
 // Without noise the law is a sum: theta(n) = 1 - sum (g + mu k) ln((k + 1)/k).
@@ -108,7 +108,7 @@ TEST(StateSpace, DistributionAndMessageAgree) {
   const Cut life = cut(4, "reference", 24.0);
   ForecastRequest request = life.request;
   request.horizons = {{"campaign", add_months(request.now, 20.0)}};
-  const auto predicted = make_forecaster({"state_space", kWholeLife_months}).value()->predict(request);
+  const auto predicted = make_forecaster({"state_space", kWholeLife_months}).value()->predict(request).value();
   ASSERT_TRUE(predicted.distribution);
   EXPECT_EQ(predicted.forecast.rul_p10_months, predicted.distribution->quantile(0.10));
   EXPECT_NEAR(predicted.forecast.failure_probability.at(0).probability, predicted.distribution->cdf(20.0), 1e-9);
@@ -120,7 +120,7 @@ double mean_error(const std::string& scenario, const std::string& method, int wi
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= kLives; ++seed) {
     const Cut life = cut(seed, scenario, 24.0, 0.004);
-    const Forecast f = make_forecaster({method, window}).value()->forecast(life.request);
+    const Forecast f = make_forecaster({method, window}).value()->forecast(life.request).value();
     sum += std::abs(f.rul_months - life.left) / kLives;
   }
   return sum;

@@ -11,7 +11,7 @@ LifeRecord some_life() {
   record.end_of_life_months = 101.25;
   record.censored = true;
   record.tests = {{1.0, 0.99, true, 0.991, 0.001}, {2.0, 0.98, false, 0.0, 0.0}};
-  const RecordedAnswer answer{ForecastState::ok, 30.5F, 20.0F, 44.0F, 24.0F, 38.0F, 0.6F, 2.5F};
+  const RecordedAnswer answer{ForecastState::ok, 30.5F, 20.0F, 44.0F, 24.0F, 38.0F, 0.6F, 2.5F, 0.7F};
   record.answers = {{answer, {}}, {{.state = ForecastState::past_threshold, .pit = 1.0F}, answer}};
   return record;
 }

@@ -12,7 +12,15 @@ constexpr int kTests = 60;
 
 RecordedAnswer answer(double rul, double half_width = 2.0) {
   const auto f = [](double value) { return static_cast<float>(value); };
-  return {ForecastState::ok, f(rul), f(rul - half_width), f(rul + half_width), f(rul - 1.0), f(rul + 1.0), 0.5F, 0.25F};
+  return {ForecastState::ok,
+          f(rul),
+          f(rul - half_width),
+          f(rul + half_width),
+          f(rul - 1.0),
+          f(rul + 1.0),
+          0.5F,
+          0.25F,
+          0.75F};
 }
 
 /// A life of 60 tests that ends half a month after the last; methods: 2 months late, 8 months late, silent, oracle (1
@@ -86,6 +94,27 @@ TEST(Summary, OfAnErrorBeyondTheToleranceAndOfSilence) {
   EXPECT_NEAR(summary.methods[2].false_negative.value, 1.0, 1e-12);
   EXPECT_TRUE(summary.methods[2].worst.empty());
   EXPECT_EQ(summary.methods[1].worst.size(), 5U);
+}
+
+// Judged at half of the way from the first number on; every forecast gives 0.75 to what alpha-lambda tolerates.
+TEST(Summary, AlphaLambdaAsProbabilityMass) {
+  const Summary summary = summary_of(10);
+  EXPECT_NEAR(summary.methods[0].alpha_lambda_mass.value, 0.75, 1e-7);
+  EXPECT_EQ(summary.methods[0].alpha_lambda_by_mass.count, 10);
+  EXPECT_EQ(summary.methods[2].alpha_lambda_mass.value, 0.0);  // silence
+  EXPECT_EQ(summary.methods[2].alpha_lambda_by_mass.count, 0);
+  EXPECT_EQ(summary.methods[2].alpha_lambda_by_mass.of, 10);
+  // Only the judged month counts: with the first number at month 1 and the end at 60.5 that is month 30.
+  const auto read = [](int spoiled) {
+    return [spoiled](std::uint32_t k) -> Result<LifeRecord> {
+      LifeRecord record = life(k);
+      record.answers[0][static_cast<std::size_t>(spoiled - 1)].mass_within_alpha = 0.25F;
+      return record;
+    };
+  };
+  EXPECT_EQ(summarise(4, kLabels, read(30)).value().methods[0].alpha_lambda_by_mass.count, 0);
+  EXPECT_EQ(summarise(4, kLabels, read(29)).value().methods[0].alpha_lambda_by_mass.count, 4);
+  EXPECT_EQ(summarise(4, kLabels, read(31)).value().methods[0].alpha_lambda_by_mass.count, 4);
 }
 
 TEST(Summary, IntervalsAreThoseOfTheLives) {

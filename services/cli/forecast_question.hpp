@@ -1,0 +1,40 @@
+// What `sealwatch forecast` is asked: the history, its seal's threshold, the dates and what failing costs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/site_decision.hpp"
+#include "sealwatch/forecast/decision.hpp"
+#include "sealwatch/forecast/forecaster.hpp"
+#include "services/cli/commands.hpp"
+
+namespace sealwatch::cli {
+
+struct ForecastQuestion {
+  forecast::ForecastRequest request;
+  std::string asset_id;   ///< "" without an asset file
+  std::size_t tests = 0;  ///< of the whole history
+  UtcTime first = {}, last = {};
+  std::vector<forecast::ConditionSample> vague = {};  ///< left out as the services would leave them out
+  std::size_t without_error = 0;                      ///< tests whose standard error is not known
+  std::vector<forecast::ForecasterSettings> forecasters = {};
+  std::optional<SiteCosts> costs = {};
+  double months_to_vessel = 12.0;  ///< from call to arrival
+};
+
+/// None when something is wrong; it is on standard error then.
+[[nodiscard]] std::optional<ForecastQuestion> forecast_question(const ForecastOptions& options);
+
+/// Whether the answer gives the probability of failure before a date.
+[[nodiscard]] bool tells_probability(const Forecast& forecast);
+
+/// Going now, at each date that was asked for, and waiting, by the forecaster in charge. Empty without its forecast.
+[[nodiscard]] std::vector<DecisionOption> decision_of(const ForecastQuestion& question,
+                                                      const forecast::ForecastPanel::Answer& answer);
+
+/// Expected costs as forecast/decision.hpp takes them.
+[[nodiscard]] forecast::InterventionCosts intervention_costs(const ForecastQuestion& question);
+
+}  // namespace sealwatch::cli

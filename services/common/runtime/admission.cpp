@@ -22,6 +22,8 @@ void Admission::note(const Message& message) {
 
 std::optional<std::string> Admission::refusal(const Message& message, UtcTime now) const {
   const Header& header = header_of(message);
+  if (topic_of(message) == Topic::maintenance_event && !header.event_time_known)
+    return "its time is not known, so it cannot part a history; report it again, with the time at which it happened";
   if (!is_report(message) || !header.event_time_known) return std::nullopt;
   std::int64_t latest = now.nanoseconds;
   if (const auto newest = newest_ns_.find(asset_of(message)); newest != newest_ns_.end())

@@ -341,6 +341,9 @@ TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo
   InMemoryBus sender(network_);
   ASSERT_TRUE(sender.publish(Message(event("slip of the year", now_ns + 365 * kDay_ns))));
   ASSERT_TRUE(sender.publish(Message(event("clock ahead", now_ns + kDay_ns / 2))));
+  MaintenanceEvent undated = event("some time or other", 0);
+  undated.header.event_time_known = false;
+  ASSERT_TRUE(sender.publish(Message(undated)));
   step(*process, 3);
   ASSERT_THAT(process->outputs(), SizeIs(1));
   EXPECT_EQ(header_of(process->outputs()[0]).message_id, "state_report/maintenance_event/clock ahead");

@@ -108,7 +108,8 @@ std::vector<Recommendation> calls(const Context& c) {
     call(AdvisoryPriority::urgent, AdvisoryAction::replace_now,
          "Replace the actuator now: it failed its partial stroke test repeatedly. " +
              capitalised(outlook(c.evidence.life)));
-    calls.back().latest_by = calls.back().work_before = start_of_day({c.evidence.life.header.event_time_ns});
+    if (const Header& test = c.evidence.life.header; test.event_time_known)
+      calls.back().latest_by = calls.back().work_before = start_of_day({test.event_time_ns});
   }
   if (a.verdict.failed)
     call(AdvisoryPriority::high, AdvisoryAction::repeat_test,

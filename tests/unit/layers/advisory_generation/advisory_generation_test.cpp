@@ -158,6 +158,18 @@ TEST_F(AdvisoryGenerationTest, AcknowledgementStaysUntilTheRecommendationChanges
   EXPECT_EQ(later.back().state, AdvisoryState::active);
 }
 
+TEST_F(AdvisoryGenerationTest, TestsOfUnknownTimeThatFailGiveNoDate) {
+  std::vector<TestCase> tests;
+  for (int month = 1; month <= 3; ++month)
+    tests.push_back({.month = static_cast<double>(month),
+                     .forecast = ForecastState::insufficient_history,
+                     .verdict = PstVerdict::failed,
+                     .time_known = false});
+  const Advisory advisory = advisories(inputs_of(tests)).back();
+  EXPECT_EQ(advisory.action, AdvisoryAction::replace_now);
+  EXPECT_FALSE(advisory.latest_by_known);
+}
+
 TEST_F(AdvisoryGenerationTest, AcknowledgingTwiceIsAcknowledgingOnce) {
   const auto before = inputs_of(life_until(60, 85, 100.0));
   const Advisory current = advisories(before).back();

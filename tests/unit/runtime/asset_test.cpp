@@ -78,7 +78,7 @@ const BadCase kBadCases[] = {
      "a.yaml: line 3, key physics[0].id: 'coulomb_fricton': is not a law of the catalogue; did you mean "
      "'coulomb_friction'?"},
     {"physics_parameters", "asset_id: A\nphysics:\n  - {id: coulomb_friction, element: piston, parameters: {F: 1}}\n",
-     "a.yaml: line 3, key physics[0].id: 'coulomb_friction': needs exactly the parameters F_c, v_s"},
+     "a.yaml: line 3, key physics[0].id: 'coulomb_friction': needs exactly the parameters F_c, v_s or F_c, v_s, m"},
     {"limits", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5, alarm: 3}}\n",
      "a.yaml: line 2, key alert_limits.hold_decay.warning: '5': must lie between advisory and alarm, 1 and 3"},
     {"limit_missing", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5}}\n",

@@ -8,11 +8,14 @@
 //   Gamma_max  the law, its constants, Gamma_max and every past theta without any error; gamma by Bayes' rule
 //   history    the law, its constants and every past theta without any error; gamma and Gamma_max by Bayes' rule.
 //              The median of the exact posterior has the least mean |error| of all functions of the history
+//   tests      the law, its constants and the estimates, theta +- 4.5e-4; theta, gamma and Gamma_max by Bayes' rule
 //   exact      fleet and state_space, given every past theta without any error
 //   estimated  the same, given theta +- 4.5e-4, the standard error of a test at 50 Hz
 //
 // Bayes' rule is a particle filter: given theta(n-1) and theta(n), Upsilon = fall / ln(...) - gamma is uniform, so that
-// a particle lives when it lies within the limits and dies otherwise; each particle then plays one future.
+// a particle lives when it lies within the limits and dies otherwise. Given an estimate, theta(n) is normal about it
+// and cut to what Upsilon's limits allow (the optimal proposal): drawn so, weighed by the mass within. Each particle
+// then plays one future.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,6 +23,7 @@
 #include <vector>
 
 #include "sealwatch/forecast/forecaster.hpp"
+#include "sealwatch/forecast/normal.hpp"
 #include "sealwatch/forecast/oracle.hpp"
 #include "services/virtual_bench/random.hpp"
 #include "tests/unit/forecast/lives.hpp"
@@ -40,6 +44,19 @@ double step_of(double month) { return std::log((month + kLaw.n_0) / (month - 1.0
 struct Particle {
   double gamma, limit;
 };
+
+/// Months until failure in one future that the law allows.
+double one_future(UniformRandom& random, Particle particle, double month, double condition) {
+  double months = 0.0;
+  while (true) {
+    particle.gamma += random.between(0.0, particle.limit);
+    const double upsilon = random.between(kLaw.irregularity.min, kLaw.irregularity.max);
+    const double fall = (particle.gamma + upsilon) * step_of(month + months + 1.0);
+    if (condition - fall <= kThreshold) return months + (condition - kThreshold) / fall;
+    condition -= fall;
+    months += 1.0;
+  }
+}
 
 class HistoryFilter {
  public:
@@ -72,25 +89,13 @@ class HistoryFilter {
   /// Median of the months until failure.
   double median(double month, double condition) {
     std::vector<double> lives;
-    for (const Particle& particle : particles_) lives.push_back(one_future(particle, month, condition));
+    for (const Particle& particle : particles_) lives.push_back(one_future(random_, particle, month, condition));
     const auto middle = lives.begin() + static_cast<std::ptrdiff_t>(lives.size() / 2);
     std::nth_element(lives.begin(), middle, lives.end());
     return *middle;
   }
 
  private:
-  double one_future(Particle particle, double month, double condition) {
-    double months = 0.0;
-    while (true) {
-      particle.gamma += random_.between(0.0, particle.limit);
-      const double upsilon = random_.between(kLaw.irregularity.min, kLaw.irregularity.max);
-      const double fall = (particle.gamma + upsilon) * step_of(month + months + 1.0);
-      if (condition - fall <= kThreshold) return months + (condition - kThreshold) / fall;
-      condition -= fall;
-      months += 1.0;
-    }
-  }
-
   UniformRandom random_;
   std::vector<Particle> particles_;
 };
@@ -119,6 +124,59 @@ void score(Errors& errors, LastYear& year, const Now& now, double forecast) {
   year.sum += error;
   ++year.months;
 }
+
+/// As HistoryFilter, but of estimates with a standard error: theta is a part of the particle.
+class TestFilter {
+ public:
+  explicit TestFilter(std::uint64_t seed) : random_(seed) {
+    for (int k = 0; k < kParticles; ++k)
+      particles_.push_back({1.0, random_.between(kLaw.initial_gamma.min, kLaw.initial_gamma.max),
+                            random_.between(kLaw.steepening_limit.min, kLaw.steepening_limit.max)});
+  }
+
+  void observe(double month, double estimate) {
+    const double step = step_of(month);
+    std::vector<double> weights;
+    double sum = 0.0;
+    for (State& state : particles_) {
+      state.gamma += random_.between(0.0, state.limit);
+      const double low = state.condition - (state.gamma + kLaw.irregularity.max) * step;
+      const double high = state.condition - (state.gamma + kLaw.irregularity.min) * step;
+      const double from = normal_probability((low - estimate) / kEstimateStd);
+      const double to = normal_probability((high - estimate) / kEstimateStd);
+      weights.push_back(std::max(to - from, 0.0));
+      sum += weights.back();
+      const double drawn = std::clamp(from + (to - from) * random_.unit(), 1e-12, 1.0 - 1e-12);
+      state.condition = std::clamp(estimate + kEstimateStd * normal_quantile(drawn), low, high);
+    }
+    std::vector<State> next;  // systematic resampling
+    double reached = 0.0;
+    const double offset = random_.unit();
+    for (std::size_t k = 0; k < particles_.size(); ++k) {
+      reached += weights[k] / sum * kParticles;
+      while (static_cast<double>(next.size()) + offset < reached) next.push_back(particles_[k]);
+    }
+    particles_ = std::move(next);
+  }
+
+  double median(double month) {
+    std::vector<double> lives;
+    for (const State& state : particles_)
+      lives.push_back(state.condition <= kThreshold
+                          ? 0.0
+                          : one_future(random_, {state.gamma, state.limit}, month, state.condition));
+    const auto middle = lives.begin() + static_cast<std::ptrdiff_t>(lives.size() / 2);
+    std::nth_element(lives.begin(), middle, lives.end());
+    return *middle;
+  }
+
+ private:
+  struct State {
+    double condition, gamma, limit;
+  };
+  UniformRandom random_;
+  std::vector<State> particles_;
+};
 
 double mean(const std::vector<double>& values) {
   double sum = 0.0;
@@ -149,9 +207,9 @@ struct Panel {
   }
 };
 
-constexpr std::array<const char*, 7> kNames{
-    "oracle",           "history and Gamma_max", "history", "fleet, exact", "state_space, exact",
-    "fleet, estimated", "state_space, estimated"};
+constexpr std::array<const char*, 8> kNames{
+    "oracle",       "history and Gamma_max", "history",          "tests",
+    "fleet, exact", "state_space, exact",    "fleet, estimated", "state_space, estimated"};
 
 std::vector<double> ask(const Panel& panel, const std::vector<ConditionSample>& history) {
   std::vector<double> answers;
@@ -177,6 +235,7 @@ void run_life(std::uint64_t seed, const Panel& panel, std::vector<Errors>& error
   const double end = static_cast<double>(states.size() - 2) + (before - kThreshold) / (before - seal.condition());
   if (end > 240.0) return;  // outlasts its service, as in the verification
   HistoryFilter history(seed + 1, 0.0), with_limit(seed + 2, seal.steepening_limit());
+  TestFilter tests(seed + 4);
   bench::NormalRandom noise(seed + 3);
   std::vector<ConditionSample> exact, estimated;
   std::vector<LastYear> year(kNames.size());
@@ -186,13 +245,14 @@ void run_life(std::uint64_t seed, const Panel& panel, std::vector<Errors>& error
     with_limit.observe(state.month, states[n - 1].condition, state.condition);
     exact.push_back({test::month(state.month), state.condition, 1e-6});
     estimated.push_back({test::month(state.month), state.condition + kEstimateStd * noise.next(), kEstimateStd});
+    tests.observe(state.month, estimated.back().condition);
     Now now{.month = state.month, .left = end - state.month, .lead = -1, .last_year = end - state.month <= 12.0};
     for (std::size_t h = 0; h < kLeads.size(); ++h)
       if (now.left > kLeads[h] - 0.5 && now.left <= kLeads[h] + 0.5) now.lead = static_cast<int>(h);
     if (now.lead < 0 && !now.last_year) continue;
     std::vector<double> answers{oracle_distribution(state, kThreshold, kLaw).value().quantile(0.5),
                                 with_limit.median(state.month, state.condition),
-                                history.median(state.month, state.condition)};
+                                history.median(state.month, state.condition), tests.median(state.month)};
     for (const auto* samples : {&exact, &estimated})
       for (const double answer : ask(panel, *samples)) answers.push_back(answer);
     for (std::size_t k = 0; k < answers.size(); ++k) score(errors[k], year[k], now, answers[k]);

@@ -72,14 +72,6 @@ std::vector<PlannedTrialTest> nominal_tests(int count, forecast::UniformRandom& 
   return tests;
 }
 
-/// Out only, never back: friction and load push the same way all the time.
-void choose_one_way(TrialPlan& plan, forecast::UniformRandom& random) {
-  plan.fit.clear();
-  for (const double speed : {0.8e-3, 1.1e-3, 1.33e-3, 1.6e-3})
-    plan.fit.push_back({moves(0.036, speed, {0.020}, 8.0), random.between(-0.2, 0.2)});
-  plan.holdout = {{moves(0.036, 1.0e-3, {0.020}, 8.0), 0.24}, {moves(0.038, 1.5e-3, {0.020}, 8.0), -0.25}};
-}
-
 std::vector<double> sample_times(double duration_s, double jitter, std::uint64_t seed) {
   constexpr double kPeriod_s = 0.01;
   forecast::UniformRandom random(sub_seed(seed, "jitter"));
@@ -94,12 +86,7 @@ std::vector<double> sample_times(double duration_s, double jitter, std::uint64_t
 
 /// Fault, coloured noise, rounding.
 Series measured(const std::string& channel, std::vector<double> values, const TrialPlan& plan, std::uint64_t seed) {
-  double gain = 1.0, bias = 0.0;
-  for (const SensorFault& fault : plan.faults)
-    if (fault.channel == channel) {
-      if (fault.kind == "sensor_gain") gain += fault.size;
-      if (fault.kind == "sensor_bias") bias += fault.size;
-    }
+  const auto [gain, bias] = fault_of(plan, channel);
   TrialNoise noise;
   if (const auto own = plan.noise.find(channel); own != plan.noise.end()) noise = own->second;
   NormalRandom normal(sub_seed(seed, channel));
@@ -123,15 +110,7 @@ std::string_view unit_of(const std::string& channel) {
 }
 
 Result<Recording> record(const TrialPlan& plan, const PlannedTrialTest& planned, std::string name) {
-  TruthTest test{.parameters = plan.parameters, .effects = plan.effects};
-  test.parameters.load *= 1.0 + planned.load_factor;
-  for (const std::string& channel : plan.channels) {
-    TruthSensor sensor{.channel = channel};
-    if (const UsualSensor* own = usual(channel)) sensor.time_constant_s = own->time_constant_s;
-    for (const SensorFault& fault : plan.faults)
-      if (fault.channel == channel && fault.kind == "sensor_lag") sensor.extra_lag_s = fault.size;
-    test.sensors.push_back(std::move(sensor));
-  }
+  const TruthTest test = truth_test(plan, planned);
   Recording recording;
   recording.file = name + ".csv";
   recording.recording_id = std::move(name);
@@ -154,6 +133,29 @@ double usual_noise(const std::string& channel) {
   return sensor == nullptr ? 0.0 : sensor->noise;
 }
 
+GainAndBias fault_of(const TrialPlan& plan, const std::string& channel) {
+  GainAndBias own;
+  for (const SensorFault& fault : plan.faults)
+    if (fault.channel == channel) {
+      if (fault.kind == "sensor_gain") own.gain += fault.size;
+      if (fault.kind == "sensor_bias") own.bias += fault.size;
+    }
+  return own;
+}
+
+TruthTest truth_test(const TrialPlan& plan, const PlannedTrialTest& planned) {
+  TruthTest test{.parameters = plan.parameters, .effects = plan.effects};
+  test.parameters.load *= 1.0 + planned.load_factor;
+  for (const std::string& channel : plan.channels) {
+    TruthSensor sensor{.channel = channel};
+    if (const UsualSensor* own = usual(channel)) sensor.time_constant_s = own->time_constant_s;
+    for (const SensorFault& fault : plan.faults)
+      if (fault.channel == channel && fault.kind == "sensor_lag") sensor.extra_lag_s = fault.size;
+    test.sensors.push_back(std::move(sensor));
+  }
+  return test;
+}
+
 void choose_channels(TrialPlan& plan) {
   plan.channels = {"motor_voltage", "motor_current", "shaft_speed", "pressure_a",
                    "pressure_b",    "flow",          "position",    "velocity"};
@@ -165,7 +167,7 @@ void choose_channels(TrialPlan& plan) {
 
 void choose_conditions(TrialPlan& plan, std::uint64_t own) {
   forecast::UniformRandom random(sub_seed(own, "conditions"));
-  if (plan.fit.empty()) choose_wide(plan, random);
+  choose_wide(plan, random);
   if (plan.stratum == TrialStratum::concealed) {
     const std::vector<PlannedTrialTest> first = nominal_tests(2, random);
     plan.fit[0] = first[0];
@@ -193,23 +195,6 @@ void choose_noise(TrialPlan& plan, std::uint64_t own) {
     if (rounded && draw > 0.5) noise.quantum = step * sigma;
     plan.noise[channel] = noise;
   }
-}
-
-void hide_inseparable(TrialPlan& plan, double times_barely) {
-  const bool second = (plan.seed / 2) % 2 == 1;
-  forecast::UniformRandom random(sub_seed(plan.seed, "inseparable"));
-  if (plan.seed % 2 == 0) {  // pump slip against seal leakage, no pressure and no flow recorded
-    plan.channels = {"motor_voltage", "motor_current", "shaft_speed", "position", "velocity"};
-    plan.effects.push_back(effect_named(second ? "turbulent_seal_leakage" : "turbulent_pump_slip", "transition", 0,
-                                        times_barely, plan.seed));
-    plan.twin = second ? "turbulent_pump_slip pump" : "turbulent_seal_leakage piston_seal";
-    return;
-  }
-  // Dry friction against load, never a reversal.
-  plan.effects.push_back(effect_named(second ? "coulomb_friction" : "pressure_dependent_friction",
-                                      second ? "arctangent" : "lip_seals", 0, times_barely, plan.seed));
-  plan.twin = second ? "pressure_dependent_friction piston" : "coulomb_friction piston";
-  choose_one_way(plan, random);
 }
 
 Result<TrialRecordings> record_trial(const TrialPlan& plan) {

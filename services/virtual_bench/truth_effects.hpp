@@ -81,6 +81,8 @@ struct EffectForm {
 [[nodiscard]] std::span<const EffectForm> hydraulic_effects();
 [[nodiscard]] std::span<const EffectForm> electric_effects();
 [[nodiscard]] std::span<const EffectForm> unlisted_effects();
+/// What only inseparable pairs hide.
+[[nodiscard]] std::span<const EffectForm> twin_effects();
 
 /// Sign functions of dry friction, rounded over the width w.
 [[nodiscard]] double arctangent_sign(double v, double w);

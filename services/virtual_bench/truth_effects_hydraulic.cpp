@@ -47,6 +47,12 @@ double pump_carry(const TruthSignals& at, const HiddenEffect& e, double, TruthAd
   return 0.0;
 }
 
+// q = k omega: each turn delivers less than it sweeps
+double pump_carry_back(const TruthSignals& at, const HiddenEffect& e, double, TruthAdditions& out) {
+  out.pump_slip_m3_s += e.size * at.shaft_speed;
+  return 0.0;
+}
+
 // dp = R q (1 + s |q| / q_u): pipe with entrance loss. The size is the drop at q_u.
 double line_with_entrance(const TruthSignals&, const HiddenEffect& e, double, TruthAdditions& out) {
   out.line[e.side] = {.laminar = e.size / kUsualFlow_m3_s,
@@ -222,8 +228,18 @@ constexpr std::array kEffects = {
                .act = &oil_thinning},
 };
 
+constexpr std::array kTwins = {EffectForm{.id = "speed_dependent_pump_slip",
+                                          .form = "carry_back",
+                                          .element = "pump",
+                                          .unit = "m3/rad",
+                                          .barely = 4e-12,
+                                          .largest = 4e-9,
+                                          .strength = "k_d",
+                                          .act = &pump_carry_back}};
+
 }  // namespace
 
 std::span<const EffectForm> hydraulic_effects() { return kEffects; }
+std::span<const EffectForm> twin_effects() { return kTwins; }
 
 }  // namespace sealwatch::bench

@@ -127,8 +127,17 @@ class Loop {
   }
 
   [[nodiscard]] ControllerOutput command(double t, const TruthState& y, const double* scaled) const {
+    if (t >= 0.0 && !test_.command_V.empty()) return {.voltage_V = replayed(t)};
     const double reference = reference_m_ + speed_m_s_ * (t - from_s_);
     return controller_(reference, y[kPosition], y[kSpeed], scaled[kIntegral] * usual_[kIntegral]);
+  }
+
+  [[nodiscard]] double replayed(double t) const {
+    const std::vector<double>& command = test_.command_V;
+    const double at = t / test_.command_step_s;
+    const auto k = static_cast<std::size_t>(at);
+    if (k + 1 >= command.size()) return command.back();
+    return command[k] + (at - static_cast<double>(k)) * (command[k + 1] - command[k]);
   }
 
   [[nodiscard]] TruthAdditions additions(double t, const TruthState& y, double command_V, const double* scaled,

@@ -46,6 +46,9 @@ struct TruthTest {
   ControllerSetting controller = {};
   double settling_time_s = 20.0;
   double tolerance = 1e-6;
+  /// From time 0 on the driver's command, linear between these; empty: the controller's. [V]
+  std::vector<double> command_V = {};
+  double command_step_s = 0.02;
 };
 
 /// What each sensor shows at each of `times_s` (increasing, from 0, within the profile), without noise.

@@ -40,20 +40,6 @@ const std::vector<Place>& listed_places() {
   return places;
 }
 
-/// Forms that free parameters of the model swallow in nominal tests.
-const std::vector<Place>& swallowed_places() {
-  static const std::vector<Place> places = [] {
-    std::vector<Place> found;
-    for (const Place& place : listed_places())
-      for (const std::string_view id :
-           {"turbulent_pump_slip", "turbulent_seal_leakage", "external_leakage", "entrained_air", "quadratic_drag",
-            "hose_compliance", "torque_saturation", "speed_dependent_pump_slip"})
-        if (place.form->id == id && place.side == 0) found.push_back(place);
-    return found;
-  }();
-  return places;
-}
-
 HiddenEffect draw_effect(const Place& place, double times_barely, forecast::UniformRandom& random) {
   HiddenEffect effect{.form = place.form,
                       .element = std::string(place.side == 0 ? place.form->element : place.form->other_element),
@@ -105,7 +91,6 @@ SensorFault draw_fault(std::uint64_t seed, const std::vector<std::string>& chann
 void hide(TrialPlan& plan, forecast::UniformRandom& random) {
   const std::uint64_t seed = plan.seed;
   const auto plainly = std::span(kTimesBarely).subspan(3);
-  const auto medium = std::span(kTimesBarely).subspan(1, 3);
   switch (plan.stratum) {
     case TrialStratum::null:
       return;
@@ -144,12 +129,14 @@ void hide(TrialPlan& plan, forecast::UniformRandom& random) {
       if (seed % 4 == 3) plan.faults.push_back(draw_fault(seed / 4, plan.channels));
       return;
     }
-    case TrialStratum::concealed:
+    case TrialStratum::concealed:  // half as many nominal tests as nominal_only has
+      hide_swallowed(plan, std::numbers::sqrt2, random);
+      return;
     case TrialStratum::nominal_only:
-      plan.effects.push_back(nth_effect(swallowed_places(), seed, medium, random));
+      hide_swallowed(plan, 1.0, random);
       return;
     case TrialStratum::inseparable:
-      hide_inseparable(plan, plainly[(seed / 4) % plainly.size()]);
+      hide_inseparable(plan, random);
       return;
   }
 }
@@ -168,15 +155,6 @@ TruthParameters draw_parameters(NormalRandom& normal) {
 }
 
 }  // namespace
-
-HiddenEffect effect_named(std::string_view id, std::string_view form, std::size_t side, double times_barely,
-                          std::uint64_t seed) {
-  forecast::UniformRandom random(sub_seed(seed, "effect"));
-  for (const Place& place : listed_places())
-    if (place.form->id == id && place.form->form == form && place.side == side)
-      return draw_effect(place, times_barely, random);
-  return {};
-}
 
 TrialPlan plan_trial(TrialStratum stratum, std::uint64_t seed) {
   TrialPlan plan;

@@ -44,6 +44,12 @@ struct SensorFault {
   double size = 0.0;  ///< channel's unit, 1, s
 };
 
+/// Another explanation.
+struct TruthRival {
+  std::vector<HiddenEffect> effects = {};
+  std::vector<SensorFault> faults = {};
+};
+
 struct PlannedTrialTest {
   Profile profile;
   double load_factor = 0.0;  ///< Phi
@@ -70,8 +76,9 @@ struct TrialPlan {
   std::vector<std::string> channels;
   double jitter = 0.0;  ///< share of the sampling period that a sample may be off
   std::vector<PlannedTrialTest> fit, holdout;
-  /// Inseparable sets: what the hidden effect cannot be told from, "id element".
+  /// Inseparable sets: what the hidden effect cannot be told from, "id element", and its physics of about that size.
   std::string twin;
+  TruthRival twin_physics;
 
   [[nodiscard]] std::vector<TrialTruth> truths() const;
   /// One line with everything that is hidden: what is sealed before the engine's thresholds are frozen.

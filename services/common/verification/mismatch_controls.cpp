@@ -7,6 +7,7 @@
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/verification/sparse_regression.hpp"
 
 namespace sealwatch::verification {
 namespace {
@@ -97,7 +98,22 @@ class Controls {
     for (LawStart& start : mismatch::ranked_laws(screening, kBicRefits)) singles.push_back({std::move(start)});
     const std::vector<Trial> trials = mismatch::refit({{}, baseline_}, singles, fit_, threads_);
     choose_by_bic(trials);
-    fit_oracle(screening);
+    regress(screening);
+    const auto truths = plan_.truths();
+    const bool listed =
+        std::ranges::none_of(truths, [](const bench::TrialTruth& truth) { return truth.id == mismatch::kUnlisted; });
+    if (listed) return fit_oracle(screening);
+    const auto closed_forms = mismatch::screen(*baseline_, fit_, {.threads = threads_, .unlisted = true});
+    if (closed_forms) fit_oracle(*closed_forms);
+  }
+
+  void regress(const Screening& screening) {
+    const std::vector<SparseTerm> kept = sparse_regression(asset_, fit_, screening.candidates);
+    control_.sparse_terms = static_cast<int>(kept.size());
+    if (kept.empty()) return;
+    control_.sparse_id = kept.front().id;
+    control_.sparse_element = kept.front().element;
+    control_.sparse_gain = kept.front().gain;
   }
 
   void choose_by_bic(const std::vector<Trial>& trials) {
@@ -110,13 +126,14 @@ class Controls {
     }
   }
 
-  /// The true laws' best forms, refitted; for two laws every form of the one with the first of the other.
+  /// The true laws' best forms, refitted; for two laws every form of the one with the first of the other. For physics
+  /// without a name the best closed form at its element.
   void fit_oracle(const Screening& screening) {
     const std::vector<bench::TrialTruth> truths = plan_.truths();
     std::vector<std::vector<LawStart>> tried;
     for (const bench::TrialTruth& truth : truths) {
       const std::vector<LawStart> starts = starts_of(truth, screening);
-      if (starts.empty()) return;  // a law without a name
+      if (starts.empty()) return;
       if (tried.empty()) {
         for (const LawStart& start : starts) tried.push_back({start});
       } else {

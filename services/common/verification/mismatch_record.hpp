@@ -55,7 +55,11 @@ struct ControlRecord {
   std::string bic_id = {},
               bic_element = {};  ///< single law of the lowest BIC; "" when the model as it is has the lowest
   double bic_gain = 0.0;         ///< BIC of the model as it is less that of the best single law
-  bool oracle_fitted = false;    ///< the true laws (nearest of the catalogue) could be refitted
+  std::string sparse_id = {},
+              sparse_element = {};  ///< of the sparse regression's largest term; "" where nothing was kept
+  int sparse_terms = 0;
+  double sparse_gain = 0.0;    ///< by which its balance's BIC grows without it
+  bool oracle_fitted = false;  ///< the true laws (nearest of the catalogue) could be refitted
   std::string oracle_form = {}, oracle_strength = {};
   double oracle_value = 0.0;
   double oracle_misfit = 0.0;
@@ -66,9 +70,10 @@ struct ControlRecord {
   bool nominal_checked = false;
   double nominal_chi_square_p = 0.0, nominal_whiteness_p = 0.0, nominal_nrmse = 0.0;
   double seconds = 0.0;
-  SEALWATCH_FIELDS(ControlRecord, known, misfit, degrees, chi_square_p, bic_id, bic_element, bic_gain, oracle_fitted,
-                   oracle_form, oracle_strength, oracle_value, oracle_misfit, oracle_held, minimum_detectable, absorbed,
-                   nominal_checked, nominal_chi_square_p, nominal_whiteness_p, nominal_nrmse, seconds)
+  SEALWATCH_FIELDS(ControlRecord, known, misfit, degrees, chi_square_p, bic_id, bic_element, bic_gain, sparse_id,
+                   sparse_element, sparse_terms, sparse_gain, oracle_fitted, oracle_form, oracle_strength, oracle_value,
+                   oracle_misfit, oracle_held, minimum_detectable, absorbed, nominal_checked, nominal_chi_square_p,
+                   nominal_whiteness_p, nominal_nrmse, seconds)
 };
 
 struct MismatchRecord {

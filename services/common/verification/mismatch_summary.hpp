@@ -3,7 +3,8 @@
 //   detected      p <= 0.01
 //   element top-1, law top-1    the most probable effect that was found sits there, is that law
 //   law in set    the law is the one that was found, or among those that the answer says cannot be told from it
-//   renamed       an `unlisted` truth that a listed law was claimed for
+//   renamed       an `unlisted` truth that a listed law was claimed for; an error where it misses the held-out
+//                 recordings by more than 2 % above the best closed form at the true element (the oracle)
 //   strength      within 1.96 standard errors of the truth, where a strength of the catalogue means the same
 //   held-out      rms of the held-out recordings over the oracle's
 //
@@ -32,18 +33,22 @@ struct TrialTally {
   int sets = 0, errors = 0;
   int consistent = 0, mismatch = 0, undetermined = 0;
   CountedShare detected = {}, claimed = {}, element_first = {}, law_first = {}, law_in_set = {}, all_named = {},
-               renamed = {}, twin_in_set = {};
+               renamed = {}, renamed_worse = {}, renamed_as_good = {}, twin_in_set = {}, twins_left_open = {};
   CountedShare strength_within = {}, held_within_2_percent = {};
   double set_size = 0.0;          ///< mean, of those with something found
   double held_over_oracle = 0.0;  ///< median
   double held_before_over_oracle = 0.0;
   CountedShare chi_square_detected = {}, bic_detected = {}, bic_element_first = {}, bic_law_first = {};
+  CountedShare sparse_detected = {}, sparse_element_first = {}, sparse_law_first = {};
+  double sparse_terms = 0.0;                    ///< mean
   CountedShare concealed = {};                  ///< nominal tests alone pass chi-square, whiteness and NRMSE
   double seconds = 0.0, control_seconds = 0.0;  ///< mean
   SEALWATCH_FIELDS(TrialTally, name, sets, errors, consistent, mismatch, undetermined, detected, claimed, element_first,
-                   law_first, law_in_set, all_named, renamed, twin_in_set, strength_within, held_within_2_percent,
-                   set_size, held_over_oracle, held_before_over_oracle, chi_square_detected, bic_detected,
-                   bic_element_first, bic_law_first, concealed, seconds, control_seconds)
+                   law_first, law_in_set, all_named, renamed, renamed_worse, renamed_as_good, twin_in_set,
+                   twins_left_open, strength_within, held_within_2_percent, set_size, held_over_oracle,
+                   held_before_over_oracle, chi_square_detected, bic_detected, bic_element_first, bic_law_first,
+                   sparse_detected, sparse_element_first, sparse_law_first, sparse_terms, concealed, seconds,
+                   control_seconds)
 };
 
 /// Strength over the smallest that shows; 0 where it is not known.

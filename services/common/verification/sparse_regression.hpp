@@ -1,0 +1,40 @@
+// The field's usual alternative to the analysis (SINDy: Brunton, Proctor, Kutz, PNAS 113 (2016) 3932; with inputs and
+// measured states): nothing is simulated. Measured channels are smoothed and differentiated, each balance is written
+// with them, and what it leaves is regressed on the catalogue's laws.
+//
+//   residual of a balance = sum_k theta_k b_k + sum_j kappa_j l_j
+//
+//   winding     u - Omega w - L di/dt               b: i                    l: driver, winding
+//   shaft       T i - J dw/dt - alpha dp            b: w                    l: shaft
+//   pump        alpha w - q                         b: dp                   l: pump
+//   chamber A   q - A v                             b: V_A dp_A/dt, dp      l: outflow and compliance of A, seal
+//   piston      A dp - m dv/dt                      b: v, a load of each recording    l: piston
+//
+// dp = p_A - p_B stands for the ports' difference, which nobody measures. b are always in the model; l of the usual
+// shape, scaled to unit length, by sequentially thresholded least squares: all, drop what is below the threshold, solve
+// again; the threshold of the lowest BIC = N ln(RSS / N) + k ln N. Valves, chamber B and sensors have no balance of
+// measured channels alone and are not sought.
+//
+// What fools it: noise and smoothing stand in the regressors, balances miss what lies between port and chamber, samples
+// are counted as independent, so that it nearly always finds something (tests/unit/verification).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::verification {
+
+struct SparseTerm {
+  std::string id, element;
+  double strength = 0.0;  ///< in the law's unit
+  double gain = 0.0;      ///< by which the BIC of its balance grows without it
+};
+
+/// What was kept, largest gain first; empty also where no balance has all its channels.
+[[nodiscard]] std::vector<SparseTerm> sparse_regression(const AssetConfig& asset, const mismatch::Data& recordings,
+                                                        const std::vector<mismatch::Candidate>& candidates);
+
+}  // namespace sealwatch::verification

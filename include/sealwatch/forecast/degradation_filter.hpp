@@ -56,9 +56,9 @@ struct WeightedBelief {
 };
 
 /// Distribution of the months until theta <= threshold; all beliefs stand at the same time ("now"), ages may differ.
-/// Cut at `longest_months`.
-[[nodiscard]] PredictiveDistribution crossing_distribution(std::span<const WeightedBelief> beliefs,
-                                                           const DegradationLaw& law, double threshold,
-                                                           double longest_months);
+/// Cut at `longest_months`. An Error without a belief, or where a belief or the threshold is no number.
+[[nodiscard]] Result<PredictiveDistribution> crossing_distribution(std::span<const WeightedBelief> beliefs,
+                                                                   const DegradationLaw& law, double threshold,
+                                                                   double longest_months);
 
 }  // namespace sealwatch::forecast

@@ -1,7 +1,6 @@
 #include "sealwatch/forecast/degradation_filter.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "sealwatch/forecast/normal.hpp"
@@ -159,9 +158,9 @@ void observe(SealBelief& belief, double condition, double condition_std) {
   ++belief.tests;
 }
 
-PredictiveDistribution crossing_distribution(std::span<const WeightedBelief> beliefs, const DegradationLaw& law,
-                                             double threshold, double longest_months) {
-  assert(!beliefs.empty());
+Result<PredictiveDistribution> crossing_distribution(std::span<const WeightedBelief> beliefs, const DegradationLaw& law,
+                                                     double threshold, double longest_months) {
+  if (beliefs.empty()) return fail("a forecast needs at least one belief about the seal");
   std::vector<HorizonTable> tables;
   std::vector<double> ages;
   std::vector<std::size_t> table_of;
@@ -195,9 +194,7 @@ PredictiveDistribution crossing_distribution(std::span<const WeightedBelief> bel
       if (steep) add(std::min(tables.front().between(row, share).months, longest_months), mixture(row, share));
     add(std::min(tables.front().between(row, 1.0).months, longest_months), probability);
   }
-  auto distribution = PredictiveDistribution::make(std::move(points));
-  assert(distribution);
-  return std::move(*distribution);
+  return PredictiveDistribution::make(std::move(points));  // refuses what is no number
 }
 
 }  // namespace sealwatch::forecast

@@ -16,6 +16,7 @@ Result<PredictiveDistribution> oracle_distribution(const TrueState& state, doubl
   if (!(state.month >= 0.0) || !std::isfinite(state.condition) || !std::isfinite(state.gamma) ||
       !(state.steepening_limit >= 0.0))
     return fail("the true state must be finite, at a month not before the installation");
+  if (!std::isfinite(threshold)) return fail("the threshold must be a number");
   if (state.condition <= threshold) return fail("the threshold is passed already");
   const double uniform_std = 1.0 / std::sqrt(12.0);  // of a width of one
   const DegradationLaw law{.n_0 = setting.n_0,

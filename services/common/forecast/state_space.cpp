@@ -164,7 +164,10 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
   const SealOpinion opinion = opinion_of(options_, request, opened, request.now);
   std::vector<WeightedBelief> beliefs;
   for (const SealHypothesis& hypothesis : opinion.hypotheses) beliefs.push_back({hypothesis.belief, hypothesis.weight});
-  PredictiveDistribution remaining = crossing_distribution(beliefs, opinion.law, request.threshold, kLongestMonths);
+  Result<PredictiveDistribution> crossing =
+      crossing_distribution(beliefs, opinion.law, request.threshold, kLongestMonths);
+  if (!crossing) return {say(forecast, ForecastState::no_significant_trend, crossing.error().describe())};
+  PredictiveDistribution& remaining = *crossing;
   const ConditionForecast now = condition_of(opinion, request.now);
   if (remaining.cdf(0.0) >= 0.5)
     return {say_past_threshold(forecast, request,

@@ -208,5 +208,19 @@ TEST(Oracle, IsCalibrated) {
   }
 }
 
+TEST(CrossingDistribution, WhatIsNoNumberIsAnError) {
+  WeightedBelief known;
+  known.belief = new_seal({});
+  grow_old(known.belief, {}, 24.0);
+  EXPECT_TRUE(crossing_distribution({&known, 1}, {}, 0.6, 600.0));
+  EXPECT_FALSE(crossing_distribution({}, {}, 0.6, 600.0));
+  EXPECT_FALSE(crossing_distribution({&known, 1}, {}, std::nan(""), 600.0));
+  known.belief.mean[0] = std::nan("");
+  EXPECT_FALSE(crossing_distribution({&known, 1}, {}, 0.6, 600.0));
+  const TrueState state{.month = 24.0, .condition = 0.9, .gamma = 0.04, .steepening_limit = 0.002};
+  EXPECT_TRUE(oracle_distribution(state, 0.6));
+  EXPECT_FALSE(oracle_distribution(state, std::nan("")));
+}
+
 }  // namespace
 }  // namespace sealwatch::forecast

@@ -205,8 +205,27 @@ class Analysis {
     return fewer;
   }
 
+  // Beside another law, one that could as well sit in three other elements says that something is left, not what.
+  void describe_what_was_found() {
+    constexpr std::size_t kAnywhere = 3;
+    while (!best_.effects.empty()) {
+      result_.effects = describe_effects(naming_, best_, prepared(fit_), options_);
+      const LawAt last = law_at(best_.effects.back());
+      const auto found = std::ranges::find_if(result_.effects, [&](const FoundEffect& effect) {
+        return effect.what.id == last.id && effect.what.element == last.element;
+      });
+      const bool anywhere = found != result_.effects.end() && found->same_elements.size() >= kAnywhere;
+      if (best_.effects.size() == 1 || !anywhere || excess(*best_.model) > kGross) return;
+      std::string note = "A remainder beyond the noise could sit at " + last.element;
+      for (const std::string& other : found->same_elements) note.append(" or at ").append(other);
+      result_.notes.push_back(note + " alike: no second law is claimed for it.");
+      best_ = without_last(best_);
+    }
+  }
+
   Status finish() {
     tell("writing down what was found", 0.9);
+    describe_what_was_found();
     const Trial before{{}, baseline_};
     for (std::size_t k = 0; k < fit_.samples.size(); ++k) {
       if (!windowed_) {
@@ -230,7 +249,6 @@ class Analysis {
     result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last,
                              baseline_->problem.recordings.front().simulation->plant());
     if (!best_.effects.empty()) {
-      result_.effects = describe_effects(naming_, best_, prepared(fit_), options_);
       result_.location = locate(result_.effects);
     } else if (result_.statistically_significant) {
       result_.location = locate_without_law(naming_.first);

@@ -15,6 +15,7 @@ constexpr std::size_t kSingles = 8;      // refits of single laws
 constexpr double kWorthRoughly = 2.0;    // criterion that a law must bring in a gross misfit
 constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid
 constexpr std::size_t kClosedForms = 5;  // refits of closed forms
+constexpr std::size_t kFormStarts = 3;   // and of each that bears the id of the law just added
 
 bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
 
@@ -127,9 +128,19 @@ Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOp
 
 namespace {
 
-// Start values of the law of an effect, or of one that contains it, at its usual size and on its shape's grid; with
-// `forms` also of the closed forms that bear its id.
-std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Screening& asked,
+// The closed form from where the law in its place ended (`term`): by name, else from its own grid.
+std::vector<double> from_fitted(const Candidate& form, const PhysicsTerm& term) {
+  std::vector<double> start = usual_size(form, 0);
+  for (std::size_t k = 0; k < start.size(); ++k)
+    if (const auto known = term.parameters.find(std::string(form.law->parameters[k].name));
+        known != term.parameters.end())
+      start[k] = known->second.value;
+  return start;
+}
+
+// Start values of the law of an effect, or of one that contains it, at its usual size and on its shape's grid, and of
+// the closed forms (`forms`) that bear its id, which also set out from the fitted law (`term`).
+std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
                                                 const std::vector<Candidate>& forms) {
   std::vector<std::vector<LawStart>> starts;
   for (const Variant* variant : by_gain(asked)) {
@@ -138,10 +149,12 @@ std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Scre
     if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
       starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
   }
-  for (const Candidate& form : forms)
-    if (form.law->id == effect.law->id && form.law != effect.law && form.element == effect.element)
-      for (std::size_t point = 0; point < form.grid.size(); ++point)
-        starts.push_back({{{form.law, effect.element}, usual_size(form, point)}});
+  for (const Candidate& form : forms) {
+    if (form.law->id != effect.law->id || form.law == effect.law || form.element != effect.element) continue;
+    starts.push_back({{{form.law, effect.element}, from_fitted(form, term)}});
+    for (std::size_t point = 0; point < std::min(form.grid.size(), kFormStarts); ++point)
+      starts.push_back({{{form.law, effect.element}, usual_size(form, point)}});
+  }
   return starts;
 }
 
@@ -158,7 +171,9 @@ Status from_other_shapes(Naming& naming, std::size_t before, const Screening& as
       find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
   std::vector<Trial> trials;
   for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
-    const auto starts = other_starts(naming.best.effects[added], asked, forms);
+    const auto& physics = naming.best.model->asset.physics;
+    const PhysicsTerm& term = physics[physics.size() - naming.best.effects.size() + added];
+    const auto starts = other_starts(naming.best.effects[added], term, asked, forms);
     for (Trial& trial : refit(naming.best, starts, data, options.threads, added)) trials.push_back(std::move(trial));
   }
   const double phi = smallest_dispersion(trials, *naming.best.model);

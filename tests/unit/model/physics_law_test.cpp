@@ -60,7 +60,7 @@ double slope_left_by_bends(const Law& law, const Point& point, std::size_t direc
 // Of the extrapolated differences, relative to the slope, beside the cancellation of values over the step.
 constexpr double kDifferenceError = 1e-5;
 constexpr double kRounding = 1e-13;
-constexpr double kNothing = 1e-200;  // the far end of a bell, where differences lose their digits
+constexpr double kNothing = 1e-100;  // the far end of a bell, where differences lose their digits
 
 void expect_slopes(const Law& law, const Point& point) {
   const LawOutput output = output_at(law, point);

@@ -239,7 +239,8 @@ std::string cost_words(const ForecastQuestion& question) {
            "and "
            "expected costs stand beside the probabilities.";
   const SiteCosts& costs = *question.costs;
-  std::string text = "Costs: planned " + number(costs.planned, 3) + ", after a failure " + number(costs.after_failure, 3);
+  std::string text =
+      "Costs: planned " + number(costs.planned, 3) + ", after a failure " + number(costs.after_failure, 3);
   text += ", a month with a failed valve " + number(costs.failed_month, 3) + ", a month of seal life thrown away " +
           number(costs.unused_month, 3);
   text += "; waiting for the failure counts " + number(question.months_to_vessel, 3) +

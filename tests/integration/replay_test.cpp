@@ -10,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "services/common/runtime/configuration_loader.hpp"
 #include "tests/integration/six_services.hpp"
 
 namespace sealwatch::testing {
@@ -88,6 +89,10 @@ TEST_F(Replay, ALateSubscriberGetsTheLastStateOfTheAsset) {
   const std::string last_test = result["assets"]["XT03-MV2"]["leakage_estimate"]["header"]["pst_id"];
   const StoredResults stored = stored_results("state");
   EXPECT_NE(stored.at("prognostic_assessment").back().first.find(last_test), std::string::npos) << last_test;
+  for (const std::string& service : service_names())
+    EXPECT_NE(file_text(state_directory("state") / "log" / (service + ".log")).find("pst=" + last_test),
+              std::string::npos)
+        << "the test can be followed through " << service;
   // A restarted writer serves later subscribers too: its journal is all it needs.
   ASSERT_EQ(kill(services.process_of("advisory_generation"), SIGKILL), 0);
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);

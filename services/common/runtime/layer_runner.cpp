@@ -20,10 +20,11 @@ constexpr std::size_t kBatch = 64;
 constexpr std::size_t kMostLater = 4;
 constexpr std::chrono::milliseconds kSecond{1000};
 
-/// Samples come many times a second; what is concluded from whole tests comes once a month.
+/// Samples come many times a second; a test begins and ends, and is concluded from, once a month.
 LogLevel level_of(const Message& message) {
-  const Topic topic = topic_of(message);
-  return topic == Topic::raw_samples || topic == Topic::sample_block ? LogLevel::debug : LogLevel::info;
+  if (const auto* block = std::get_if<SampleBlock>(&message))
+    return block->boundary == BlockBoundary::inside ? LogLevel::debug : LogLevel::info;
+  return topic_of(message) == Topic::raw_samples ? LogLevel::debug : LogLevel::info;
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ void choose_noise(TrialPlan& plan, std::uint64_t own);
 
 /// Sets channels, the hidden physics and its twin.
 void hide_inseparable(TrialPlan& plan, forecast::UniformRandom& random);
-/// Sets channels and an effect that the free parameters swallow in nominal tests; `most` multiplies its size.
-void hide_swallowed(TrialPlan& plan, double most, forecast::UniformRandom& random);
+/// Sets channels and an effect that the free parameters swallow in nominal tests.
+void hide_swallowed(TrialPlan& plan, forecast::UniformRandom& random);
 
 }  // namespace sealwatch::bench

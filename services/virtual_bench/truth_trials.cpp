@@ -129,11 +129,9 @@ void hide(TrialPlan& plan, forecast::UniformRandom& random) {
       if (seed % 4 == 3) plan.faults.push_back(draw_fault(seed / 4, plan.channels));
       return;
     }
-    case TrialStratum::concealed:  // half as many nominal tests as nominal_only has
-      hide_swallowed(plan, std::numbers::sqrt2, random);
-      return;
+    case TrialStratum::concealed:
     case TrialStratum::nominal_only:
-      hide_swallowed(plan, 1.0, random);
+      hide_swallowed(plan, random);
       return;
     case TrialStratum::inseparable:
       hide_inseparable(plan, random);

@@ -84,13 +84,13 @@ report::Plot last_year_plot(const std::vector<ScenarioSummary>& scenarios, std::
                     .x = {},
                     .y = {.label = "months", .unit = "1"},
                     .marks = {},
-                    .width = 480,
-                    .height = 190,
+                    .width = 980,
+                    .height = 150,
                     .legend = false};
   for (const ScenarioSummary& one : scenarios) {
     const Figure f = figure(one.summary.methods[method].last_year_error);
     const auto place = static_cast<double>(plot.x.categories.size());
-    plot.x.categories.push_back(report::words_of(one.scenario).substr(0, 9));
+    plot.x.categories.push_back(report::words_of(one.scenario));
     if (!f.known) continue;
     marks.x.push_back(place);
     marks.y.push_back(f.value);
@@ -154,8 +154,7 @@ std::string scenario_page(const std::vector<ScenarioSummary>& scenarios) {
     plots.append("<div>").append(report::to_svg(last_year_plot(scenarios, method))).append("</div>");
   return report::html_page("Forecasters under scenarios",
                            "<h1>Forecasters under scenarios</h1>" +
-                               report::section("One table", "<div class=\"scroll\">" + table.html() + "</div>" +
-                                                                report::paragraph(kLegend, "muted")) +
+                               report::section("One table", table.html() + report::paragraph(kLegend, "muted")) +
                                report::section("Mean error in the last year, months", plots + "</div>"));
 }
 

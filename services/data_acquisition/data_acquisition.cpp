@@ -1,5 +1,6 @@
 #include "services/data_acquisition/data_acquisition.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstdio>
 
@@ -11,6 +12,9 @@ namespace {
 constexpr Topic kInputs[] = {Topic::raw_samples};
 constexpr Topic kOutputs[] = {Topic::sample_block};
 constexpr const char* kProducer = "data_acquisition 0.1.0";
+/// Time passes tick by tick, about once a second. A clock that is set, forwards or backwards, ends no test that goes
+/// on.
+constexpr double kLongestTickSeconds = 5.0;
 
 /// What all blocks of one test share. Neither content nor block number: a block in the middle must be known by it.
 std::string identity(const std::string& asset_id, const std::string& source_id, const std::string& recording_id,
@@ -96,7 +100,7 @@ Conclusion DataAcquisition::receive(const Message& input) {
 void DataAcquisition::take_raw(const RawSamples& raw, Conclusion& conclusion) {
   Running* running = running_test(raw, conclusion);
   if (!running || running->test.seen(raw.block_number)) return;
-  running->idle_since.reset();
+  running->silent_s = 0.0;
   SampleBlock block = stamp(raw, running->pst_id);
   running->test.complete(raw, block);
   if (ends(block.boundary)) finish(raw.asset_id);
@@ -151,9 +155,11 @@ void DataAcquisition::finish(const std::string& asset_id) {
 Conclusion DataAcquisition::tick(UtcTime now) {
   Conclusion conclusion;
   std::vector<std::string> silent;
+  const double passed_s = last_tick_ ? std::clamp(seconds_between(*last_tick_, now), 0.0, kLongestTickSeconds) : 0.0;
+  last_tick_ = now;
   for (auto& [asset_id, running] : running_) {
-    if (!running.idle_since) running.idle_since = now;
-    if (seconds_between(*running.idle_since, now) >= options_.time_out_s) silent.push_back(asset_id);
+    running.silent_s += passed_s;
+    if (running.silent_s >= options_.time_out_s) silent.push_back(asset_id);
   }
   char reason[80];
   std::snprintf(reason, sizeof reason, "cut: no samples for %.0f s", options_.time_out_s);

@@ -38,7 +38,7 @@ class DataAcquisition final : public Layer {
     std::string pst_id;
     std::string identity;
     OpenTest test;
-    std::optional<UtcTime> idle_since;  ///< first tick after the last block; decides when, never what
+    double silent_s = 0.0;  ///< ticked since the last block; decides when, never what
   };
   void take_raw(const RawSamples& raw, Conclusion& conclusion);
   Running* running_test(const RawSamples& raw, Conclusion& conclusion);
@@ -49,6 +49,7 @@ class DataAcquisition final : public Layer {
 
   std::vector<AssetConfig> assets_;
   DataAcquisitionOptions options_;
+  std::optional<UtcTime> last_tick_;
   std::map<std::string, Running> running_;     ///< by asset
   std::set<std::string> finished_;             ///< PST ids
   std::set<std::string> finished_identities_;  ///< what blocks without a content hash are known by

@@ -146,19 +146,36 @@ TEST(DataAcquisition, ATestThatFallsSilentIsClosedByTime) {
   const std::vector<RawSamples> raw = blocks_of(recording());
   UtcTime now{1'000'000'000};
   EXPECT_TRUE(layer.tick(now).outputs.empty());
+  const auto pass = [&](int seconds) {
+    Conclusion conclusion;
+    for (int k = 0; k < seconds && conclusion.outputs.empty(); ++k)
+      conclusion = layer.tick(now = add_seconds(now, 1.0));
+    return conclusion;
+  };
   send(layer, {raw.begin(), raw.begin() + 3});
-  EXPECT_TRUE(layer.tick(now).outputs.empty());
-  now = add_seconds(now, 59.0);
-  EXPECT_TRUE(layer.tick(now).outputs.empty());
+  EXPECT_TRUE(pass(59).outputs.empty());
   send(layer, {raw[3]});  // it lives
-  EXPECT_TRUE(layer.tick(now = add_seconds(now, 2.0)).outputs.empty());
-  const Conclusion conclusion = layer.tick(add_seconds(now, 61.0));
+  EXPECT_TRUE(pass(2).outputs.empty());
+  const Conclusion conclusion = pass(60);
   ASSERT_EQ(conclusion.outputs.size(), 1U);
   const auto& block = std::get<SampleBlock>(conclusion.outputs[0]);
   EXPECT_EQ(block.abort_reason, "cut: no samples for 60 s");
   EXPECT_EQ(block.boundary, BlockBoundary::end);
   EXPECT_TRUE(send(layer, {raw.begin() + 4, raw.end()}).empty()) << "what comes later is too late";
   EXPECT_TRUE(layer.tick(add_seconds(now, 1000.0)).outputs.empty());
+}
+
+TEST(DataAcquisition, AClockThatIsSetEndsNoTest) {
+  for (const double step_s : {3600.0, -3600.0}) {
+    DataAcquisition layer(assets());
+    const std::vector<RawSamples> raw = blocks_of(recording());
+    UtcTime now{1'000'000'000};
+    (void)layer.tick(now);
+    send(layer, {raw.begin(), raw.begin() + 3});
+    EXPECT_TRUE(layer.tick(now = add_seconds(now, 1.0)).outputs.empty());
+    EXPECT_TRUE(layer.tick(now = add_seconds(now, step_s)).outputs.empty()) << step_s;
+    EXPECT_EQ(send(layer, {raw.begin() + 3, raw.end()}).size(), raw.size() - 3);
+  }
 }
 
 TEST(DataAcquisition, ATestWhoseBeginWasMissedIsTakenFromWhereItIs) {

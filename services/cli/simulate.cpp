@@ -1,4 +1,5 @@
 // `sealwatch simulate`: recordings of the virtual bench, with the truth beside them.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -70,10 +71,18 @@ Status write_life(const AssetConfig& asset, const bench::LifeSetting& life, cons
     }
     const Result<Recording> recording = bench::simulate_planned(asset, life, plan[k], setting);
     if (!recording) return fail(recording.error());
-    const std::string file = (folder / (recording->recording_id + ".csv")).string();
+    std::string name = recording->recording_id;
+    std::ranges::replace(name, '/', '_');  // of an asset's id, like XT03/MV2
+    const std::string file = (folder / (name + ".csv")).string();
     if (Status written = write_recording_csv(*recording, file, kSignificantDigits); !written) return written;
-    truth << truth_line(plan[k], recording->recording_id) << "\n";
+    truth << truth_line(plan[k], name) << "\n";
   }
+  if (!truth.flush())
+    return fail(Error{.file = (folder / "truth.jsonl").string(),
+                      .place = {},
+                      .value = {},
+                      .rule = "cannot be written to",
+                      .advice = "make room"});
   return {};
 }
 

@@ -272,6 +272,18 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
               HasSubstr("did you mean 'XT03-MV2'?"));
 }
 
+TEST_F(Commands, AnAssetIdMayHoldWhatAFileNameMayNot) {
+  const std::string file = write("slash.yaml", "asset_id: Å/MV2\n");
+  const std::string folder = (folder_ / "slash").string();
+  const Finished made = run({"sealwatch", "simulate", "--asset", file, "--rate", "50", "--out", folder});
+  EXPECT_EQ(made.status, 0) << made.output;
+  json truth;
+  std::ifstream(folder + "/truth.jsonl") >> truth;
+  const std::string recording = folder + "/" + truth["recording"].get<std::string>() + ".csv";
+  const Finished fit = run({"sealwatch", "fit", "--asset", file, recording, "--json"});
+  EXPECT_EQ(fit.status, 0) << fit.output;
+}
+
 TEST_F(Commands, ReplayPassesOverABadRecordingAndSaysSo) {
   const auto [recording, truth] = worn_test();
   const std::string bad = write("empty.csv", "");

@@ -101,9 +101,9 @@ class Controls {
     regress(screening);
     const auto truths = plan_.truths();
     const bool listed =
-        std::ranges::none_of(truths, [](const bench::TrialTruth& truth) { return truth.id == mismatch::kUnlisted; });
+        std::ranges::none_of(truths, [](const bench::TrialTruth& truth) { return truth.id == "unlisted"; });
     if (listed) return fit_oracle(screening);
-    const auto closed_forms = mismatch::screen(*baseline_, fit_, {.threads = threads_, .unlisted = true});
+    const auto closed_forms = mismatch::screen(*baseline_, fit_, {.threads = threads_, .closed_forms = true});
     if (closed_forms) fit_oracle(*closed_forms);
   }
 

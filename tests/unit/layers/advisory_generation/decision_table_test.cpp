@@ -92,7 +92,9 @@ TEST(DecisionTable, SaysWhatBookByWhenAndWhy) {
 TEST(DecisionTable, CampaignKeepsTheFailureProbabilityDown) {
   // End of life 2014-01 +- 4 months: summer 2013 is at 4 %, summer 2014 at 90 %.
   const TestCase one{.rul_months = 24};
-  for (const FailureProbability& campaign : one.life().forecasts[0].failure_probability)
+  const std::vector<FailureProbability> campaigns = one.life().forecasts[0].failure_probability;
+  ASSERT_FALSE(campaigns.empty());
+  for (const FailureProbability& campaign : campaigns)
     EXPECT_EQ(campaign.probability <= Options{}.largest_failure_probability,
               campaign.before_ns <= confirmed(one).work_before->nanoseconds)
         << campaign.label;

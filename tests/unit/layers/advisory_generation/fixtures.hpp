@@ -69,7 +69,8 @@ struct TestCase {
       forecast_in_charge.rul_p10_months = std::max(0.0, rul_months - 1.2816 * rul_std_months);
       forecast_in_charge.rul_p90_months = rul_months + 1.2816 * rul_std_months;
       forecast_in_charge.end_of_life_ns = add_months(time(), rul_months).nanoseconds;
-      for (const Campaign& campaign : configuration().sites[0].campaigns)
+      const Configuration known = configuration();  // outlives the loop, as a temporary would not
+      for (const Campaign& campaign : known.sites[0].campaigns)
         if (campaign.start > time()) {
           const double z = (months_between(time(), campaign.start) - rul_months) / rul_std_months;
           forecast_in_charge.failure_probability.push_back(

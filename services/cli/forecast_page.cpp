@@ -76,6 +76,14 @@ report::Intervals intervals_of(const std::vector<ConditionSample>& samples) {
   return intervals;
 }
 
+/// From the first test to the last month that is forecast, at least a year and a little more.
+std::pair<double, double> view_of(const ForecastQuestion& question, const std::vector<ConditionForecast>& conditions) {
+  const double from = calendar_year(question.first);
+  const double to = std::max(calendar_year(conditions.empty() ? question.last : conditions.back().time), from + 1.0);
+  const double margin = 0.01 * (to - from);
+  return {from - margin, to + margin};
+}
+
 void add_forecast_band(const std::vector<ConditionForecast>& conditions, double threshold, Plot& plot) {
   report::Line middle{.x = {}, .y = {}, .ink = Ink::second, .label = "forecast"};
   report::Band band{.x = {}, .low = {}, .high = {}, .ink = Ink::second, .label = "95 % of the condition"};
@@ -96,12 +104,12 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
             const std::vector<ConditionForecast>& conditions) {
   const double threshold = question.request.threshold;
   Plot plot{.title = "Seal condition, share of the elastic modulus when new",
-            .x = years(),
+            .x = {.label = "year", .unit = "1", .range = view_of(question, conditions)},
             .y = {.label = "condition", .unit = "1"},
             .marks = {},
             .width = kWide,
             .height = 330};
-  add_forecast_band(conditions, threshold, plot);
+  if (!conditions.empty()) add_forecast_band(conditions, threshold, plot);
   plot.marks.emplace_back(intervals_of(answer.used));
   plot.marks.emplace_back(tests_of(answer.used, Ink::first, "test"));
   if (!answer.left_out.empty()) plot.marks.emplace_back(tests_of(answer.left_out, Ink::bad, "left out"));

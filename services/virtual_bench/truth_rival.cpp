@@ -12,10 +12,11 @@ namespace {
 constexpr double kStep = 0.01;       // of a logarithm or a share: far above the integration error, far below 1
 constexpr double kLoadStep = 1e-3;   // share of the load
 constexpr double kMostChange = 0.5;  // of a logarithm in one iteration
-constexpr double kSettled = 0.05;    // a decrease of d that does not matter
-constexpr double kCommand_s = 0.02, kSample_s = 0.01;   // corners of the command cost the integrator its long steps
-constexpr double kDamping = 1e-5, kMoreDamping = 30.0;  // of the normal equations' diagonal: few channels leave many
-constexpr int kIterations = 10, kTrials = 4;            // directions all but free
+constexpr double kSettledShare = 0.02, kSettled = 0.05;  // a decrease of d that does not matter
+constexpr double kCommand_s = 0.02, kSample_s = 0.01;    // corners of the command cost the integrator its long steps
+// Of the normal equations' diagonal: few channels leave many directions all but free.
+constexpr double kDamping = 1e-5, kMoreDamping = 30.0;
+constexpr int kIterations = 10, kTrials = 4;
 
 constexpr std::array kFree = {&TruthParameters::seal_resistance, &TruthParameters::piston_viscosity,
                               &TruthParameters::pump_resistance, &TruthParameters::motor_viscosity,
@@ -127,7 +128,7 @@ struct Search {
       if (!normal) return fail(normal.error());
       const double before = *now;
       if (const Status moved = move(*normal, *now); !moved) return fail(moved.error());
-      if (before - *now < kSettled + 1e-3 * before) break;
+      if (before - *now < kSettled + kSettledShare * before) break;
     }
     return now;
   }

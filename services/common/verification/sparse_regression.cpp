@@ -43,17 +43,13 @@ Smoothed smooth(const std::vector<double>& time_s, const std::vector<double>& va
   return out;
 }
 
-enum BalanceIndex : std::size_t { kWinding, kShaft, kPump, kChamberA, kPiston, kBalances };
+enum BalanceIndex : std::size_t { kWinding, kChamberA, kPiston, kBalances };
 
 std::size_t balance_of(const Candidate& candidate) {
   switch (candidate.law->kind) {
     case SiteKind::voltage_command:
     case SiteKind::winding_voltage:
       return kWinding;
-    case SiteKind::shaft_torque:
-      return kShaft;
-    case SiteKind::pump_slip:
-      return kPump;
     case SiteKind::outflow:
     case SiteKind::compliance:
       return candidate.element == "chamber_a" ? kChamberA : kBalances;
@@ -68,8 +64,6 @@ std::size_t balance_of(const Candidate& candidate) {
 
 const std::array<std::vector<std::string_view>, kBalances> kNeeds = {
     {{"motor_voltage", "motor_current", "shaft_speed"},
-     {"motor_current", "shaft_speed", "pressure_a", "pressure_b"},
-     {"shaft_speed", "pressure_a", "pressure_b", "flow"},
      {"flow", "velocity", "position", "pressure_a", "pressure_b"},
      {"pressure_a", "pressure_b", "velocity", "position"}}};
 
@@ -108,7 +102,7 @@ class Regression {
         balances_[balance].which.push_back(&candidate);
       }
     }
-    const std::array<std::size_t, kBalances> always = {1, 1, 1, 2, 1 + recordings};
+    const std::array<std::size_t, kBalances> always = {1, 2, 1 + recordings};
     for (std::size_t b = 0; b < kBalances; ++b) {
       balances_[b].always.resize(always[b]);
       balances_[b].laws.resize(balances_[b].which.size());
@@ -149,11 +143,10 @@ class Regression {
     std::vector<double> weights(laws.entries().size());
     laws.weigh(t, signals, weights);
 
-    const std::array<double, kBalances> targets = {u - p_.Omega_M * w - p_.L_M * rate("motor_current"),
-                                                   p_.T_M * i - p_.J_M * rate("shaft_speed") - p_.alpha_P * dp,
-                                                   p_.alpha_P * w - q, q - p_.A_C * v,
+    const double z = u - p_.R_M * p_.C_M * rate("motor_voltage");  // behind the driver's filter
+    const std::array<double, kBalances> targets = {z - p_.Omega_M * w - p_.L_M * rate("motor_current"), q - p_.A_C * v,
                                                    p_.A_C * dp - p_.m_C * rate("velocity")};
-    const std::array<std::vector<double>, kBalances> always = {{{i}, {w}, {dp}, {fill, dp}, {v}}};
+    const std::array<std::vector<double>, kBalances> always = {{{i}, {fill, dp}, {v}}};
     for (std::size_t b = 0; b < kBalances; ++b) {
       if (!usable[b]) continue;
       Balance& balance = balances_[b];

@@ -4,19 +4,17 @@
 //
 //   residual of a balance = sum_k theta_k b_k + sum_j kappa_j l_j
 //
-//   winding     u - Omega w - L di/dt               b: i                    l: driver, winding
-//   shaft       T i - J dw/dt - alpha dp            b: w                    l: shaft
-//   pump        alpha w - q                         b: dp                   l: pump
-//   chamber A   q - A v                             b: V_A dp_A/dt, dp      l: outflow and compliance of A, seal
-//   piston      A dp - m dv/dt                      b: v, a load of each recording    l: piston
+//   winding     z - Omega w - L di/dt, z = u - R C du/dt    b: i                  l: driver, winding
+//   chamber A   q - A v                                     b: V_A dp_A/dt, dp    l: chamber A, piston seal
+//   piston      A dp - m dv/dt, dp = p_A - p_B              b: v, each load       l: piston
 //
-// dp = p_A - p_B stands for the ports' difference, which nobody measures. b are always in the model; l of the usual
-// shape, scaled to unit length, by sequentially thresholded least squares: all, drop what is below the threshold, solve
-// again; the threshold of the lowest BIC = N ln(RSS / N) + k ln N. Valves, chamber B and sensors have no balance of
-// measured channels alone and are not sought.
+// b are always in the model; l of the usual shape, scaled to unit length, by sequentially thresholded least squares:
+// all, drop what is below the threshold, solve again; the threshold of the lowest BIC = N ln(RSS / N) + k ln N.
 //
-// What fools it: noise and smoothing stand in the regressors, balances miss what lies between port and chamber, samples
-// are counted as independent, so that it nearly always finds something (tests/unit/verification).
+// What it cannot do: states that nobody measures have no balance. The pump's ports are such states, behind check valves
+// that close, so shaft, pump and valves are not sought, nor chamber B, whose flow is not recorded, nor sensors. What
+// fools it: noise and smoothing stand in the regressors, and neighbouring samples are counted as independent, so that
+// it finds something where nothing is (tests/unit/verification/sparse_regression_test.cpp).
 #pragma once
 
 #include <string>

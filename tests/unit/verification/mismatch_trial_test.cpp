@@ -109,6 +109,55 @@ TEST(MismatchSummary, AnUnlistedTruthIsRenamedWhenAListedLawIsClaimed) {
   EXPECT_EQ(tally(tallies, "outside").renamed.of, 2);
 }
 
+TEST(MismatchSummary, ARenamedTruthIsAnErrorWhereAClosedFormFitsTheHeldOutDataBetter) {
+  MismatchRecord worse = record("outside", 1, "mismatch", 1e-9);
+  worse.hidden = {law("unlisted", "piston")};
+  worse.answer.found = {law("stribeck_friction", "piston")};
+  worse.answer.held_after = 1.05;
+  worse.control.oracle_held = 1.02;
+  MismatchRecord as_good = worse;
+  as_good.seed = 2;
+  as_good.answer.held_after = 1.03;
+  MismatchRecord honest = worse;
+  honest.seed = 3;
+  honest.answer.found = {law("unlisted", "piston")};
+  MismatchRecord unknown = worse;
+  unknown.seed = 4;
+  unknown.control.oracle_held = 0.0;
+  const auto tallies = summarise_trials(std::vector{worse, as_good, honest, unknown});
+  const TrialTally& t = tally(tallies, "outside");
+  EXPECT_EQ(t.renamed.count, 3);
+  EXPECT_EQ(t.renamed_worse.count, 1);
+  EXPECT_EQ(t.renamed_worse.of, 3);
+  EXPECT_EQ(t.renamed_as_good.count, 1);
+}
+
+TEST(MismatchSummary, TwinsAreLeftOpenByASetByPlacesOrByNoClaim) {
+  MismatchRecord in_set = record("inseparable", 1, "mismatch", 1e-9);
+  in_set.hidden = {law("external_leakage", "chamber_a")};
+  in_set.twin = "external_leakage chamber_b";
+  in_set.answer.found = {law("external_leakage", "chamber_b")};
+  in_set.answer.found.front().same = {"external_leakage chamber_a"};
+  MismatchRecord by_place = in_set;
+  by_place.seed = 2;
+  by_place.answer.found = {law("turbulent_seal_leakage", "chamber_b")};
+  by_place.answer.found.front().same_places = {"chamber_a"};
+  MismatchRecord unclaimed = in_set;
+  unclaimed.seed = 3;
+  unclaimed.answer = {.verdict = "undetermined", .p_value = 1e-9};
+  MismatchRecord alone = in_set;
+  alone.seed = 4;
+  alone.answer.found.front().same.clear();
+  MismatchRecord unseen = in_set;
+  unseen.seed = 5;
+  unseen.answer = {.verdict = "consistent", .p_value = 0.5};
+  const auto tallies = summarise_trials(std::vector{in_set, by_place, unclaimed, alone, unseen});
+  const TrialTally& t = tally(tallies, "inseparable");
+  EXPECT_EQ(t.twins_left_open.count, 3);
+  EXPECT_EQ(t.twins_left_open.of, 4);
+  EXPECT_EQ(t.twin_in_set.count, 1);
+}
+
 // Whole sets, shortened: two tests to fit, one held out.
 MismatchRecord run_shortened(TrialStratum stratum, std::uint64_t seed) {
   bench::TrialPlan plan = bench::plan_trial(stratum, seed);

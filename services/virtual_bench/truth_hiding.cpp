@@ -100,8 +100,8 @@ const std::vector<Swallowed>& swallowed() {
   return swallowed;
 }
 
-// The voltage and the position alone, as where nothing but the position loop is wired: what an engineer would care
-// about stays hidden in nominal tests.
+// The voltage and the position alone, as where nothing but the position loop is wired: sizes about those
+// that matter to an engineer stay hidden in nominal tests.
 const std::vector<Swallowed>& unseen() {
   static const Channels kPosition = {"motor_voltage", "position"};
   static const std::vector<Swallowed> unseen = {{kPosition, {"turbulent_seal_leakage", "transition", 0, 40.0}},

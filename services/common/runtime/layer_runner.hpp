@@ -67,6 +67,7 @@ class LayerRunner {
   void sort_in(Message message);
   void sort_in(const ServiceStatus& status);
   void sort_in(const ResendRequest& request);
+  void note_rival(const ServiceStatus& rival);
   /// Runs `work` inside a transaction and publishes what it concluded.
   [[nodiscard]] Status in_batch(const std::function<Status()>& work);
   [[nodiscard]] Status take_ready();
@@ -100,6 +101,7 @@ class LayerRunner {
   bool drained_ = false;    ///< the bus had nothing more at the last look
   bool replaying_ = false;  ///< the last input was a recording played back: time does not pass
   std::string last_error_;
+  std::string rival_;  ///< writer id of another service of this kind, heard last
   std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};
   std::chrono::steady_clock::time_point last_work_{};  ///< when the last batch began

@@ -34,6 +34,7 @@ void LayerRunner::sort_in(Message message) {
 
 void LayerRunner::sort_in(const ServiceStatus& status) {
   if (status.writer_id == journal_.writer_id()) return;
+  if (status.service == layer_.name()) note_rival(status);
   for (const StreamPosition& written : status.written) {
     const auto topic = value_of<Topic>(written.topic);
     if (!topic || !contains(layer_.inputs(), *topic)) continue;
@@ -41,6 +42,15 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
       log_event(LogLevel::warn, "writer was set back, reading its stream again from the start",
                 {{"service", status.service}, {"writer", written.writer_id}, {"topic", written.topic}});
   }
+}
+
+/// Both conclude from the same messages, each under its own name: readers take what comes first, people see both.
+void LayerRunner::note_rival(const ServiceStatus& rival) {
+  if (rival.state != "running" || rival.writer_id == rival_) return;
+  rival_ = rival.writer_id;
+  last_error_ = "another " + rival.service + ", process " + std::to_string(rival.process_id) +
+                ", runs in this domain; stop one of the two, or give it another domain";
+  log_event(LogLevel::error, "not alone", {{"error", last_error_}, {"writer", rival.writer_id}});
 }
 
 void LayerRunner::sort_in(const ResendRequest& request) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 
@@ -442,6 +443,29 @@ TEST_F(RunnerTest, SaysHowFarItsStreamsGoAndThatItStops) {
   }
   listener_.listen();
   EXPECT_EQ(listener_.statuses.back().state, "stopping");
+}
+
+TEST_F(RunnerTest, SaysThatAnotherOfItsKindRunsInTheDomain) {
+  auto process = cutter();
+  const std::string writer = process->journal().writer_id();
+  InMemoryBus other(network_);
+  ServiceStatus rival;
+  rival.service = "data_acquisition";
+  rival.writer_id = writer;  // itself
+  rival.process_id = 4710;
+  rival.state = "running";
+  ASSERT_TRUE(other.publish(rival));
+  rival.writer_id = "rival";
+  rival.process_id = 4711;
+  ASSERT_TRUE(other.publish(rival));
+  step(*process, 3);
+  const auto said = [&] {
+    return std::ranges::any_of(listener_.statuses, [&](const ServiceStatus& status) {
+      return status.writer_id == writer &&
+             status.last_error.starts_with("another data_acquisition, process 4711, runs in this domain");
+    });
+  };
+  EXPECT_TRUE(step_until(said, [&] { listener_.listen(milliseconds(5)); }));
 }
 
 TEST_F(RunnerTest, AJournalThatCannotBeWrittenStopsItBeforeAnythingIsPublished) {

@@ -7,6 +7,7 @@
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/gross_mismatch.hpp"
+#include "services/common/mismatch/held_out.hpp"
 #include "services/common/mismatch/missing_term.hpp"
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/noise.hpp"
@@ -20,6 +21,10 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
+constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model, or so much left
+
+// -ln p, to the smallest p that a double holds.
+double evidence(double p_value) { return -std::log(std::max(p_value, 1e-300)); }
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -64,7 +69,7 @@ class Analysis {
   // by its own colour, corners and episodes count for what they are.
   Status look_again() {
     const bool little = best_.model->misfit > kExplainedAtLeast * baseline_->misfit;
-    if (windowed_ || !little || excess(*best_.model) <= kGross) return {};
+    if (windowed() || !little || excess(*best_.model) <= kGross) return {};
     const NoiseColour colour = residual_colour(*baseline_);
     fit_.colour.assign(fit_.samples.size(), colour);
     holdout_.colour.assign(holdout_.samples.size(), colour);
@@ -85,7 +90,8 @@ class Analysis {
   // Driven by the flow, the circuit takes chamber B's pressure as the reservoir's where it is not recorded. If that
   // shows, no law is asked for what an unrecorded pressure did.
   [[nodiscard]] bool lacks_a_pressure() const {
-    return windowed_ && asset_.model == "eha" && !fit_.samples.front().has("pressure_b") && excess(*baseline_) > kGross;
+    return windowed() && asset_.model == "eha" && !fit_.samples.front().has("pressure_b") &&
+           excess(*baseline_) > kGross;
   }
 
   Status fit_baseline() {
@@ -97,10 +103,9 @@ class Analysis {
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     window_s_ = window_of(asset_, fit_.samples.front());
-    windowed_ = window_s_ > 0.0;
-    if (windowed_ && asset_.model == "eha") fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
+    if (windowed() && asset_.model == "eha") fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
     Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
-    if (model && windowed_ && asset_.model == "eha") {
+    if (model && windowed() && asset_.model == "eha") {
       add_input_noise(holdout_, *model, prepared(fit_), options_.seed);
       add_input_noise(fit_, *model, prepared(fit_), options_.seed);
       model = fit_model(model->asset, prepared(fit_), &*model, options_.threads);
@@ -115,66 +120,15 @@ class Analysis {
     return {};
   }
 
-  // Held-out blocks of the model `after` against `before`; what is held out is left out in turn where nothing is given.
-  Result<BlockGains> held_out_gains(const Trial& before, const Trial& after, bool keep) {
-    BlockGains blocks;
-    const bool in_turn = holdout_.samples.empty();
-    const Data& data = in_turn ? fit_ : holdout_;
-    if (in_turn && fit_.samples.size() < 2) return blocks;
-    for (std::size_t k = 0; k < data.samples.size(); ++k) {
-      Result<FittedModel> old_model = predict(before, data, k, in_turn), new_model = predict(after, data, k, in_turn);
-      if (!old_model) return fail(old_model.error());
-      if (!new_model) return fail(new_model.error());
-      BlockGains own;
-      for (std::size_t window = 0; window < old_model->problem.recordings.size(); ++window) {
-        const BlockGains piece = block_gains(*old_model, *new_model, window);
-        own.gain.insert(own.gain.end(), piece.gain.begin(), piece.gain.end());
-      }
-      blocks.gain.insert(blocks.gain.end(), own.gain.begin(), own.gain.end());
-      if (!keep) continue;
-      if (windowed_) {
-        old_model = free_run(old_model->asset, data, k);
-        new_model = free_run(new_model->asset, data, k);
-        if (!old_model) return fail(old_model.error());
-        if (!new_model) return fail(new_model.error());
-      }
-      RecordingComparison comparison = compare(*old_model, *new_model, only(data, k), 0);
-      (in_turn ? comparison.left_out : comparison.holdout) = true;
-      add_gain(comparison, own);
-      result_.recordings.push_back(std::move(comparison));
-    }
-    return blocks;
-  }
-
-  Result<FittedModel> predict(const Trial& trial, const Data& data, std::size_t recording, bool in_turn) {
-    AssetConfig asset = trial.model->asset;
-    if (in_turn) {
-      Result<FittedModel> rest = fit_model(asset, prepared(without(data, recording)), nullptr, options_.threads);
-      if (!rest) return fail(rest.error());
-      asset = rest->asset;
-    }
-    return fit_model(with_fixed_parameters(asset), prepared(only(data, recording)), nullptr, 1);
-  }
-
-  // The whole recording from one initial state: what is reported, where the analysis itself looks at windows.
-  static Result<FittedModel> free_run(const AssetConfig& asset, const Data& data, std::size_t recording) {
-    return fit_model(with_fixed_parameters(asset), only(data, recording), nullptr, 1);
-  }
-
-  [[nodiscard]] Data prepared(const Data& data) const { return windowed_ ? cut_into_windows(data, window_s_) : data; }
-
-  void add_gain(RecordingComparison& comparison, const BlockGains& blocks) const {
-    const GainInterval interval = gain_interval(blocks, dispersion(*best_.model), options_.seed);
-    comparison.likelihood_gain = interval.gain;
-    comparison.gain_low = interval.low;
-    comparison.gain_high = interval.high;
-  }
+  [[nodiscard]] bool windowed() const { return window_s_ > 0.0; }
+  [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_}; }
+  [[nodiscard]] Data prepared(const Data& data) const { return in_windows(data, window_s_); }
 
   // Effects that do not help on held-out recordings are taken back, the last first.
   Status prove() {
     while (!best_.effects.empty()) {
       Trial fewer = without_last(best_);
-      Result<BlockGains> blocks = held_out_gains(fewer, best_, false);
+      Result<BlockGains> blocks = held_out().gains(fewer, best_);
       if (!blocks) return fail(blocks.error());
       const GainInterval interval = gain_interval(*blocks, dispersion(*best_.model), options_.seed);
       if (blocks->gain.empty()) {
@@ -228,18 +182,18 @@ class Analysis {
     describe_what_was_found();
     const Trial before{{}, baseline_};
     for (std::size_t k = 0; k < fit_.samples.size(); ++k) {
-      if (!windowed_) {
+      if (!windowed()) {
         result_.recordings.push_back(compare(*baseline_, *best_.model, fit_, k));
-        add_gain(result_.recordings.back(), block_gains(*baseline_, *best_.model, k));
+        add_gain(result_.recordings.back(), block_gains(*baseline_, *best_.model, k), *best_.model, options_.seed);
         continue;
       }
       const auto old_model = free_run(baseline_->asset, fit_, k), new_model = free_run(best_.model->asset, fit_, k);
       if (!old_model) return fail(old_model.error());
       if (!new_model) return fail(new_model.error());
       result_.recordings.push_back(compare(*old_model, *new_model, only(fit_, k), 0));
-      add_gain(result_.recordings.back(), block_gains(*old_model, *new_model, 0));
+      add_gain(result_.recordings.back(), block_gains(*old_model, *new_model, 0), *best_.model, options_.seed);
     }
-    if (const auto blocks = held_out_gains(before, best_, true); !blocks) return fail(blocks.error());
+    if (const auto blocks = held_out().gains(before, best_, &result_.recordings); !blocks) return fail(blocks.error());
     result_.fit = pool(result_.recordings, false);
     result_.holdout = pool(result_.recordings, true);
     const double excess_before = baseline_->misfit / baseline_->residuals - 1.0;
@@ -273,7 +227,7 @@ class Analysis {
   // A seal that ages from test to test is no physics that a test lacks.
   void say_what_changed_between_tests() {
     const bool unexplained = result_.verdict == Verdict::undetermined && result_.statistically_significant;
-    if (!unexplained || windowed_ || fit_.samples.size() < 2) return;
+    if (!unexplained || windowed() || fit_.samples.size() < 2) return;
     const auto change = change_between_tests(asset_, fit_);
     if (!change) return;
     result_.notes.push_back(*change);
@@ -319,11 +273,13 @@ class Analysis {
                                 "; an engineer would care from " + number(one->significant) + " " + one->unit + ".");
       return;
     }
-    // Nothing significant is left, or at least half of the excess is gone: the noise's own estimate is not exact enough
-    // for the second alone where the effect is small.
+    // Nothing significant is left, or at least half of the excess or nine tenths of the evidence is gone: the noise's
+    // own estimate is not exact enough for the first two alone where the effect is small.
     const bool nothing_left = !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
-    const bool explained =
-        proven_ && !result_.effects.empty() && (nothing_left || result_.explained_share >= kExplainedAtLeast);
+    const bool most_gone = result_.explained_share >= kExplainedAtLeast ||
+                           (naming_.best.effects.size() == best_.effects.size() &&
+                            evidence(naming_.last.p_value) <= kEvidenceLeft * evidence(result_.p_value));
+    const bool explained = proven_ && !result_.effects.empty() && (nothing_left || most_gone);
     result_.verdict = explained ? Verdict::mismatch : Verdict::undetermined;
     if (explained && naming_.last.p_value <= options_.false_alarm_rate)
       result_.notes.emplace_back("A remainder beyond the noise stays unexplained.");
@@ -337,7 +293,6 @@ class Analysis {
   Naming naming_;
   Trial best_;
   bool proven_ = false;
-  bool windowed_ = false;
   double window_s_ = 0.0;
   Explanation result_;
 };

@@ -1,0 +1,71 @@
+#include "services/common/mismatch/held_out.hpp"
+
+#include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/windows.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+Result<FittedModel> predict(const HeldOut& of, const Trial& trial, const Data& data, std::size_t recording) {
+  AssetConfig asset = trial.model->asset;
+  if (of.holdout.samples.empty()) {
+    const Data others = in_windows(without(data, recording), of.window_s);
+    Result<FittedModel> rest = fit_model(asset, others, nullptr, of.options.threads);
+    if (!rest) return fail(rest.error());
+    asset = rest->asset;
+  }
+  return fit_model(with_fixed_parameters(asset), in_windows(only(data, recording), of.window_s), nullptr, 1);
+}
+
+Result<RecordingComparison> compare_whole(const FittedModel& before, const FittedModel& after, const Data& data,
+                                          std::size_t recording, double window_s) {
+  if (window_s == 0.0) return compare(before, after, only(data, recording), 0);
+  const auto old_model = free_run(before.asset, data, recording), new_model = free_run(after.asset, data, recording);
+  if (!old_model) return fail(old_model.error());
+  if (!new_model) return fail(new_model.error());
+  return compare(*old_model, *new_model, only(data, recording), 0);
+}
+
+}  // namespace
+
+Data in_windows(const Data& data, double window_s) { return window_s > 0.0 ? cut_into_windows(data, window_s) : data; }
+
+Result<FittedModel> free_run(const AssetConfig& asset, const Data& data, std::size_t recording) {
+  return fit_model(with_fixed_parameters(asset), only(data, recording), nullptr, 1);
+}
+
+void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const FittedModel& after, std::uint64_t seed) {
+  const GainInterval interval = gain_interval(blocks, dispersion(after), seed);
+  comparison.likelihood_gain = interval.gain;
+  comparison.gain_low = interval.low;
+  comparison.gain_high = interval.high;
+}
+
+Result<BlockGains> HeldOut::gains(const Trial& before, const Trial& after,
+                                  std::vector<RecordingComparison>* kept) const {
+  BlockGains blocks;
+  const bool in_turn = holdout.samples.empty();
+  const Data& data = in_turn ? fit : holdout;
+  if (in_turn && fit.samples.size() < 2) return blocks;
+  for (std::size_t k = 0; k < data.samples.size(); ++k) {
+    const auto old_model = predict(*this, before, data, k), new_model = predict(*this, after, data, k);
+    if (!old_model) return fail(old_model.error());
+    if (!new_model) return fail(new_model.error());
+    BlockGains own;
+    for (std::size_t window = 0; window < old_model->problem.recordings.size(); ++window) {
+      const BlockGains piece = block_gains(*old_model, *new_model, window);
+      own.gain.insert(own.gain.end(), piece.gain.begin(), piece.gain.end());
+    }
+    blocks.gain.insert(blocks.gain.end(), own.gain.begin(), own.gain.end());
+    if (kept == nullptr) continue;
+    auto comparison = compare_whole(*old_model, *new_model, data, k, window_s);
+    if (!comparison) return fail(comparison.error());
+    (in_turn ? comparison->left_out : comparison->holdout) = true;
+    add_gain(*comparison, own, *after.model, options.seed);
+    kept->push_back(std::move(*comparison));
+  }
+  return blocks;
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,35 @@
+// Two models on recordings that took no part in their fit: each keeps its shared parameters, only a recording's own
+// load and initial state are estimated. Where no recording was kept aside, one fit recording in turn is left out and
+// the model is fitted to the others anew.
+#pragma once
+
+#include <vector>
+
+#include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/refits.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Of an analysis that outlives it.
+struct HeldOut {
+  const Data& fit;
+  const Data& holdout;    ///< may be empty
+  double window_s = 0.0;  ///< predictions of windows of this length; 0: of whole recordings
+  const ExplainOptions& options;
+
+  /// Blocks of the model `after` against `before`; none with a single recording in all. Each recording's comparison is
+  /// added to `kept`, of whole recordings from one initial state even where predictions are of windows.
+  [[nodiscard]] Result<BlockGains> gains(const Trial& before, const Trial& after,
+                                         std::vector<RecordingComparison>* kept = nullptr) const;
+};
+
+[[nodiscard]] Data in_windows(const Data& data, double window_s);
+
+/// One whole recording from one initial state, all parameters of the asset fixed.
+[[nodiscard]] Result<FittedModel> free_run(const AssetConfig& asset, const Data& data, std::size_t recording);
+
+/// Likelihood gain of a recording with its interval, by the dispersion of the model after.
+void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const FittedModel& after, std::uint64_t seed);
+
+}  // namespace sealwatch::mismatch

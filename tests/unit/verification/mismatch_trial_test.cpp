@@ -204,6 +204,28 @@ TEST(MismatchTrial, ASearchThatStoppedEarlyStartsAgain) {
   EXPECT_LT(set.answer.held_after, 1.05);
 }
 
+// The leak grows by another power of the speed than the catalogue's law has: that is still its id, and alone.
+TEST(MismatchTrial, AnotherPowerOfTheSpeedIsStillASpeedDependentSlip) {
+  const MismatchRecord set = answered(TrialStratum::single, 15);
+  ASSERT_EQ(set.error, "");
+  ASSERT_EQ(set.answer.verdict, "mismatch");
+  ASSERT_EQ(set.answer.found.size(), 1U);
+  EXPECT_EQ(set.answer.found[0].id, set.hidden[0].id);
+  EXPECT_EQ(set.answer.found[0].id, "speed_dependent_pump_slip");
+  EXPECT_EQ(set.answer.found[0].element, "pump");
+  EXPECT_LT(set.answer.held_after, 1.05);
+}
+
+// Small, and with bristles that the catalogue's law does not have: what stays is a hundredth of the evidence.
+TEST(MismatchTrial, ASmallEffectThatLeavesATenthOfTheEvidenceIsExplained) {
+  const MismatchRecord set = answered(TrialStratum::single, 301);
+  ASSERT_EQ(set.error, "");
+  ASSERT_EQ(set.answer.verdict, "mismatch");
+  ASSERT_EQ(set.answer.found.size(), 1U);
+  EXPECT_EQ(set.answer.found[0].id, "presliding_friction");
+  EXPECT_EQ(set.answer.found[0].element, "piston");
+}
+
 // Nothing is hidden; what the voltage does between two samples looked like a delay of the driver.
 TEST(MismatchTrial, TimingBetweenTwoSamplesIsNoDelay) {
   const MismatchRecord set = answered(TrialStratum::null, 53);

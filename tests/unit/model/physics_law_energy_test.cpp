@@ -32,6 +32,7 @@ const std::map<std::string, std::size_t> kDissipate = {
     {"turbulent_pump_slip", 0},
     {"speed_dependent_pump_slip (rising)", 0},
     {"speed_dependent_pump_slip (falling)", 0},
+    {"speed_dependent_pump_slip (fading)", 0},
     {"speed_dependent_pump_slip (drag)", 1},
     {"speed_dependent_pump_slip (filling)", 1},
     {"turbulent_seal_leakage", 0},

@@ -29,6 +29,7 @@ struct DualSystem {
     for (int k = 0; k < N; ++k) f[k] = result[k].value, jacobian[k] = result[k].derivative;
   }
   void add_parameter_derivatives(double t, const double* y, double factor, double* x, std::size_t stride) const {
+    if (stride == 1) return;  // states alone: there is no column for the parameter
     std::array<Dual<1>, N> state;
     for (int k = 0; k < N; ++k) state[k] = y[k];
     const auto result = function(t, state, Dual<1>::variable(parameter, 0));

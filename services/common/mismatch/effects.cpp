@@ -18,6 +18,28 @@ constexpr std::size_t kAlternatives = 5;  // refits in the place of an effect
 
 bool same(const Effect& a, const Effect& b) { return a.law == b.law && a.element == b.element; }
 
+// Index of an effect among the laws of its model's asset.
+std::size_t place_of(const Trial& trial, std::size_t slot) {
+  return trial.model->asset.physics.size() - trial.effects.size() + slot;
+}
+
+// The same law at the plant's other elements of that kind (the other chamber, the other valve), from where the search
+// ended here: from its own linear step that twin's refit may have ended in a hollow, and the place would look certain.
+std::vector<std::vector<LawStart>> twins_of(const Naming& naming, const Trial& best, std::size_t slot) {
+  const Effect& effect = best.effects[slot];
+  std::vector<std::vector<LawStart>> starts;
+  if (effect.law->evaluate == nullptr) return starts;
+  const PhysicsTerm& term = best.model->asset.physics[place_of(best, slot)];
+  for (const Candidate& candidate : naming.first.candidates) {
+    if (candidate.law != effect.law || candidate.element == effect.element) continue;
+    LawStart twin{{effect.law, candidate.element}, {}};
+    for (const LawParameter& parameter : effect.law->parameters)
+      twin.parameters.push_back(term.parameters.at(std::string(parameter.name)).value);
+    starts.push_back({std::move(twin)});
+  }
+  return starts;
+}
+
 // Trials that differ from `best` in the effect `slot` alone.
 std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std::size_t slot, const Data& data,
                                    const ExplainOptions& options) {
@@ -29,19 +51,22 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
     std::vector<Effect> first(trial.effects.begin(), trial.effects.end() - 1);
     if (same_effects(first, others)) found.push_back(trial);
   }
-  if (best.effects.size() == 1) return found;
-  AssetConfig asset = best.model->asset;
-  const std::size_t laws_before = asset.physics.size() - best.effects.size();
-  asset.physics.erase(asset.physics.begin() + static_cast<std::ptrdiff_t>(laws_before + slot));
-  Result<FittedModel> fewer = fit_model(asset, data, best.model.get(), options.threads);
-  if (!fewer) return found;
-  const Trial from{others, std::make_shared<const FittedModel>(std::move(*fewer))};
-  const auto screening = screen(*from.model, data, {.seed = options.seed, .threads = options.threads});
-  if (!screening) return found;
+  Trial from{others, naming.baseline};
   std::vector<std::vector<LawStart>> starts;
-  for (LawStart& start : ranked_laws(*screening, kAlternatives))
-    if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
+  if (best.effects.size() > 1) {
+    AssetConfig asset = best.model->asset;
+    asset.physics.erase(asset.physics.begin() + static_cast<std::ptrdiff_t>(place_of(best, slot)));
+    Result<FittedModel> fewer = fit_model(asset, data, best.model.get(), options.threads);
+    if (!fewer) return found;
+    from.model = std::make_shared<const FittedModel>(std::move(*fewer));
+    const auto screening = screen(*from.model, data, {.seed = options.seed, .threads = options.threads});
+    if (!screening) return found;
+    for (LawStart& start : ranked_laws(*screening, kAlternatives))
+      if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
+  }
   for (Trial& trial : refit(from, starts, data, options.threads)) found.push_back(std::move(trial));
+  for (Trial& twin : refit(from, twins_of(naming, best, slot), data, options.threads))
+    found.push_back(polished(std::move(twin), data, options.threads));
   return found;
 }
 

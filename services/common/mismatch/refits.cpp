@@ -5,12 +5,15 @@
 #include <limits>
 #include <thread>
 
+#include "services/common/mismatch/candidates.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
 constexpr int kFirstRound = 8;           // iterations of every refit
 constexpr std::size_t kSecondRound = 5;  // refits that go on,
 constexpr int kLastRound = 30;           // so many iterations more
+constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
 constexpr double kHopeful = 10.0;        // times the best misfit: further off a refit does not go on
 
 // A trial while it is being worked on.
@@ -62,20 +65,31 @@ Trial polished(Trial trial, const Data& data, int threads) {
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
                          int threads, std::optional<std::size_t> in_place_of) {
-  const auto one = [&](const std::vector<LawStart>& added) -> Refit {
+  const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
     Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
     if (in_place_of) {
       asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(from.effects.size() - *in_place_of));
       refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(*in_place_of));
     }
-    for (const LawStart& start : added) {
-      refit.effects.push_back(start.effect);
-      asset = with_law(std::move(asset), *start.effect.law, start.effect.element, start.parameters);
+    for (const LawStart& law : added) {
+      refit.effects.push_back(law.effect);
+      std::vector<double> parameters = law.parameters;
+      for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
+      asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
     Result<FittedModel> model = fit_model(asset, data, from.model.get(), 1, kFirstRound);
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
+  };
+  // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
+  const auto one = [&](const std::vector<LawStart>& added) -> Refit {
+    Refit refit = start(added, 1.0);
+    const bool worse = !in_place_of && (refit.model == nullptr || refit.model->misfit > from.model->misfit);
+    if (!worse) return refit;
+    Refit again = start(added, kSmaller);
+    const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
+    return better ? again : refit;
   };
   // Those that are not far from the best go on.
   const auto further = [&](Refit refit) -> Refit {

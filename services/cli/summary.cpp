@@ -232,10 +232,10 @@ std::string AssetView::forecast_lines() const {
     if (life_->forecasts[k].method == "ols") shown.push_back(life_->forecasts[k]);
   std::string text = forecast_table(shown);
   if (life_->scored_forecasts > 0)
-    text += "  confidence       " + percent(life_->confidence, 0) + " in the forecaster: of its last " +
-            std::to_string(life_->scored_forecasts) + " forecasts 3 months ahead " + percent(life_->coverage_80, 0) +
-            " came true within 80 %, " + percent(life_->coverage_95, 0) + " within 95 % (CRPS " +
-            number(life_->mean_crps, 2) + ")\n";
+    text += "  scored           of the last " + std::to_string(life_->scored_forecasts) +
+            " forecasts, 3 months ahead, " + percent(life_->coverage_80, 0) + " came true within 80 %, " +
+            percent(life_->coverage_95, 0) + " within 95 % (CRPS " + number(life_->mean_crps, 2) +
+            "); the forecaster has not drifted: " + percent(life_->confidence, 0) + " probable\n";
   return text + decision_chart(life_->decision);
 }
 

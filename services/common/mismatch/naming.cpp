@@ -138,14 +138,14 @@ std::vector<double> from_fitted(const Candidate& form, const PhysicsTerm& term) 
   return start;
 }
 
-// Start values of the law of an effect, or of one that contains it, at its usual size and on its shape's grid, and of
-// the closed forms (`forms`) that bear its id, which also set out from the fitted law (`term`).
+// Start values of the law of an effect, of another form of it or of one that contains it, at its usual size and on its
+// shape's grid, and of the closed forms (`forms`) that bear its id, which also set out from the fitted law (`term`).
 std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
                                                 const std::vector<Candidate>& forms) {
   std::vector<std::vector<LawStart>> starts;
   for (const Variant* variant : by_gain(asked)) {
     const Candidate& candidate = asked.candidates[variant->candidate];
-    const bool same_or_richer = candidate.law == effect.law || candidate.law->limit == effect.law->id;
+    const bool same_or_richer = candidate.law->id == effect.law->id || candidate.law->limit == effect.law->id;
     if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
       starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
   }

@@ -51,11 +51,9 @@ Trial with_plain_law(const Trial& rich, std::size_t slot, const Law& plain, Asse
   return trial;
 }
 
-bool put_plain_law(Naming& naming, std::size_t slot, const Data& data, int threads) {
-  const auto plain = std::ranges::find(all_laws(), naming.best.effects[slot].law->limit, &Law::id);
-  if (plain == all_laws().end()) return false;
+bool put_in_place(Naming& naming, std::size_t slot, const Law& plain, const Data& data, int threads) {
   AssetConfig asset;
-  Trial trial = with_plain_law(naming.best, slot, *plain, asset);
+  Trial trial = with_plain_law(naming.best, slot, plain, asset);
   Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
   if (!model) return false;
   trial.model = std::make_shared<const FittedModel>(std::move(*model));
@@ -66,6 +64,14 @@ bool put_plain_law(Naming& naming, std::size_t slot, const Data& data, int threa
   if (criterion(*trial.model, phi) > criterion(*naming.best.model, phi) + ahead) return false;
   naming.best = std::move(trial);
   return true;
+}
+
+// First the plain law as it is, then its closed forms: dry friction that changes direction gently is no Stribeck curve.
+bool put_plain_law(Naming& naming, std::size_t slot, const Data& data, int threads) {
+  const std::string_view limit = naming.best.effects[slot].law->limit;
+  return !limit.empty() && std::ranges::any_of(all_laws(), [&](const Law& plain) {
+    return plain.id == limit && put_in_place(naming, slot, plain, data, threads);
+  });
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ const std::map<std::string, std::size_t> kDissipate = {
     {"pressure_dependent_shaft_friction", 0},
     {"torque_saturation (knee)", 2},
     {"torque_saturation (cubic)", 2},
+    {"torque_saturation (power)", 2},
     {"torque_saturation (froehlich)", 2},
     {"driver_dead_time (voltage_loss)", 0},
     {"driver_dead_time (dead_zone)", 1},

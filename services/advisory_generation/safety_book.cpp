@@ -26,7 +26,17 @@ void add_intervals(SafetyBook& book, const PstSetting& pst, const SiteSafety& sa
   book.full_stroke_overdue_months = due.overdue_months;
 }
 
-void add_margins(SafetyBook& book, const AssetConfig& asset, const LeakageEstimate& leakage) {
+// As the test measured it: the drive makes up for the leak as long as it can. A test without a measured speed leaves
+// what the leak takes from the flow of its own ramp.
+double time_margin(const StateReport& state, double from_leak) {
+  for (const RegionJudgement& judgement : state.judgements)
+    if (judgement.quantity == "closing_time" && judgement.value > 0.0)
+      return judgement.warning_limit / judgement.value - 1.0;
+  return from_leak;
+}
+
+void add_margins(SafetyBook& book, const AssetConfig& asset, const Evidence& evidence) {
+  const LeakageEstimate& leakage = evidence.leakage;
   const auto has = [&](const char* name) { return asset.parameters.contains(name); };
   if (!leakage.estimated || !has("A_C") || !has("x_C") || !has("phi")) return;
   forecast::ClosingConditions conditions;
@@ -37,7 +47,7 @@ void add_margins(SafetyBook& book, const AssetConfig& asset, const LeakageEstima
   const auto margin = forecast::closing_margin(leakage.resistance_Pa_s_m3, conditions);
   if (!margin) return;
   book.margin_known = true;
-  book.closing_time_margin = margin->time_margin;
+  book.closing_time_margin = time_margin(evidence.state, margin->time_margin);
   book.closing_force_margin = margin->force_margin;
 }
 
@@ -61,7 +71,7 @@ SafetyBook safety_book(const Evidence& evidence, const AssetConfig* asset, const
     book.partial_stroke_overdue_days = evidence.state.overdue_days;
   }
   if (safety) add_intervals(book, asset->pst, *safety, now);
-  add_margins(book, *asset, evidence.leakage);
+  add_margins(book, *asset, evidence);
   return book;
 }
 

@@ -23,7 +23,7 @@ inline void describe(const CLI::App& app, const std::string& path, std::string& 
   page += ".SS \"" + path + "\"\n" + roff(app.get_description()) + "\n";
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_name() == "--help") continue;
-    page += ".TP\n\\fB" + roff(option->get_name(true)) + "\\fR\n" + roff(option->get_description());
+    page += ".TP\n\\fB" + roff(option->get_name(false, true)) + "\\fR\n" + roff(option->get_description());
     if (!option->get_default_str().empty()) page += " (default: " + roff(option->get_default_str()) + ")";
     page += "\n";
   }

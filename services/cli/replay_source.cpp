@@ -20,8 +20,13 @@ std::optional<ReplaySource> ReplaySource::open(const ReplayOptions& options, con
     source.default_asset_ = asset->asset_id;
   }
   for (const std::string& file : source.files_) {
-    if (std::filesystem::exists(file)) continue;
-    complain(Error{.file = file, .place = {}, .value = {}, .rule = "is not there", .advice = {}});
+    const bool folder = std::filesystem::is_directory(file);
+    if (std::filesystem::exists(file) && !folder) continue;
+    complain(Error{.file = file,
+                   .place = {},
+                   .value = {},
+                   .rule = folder ? "is a folder" : "is not there",
+                   .advice = folder ? "give its recordings: " + (std::filesystem::path(file) / "*.csv").string() : ""});
     return std::nullopt;
   }
   return source;

@@ -223,6 +223,20 @@ std::string AssetView::history_chart() const {
   return "\n  seal condition in % over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
 }
 
+namespace {
+
+std::string scored_line(const RemainingLife& life) {
+  constexpr double kDoubtful = 0.5;  // probability that the forecaster has not drifted
+  const auto of_those = [&](double share) { return std::to_string(std::lround(share * life.scored_forecasts)); };
+  std::string text = "  scored           of the last " + std::to_string(life.scored_forecasts);
+  text += " forecasts, 3 months ahead, " + of_those(life.coverage_80) + " came true within their 80 % interval, ";
+  text += of_those(life.coverage_95) + " within 95 %";
+  if (life.confidence < kDoubtful) text += "; the forecaster has probably drifted";
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string AssetView::forecast_lines() const {
   if (!life_ || life_->forecasts.empty()) return {};
   if (life_->header.pst_id.empty()) return "  remaining life   " + life_->forecasts.front().explanation + "\n";
@@ -231,11 +245,7 @@ std::string AssetView::forecast_lines() const {
   for (std::size_t k = 1; k < life_->forecasts.size(); ++k)
     if (life_->forecasts[k].method == "ols") shown.push_back(life_->forecasts[k]);
   std::string text = forecast_table(shown);
-  if (life_->scored_forecasts > 0)
-    text += "  scored           of the last " + std::to_string(life_->scored_forecasts) +
-            " forecasts, 3 months ahead, " + percent(life_->coverage_80, 0) + " came true within 80 %, " +
-            percent(life_->coverage_95, 0) + " within 95 % (CRPS " + number(life_->mean_crps, 2) +
-            "); the forecaster has not drifted: " + percent(life_->confidence, 0) + " probable\n";
+  if (life_->scored_forecasts > 0) text += scored_line(*life_);
   return text + decision_chart(life_->decision);
 }
 
@@ -248,7 +258,9 @@ std::string AssetView::advisory_lines() const {
   text += "\n                   " + wrapped(advisory_->recommendation, 100, 19) + "\n";
   for (const std::string& reason : advisory_->reasons)
     text += "                   - " + wrapped(reason, 100, 21) + "\n";
-  return text + "                   (to acknowledge: " + advisory_->advisory_id + ")\n";
+  if (advisory_->action == AdvisoryAction::none || advisory_->state == AdvisoryState::acknowledged) return text;
+  return text + "                   (sealwatch acknowledge " + asset_id_ + " " + advisory_->advisory_id +
+         " --by NAME)\n";
 }
 
 std::string AssetView::model_lines() const {

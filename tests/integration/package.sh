@@ -77,6 +77,7 @@ check_page() {
   LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -E UTF-8 -l "$root/usr/share/man/man1/sealwatch.1.gz" \
     >"$scratch/page" 2>"$scratch/page_warnings" || fail "man cannot show the page" "$scratch/page_warnings"
   [ ! -s "$scratch/page_warnings" ] || fail "the manual page has faults" "$scratch/page_warnings"
+  grep -q -e '--with-services' "$scratch/page" || fail "the manual page names no options" "$scratch/page"
   grep -q 'sealwatch replay' "$scratch/page" || fail "the manual page does not tell of replay" "$scratch/page"
 }
 

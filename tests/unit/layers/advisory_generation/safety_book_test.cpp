@@ -62,6 +62,12 @@ TEST(SafetyBook, MarginsShrinkWithTheLeak) {
   EXPECT_FALSE(one.book(std::nullopt).margin_known);
 }
 
+TEST(SafetyBook, TheClosingTimeThatATestMeasuredGoesBeforeWhatTheLeakSays) {
+  Case one;
+  one.state.judgements = {{.quantity = "closing_time", .unit = "s", .value = 60.1, .warning_limit = 63.2}};
+  EXPECT_NEAR(one.book(std::nullopt).closing_time_margin, 63.2 / 60.1 - 1.0, 1e-12);
+}
+
 TEST(SafetyBook, TheCheapestOptionIsAReasonOnlyWhereCostsAreKnown) {
   DecisionOption now{.label = "now", .cost_known = true, .expected_cost = 12.0, .currency = "MNOK"};
   DecisionOption summer{

@@ -23,6 +23,7 @@ if [ -n "$data" ] && ! compgen -G "$data/*.csv" >/dev/null; then
 fi
 
 deploy/install_packages.sh build
+echo "== build: takes about twenty minutes on two cores the first time"
 deploy/build.sh release -DSEALWATCH_TESTS=OFF
 sealwatch=build/release/bin/sealwatch
 
@@ -48,7 +49,7 @@ cat <<'TXT'
 
 Look further:
   build/release/bin/sealwatch up --config config --state demo/state    the services again, with what they remember
-  build/release/bin/sealwatch status                                   this screen, any time (in another terminal)
+  build/release/bin/sealwatch status                                   the last word on every actuator, any time (in another terminal)
   build/release/bin/sealwatch watch                                    every message, live
   demo/results/*.jsonl                                                 all conclusions, a JSON line each
   demo/state/log/                                                      what each service did, by PST id

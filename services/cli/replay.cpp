@@ -220,6 +220,8 @@ int run_replay(const ReplayOptions& options) {
     complain(written.error());
     return kBadInput;
   }
+  if (result == kOk && log.concluded() == 0 && source->tests() > source->failures())
+    std::fprintf(stderr, "sealwatch: these tests were known already, nothing new was concluded\n");
   return source->failures() > 0 && result == kOk ? kBadInput : result;
 }
 

@@ -24,6 +24,8 @@ class ReplayLog {
   void take(const Message& message);
   /// A conclusion from before this replay: part of the final screen, not of the results.
   void take_earlier(const Message& message) { assets_[asset_of(message)].take(message); }
+  /// Tests that were concluded in this replay.
+  [[nodiscard]] std::size_t concluded() const { return concluded_.size(); }
   /// Something that happened besides, like a service that was started again.
   void remark(const std::string& text);
   /// The final screen: each asset's forecast, interval, reasons, and where to look further. An error when the files of

@@ -75,6 +75,7 @@ TEST_F(Replay, ASecondReplayChangesNothing) {
   const StoredResults first = stored_results("state");
   const Finished again = undisturbed("state");
   ASSERT_EQ(again.status, 0) << again.output;
+  EXPECT_NE(again.output.find("known already"), std::string::npos) << again.output;
   expect_same(first, stored_results("state"));
 }
 

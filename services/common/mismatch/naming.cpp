@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kSingles = 8;      // refits of single laws
 constexpr double kWorthRoughly = 2.0;    // criterion that a law must bring in a gross misfit
 constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid
+constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told
 constexpr std::size_t kClosedForms = 5;  // refits of closed forms
 constexpr std::size_t kFormStarts = 3;   // and of each that bears the id of the law just added
 
@@ -145,7 +146,8 @@ std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Phys
   std::vector<std::vector<LawStart>> starts;
   for (const Variant* variant : by_gain(asked)) {
     const Candidate& candidate = asked.candidates[variant->candidate];
-    const bool same_or_richer = candidate.law->id == effect.law->id || candidate.law->limit == effect.law->id;
+    const bool same_or_richer = (forms.empty() ? candidate.law == effect.law : candidate.law->id == effect.law->id) ||
+                                candidate.law->limit == effect.law->id;
     if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
       starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
   }
@@ -167,8 +169,11 @@ Status from_other_shapes(Naming& naming, std::size_t before, const Screening& as
   constexpr double kLeft = 1.1;
   const bool at_the_noise = naming.best.model->misfit < kLeft * naming.best.model->residuals;
   if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
-  const std::vector<Candidate> forms =
-      find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
+  // Where everything misses by far, another form of one law says nothing.
+  std::vector<Candidate> forms;
+  if (excess(*naming.best.model) < kFar)
+    forms =
+        find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
   std::vector<Trial> trials;
   for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
     const auto& physics = naming.best.model->asset.physics;

@@ -70,7 +70,8 @@ bool put_in_place(Naming& naming, std::size_t slot, const Law& plain, const Data
 bool put_plain_law(Naming& naming, std::size_t slot, const Data& data, int threads) {
   const std::string_view limit = naming.best.effects[slot].law->limit;
   return !limit.empty() && std::ranges::any_of(all_laws(), [&](const Law& plain) {
-    return plain.id == limit && put_in_place(naming, slot, plain, data, threads);
+    const bool asked = !plain.closed_form || excess(*naming.best.model) <= kGross;
+    return plain.id == limit && asked && put_in_place(naming, slot, plain, data, threads);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/criterion.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr int kFirstRound = 8;           // iterations of every refit
 constexpr std::size_t kSecondRound = 5;  // refits that go on,
 constexpr int kLastRound = 30;           // so many iterations more
+constexpr double kFar = 100.0;           // times the noise: a model that misses by more says nothing of sizes
 constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
 constexpr double kHopeful = 10.0;        // times the best misfit: further off a refit does not go on
 
@@ -85,7 +87,8 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
   // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
   const auto one = [&](const std::vector<LawStart>& added) -> Refit {
     Refit refit = start(added, 1.0);
-    const bool worse = !in_place_of && (refit.model == nullptr || refit.model->misfit > from.model->misfit);
+    const bool worse = !in_place_of && excess(*from.model) < kFar &&
+                       (refit.model == nullptr || refit.model->misfit > from.model->misfit);
     if (!worse) return refit;
     Refit again = start(added, kSmaller);
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);

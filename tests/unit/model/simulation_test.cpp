@@ -170,7 +170,8 @@ TEST(PlantSimulation, RefusesLawsThatDoNotFitThePlant) {
   const std::map<std::string, ParameterSetting> friction = {{"F_c", {4000.0}}, {"v_s", {1e-4}}};
   EXPECT_EQ(refusal({"coulomb_friction", "piston", friction}), "simulated");
   EXPECT_EQ(refusal({"coulomb_friction", "shaft", friction}), "does not fit this element of eha");
-  EXPECT_EQ(refusal({"coulomb_friction", "piston", {{"F", {4000.0}}}}), "needs exactly the parameters F_c, v_s or F_c, v_s, m");
+  EXPECT_EQ(refusal({"coulomb_friction", "piston", {{"F", {4000.0}}}}),
+            "needs exactly the parameters F_c, v_s or F_c, v_s, m");
   EXPECT_EQ(refusal({"coulomb_frictio", "piston", friction}), "is not a law of the catalogue");
 }
 

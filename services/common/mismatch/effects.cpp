@@ -64,9 +64,9 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
     for (LawStart& start : ranked_laws(*screening, kAlternatives))
       if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
   }
-  for (Trial& trial : refit(from, starts, data, options.threads)) found.push_back(std::move(trial));
+  for (Trial& trial : refit(from, starts, data, options.threads, {}, true)) found.push_back(std::move(trial));
   constexpr double kNear = 1.01;  // times the misfit: further off a twin is told apart without its last iterations
-  for (Trial& twin : refit(from, twins_of(naming, best, slot), data, options.threads))
+  for (Trial& twin : refit(from, twins_of(naming, best, slot), data, options.threads, {}, true))
     found.push_back(twin.model->misfit < kNear * best.model->misfit ? polished(std::move(twin), data, options.threads)
                                                                     : std::move(twin));
   return found;

@@ -66,7 +66,7 @@ Trial polished(Trial trial, const Data& data, int threads) {
 }
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
-                         int threads, std::optional<std::size_t> in_place_of) {
+                         int threads, std::optional<std::size_t> in_place_of, bool again_smaller) {
   const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
     Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
@@ -87,7 +87,7 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
   // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
   const auto one = [&](const std::vector<LawStart>& added) -> Refit {
     Refit refit = start(added, 1.0);
-    const bool worse = !in_place_of && excess(*from.model) < kFar &&
+    const bool worse = again_smaller && !in_place_of && excess(*from.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from.model->misfit);
     if (!worse) return refit;
     Refit again = start(added, kSmaller);

@@ -10,7 +10,7 @@ build_packages=(
   libeigen3-dev libceres-dev libboost-dev          # linear algebra, optimiser, ODE for the bench and distributions
   libyaml-cpp-dev libspdlog-dev libcli11-dev       # configuration, logs, command line
   libsoci-dev libsqlite3-dev                       # journals
-  libmatio-dev nlohmann-json3-dev libexpected-dev  # MATLAB files, JSON, error values
+  libmatio-dev zlib1g-dev nlohmann-json3-dev libexpected-dev  # MATLAB files, JSON, error values
   libsystemd-dev                                   # readiness and watchdog
 )
 test_packages=(

@@ -3,22 +3,19 @@
 #include <hdf5.h>
 #include <matio.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <mutex>
 #include <string_view>
 
+#include "services/common/recording/mat_container.hpp"
 #include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch {
 namespace {
 
 const std::string kTooMany = "the file holds more than " + std::to_string(kMostNumbers) + " numbers";
-
-constexpr long kHeader_bytes = 128;
 
 struct Close {
   void operator()(mat_t* file) const { Mat_Close(file); }
@@ -106,48 +103,13 @@ Status check(const ColumnarSamples& read) {
   return {};
 }
 
-/// The chain of elements behind a version 5 file's header, each 8 bytes of tag and as many bytes as the tag says: one
-/// that leaves the file was cut off, which matio would take for the end.
-Status check_chain(std::FILE* file, bool swapped) {
-  std::fseek(file, 0, SEEK_END);
-  const long size = std::ftell(file);
-  long at = kHeader_bytes;
-  while (at < size) {
-    std::uint32_t tag[2] = {0, 0};
-    std::fseek(file, at, SEEK_SET);
-    if (std::fread(tag, sizeof tag, 1, file) != 1) break;
-    at += 8 + static_cast<long>(swapped ? __builtin_bswap32(tag[1]) : tag[1]);
-  }
-  if (at == size) return {};
-  return fail(error_at("byte " + std::to_string(size), {}, "the file is cut off or damaged"));
-}
-
-/// What matio takes on trust: the header (with a wrong one it reads lengths of the old version 4 where there are none,
-/// and fills gigabytes) and the chain of elements. A header ends in the version and "IM", or "MI" with bytes swapped;
-/// version 7.3 is an HDF5 file behind a header of 512 bytes.
-Status check_container(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) return fail("cannot be opened");
-  std::array<char, 520> start{};
-  const std::string_view header(start.data(), std::fread(start.data(), 1, start.size(), file.get()));
-  if (header.size() >= kHeader_bytes) {
-    const std::string_view mark = header.substr(kHeader_bytes - 4, 4);
-    if (mark == std::string_view("\0\1IM", 4)) return check_chain(file.get(), false);
-    if (mark == std::string_view("\1\0MI", 4)) return check_chain(file.get(), true);
-    if (mark == std::string_view("\0\2IM", 4) && header.size() == start.size() &&
-        header.substr(512) == "\x89HDF\r\n\x1a\n")
-      return {};
-  }
-  return fail("is not a MATLAB file of version 5 or 7.3, or it is damaged");
-}
-
 }  // namespace
 
 Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant) {
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what went wrong is returned, not printed
-  if (const Status container = check_container(path); !container) return fail(container.error());
+  if (const Status container = check_mat_container(path); !container) return fail(container.error());
   const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   if (!file) return fail("is damaged: neither MATLAB version 5 nor 7.3 can be read from it");
   std::vector<std::string> names;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/recording/recording_file.hpp"
@@ -138,6 +139,27 @@ TEST_P(MatRecording, ACutFileIsAnError) {
     std::filesystem::copy_file(path("a.mat"), path("cut.mat"), std::filesystem::copy_options::overwrite_existing);
     std::filesystem::resize_file(path("cut.mat"), static_cast<std::uintmax_t>(share * static_cast<double>(size)));
     EXPECT_THAT(error_of(path("cut.mat")), HasSubstr("cut.mat: ")) << share;
+  }
+}
+
+// matio would ask for as much memory as a damaged length says, 1.9 GB here, and fill it.
+TEST_P(MatRecording, ADamagedLengthIsAnErrorBeforeMemoryIsAskedFor) {
+  if (GetParam().version == MAT_FT_MAT73) GTEST_SKIP() << "HDF5 checks its own lengths";
+  MatWriter(path("a.mat"), GetParam()).column("time", {0.0, 0.01, 0.02});
+  std::ifstream file(path("a.mat"), std::ios::binary);
+  const std::string good(std::istreambuf_iterator<char>(file), {});
+  // Compressed, any byte behind the first tag breaks the checksum; plain, these are the lengths of flags and
+  // dimensions, type and length of the name, and the length of the numbers.
+  std::vector<std::size_t> places = {140, 156, 168, 170, 180};
+  if (GetParam().compression == MAT_COMPRESSION_ZLIB) {
+    places.resize(good.size() - 136);
+    std::iota(places.begin(), places.end(), 136U);
+  }
+  for (const std::size_t at : places) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ 0x74);
+    write("bad.mat", bad);
+    EXPECT_THAT(error_of(path("bad.mat")), HasSubstr("bad.mat: the file is cut off or damaged")) << at;
   }
 }
 

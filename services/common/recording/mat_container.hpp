@@ -1,0 +1,15 @@
+// What matio takes on trust in a MATLAB file. Format: "MAT-File Format", The MathWorks (level 5 and 7.3).
+#pragma once
+
+#include <string>
+
+#include "sealwatch/core/result.hpp"
+
+namespace sealwatch {
+
+/// Ok when matio can read `path` without filling memory by what a damaged length says: the header is one of version 5
+/// or 7.3; the chain of elements ends where the file does; a compressed element's checksum holds; every length inside
+/// an element lies within it. Only vectors of numbers pass; other variables are named. Reads, keeps 64 kB.
+[[nodiscard]] Status check_mat_container(const std::string& path);
+
+}  // namespace sealwatch

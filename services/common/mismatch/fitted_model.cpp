@@ -94,6 +94,11 @@ Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int
   const ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(model.asset, data, options);
   if (!problem) return fail(problem.error());
+  // The point and the derivatives there are in the unknowns of the search that ended: a logarithm's zero is where that
+  // one set out.
+  problem->shared = model.problem.shared;
+  for (std::size_t k = 0; k < problem->recordings.size(); ++k)
+    problem->recordings[k].own = model.problem.recordings[k].own;
   const bool known = model.optimum.at_optimum.front().jacobian.size() > 0;
   Result<PemOptimum> optimum =
       search(*problem, model.optimum.point, options, known ? model.optimum.at_optimum : std::vector<Linearisation>{});

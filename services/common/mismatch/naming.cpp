@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
 
@@ -13,18 +14,9 @@ namespace {
 
 constexpr std::size_t kSingles = 8;      // refits of single laws
 constexpr double kWorthRoughly = 2.0;    // criterion that a law must bring in a gross misfit
-constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid
-constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told
 constexpr std::size_t kClosedForms = 5;  // refits of closed forms
-constexpr std::size_t kFormStarts = 3;   // and of each that bears the id of the law just added
 
 bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
-
-double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model) {
-  double phi = dispersion(model);
-  for (const Trial& trial : trials) phi = std::min(phi, dispersion(*trial.model));
-  return phi;
-}
 
 std::vector<Forbidden> forbidden_by_physics(const Screening& screening) {
   std::vector<Forbidden> found;
@@ -127,74 +119,6 @@ Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOp
 
 }  // namespace
 
-namespace {
-
-// The closed form from where the law in its place ended (`term`): by name, else from its own grid.
-std::vector<double> from_fitted(const Candidate& form, const PhysicsTerm& term) {
-  std::vector<double> start = usual_size(form, 0);
-  for (std::size_t k = 0; k < start.size(); ++k)
-    if (const auto known = term.parameters.find(std::string(form.law->parameters[k].name));
-        known != term.parameters.end())
-      start[k] = known->second.value;
-  return start;
-}
-
-// Start values of the law of an effect, of another form of it or of one that contains it, at its usual size and on its
-// shape's grid, and of the closed forms (`forms`) that bear its id, which also set out from the fitted law (`term`).
-std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
-                                                const std::vector<Candidate>& forms) {
-  std::vector<std::vector<LawStart>> starts;
-  for (const Variant* variant : by_gain(asked)) {
-    const Candidate& candidate = asked.candidates[variant->candidate];
-    const bool same_or_richer = (forms.empty() ? candidate.law == effect.law : candidate.law->id == effect.law->id) ||
-                                candidate.law->limit == effect.law->id;
-    if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
-      starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
-  }
-  for (const Candidate& form : forms) {
-    if (form.law->id != effect.law->id || form.law == effect.law || form.element != effect.element) continue;
-    starts.push_back({{{form.law, effect.element}, from_fitted(form, term)}});
-    for (std::size_t point = 0; point < std::min(form.grid.size(), kFormStarts); ++point)
-      starts.push_back({{{form.law, effect.element}, usual_size(form, point)}});
-  }
-  return starts;
-}
-
-// Each law that was just added (from effect `before` on) starts again in its place: where something is left beyond the
-// noise, its refit from the linear step may have ended in a hollow, or the law has another form than the catalogue's,
-// and another law was or would be asked to fill that.
-Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
-                         const ExplainOptions& options) {
-  // What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
-  constexpr double kLeft = 1.1;
-  const bool at_the_noise = naming.best.model->misfit < kLeft * naming.best.model->residuals;
-  if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
-  // Where everything misses by far, another form of one law says nothing.
-  std::vector<Candidate> forms;
-  if (excess(*naming.best.model) < kFar)
-    forms =
-        find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
-  std::vector<Trial> trials;
-  for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
-    const auto& physics = naming.best.model->asset.physics;
-    const PhysicsTerm& term = physics[physics.size() - naming.best.effects.size() + added];
-    const auto starts = other_starts(naming.best.effects[added], term, asked, forms);
-    for (Trial& trial : refit(naming.best, starts, data, options.threads, added)) trials.push_back(std::move(trial));
-  }
-  const double phi = smallest_dispersion(trials, *naming.best.model);
-  const Trial* best = best_of(trials, phi);
-  // In a gross misfit the criterion hardly rises: any gain counts, as no law comes in.
-  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return {};
-  naming.best = polished(*best, data, options.threads);
-  naming.trials.push_back(naming.best);
-  Result<Screening> next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});
-  if (!next) return fail(next.error());
-  naming.last = std::move(*next);
-  return {};
-}
-
-}  // namespace
-
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                             const ExplainOptions& options, const Progress& progress) {
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
@@ -233,6 +157,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const Screening asked = std::exchange(naming.last, std::move(*next));
     if (const Status status = from_other_shapes(naming, level, asked, data, options); !status)
       return fail(status.error());
+    if (const Status status = one_law_for_several(naming, data, options); !status) return fail(status.error());
   }
   drop_what_is_not_needed(naming, data, options.threads);
   prefer_plain_laws(naming, data, options.threads);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <ranges>
 #include <thread>
 
 #include "services/common/mismatch/candidates.hpp"
@@ -17,6 +18,20 @@ constexpr int kLastRound = 30;           // so many iterations more
 constexpr double kFar = 100.0;           // times the noise: a model that misses by more says nothing of sizes
 constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
 constexpr double kHopeful = 10.0;        // times the best misfit: further off a refit does not go on
+
+// The laws added last (`added`) with their shapes held at their start values until the sizes fit, then free: let free
+// at once, beside sizes that are far off, a shape drifts to the end of its range and stays there.
+Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& added, const Data& data,
+                                const FittedModel& from) {
+  const AssetConfig free = asset;
+  for (std::size_t k = 0; k < added.size(); ++k)
+    for (const LawParameter& parameter : added[k].effect.law->parameters)
+      if (!parameter.strength)
+        asset.physics[asset.physics.size() - added.size() + k].parameters.at(std::string(parameter.name)).estimate =
+            false;
+  Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
+  return fit_model(free, data, sized ? &*sized : &from, 1, kFirstRound);
+}
 
 // A trial while it is being worked on.
 struct Refit {
@@ -66,13 +81,13 @@ Trial polished(Trial trial, const Data& data, int threads) {
 }
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
-                         int threads, std::optional<std::size_t> in_place_of, bool again_smaller) {
+                         int threads, const std::vector<std::size_t>& in_place_of, bool again_smaller) {
   const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
     Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
-    if (in_place_of) {
-      asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(from.effects.size() - *in_place_of));
-      refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(*in_place_of));
+    for (const std::size_t out : in_place_of | std::views::reverse) {
+      asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(refit.effects.size() - out));
+      refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(out));
     }
     for (const LawStart& law : added) {
       refit.effects.push_back(law.effect);
@@ -80,14 +95,15 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
-    Result<FittedModel> model = fit_model(asset, data, from.model.get(), 1, kFirstRound);
+    Result<FittedModel> model = in_place_of.empty() ? fit_model(asset, data, from.model.get(), 1, kFirstRound)
+                                                    : sizes_first(asset, added, data, *from.model);
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
   };
   // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
   const auto one = [&](const std::vector<LawStart>& added) -> Refit {
     Refit refit = start(added, 1.0);
-    const bool worse = again_smaller && !in_place_of && excess(*from.model) < kFar &&
+    const bool worse = again_smaller && in_place_of.empty() && excess(*from.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from.model->misfit);
     if (!worse) return refit;
     Refit again = start(added, kSmaller);

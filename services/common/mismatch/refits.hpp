@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,10 +28,11 @@ struct LawStart {
 };
 
 /// Refits of `laws` (each with its start values) added to `from`, on `threads` threads; those that fail are left out.
-/// `in_place_of`: index of an effect of `from` that is taken out first. `again_smaller`: a refit that ends worse than
-/// `from` starts again with a tenth of its strength (for alternatives; a search takes the law that is easier to find).
+/// `in_place_of`: indices of effects of `from` that are taken out first, ascending. `again_smaller`: a refit that ends
+/// worse than `from` starts again with a tenth of its strength (for alternatives; a search takes the law that is easier
+/// to find).
 [[nodiscard]] std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws,
-                                       const Data& data, int threads, std::optional<std::size_t> in_place_of = {},
+                                       const Data& data, int threads, const std::vector<std::size_t>& in_place_of = {},
                                        bool again_smaller = false);
 
 /// A search that ran out of iterations goes on from where it is.

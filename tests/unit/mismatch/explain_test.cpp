@@ -101,6 +101,18 @@ TEST(Explain, FindsStribeckFrictionAndNothingBesideIt) {
   EXPECT_LT(worst_holdout_rms(*explanation), 1.1);
 }
 
+// Half of each test: a search that takes the wrong law first ends with three laws for this one curve.
+TEST(Explain, FindsDryFrictionAloneInHalfOfATest) {
+  LOAD_OR_SKIP(bench, "stribeck");
+  for (auto* recordings : {&bench.fit, &bench.holdout})
+    for (Recording& recording : *recordings) cut(recording.samples, 15.495);
+  const auto explanation = explain(bench.asset, bench.fit, bench.holdout);
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  ASSERT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
+  ASSERT_EQ(explanation->effects.size(), 1U) << explanation->summary;
+  EXPECT_EQ(explanation->effects[0].what.id, "stribeck_friction");
+}
+
 TEST(Explain, FindsTheLeakFromTheSourcesSensorsAlone) {
   LOAD_OR_SKIP(bench, "external_leakage");
   keep_the_sources_sensors(bench.fit);

@@ -10,14 +10,12 @@
 
 #include "services/common/mismatch/regime.hpp"
 #include "services/common/mismatch/smooth_input.hpp"
-#include "tests/unit/model/standard_pst.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr SimulationOptions kTight = {.relative_tolerance = 1e-7, .maximum_step_s = 0.02};
 
 /// One recording.
 Data data_of(TimeSeries samples) {
@@ -46,34 +44,13 @@ AssetConfig plant() {
   return asset;
 }
 
-TimeSeries simulate(const AssetConfig& truth, double noise_share, TimeSeries* clean) {
-  TimeSeries samples = standard_pst(truth, 100.0);
-  const auto simulation = PlantSimulation::create(truth, samples).value();
-  const auto outputs = simulation->run(simulation->start(), {}, kTight).value();
-  std::mt19937 random(20310412);
-  std::normal_distribution<double> normal;
-  if (clean != nullptr) *clean = samples;
-  for (std::size_t c = 0; c < simulation->channels().size(); ++c)
-    for (std::size_t k = 0; k < samples.channels.size(); ++k) {
-      Series& series = samples.channels[k];
-      if (series.name != simulation->channels()[c]) continue;
-      series.noise_std = truth.sensors.at(series.name).noise_std;
-      for (std::size_t row = 0; row < series.values.size(); ++row) {
-        const double value = outputs.values(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
-        if (clean != nullptr) clean->channels[k].values[row] = value;
-        series.values[row] = value + noise_share * series.noise_std * normal(random);
-      }
-    }
-  return samples;
-}
-
 Concealed conceal(const std::string& id, const std::string& element, const std::vector<std::string>& names,
                   const std::vector<double>& values) {
   const Law* law = find_law(id, names).value();
   Concealed made;
   made.law = law;
   const AssetConfig truth = with_law(plant(), *law, element, values);
-  made.data = data_of(simulate(truth, 1.0, &made.clean));
+  made.data = data_of(simulated_test(truth, 1.0, &made.clean));
   made.without = fit_model(plant(), made.data, nullptr, 1).value();
   made.with = fit_model(with_law(plant(), *law, element, values), made.data, &made.without, 1).value();
   for (const LawParameter& parameter : law->parameters)
@@ -188,7 +165,7 @@ TEST(MissingTerm, OfAScoredBoreIsItsLeakageOverTime) {
 }
 
 TEST(MissingTerm, IsNothingBeyondItsBandWhereNothingIsMissing) {
-  const Data data = data_of(simulate(plant(), 1.0, nullptr));
+  const Data data = data_of(simulated_test(plant(), 1.0, nullptr));
   const FittedModel model = fit_model(plant(), data, nullptr, 1).value();
   for (const auto& [element, kind] :
        {std::pair("piston", SiteKind::piston_force), std::pair("piston_seal", SiteKind::seal_leakage),
@@ -213,7 +190,7 @@ TEST(MissingTerm, OfASensorIsTheShiftOfItsReading) {
 }
 
 TEST(MissingTerm, OfAPlaceThatThePlantDoesNotHaveIsAnError) {
-  const Data data = data_of(simulate(plant(), 1.0, nullptr));
+  const Data data = data_of(simulated_test(plant(), 1.0, nullptr));
   const FittedModel model = fit_model(plant(), data, nullptr, 1).value();
   for (const auto& [element, kind] :
        {std::pair("gearbox", SiteKind::piston_force), std::pair("sensor:gearbox", SiteKind::sensor_bias)}) {

@@ -216,7 +216,7 @@ TEST(MismatchTrial, AnotherPowerOfTheSpeedIsStillASpeedDependentSlip) {
   EXPECT_LT(set.answer.held_after, 1.05);
 }
 
-// Small, and with bristles that the catalogue's law does not have: what stays is a hundredth of the evidence.
+// Small, and with bristles that the catalogue's law does not have: what stays is less than a tenth of the evidence.
 TEST(MismatchTrial, ASmallEffectThatLeavesATenthOfTheEvidenceIsExplained) {
   const MismatchRecord set = answered(TrialStratum::single, 301);
   ASSERT_EQ(set.error, "");

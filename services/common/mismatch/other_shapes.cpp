@@ -1,0 +1,129 @@
+#include "services/common/mismatch/other_shapes.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/plain_laws.hpp"
+#include "services/common/mismatch/ranking.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid
+constexpr std::size_t kFormStarts = 3;   // and of each closed form that bears its id
+constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told
+constexpr std::size_t kSingleLaws = 10;  // refits of one law for several
+constexpr long kStartsOfRich = 6;        // of them of a law that contains a plainer one
+
+// The closed form from where the law in its place ended (`term`): by name, else from its own grid.
+std::vector<double> from_fitted(const Candidate& form, const PhysicsTerm& term) {
+  std::vector<double> start = usual_size(form, 0);
+  for (std::size_t k = 0; k < start.size(); ++k)
+    if (const auto known = term.parameters.find(std::string(form.law->parameters[k].name));
+        known != term.parameters.end())
+      start[k] = known->second.value;
+  return start;
+}
+
+// Start values of the law of an effect, of another form of it or of one that contains it, at its usual size and on its
+// shape's grid, and of the closed forms (`forms`) that bear its id, which also set out from the fitted law (`term`).
+std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
+                                                const std::vector<Candidate>& forms) {
+  std::vector<std::vector<LawStart>> starts;
+  for (const Variant* variant : by_gain(asked)) {
+    const Candidate& candidate = asked.candidates[variant->candidate];
+    const bool same_or_richer = (forms.empty() ? candidate.law == effect.law : candidate.law->id == effect.law->id) ||
+                                candidate.law->limit == effect.law->id;
+    if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
+      starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
+  }
+  for (const Candidate& form : forms) {
+    if (form.law->id != effect.law->id || form.law == effect.law || form.element != effect.element) continue;
+    starts.push_back({{{form.law, effect.element}, from_fitted(form, term)}});
+    for (std::size_t point = 0; point < std::min(form.grid.size(), kFormStarts); ++point)
+      starts.push_back({{{form.law, effect.element}, usual_size(form, point)}});
+  }
+  return starts;
+}
+
+// The trial becomes the best, and what it leaves is looked at.
+Status take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options) {
+  naming.best = polished(trial, data, options.threads);
+  naming.trials.push_back(naming.best);
+  Result<Screening> next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});
+  if (!next) return fail(next.error());
+  naming.last = std::move(*next);
+  return {};
+}
+
+// The laws of an element, best first, at their usual size: at the best point of their grid, those that contain another
+// law at several, as they can be taken for that one.
+std::vector<std::vector<LawStart>> laws_of(const std::string& element, const Screening& asked) {
+  std::vector<std::vector<LawStart>> starts;
+  for (const Variant* variant : by_gain(asked)) {
+    const Candidate& candidate = asked.candidates[variant->candidate];
+    const auto known =
+        std::ranges::count(starts, candidate.law, [](const auto& one) { return one.front().effect.law; });
+    const long most = candidate.law->limit.empty() ? 1 : kStartsOfRich;
+    if (candidate.element == element && known < most && starts.size() < kSingleLaws)
+      starts.push_back({{{candidate.law, element}, usual_size(candidate, variant->point)}});
+  }
+  return starts;
+}
+
+}  // namespace
+
+double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model) {
+  double phi = dispersion(model);
+  for (const Trial& trial : trials) phi = std::min(phi, dispersion(*trial.model));
+  return phi;
+}
+
+Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
+                         const ExplainOptions& options) {
+  // What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
+  constexpr double kLeft = 1.1;
+  const bool at_the_noise = naming.best.model->misfit < kLeft * naming.best.model->residuals;
+  if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
+  // Where everything misses by far, another form of one law says nothing.
+  std::vector<Candidate> forms;
+  if (excess(*naming.best.model) < kFar)
+    forms =
+        find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
+  std::vector<Trial> trials;
+  for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
+    const auto& physics = naming.best.model->asset.physics;
+    const PhysicsTerm& term = physics[physics.size() - naming.best.effects.size() + added];
+    const auto starts = other_starts(naming.best.effects[added], term, asked, forms);
+    for (Trial& trial : refit(naming.best, starts, data, options.threads, {added})) trials.push_back(std::move(trial));
+  }
+  const double phi = smallest_dispersion(trials, *naming.best.model);
+  const Trial* best = best_of(trials, phi);
+  // In a gross misfit the criterion hardly rises: any gain counts, as no law comes in.
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return {};
+  return take(naming, *best, data, options);
+}
+
+Status one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options) {
+  if (excess(*naming.best.model) > kGross) return {};
+  std::set<std::string> elements;
+  for (const Effect& effect : naming.best.effects) elements.insert(effect.element);
+  std::vector<Trial> trials;
+  for (const std::string& element : elements) {
+    std::vector<std::size_t> several;
+    for (std::size_t k = 0; k < naming.best.effects.size(); ++k)
+      if (naming.best.effects[k].element == element) several.push_back(k);
+    if (several.size() < 2) continue;
+    for (Trial& trial : refit(naming.best, laws_of(element, naming.first), data, options.threads, several))
+      trials.push_back(std::move(trial));
+  }
+  const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
+  if (best == nullptr) return {};
+  const Trial one = polished(*best, data, options.threads);
+  const double phi = smallest_dispersion({one}, *naming.best.model);
+  if (criterion(*one.model, phi) > criterion(*naming.best.model, phi) + kWorthAnother) return {};
+  return take(naming, one, data, options);
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,24 @@
+// What may stand in place of the laws that a search just added: a greedy search takes the law that is easiest to find,
+// and asks others to fill what it leaves.
+#pragma once
+
+#include <vector>
+
+#include "services/common/mismatch/naming.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Each law that was just added (from effect `before` on) starts again in its place: where something is left beyond the
+/// noise, its refit from the linear step may have ended in a hollow, or the law has another form than the catalogue's,
+/// and another law was or would be asked to fill that. `asked`: the screening that proposed them.
+[[nodiscard]] Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
+                                       const ExplainOptions& options);
+
+/// Several laws at one element may be parts of one (dry friction, drag and friction by pressure: a Stribeck curve):
+/// each law of the element is asked for what they do together, and stays where several are not worth another law.
+[[nodiscard]] Status one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
+
+/// phi of the best of all these models.
+[[nodiscard]] double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model);
+
+}  // namespace sealwatch::mismatch

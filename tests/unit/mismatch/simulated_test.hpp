@@ -1,0 +1,34 @@
+// A standard test of 31 s at 100 Hz of a given actuator, simulated, with seeded noise.
+#pragma once
+
+#include <random>
+
+#include "sealwatch/model/simulation.hpp"
+#include "tests/unit/model/standard_pst.hpp"
+
+namespace sealwatch::mismatch {
+
+/// `noise_share`: of the noise of each channel's sensor. `clean`: where to leave the recording without noise, or null.
+inline TimeSeries simulated_test(const AssetConfig& truth, double noise_share, TimeSeries* clean = nullptr) {
+  constexpr SimulationOptions tight = {.relative_tolerance = 1e-7, .maximum_step_s = 0.02};
+  TimeSeries samples = standard_pst(truth, 100.0);
+  const auto simulation = PlantSimulation::create(truth, samples).value();
+  const auto outputs = simulation->run(simulation->start(), {}, tight).value();
+  std::mt19937 random(20310412);
+  std::normal_distribution<double> normal;
+  if (clean != nullptr) *clean = samples;
+  for (std::size_t c = 0; c < simulation->channels().size(); ++c)
+    for (std::size_t k = 0; k < samples.channels.size(); ++k) {
+      Series& series = samples.channels[k];
+      if (series.name != simulation->channels()[c]) continue;
+      series.noise_std = truth.sensors.at(series.name).noise_std;
+      for (std::size_t row = 0; row < series.values.size(); ++row) {
+        const double value = outputs.values(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
+        if (clean != nullptr) clean->channels[k].values[row] = value;
+        series.values[row] = value + noise_share * series.noise_std * normal(random);
+      }
+    }
+  return samples;
+}
+
+}  // namespace sealwatch::mismatch

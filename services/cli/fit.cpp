@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -139,13 +140,21 @@ void print_json(const AssetConfig& asset, const FitOptions& options, const FitRe
   std::printf("%s\n", json.dump(1).c_str());
 }
 
-void print_parameter(const EstimatedParameter& parameter) {
-  const std::string error = std::isfinite(parameter.std_error) ? number(parameter.std_error, 2) : "not identifiable";
-  std::printf("  %-18s %14s  +- %-16s %-12s%s\n", parameter.name.c_str(), number(parameter.value, 5).c_str(),
-              error.c_str(), parameter.unit.c_str(),
-              parameter.at_bound ? "  at its bound"
-              : parameter.free   ? ""
-                                 : "  (fixed)");
+/// `recording`: of a parameter that each recording has of its own.
+struct ParameterRow {
+  const EstimatedParameter& parameter;
+  std::string recording = {};
+};
+
+void print_parameters(const std::vector<ParameterRow>& rows) {
+  int width = 18;
+  for (const ParameterRow& row : rows) width = std::max(width, static_cast<int>(row.parameter.name.size()));
+  std::printf("\n  %-*s %14s     %-16s %s\n", width, "parameter", "value", "std. error", "unit");
+  for (const auto& [parameter, recording] : rows) {
+    const std::string error = std::isfinite(parameter.std_error) ? number(parameter.std_error, 2) : "not identifiable";
+    std::printf("  %-*s %14s  +- %-16s %-12s%s%s\n", width, parameter.name.c_str(), number(parameter.value, 5).c_str(),
+                error.c_str(), parameter.unit.c_str(), recording.c_str(), parameter.at_bound ? "  at its bound" : "");
+  }
 }
 
 void print_text(const AssetConfig& asset, const FitOptions& options, const FitResult& fit) {
@@ -153,11 +162,13 @@ void print_text(const AssetConfig& asset, const FitOptions& options, const FitRe
               options.recordings.size(), options.recordings.size() == 1 ? "" : "s",
               fit.report.admissible ? "admissible" : "NOT admissible");
   for (const std::string& reason : fit.report.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
-  std::printf("\n  %-18s %14s     %-16s %s\n", "parameter", "value", "std. error", "unit");
+  std::vector<ParameterRow> rows;
   for (const EstimatedParameter& parameter : fit.report.parameters)
-    if (parameter.free) print_parameter(parameter);
-  for (const EstimatedParameter& load : fit.loads)
-    if (fit.loads.size() > 1) print_parameter(load);
+    if (parameter.free) rows.push_back({parameter});
+  for (std::size_t k = 0; k < fit.loads.size(); ++k)
+    if (fit.loads.size() > 1)
+      rows.push_back({fit.loads[k], std::filesystem::path(options.recordings[k]).filename().string()});
+  print_parameters(rows);
   std::printf("\n  %-22s %10s %10s %12s %14s\n", "channel", "rms/noise", "NRMSE %", "whiteness p", "independence p");
   for (const ChannelFit& channel : fit.report.channels)
     std::printf("  %-22s %10.3f %10.2f %12.3g %14.3g\n", channel.channel.c_str(), channel.noise_normalised_rms,

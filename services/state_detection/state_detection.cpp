@@ -192,9 +192,11 @@ void StateDetection::add_residuals(const AssetState& state, const AssetConfig& a
         residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_));
 }
 
+// An accepted model, and a replacement until a test of the new actuator is judged.
 std::size_t StateDetection::held() const {
-  return static_cast<std::size_t>(
-      std::count_if(states_.begin(), states_.end(), [](const auto& one) { return one.second.accepted.in_force(); }));
+  std::size_t held = 0;
+  for (const auto& [asset_id, state] : states_) held += state.events.size() + (state.accepted.in_force() ? 1 : 0);
+  return held;
 }
 
 void StateDetection::note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const {

@@ -177,7 +177,7 @@ Status LayerRunner::take(Message message) {
   if (!id) return {};
   header_of(message).message_id = *id;
   if (const auto refused = admission_.refusal(message, clock_.now())) {
-    last_error_ = std::string(name_of(topic_of(message))) + " refused: " + *refused;
+    note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
     return journal_.add_input(message, clock_.now(), true);
   }
@@ -242,10 +242,13 @@ bool LayerRunner::publish(const Message& message, std::string_view event) {
   const Status published = bus_.publish(message);
   if (published) return true;
   // Its readers will miss it, and what would have followed it, and ask for it: it is in the journal.
-  last_error_ = published.error().describe();
-  log_message(LogLevel::warn, "not published", message, {{"error", last_error_}});
+  note_error(published.error().describe());
+  log_message(LogLevel::warn, "not published", message, {{"error", published.error().describe()}});
   return false;
 }
+
+// With its time: it stays in the status until another one comes.
+void LayerRunner::note_error(const std::string& text) { last_error_ = format_utc(clock_.now()) + " " + text; }
 
 void LayerRunner::report_progress() {
   if (!heartbeat_) return;  // the past is still being restored

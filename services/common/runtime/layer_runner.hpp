@@ -82,6 +82,7 @@ class LayerRunner {
   /// False when the bus did not take it: then what follows is left to be asked for, so that one reader that does not
   /// take its messages cannot hold up this service for long.
   bool publish(const Message& message, std::string_view event);
+  void note_error(const std::string& text);
   void report_progress();
 
   Layer& layer_;
@@ -100,7 +101,7 @@ class LayerRunner {
   Admission admission_;
   bool drained_ = false;    ///< the bus had nothing more at the last look
   bool replaying_ = false;  ///< the last input was a recording played back: time does not pass
-  std::string last_error_;
+  std::string last_error_;  ///< with its time
   std::string rival_;  ///< writer id of another service of this kind, heard last
   std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};

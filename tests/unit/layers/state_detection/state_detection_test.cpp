@@ -335,7 +335,10 @@ TEST(StateDetection, AReplacementStartsTheBaselineAnew) {
   Journal journal;
   StateDetection detection = layer();
   for (int number = 0; number < 10; ++number) {
-    if (number == 6) journal.take(detection, replacement(synthetic::month(5, 20)));
+    if (number == 6) {
+      journal.take(detection, replacement(synthetic::month(5, 20)));
+      EXPECT_EQ(detection.held(), 1U) << "kept until a test of the new one is judged: nothing is waiting";
+    }
     Condition condition;
     if (number >= 6) condition.friction_N = 4000;  // the new one is tighter
     Circumstances circumstances;
@@ -344,6 +347,7 @@ TEST(StateDetection, AReplacementStartsTheBaselineAnew) {
     EXPECT_EQ(last_report(journal).region, AlertRegion::normal) << number;
   }
   EXPECT_THAT(journal.consumed, Contains(HasSubstr("maintenance_event/A1")));
+  EXPECT_EQ(detection.held(), 0U);
 }
 
 TEST(StateDetection, AnAssetThatIsNotConfiguredIsNotJudged) {

@@ -117,6 +117,39 @@ Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOp
   return {};
 }
 
+// Whether the best of these trials leaves nothing: the noise's own size is known to a tenth, its scores tell the rest.
+Result<bool> leaves_nothing(const std::vector<Trial>& trials, const Naming& naming, const Data& data,
+                            const ExplainOptions& options) {
+  constexpr double kLeft = 1.1;
+  const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
+  if (best == nullptr || best->model->misfit > kLeft * best->model->residuals) return false;
+  const auto left = screen(*best->model, data, {.seed = options.seed, .threads = options.threads});
+  if (!left) return fail(left.error());
+  return !differs(left->p_value, *best->model, options.false_alarm_rate);
+}
+
+// Refits with another law: first the best single laws; where none explains everything, also pairs, and in a gross
+// misfit from second starts.
+Result<std::vector<Trial>> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
+  const std::size_t level = naming.best.effects.size();
+  const bool gross = excess(*naming.best.model) > kGross;
+  std::vector<std::vector<LawStart>> singles, more;
+  for (LawStart& start : ranked_laws(naming.last, level == 0 || gross ? kSingles : kSingles / 2 + 1))
+    singles.push_back({std::move(start)});
+  std::vector<Trial> trials = refit(naming.best, singles, data, options.threads);
+  const Result<bool> done = leaves_nothing(trials, naming, data, options);
+  if (!done) return fail(done.error());
+  if (!*done) {
+    if (gross)
+      for (LawStart& start : second_starts(naming.last)) more.push_back({std::move(start)});
+    if (static_cast<int>(level) + 2 <= options.maximum_laws)
+      for (auto& pair : ranked_pairs(naming.last, naming.best.model->misfit)) more.push_back(std::move(pair));
+    for (Trial& trial : refit(naming.best, more, data, options.threads)) trials.push_back(std::move(trial));
+  }
+  naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
+  return trials;
+}
+
 }  // namespace
 
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
@@ -135,17 +168,10 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const std::size_t level = naming.best.effects.size();
     const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
-    std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : ranked_laws(naming.last, level == 0 || gross ? kSingles : kSingles / 2 + 1))
-      starts.push_back({std::move(start)});
-    if (gross)
-      for (LawStart& start : second_starts(naming.last)) starts.push_back({std::move(start)});
-    if (static_cast<int>(level) + 2 <= options.maximum_laws)
-      for (auto& pair : ranked_pairs(naming.last, naming.best.model->misfit)) starts.push_back(std::move(pair));
-    const std::vector<Trial> trials = refit(naming.best, starts, data, options.threads);
-    naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
-    const double phi = smallest_dispersion(trials, *naming.best.model);
-    const Trial* best = best_of(trials, phi);
+    const Result<std::vector<Trial>> trials = try_laws(naming, data, options);
+    if (!trials) return fail(trials.error());
+    const double phi = smallest_dispersion(*trials, *naming.best.model);
+    const Trial* best = best_of(*trials, phi);
     // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;

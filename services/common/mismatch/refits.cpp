@@ -14,7 +14,9 @@ namespace {
 
 constexpr int kFirstRound = 8;           // iterations of every refit
 constexpr std::size_t kSecondRound = 5;  // refits that go on,
-constexpr int kLastRound = 30;           // so many iterations more
+constexpr int kChunk = 10;               // so many iterations at a time,
+constexpr int kChunks = 3;               // so often,
+constexpr double kNearer = 0.5;          // while each leaves at most this share of the distance to the best
 constexpr double kFar = 100.0;           // times the noise: a model that misses by more says nothing of sizes
 constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
 constexpr double kHopeful = 10.0;        // times the best misfit: further off a refit does not go on
@@ -110,21 +112,25 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
     return better ? again : refit;
   };
-  // Those that are not far from the best go on.
-  const auto further = [&](Refit refit) -> Refit {
-    if (refit.model->optimum.converged) return refit;
-    Result<FittedModel> model = continue_fit(*refit.model, data, 1, kLastRound);
-    if (model && model->misfit <= refit.model->misfit) refit.model = std::make_shared<FittedModel>(std::move(*model));
+  // Those that are not far from the best go on, and on while they come nearer.
+  const auto further = [&](Refit refit, double best) -> Refit {
+    for (int chunk = 0; chunk < kChunks && !refit.model->optimum.converged; ++chunk) {
+      const double distance = refit.model->misfit - best;
+      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kChunk);
+      if (!model || model->misfit > refit.model->misfit) break;
+      refit.model = std::make_shared<FittedModel>(std::move(*model));
+      if (refit.model->misfit - best > kNearer * std::max(distance, 0.0)) break;
+    }
     return refit;
   };
   std::vector<Refit> refits = in_parallel<Refit>(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); });
   std::erase_if(refits, [](const Refit& refit) { return refit.model == nullptr; });
   if (refits.empty()) return {};
   std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
-  const double limit = kHopeful * refits.front().model->misfit;
+  const double best = refits.front().model->misfit, limit = kHopeful * best;
   const auto far = std::ranges::find_if(refits, [&](const Refit& refit) { return refit.model->misfit > limit; });
   const auto count = std::min(static_cast<std::size_t>(far - refits.begin()), kSecondRound);
-  std::ranges::move(in_parallel<Refit>(count, threads, [&](std::size_t k) { return further(refits[k]); }),
+  std::ranges::move(in_parallel<Refit>(count, threads, [&](std::size_t k) { return further(refits[k], best); }),
                     refits.begin());
   return trials_of(std::move(refits));
 }

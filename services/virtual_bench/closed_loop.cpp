@@ -43,8 +43,8 @@ double size_of(Quantity quantity) {
 
 double load_N(const EhaParameters<double>& p) { return p.phi * (1.0 + p.load_factor); }
 
-double quantity_value(Quantity quantity, const Eha::State<double>& y, double voltage_V,
-                      const EhaParameters<double>& p) {
+double quantity_value(Quantity quantity, const Eha::State<double>& y, double voltage_V, const EhaParameters<double>& p,
+                      const BenchPhysics::Added& added) {
   switch (quantity) {
     case Quantity::motor_voltage:
       return voltage_V;
@@ -59,7 +59,7 @@ double quantity_value(Quantity quantity, const Eha::State<double>& y, double vol
     case Quantity::pressure_differential:
       return y[Eha::kPA] - y[Eha::kPB];
     case Quantity::flow:
-      return Eha::valve_flow(y[Eha::kP1], y[Eha::kPA], y[Eha::kP2], p);
+      return Eha::valve_flow(y[Eha::kP1], y[Eha::kPA], y[Eha::kP2], p, added[Eha::kDrop1], added[Eha::kCrack1]);
     case Quantity::position:
       return y[Eha::kX];
     case Quantity::velocity:
@@ -83,6 +83,14 @@ class Equations {
       low_pass_.push_back(filtered ? size_.size() : kNone);
       if (filtered) size_.push_back(size_of(sensor.quantity));
     }
+    for (const Sensor& sensor : loop.sensors) {
+      const bool lags = sensor.error.lag_s > 0.0;
+      lag_.push_back(lags ? size_.size() : kNone);
+      if (lags) size_.push_back(size_of(sensor.quantity));
+    }
+    first_hidden_ = size_.size();
+    size_.insert(size_.end(), loop.physics.hidden_scales().begin(), loop.physics.hidden_scales().end());
+    hidden_.resize(loop.physics.hidden_scales().size());
   }
 
   void follow(double start_s, double reference_m, double speed_m_s) {
@@ -94,15 +102,28 @@ class Equations {
   void rates(double time_s, const double* scaled, double* out) const {
     const Eha::State<double> y = actuator(scaled);
     const ControllerOutput control = command(scaled, y, time_s);
-    const Eha::State<double> dy = Eha::derivatives(y, Eha::Input{control.voltage_V}, p_);
+    const Eha::Input input{control.voltage_V, command_rate_V_s(scaled, y, control, time_s)};
+    const BenchPhysics::Added added = physics(scaled, y, input, out + first_hidden_);
+    const Eha::State<double> dy =
+        loop_.physics.any() ? Eha::derivatives(y, input, p_, added) : Eha::derivatives(y, input, p_);
     for (std::size_t k = 0; k < kIntegral; ++k) out[k] = dy[k] / size_[k];
     out[kIntegral] = control.integral_rate_V_s / size_[kIntegral];
+    for (std::size_t k = 0; k < hidden_.size(); ++k) out[first_hidden_ + k] /= size_[first_hidden_ + k];
     for (std::size_t k = 0; k < low_pass_.size(); ++k) {
-      const std::size_t own = low_pass_[k];
-      if (own == kNone) continue;
-      const double value = quantity_value(loop_.sensors[k].quantity, y, control.voltage_V, p_);
-      out[own] = (value / size_[own] - scaled[own]) / loop_.sensors[k].setting.time_constant_s;
+      double value = quantity_value(loop_.sensors[k].quantity, y, control.voltage_V, p_, added);
+      if (const std::size_t own = low_pass_[k]; own != kNone) {
+        out[own] = (value / size_[own] - scaled[own]) / loop_.sensors[k].setting.time_constant_s;
+        value = scaled[own] * size_[own];
+      }
+      if (const std::size_t own = lag_[k]; own != kNone)
+        out[own] = (value / size_[own] - scaled[own]) / loop_.sensors[k].error.lag_s;
     }
+  }
+
+  /// The recording starts: laws whose state does not come to rest by itself begin anew.
+  void start_recording(std::vector<double>& scaled) const {
+    for (std::size_t k = 0; k < hidden_.size(); ++k)
+      if (!loop_.physics.settled(k)) scaled[first_hidden_ + k] = 0.0;
   }
 
   /// At rest, held at `x_m`: the guess that settling starts from.
@@ -119,8 +140,8 @@ class Equations {
     for (std::size_t k = 0; k < kIntegral; ++k) scaled[k] = y[k] / size_[k];
     scaled[kIntegral] = voltage / size_[kIntegral];
     for (std::size_t k = 0; k < low_pass_.size(); ++k)
-      if (const std::size_t own = low_pass_[k]; own != kNone)
-        scaled[own] = quantity_value(loop_.sensors[k].quantity, y, voltage, p_) / size_[own];
+      for (const std::size_t own : {low_pass_[k], lag_[k]})
+        if (own != kNone) scaled[own] = quantity_value(loop_.sensors[k].quantity, y, voltage, p_, {}) / size_[own];
     return scaled;
   }
 
@@ -128,10 +149,11 @@ class Equations {
                     std::vector<std::vector<double>>& out) const {
     const Eha::State<double> y = actuator(scaled.data());
     const double voltage = command(scaled.data(), y, time_s).voltage_V;
+    const BenchPhysics::Added added = physics(scaled.data(), y, Eha::Input{voltage}, nullptr);
     for (std::size_t k = 0; k < low_pass_.size(); ++k) {
-      const std::size_t own = low_pass_[k];
+      const std::size_t own = lag_[k] != kNone ? lag_[k] : low_pass_[k];
       out[k][sample] =
-          own != kNone ? scaled[own] * size_[own] : quantity_value(loop_.sensors[k].quantity, y, voltage, p_);
+          own != kNone ? scaled[own] * size_[own] : quantity_value(loop_.sensors[k].quantity, y, voltage, p_, added);
     }
   }
 
@@ -146,11 +168,37 @@ class Equations {
     return controller_(reference, y[Eha::kX], y[Eha::kV], scaled[kIntegral] * size_[kIntegral]);
   }
 
+  /// What the asset's laws add; rates of their hidden states, not scaled, go to `rates`.
+  [[nodiscard]] BenchPhysics::Added physics(const double* scaled, const Eha::State<double>& y, const Eha::Input& input,
+                                            double* rates) const {
+    if (!loop_.physics.any()) return {};
+    for (std::size_t k = 0; k < hidden_.size(); ++k) hidden_[k] = scaled[first_hidden_ + k] * size_[first_hidden_ + k];
+    return loop_.physics.added(y, input, p_, hidden_.data(), rates);
+  }
+
+  /// d command / dt, for laws of the driver: over a microsecond along the motion without their own part.
+  [[nodiscard]] double command_rate_V_s(const double* scaled, const Eha::State<double>& y,
+                                        const ControllerOutput& control, double time_s) const {
+    constexpr double kAhead_s = 1e-6;
+    if (!loop_.physics.sees_command_rate()) return 0.0;
+    const Eha::Input input{control.voltage_V};
+    const Eha::State<double> dy = Eha::derivatives(y, input, p_, physics(scaled, y, input, nullptr));
+    const double reference = reference_m_ + speed_m_s_ * (time_s + kAhead_s - start_s_);
+    const double integral = scaled[kIntegral] * size_[kIntegral] + kAhead_s * control.integral_rate_V_s;
+    const double ahead =
+        controller_(reference, y[Eha::kX] + kAhead_s * dy[Eha::kX], y[Eha::kV] + kAhead_s * dy[Eha::kV], integral)
+            .voltage_V;
+    return (ahead - control.voltage_V) / kAhead_s;
+  }
+
   const ClosedLoop& loop_;
   const EhaParameters<double>& p_;
   CascadeController controller_;
   std::vector<double> size_;           ///< of each state
   std::vector<std::size_t> low_pass_;  ///< index of each sensor's low-pass among the states, or kNone
+  std::vector<std::size_t> lag_;       ///< and of its lag
+  std::size_t first_hidden_ = 0;
+  mutable std::vector<double> hidden_;  ///< the laws' hidden states, in their own units
   double start_s_ = 0.0;
   double reference_m_ = 0.0;
   double speed_m_s_ = 0.0;
@@ -171,6 +219,7 @@ std::vector<std::vector<double>> run(const ClosedLoop& loop, const Profile& prof
   std::vector<double> state = equations.guess(profile.start_m);
   equations.follow(-loop.settling_time_s, profile.start_m, 0.0);
   (void)integrate_rosenbrock(rates, state, -loop.settling_time_s, 0.0, {}, take, control);
+  equations.start_recording(state);
   if (!times_s.empty() && times_s.front() == 0.0) take(0.0, state);
   double start_s = 0.0, reference_m = profile.start_m;
   for (const ProfilePiece& piece : profile.pieces) {

@@ -2,6 +2,8 @@
 //
 //   tau dy/dt = quantity - y          low-pass, integrated with the actuator (tau = 0: y = quantity)
 //   sample    = q round((y + e) / q)  e ~ N(0, noise_std^2), q the quantisation step (q = 0: none)
+//
+// An asset's `physics` may give a sensor errors besides (SensorError); its lag is integrated, the others come before e.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +13,7 @@
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/time_series.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/virtual_bench/bench_physics.hpp"
 
 namespace sealwatch::bench {
 
@@ -32,6 +35,7 @@ struct Sensor {
   std::string unit;
   Quantity quantity = Quantity::position;
   SensorSetting setting = {};
+  SensorError error = {};
 };
 
 /// Channels that a bench records where nothing else is asked: all that the plant has but the redundant ones.
@@ -41,8 +45,8 @@ struct Sensor {
 [[nodiscard]] Result<std::vector<Sensor>> find_sensors(const AssetConfig& asset, const PlantDescription& plant,
                                                        const std::vector<std::string>& channels);
 
-/// Adds noise and quantisation to low-passed values. The noise depends on the seed and the channel's name alone, so a
-/// channel that is added or left out does not change the others.
+/// Adds the sensor's errors, noise and quantisation to low-passed values. The noise depends on the seed and the
+/// channel's name alone, so a channel that is added or left out does not change the others.
 [[nodiscard]] Series measure(const Sensor& sensor, std::vector<double> values, std::uint64_t seed);
 
 }  // namespace sealwatch::bench

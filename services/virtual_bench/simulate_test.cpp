@@ -17,12 +17,6 @@ Result<const PlantDescription*> plant_of(const AssetConfig& asset) {
                       .value = asset.model,
                       .rule = "is not a plant of the virtual bench",
                       .advice = "the bench simulates eha"});
-  if (!asset.physics.empty())
-    return fail(Error{.file = {},
-                      .place = "asset " + asset.asset_id + ", key physics",
-                      .value = asset.physics.front().id,
-                      .rule = "the virtual bench simulates the reference model alone",
-                      .advice = "use the asset file without physics"});
   return find_plant("eha");
 }
 
@@ -104,6 +98,10 @@ Result<Recording> simulate_test(const AssetConfig& asset, const Profile& profile
   Result<std::vector<Sensor>> sensors = find_sensors(asset, **plant, setting.channels);
   if (!sensors) return fail(sensors.error());
   loop.sensors = std::move(*sensors);
+  Result<BenchPhysics> physics = BenchPhysics::create(asset, **plant);
+  if (!physics) return fail(physics.error());
+  loop.physics = std::move(*physics);
+  for (Sensor& sensor : loop.sensors) sensor.error = loop.physics.error_of(sensor.channel);
 
   Recording recording;
   recording.asset_id = asset.asset_id;

@@ -102,7 +102,7 @@ class LayerRunner {
   bool drained_ = false;    ///< the bus had nothing more at the last look
   bool replaying_ = false;  ///< the last input was a recording played back: time does not pass
   std::string last_error_;  ///< with its time
-  std::string rival_;  ///< writer id of another service of this kind, heard last
+  std::string rival_;       ///< writer id of another service of this kind, heard last
   std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};
   std::chrono::steady_clock::time_point last_work_{};  ///< when the last batch began

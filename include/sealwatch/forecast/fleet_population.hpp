@@ -42,6 +42,10 @@ struct FleetPopulation {
 /// The population that the degradation constants describe. The defaults above are those of DegradationSetting.
 [[nodiscard]] FleetPopulation reference_population(const DegradationSetting& setting = {});
 
+/// Months that the mean seal of the population (u = w = 0) takes from `condition` to `threshold` [1]: 0 where it is
+/// there already, infinity where it takes more than 1200.
+[[nodiscard]] double mean_remaining_months(double condition, double threshold, const FleetPopulation& population = {});
+
 /// One seal of the fleet.
 struct FleetLife {
   std::vector<ConditionSample> history;  ///< in the order of time

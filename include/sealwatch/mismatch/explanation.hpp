@@ -114,6 +114,8 @@ struct Rejected {
 struct PrognosisShift {
   bool known = false;
   double R_CL_before = 0.0, R_CL_after = 0.0, theta_before = 0.0, theta_after = 0.0;
+  /// That the mean seal of the reference population (forecast/fleet_population.hpp) has left at that condition.
+  double months_before = 0.0, months_after = 0.0;
   std::string sentence;
 };
 

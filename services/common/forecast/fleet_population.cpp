@@ -155,6 +155,27 @@ Status FleetPopulation::validate() const {
                "must be within -1 and 1");
 }
 
+double mean_remaining_months(double condition, double threshold, const FleetPopulation& population) {
+  constexpr int kLongest_months = 1200;
+  if (!std::isfinite(condition)) return std::numeric_limits<double>::quiet_NaN();
+  const auto passed = [](double before, double after, double level) {
+    return std::clamp((before - level) / (before - after), 0.0, 1.0);
+  };
+  double theta = population.initial_condition, from = 0.0;
+  bool reached = condition >= theta;
+  for (int n = 1; n <= kLongest_months; ++n) {
+    const double rate = population.initial_rate + population.steepening * n;
+    const double next = theta - rate * std::log((n + population.n_0) / (n - 1 + population.n_0));
+    if (!reached && next <= condition) {
+      from = n - 1 + passed(theta, next, condition);
+      reached = true;
+    }
+    if (next <= threshold) return std::max(0.0, n - 1 + passed(theta, next, threshold) - (reached ? from : n));
+    theta = next;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 FleetPopulation reference_population(const DegradationSetting& setting) {
   const double uniform_std = 1.0 / std::sqrt(12.0);  // of a width of one
   const auto mean = [](const Range& range) { return 0.5 * (range.min + range.max); };

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "sealwatch/forecast/fleet_population.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/telling.hpp"
 
@@ -324,10 +325,13 @@ PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<Param
   shift.R_CL_after = leakage->after;
   shift.theta_before = asset.seal->condition(leakage->before);
   shift.theta_after = asset.seal->condition(leakage->after);
+  shift.months_before = forecast::mean_remaining_months(shift.theta_before, asset.seal->threshold);
+  shift.months_after = forecast::mean_remaining_months(shift.theta_after, asset.seal->threshold);
   shift.sentence = "The seal's condition is " + number(100.0 * shift.theta_after, 4) + " % instead of " +
-                   number(100.0 * shift.theta_before, 4) +
-                   " %; the remaining life follows in that proportion of what is left above " +
-                   number(100.0 * asset.seal->threshold) + " %.";
+                   number(100.0 * shift.theta_before, 4) + " %: a mean seal then has " +
+                   number(std::round(shift.months_after)) + " months left until " +
+                   number(100.0 * asset.seal->threshold) + " %, not " + number(std::round(shift.months_before)) +
+                   ". This actuator's own remaining life comes from its history (sealwatch forecast).";
   return shift;
 }
 

@@ -168,6 +168,8 @@ Json prognosis_json(const mismatch::PrognosisShift& prognosis) {
           {"R_CL_after", number(prognosis.R_CL_after)},
           {"theta_before", number(prognosis.theta_before)},
           {"theta_after", number(prognosis.theta_after)},
+          {"months_before", number(prognosis.months_before)},
+          {"months_after", number(prognosis.months_after)},
           {"sentence", prognosis.sentence}};
 }
 

@@ -185,6 +185,8 @@ PrognosisShift read_prognosis(const Json& json) {
           .R_CL_after = number(json, "R_CL_after"),
           .theta_before = number(json, "theta_before"),
           .theta_after = number(json, "theta_after"),
+          .months_before = number(json, "months_before"),
+          .months_after = number(json, "months_after"),
           .sentence = text(json, "sentence")};
 }
 

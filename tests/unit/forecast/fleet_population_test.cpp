@@ -33,6 +33,30 @@ TEST(FleetPopulation, DefaultsAreTheReferenceConstants) {
   EXPECT_TRUE(from_constants.validate());
 }
 
+// Against simulated lives: half of them last longer than the mean seal, from new and from halfway.
+TEST(FleetPopulation, TheMeanSealLivesAsLongAsTheMedianOfTheLives) {
+  std::vector<double> from_new, from_half;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    Degradation seal(seed);
+    int at_half = 0;
+    while (seal.condition() > 0.6) {
+      seal.advance();
+      if (at_half == 0 && seal.condition() <= 0.8) at_half = seal.month();
+    }
+    from_new.push_back(seal.month());
+    from_half.push_back(seal.month() - at_half);
+  }
+  std::ranges::sort(from_new);
+  std::ranges::sort(from_half);
+  constexpr double kScatter = 0.06;  // of the median of 400 lives, and of a mean path against the lives' median
+  EXPECT_NEAR(mean_remaining_months(1.0, 0.6) / from_new[200], 1.0, kScatter);
+  EXPECT_NEAR(mean_remaining_months(0.8, 0.6) / from_half[200], 1.0, kScatter);
+  EXPECT_EQ(mean_remaining_months(0.6, 0.6), 0.0);
+  EXPECT_EQ(mean_remaining_months(0.5, 0.6), 0.0);
+  EXPECT_EQ(mean_remaining_months(1.1, 0.6), mean_remaining_months(1.0, 0.6));
+  EXPECT_TRUE(std::isinf(mean_remaining_months(1.0, -10.0)));
+}
+
 // 60 lives tell the means to a few per cent, and that a fleet which ages twice as fast does so.
 TEST(FleetPopulation, FitFindsTheFleet) {
   const FleetFit usual = fit_population(fleet(60, "reference")).value();

@@ -166,6 +166,8 @@ Explanation example_explanation() {
                            .R_CL_after = 2.58e13,
                            .theta_before = 0.869,
                            .theta_after = 0.996,
+                           .months_before = 79.0,
+                           .months_after = 157.0,
                            .sentence = "Without the friction the seal looked 13 % more worn than it is."};
   explanation.next_test = "Record a stroke at 0.2 mm/s: it separates Stribeck from Coulomb friction.";
   explanation.summary =

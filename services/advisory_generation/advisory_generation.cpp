@@ -122,7 +122,9 @@ Conclusion AdvisoryGeneration::replaced(const MaintenanceEvent& event) {
   if (!event.header.event_time_known || newer_known) return conclusion;
   asset.memory = {};
   asset.replaced = time;
-  put_out(after_replacement(asset.current, event), conclusion);
+  const bool tested_since = asset.current && asset.last_test && *asset.last_test > time;
+  put_out(tested_since ? after_late_replacement(*asset.current, event) : after_replacement(asset.current, event),
+          conclusion);
   return conclusion;
 }
 

@@ -121,6 +121,18 @@ Advisory after_replacement(const std::optional<Advisory>& current, const Mainten
   return advisory;
 }
 
+Advisory after_late_replacement(const Advisory& current, const MaintenanceEvent& event) {
+  Header cause = event.header;
+  cause.pst_id.clear();
+  Advisory advisory = current;
+  advisory.header = answer_to(cause);
+  advisory.revision = current.revision + 1;
+  advisory.reasons.insert(advisory.reasons.begin(), event.kind + " on " + format_date({event.header.event_time_ns}) +
+                                                        " reported by " + event.reported_by +
+                                                        " after later tests: this advice stands until the next test");
+  return advisory;
+}
+
 bool is_answer_to_replacement(const Advisory& advisory) {
   return !advisory.header.source_ids.empty() &&
          advisory.header.message_id.rfind("advisory/maintenance_event/", 0) == 0 &&

@@ -1,4 +1,5 @@
 // `sealwatch replay`: recorded tests through the live services, or the same layers in this process.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -188,12 +189,33 @@ int replay_live(const ReplayOptions& options, const LayerSet& layers, ReplaySour
   return LiveReplay(*session, layers, source, log, speed).run(supervisor ? &*supervisor : nullptr);
 }
 
+/// Offline an asset file (an explained one, for instance) stands in place of the configured asset, or beside those; the
+/// services have their own configuration.
+bool use_asset_file(const ReplayOptions& options, Configuration& configuration) {
+  if (options.asset_file.empty()) return true;
+  std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  if (!asset) return false;
+  const auto configured = std::ranges::find(configuration.assets, asset->asset_id, &AssetConfig::asset_id);
+  const bool known = configured != configuration.assets.end();
+  if (!options.offline && known && configured->physics.size() != asset->physics.size()) {
+    complain(Error{.file = options.asset_file,
+                   .place = "physics",
+                   .value = {},
+                   .rule = "is not what the services have of asset " + asset->asset_id,
+                   .advice = "put this file in place of the asset's in the configuration, or replay --offline"});
+    return false;
+  }
+  if (options.offline && known) *configured = std::move(*asset);
+  if (options.offline && !known) configuration.assets.push_back(std::move(*asset));
+  return true;
+}
+
 }  // namespace
 
 int run_replay(const ReplayOptions& options) {
   const std::optional<double> speed = speed_of(options.speed);
-  const std::optional<Configuration> configuration = load_or_explain(options.config);
-  if (!speed || !configuration) return kBadInput;
+  std::optional<Configuration> configuration = load_or_explain(options.config);
+  if (!speed || !configuration || !use_asset_file(options, *configuration)) return kBadInput;
   std::optional<ReplaySource> source = ReplaySource::open(options, *configuration);
   if (!source) return kBadInput;
   Result<LayerSet> layers = LayerSet::make(*configuration);
@@ -221,7 +243,8 @@ int run_replay(const ReplayOptions& options) {
     return kBadInput;
   }
   if (result == kOk && log.concluded() == 0 && source->tests() > source->failures())
-    std::fprintf(stderr, "sealwatch: these tests were known already, nothing new was concluded\n");
+    std::fprintf(
+        stderr, "sealwatch: these tests were known already (same recording_id and content), nothing new was advised\n");
   return source->failures() > 0 && result == kOk ? kBadInput : result;
 }
 

@@ -88,6 +88,7 @@ void catch_interrupts() {
   const auto remember = [](int) { interrupt_seen = true; };
   std::signal(SIGINT, remember);
   std::signal(SIGTERM, remember);
+  std::signal(SIGHUP, remember);  // the terminal was closed
 }
 
 bool interrupted() { return interrupt_seen; }

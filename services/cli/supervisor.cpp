@@ -12,6 +12,7 @@
 
 #include "services/cli/commands.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
+#include "services/common/runtime/daemon.hpp"
 
 extern char** environ;
 
@@ -77,12 +78,18 @@ Status Supervisor::launch(Child& child) {
   std::vector<char*> arguments;
   for (std::string& argument : child.program.arguments) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
+  std::string supervisor = std::string(kSupervisor) + "=" + std::to_string(::getpid());
+  std::vector<char*> environment;
+  for (char** variable = environ; *variable != nullptr; ++variable) environment.push_back(*variable);
+  environment.push_back(supervisor.data());
+  environment.push_back(nullptr);
   // A group of its own, so that Ctrl-C in the terminal reaches the supervisor alone, which then stops the services in
   // order.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  const int error = posix_spawnp(&child.process, arguments[0], nullptr, &attributes, arguments.data(), environ);
+  const int error =
+      posix_spawnp(&child.process, arguments[0], nullptr, &attributes, arguments.data(), environment.data());
   posix_spawnattr_destroy(&attributes);
   child.started = std::chrono::steady_clock::now();
   ++child.starts;

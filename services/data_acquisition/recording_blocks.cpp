@@ -50,8 +50,9 @@ std::vector<RawSamples> blocks_of(const Recording& recording, std::size_t sample
     RawSamples raw = common_part(recording, source_id, replay);
     raw.block_number = blocks.size();
     raw.boundary = boundary(begin == 0, end == count);
-    raw.header.message_id = "raw_samples/" + raw.asset_id + "/" + raw.recording_id + "/" + raw.content_hash + "/" +
-                            std::to_string(raw.block_number);
+    // A test of unknown time takes no part in forecasts; once its time is known it is another one.
+    raw.header.message_id = "raw_samples/" + raw.asset_id + "/" + raw.recording_id + "/" + raw.content_hash +
+                            (raw.header.event_time_known ? "/" : "/no-time/") + std::to_string(raw.block_number);
     raw.samples = rows(recording.samples, begin, end);
     blocks.push_back(std::move(raw));
   }

@@ -14,7 +14,8 @@ namespace sealwatch {
 inline constexpr std::size_t kSamplesPerBlock = 200;  // a second at 200 Hz
 
 /// Blocks 0, 1, 2, ... of at most `samples_per_block` rows, the last one marked as the end; message ids
-/// "raw_samples/<asset>/<recording_id>/<content hash>/<number>". `replay` marks them as recorded data.
+/// "raw_samples/<asset>/<recording_id>/<content hash>/<number>", with "/no-time" before the number where the start time
+/// is not known. `replay` marks them as recorded data.
 [[nodiscard]] std::vector<RawSamples> blocks_of(const Recording& recording,
                                                 std::size_t samples_per_block = kSamplesPerBlock,
                                                 const std::string& source_id = "replay", bool replay = true);

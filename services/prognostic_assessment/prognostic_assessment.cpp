@@ -78,9 +78,18 @@ std::span<const Topic> PrognosticAssessment::inputs() const { return kInputs; }
 std::span<const Topic> PrognosticAssessment::outputs() const { return kOutputs; }
 
 void PrognosticAssessment::restore(const Message& own_output) {
-  if (const auto* estimate = std::get_if<LeakageEstimate>(&own_output)) history_[estimate->asset_id].add(*estimate);
+  if (const auto* estimate = std::get_if<LeakageEstimate>(&own_output)) remember(*estimate);
   if (const auto* life = std::get_if<RemainingLife>(&own_output); life && life->header.pst_id.empty())
     history_[life->asset_id].add_replacement({life->header.event_time_ns});
+}
+
+void PrognosticAssessment::remember(const LeakageEstimate& estimate) {
+  if (estimate.header.event_time_known) {
+    const auto known = latest_.find(estimate.asset_id);
+    if (known == latest_.end() || known->second.header.event_time_ns <= estimate.header.event_time_ns)
+      latest_[estimate.asset_id] = estimate;
+  }
+  history_[estimate.asset_id].add(estimate);
 }
 
 Conclusion PrognosticAssessment::receive(const Message& input) {
@@ -113,7 +122,7 @@ std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, 
                                   {health.header.message_id, window.header.message_id});
   const RemainingLife life = remaining_life(leakage);
   std::vector<Message> outputs{leakage, life};
-  AssetHistory& history = history_[leakage.asset_id];
+  const AssetHistory& history = history_[leakage.asset_id];
   const AssetConfig* asset = configuration_.find_asset(leakage.asset_id);
   const bool latest = leakage.header.event_time_known && !history.has_later_than({leakage.header.event_time_ns});
   if (asset && latest) {
@@ -121,7 +130,7 @@ std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, 
     request.header = concluded_from(health.header, "pst_request", kProducer, {leakage.header.message_id});
     outputs.emplace_back(std::move(request));
   }
-  history.add(leakage);
+  remember(leakage);
   return outputs;
 }
 
@@ -151,7 +160,7 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   }
   const UtcTime now{leakage.header.event_time_ns};
   AssetHistory history = history_.contains(asset->asset_id) ? history_.at(asset->asset_id) : AssetHistory{};
-  history.add(leakage);
+  if (!history.has_estimate(leakage.header.message_id)) history.add(leakage);
   const std::vector<HistoryEntry> tests = history.until(now);
   forecast::ForecastRequest request{.threshold = asset->seal->threshold,
                                     .now = now,
@@ -203,15 +212,25 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   Conclusion conclusion{.outputs = {}, .consumed = accepted_[event.asset_id].take(event)};
   conclusion.consumed.push_back(event.header.message_id);
   if (!event.header.event_time_known) return conclusion;  // without its time it cannot part the history
+  const UtcTime time{event.header.event_time_ns};
+  const std::string what = event.kind + " on " + format_date(time);
+  AssetHistory& history = history_[event.asset_id];
+  history.add_replacement(time);
   RemainingLife life;
+  const auto latest = latest_.find(event.asset_id);
+  if (latest != latest_.end() && latest->second.header.event_time_ns > event.header.event_time_ns) {
+    // Reported late, or with a wrong date: what has been tested since is judged by itself.
+    LeakageEstimate since = latest->second;
+    life = remaining_life(since);
+    for (Forecast& forecast : life.forecasts) forecast.explanation += "; " + what + ", reported after this test";
+  } else {
+    const AssetConfig* asset = configuration_.find_asset(event.asset_id);
+    if (asset && asset->seal) life.threshold = asset->seal->threshold;
+    life.forecasts = no_forecast(what + ": the history starts anew");
+  }
   life.asset_id = event.asset_id;
   life.header = concluded_from(event.header, "remaining_life", kProducer, {event.header.message_id});
   life.header.pst_id.clear();
-  const UtcTime time{event.header.event_time_ns};
-  const AssetConfig* asset = configuration_.find_asset(event.asset_id);
-  if (asset && asset->seal) life.threshold = asset->seal->threshold;
-  life.forecasts = no_forecast(event.kind + " on " + format_date(time) + ": the history starts anew");
-  history_[event.asset_id].add_replacement(time);
   conclusion.outputs.emplace_back(std::move(life));
   return conclusion;
 }

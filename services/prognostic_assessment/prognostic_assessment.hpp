@@ -61,6 +61,7 @@ class PrognosticAssessment final : public Layer {
   template <class Input>
   [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
   [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
+  void remember(const LeakageEstimate& estimate);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
   [[nodiscard]] const AcceptedModel& accepted(const std::string& asset_id) const;
   [[nodiscard]] LeakageEstimate estimate(const HealthReport& health, const TestWindow& window) const;
@@ -78,6 +79,7 @@ class PrognosticAssessment final : public Layer {
   std::unique_ptr<const forecast::Forecaster> in_charge_;
   std::map<std::string, Pending> pending_;         ///< by pst_id
   std::map<std::string, AssetHistory> history_;    ///< by asset_id
+  std::map<std::string, LeakageEstimate> latest_;  ///< by asset_id: of the latest test
   std::map<std::string, AcceptedModel> accepted_;  ///< by asset_id
 };
 

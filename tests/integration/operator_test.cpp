@@ -51,6 +51,20 @@ class Operator : public SixServices {
   pid_t up_ = -1;
 };
 
+TEST_F(Operator, LeavesNoServiceBehindWhenUpIsKilled) {
+  kill(up_, SIGKILL);
+  waitpid(up_, nullptr, 0);
+  Finished status;
+  for (int attempt = 0; attempt < 50; ++attempt) {
+    status = run({"sealwatch", "status", "--config", config(), "--seconds", "1.5"});
+    if (status.status == 1) break;
+  }
+  EXPECT_EQ(status.status, 1) << status.output;
+  EXPECT_THAT(status.output, HasSubstr("no service is running"));
+  up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
+              folder_ / "up_again.log");
+}
+
 TEST_F(Operator, IsToldWhatBecameOfIt) {
   const Finished again = replay({"--results", (folder_ / "again").string()});
   EXPECT_EQ(again.status, 0) << again.output;

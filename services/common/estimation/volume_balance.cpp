@@ -94,7 +94,7 @@ Result<CylinderSignals> gather_cylinder_signals(const AssetConfig& asset, const 
   if (area == asset.parameters.end() || dead_volume == asset.parameters.end())
     return fail("model " + asset.model + " has no cylinder circuit with parameters A_C and V_0");
   const Series* flow = samples.find("flow");
-  if (flow == nullptr) return fail("flow is not recorded");
+  if (flow == nullptr) return fail("flow is not recorded, or its sensor shows nothing usable");
   CylinderSignals signals;
   signals.time_s = samples.time_s;
   signals.flow_m3_s = flow->values;

@@ -98,7 +98,8 @@ std::string describe_change(const SealOpinion& opinion, UtcTime first) {
   return {};
 }
 
-std::string describe_ok(const SealOpinion& opinion, const Opened& opened, const ForecastRequest& request) {
+std::string describe_ok(const Forecast& forecast, const SealOpinion& opinion, const Opened& opened,
+                        const ForecastRequest& request) {
   std::string text = std::to_string(opened.tests.size());
   text += " tests, condition now ";
   const ConditionForecast now = condition_of(opinion, request.now);
@@ -111,6 +112,8 @@ std::string describe_ok(const SealOpinion& opinion, const Opened& opened, const 
   if (opinion.extra_std > 0.0)
     text += "; tests scatter by " + three_digits(opinion.extra_std) + " besides their errors";
   if (opinion.irregularity_scale > 1.0) text += "; it ages less regularly than the law says";
+  if (forecast.interval_95_high_months >= kLongestMonths)
+    text += "; upper limits are cut at " + in_months(kLongestMonths);
   return text + age_of_last_test(request);
 }
 
@@ -181,7 +184,7 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
                 "at this rate the end of life is more than " + in_months(options_.horizon_months) +
                     " away: no date can be told")};
   fill_numbers(forecast, request, remaining);
-  return {say(forecast, ForecastState::ok, describe_ok(opinion, opened, request)), std::move(remaining)};
+  return {say(forecast, ForecastState::ok, describe_ok(forecast, opinion, opened, request)), std::move(remaining)};
 }
 
 std::vector<ConditionForecast> StateSpaceForecaster::predict_conditions(const ForecastRequest& request,

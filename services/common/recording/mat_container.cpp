@@ -25,6 +25,11 @@ constexpr std::uint32_t kMostName_bytes = 2048;      // MATLAB's longest name si
 enum Type : std::uint32_t { kInt8 = 1, kInt32 = 5, kUint32 = 6, kMatrix = 14, kCompressed = 15 };
 constexpr std::uint32_t kDoubleClass = 6;
 constexpr std::uint32_t kUint64Class = 15;
+constexpr std::uint32_t kComplex = 0x800;  // flag of an array
+
+/// Bytes of one number by its type (int8, uint8, int16, uint16, int32, uint32, single, -, double, -, -, int64,
+/// uint64); 0: no numbers.
+constexpr std::array<std::uint64_t, 14> kNumber_bytes = {0, 1, 1, 2, 2, 4, 4, 4, 0, 8, 0, 0, 8, 8};
 
 Status damaged() { return fail("the file is cut off or damaged"); }
 
@@ -102,14 +107,19 @@ class ArrayElement {
   /// Nothing when a length leaves the element, or the order of its parts is another.
   [[nodiscard]] Status check() {
     const std::optional<std::string> flags = part(kUint32, 8);
-    if (!flags || flags->size() != 8 || !part(kInt32, kMostDimension_bytes)) return damaged();
+    if (!flags || flags->size() != 8) return damaged();
+    const std::optional<std::string> dimensions = part(kInt32, kMostDimension_bytes);
+    if (!dimensions || dimensions->size() < 8 || dimensions->size() % 4 != 0) return damaged();
     const std::optional<std::string> name = part(kInt8, kMostName_bytes);
     if (!name) return damaged();
-    const std::uint32_t kind = number(flags->data()) & 0xFFU;
+    const std::uint32_t array = number(flags->data()), kind = array & 0xFFU;
     if (kind < kDoubleClass || kind > kUint64Class)
       return fail(error_at("row 1, column " + printable(*name), {}, "must be one vector of real numbers"));
     const std::optional<Tag> numbers = tag();
-    if (!numbers || numbers->bytes > left_) return damaged();
+    if (!numbers || numbers->bytes > left_ || numbers->type >= kNumber_bytes.size()) return damaged();
+    // Of complex numbers this is the real part.
+    if ((array & kComplex) == 0 && numbers->bytes != kNumber_bytes[numbers->type] * count_of(*dimensions))
+      return damaged();
     return {};
   }
 
@@ -118,6 +128,14 @@ class ArrayElement {
     std::uint32_t value = 0;
     std::memcpy(&value, at, sizeof value);
     return swapped_ ? __builtin_bswap32(value) : value;
+  }
+
+  /// How many numbers arrays of these dimensions have; one that no element holds where they are absurd.
+  [[nodiscard]] std::uint64_t count_of(const std::string& dimensions) const {
+    std::uint64_t count = 1;
+    for (std::size_t at = 0; at < dimensions.size(); at += 4)
+      count = std::min<std::uint64_t>(count * number(dimensions.data() + at), 1ULL << 32U);
+    return count;
   }
 
   [[nodiscard]] std::optional<std::string> take(std::uint32_t count) {

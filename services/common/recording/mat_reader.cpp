@@ -3,6 +3,7 @@
 #include <hdf5.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -33,7 +34,9 @@ Error variable_error(const std::string& name, std::string rule, std::string advi
 template <class Number>
 std::vector<double> to_doubles(const matvar_t& variable, std::size_t count) {
   const auto* const data = static_cast<const Number*>(variable.data);
-  return {data, data + count};
+  std::vector<double> values(count);
+  std::transform(data, data + count, values.begin(), [](Number value) { return static_cast<double>(value); });
+  return values;
 }
 
 /// The `count` numbers of a variable whose data was read; none when it is not of a numeric class.
@@ -55,13 +58,17 @@ std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
       return to_doubles<std::int32_t>(variable, count);
     case MAT_C_UINT32:
       return to_doubles<std::uint32_t>(variable, count);
+    case MAT_C_INT64:
+      return to_doubles<std::int64_t>(variable, count);
+    case MAT_C_UINT64:
+      return to_doubles<std::uint64_t>(variable, count);
     default:
       return {};
   }
 }
 
 Result<std::size_t> vector_length(const matvar_t& variable, const std::string& name) {
-  const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT32;
+  const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
   const bool vector = variable.rank == 2 && (variable.dims[0] == 1 || variable.dims[1] == 1);
   if (!numeric || variable.isComplex != 0 || !vector)
     return fail(variable_error(name, "must be one vector of real numbers"));

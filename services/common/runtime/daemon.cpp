@@ -3,6 +3,7 @@
 #include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -92,6 +93,14 @@ class StopListener {
   std::thread thread_;
 };
 
+/// Started by `sealwatch up`: when that dies, whatever way, nobody would start this service again or stop it.
+void end_with_supervisor() {
+  const char* const supervisor = std::getenv(kSupervisor);
+  if (supervisor == nullptr) return;
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (std::to_string(::getppid()) != supervisor) ::kill(::getpid(), SIGTERM);  // it is dead already
+}
+
 RunnerOptions runner_options(const DaemonParts& parts, const Configuration& configuration) {
   RunnerOptions options;
   options.version = kVersion;
@@ -138,6 +147,7 @@ int run(const Arguments& arguments, const DaemonParts& parts) {
   if (!lock) return complain(parts.service, lock.error(), kBadUsage);
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  end_with_supervisor();
   if (const Status served = serve(parts, *configuration); !served)
     return complain(parts.service, served.error(), kInternalFailure);
   log_event(LogLevel::info, "stopped");

@@ -21,6 +21,9 @@
 
 namespace sealwatch {
 
+/// Environment variable with the process id of the supervisor that a service ends with.
+inline constexpr const char* kSupervisor = "SEALWATCH_SUPERVISOR";
+
 struct DaemonParts {
   std::string service;  ///< "state_detection"
   std::function<std::unique_ptr<Layer>(const Configuration&, const Clock&)> make_layer;

@@ -46,6 +46,20 @@ void expect_in_idl(const std::string& text, const std::string& name) {
   EXPECT_NE(text.find(expected), std::string::npos) << "idl/ must have: " << expected;
 }
 
+// Without its key a topic keeps the last message of one asset for all.
+TEST(Idl, EveryTopicIsKeyedByItsAsset) {
+  const std::string text = idl_text();
+  std::size_t topics = 0;
+  for (std::size_t at = text.find("// Topic "); at != std::string::npos; at = text.find("// Topic ", at + 1)) {
+    const std::size_t structure = text.find("@appendable struct ", at);
+    const std::size_t member = text.find("{ ", structure) + 2;
+    EXPECT_EQ(text.compare(member, 5, "@key "), 0) << text.substr(structure, member - structure);
+    ++topics;
+  }
+  EXPECT_GE(topics, EnumNames<Topic>::kNames.size())
+      << "each topic's structure is announced by a comment \"Topic <name>\"";
+}
+
 TEST(Idl, EnumsHaveTheNamesAndTheOrderOfTheirCppOnes) {
   const std::string text = idl_text();
   expect_in_idl<ChannelState>(text, "ChannelState");

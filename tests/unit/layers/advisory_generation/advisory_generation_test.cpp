@@ -201,6 +201,15 @@ TEST_F(AdvisoryGenerationTest, ReplacementClosesTheWorkAndStartsAnew) {
   EXPECT_THAT(next_seal.back().request_for_work.at(0).work_id, HasSubstr("seal of 2018-05"));
 }
 
+// A wrong year must not cancel a vessel.
+TEST_F(AdvisoryGenerationTest, AReplacementFromBeforeTheLastTestLeavesTheAdviceStanding) {
+  const auto before = inputs_of(life_until(60, 85, 100.0));
+  const auto all = advisories(joined(before, {replacement(10.5)}));
+  EXPECT_EQ(all.back().action, AdvisoryAction::book_vessel);
+  EXPECT_FALSE(all.back().request_for_work.empty());
+  EXPECT_THAT(all.back().reasons.front(), HasSubstr("after later tests: this advice stands until the next test"));
+}
+
 TEST_F(AdvisoryGenerationTest, TestsFromBeforeTheLastOneOrTheReplacementChangeNothing) {
   const auto before = joined(inputs_of(life_until(60, 90, 100.0)), {replacement(90.5)});
   EXPECT_EQ(run(joined(before, inputs_of({{.month = 89.5, .rul_months = 0.5}}))), run(before));

@@ -107,6 +107,18 @@ TEST_F(PrognosticAssessmentTest, AfterReplacementTheHistoryStartsAnew) {
   EXPECT_NEAR(window_24.rul_months, 40.5 + 80.0 - 70.0, 1e-6);
 }
 
+TEST_F(PrognosticAssessmentTest, AReplacementFromBeforeAllTestsLeavesTheForecast) {
+  auto inputs = inputs_of(straight_life(1, 40));
+  inputs.emplace_back(replacement(-120.0));  // a wrong year
+  const auto before = of_kind<RemainingLife>(run(inputs_of(straight_life(1, 40))));
+  const RemainingLife after = of_kind<RemainingLife>(run(inputs)).back();
+  EXPECT_TRUE(after.header.pst_id.empty());
+  EXPECT_EQ(after.tests_since_replacement, before.back().tests_since_replacement);
+  ASSERT_EQ(after.forecasts.front().state, ForecastState::ok);
+  EXPECT_EQ(straight_line(after).rul_months, straight_line(before.back()).rul_months);
+  EXPECT_THAT(after.forecasts.front().explanation, HasSubstr("reported after this test"));
+}
+
 TEST_F(PrognosticAssessmentTest, ReplacementPartsTheHistoryByEventTimeNotByArrival) {
   auto inputs = inputs_of(straight_life(1, 40));
   inputs.emplace_back(replacement(30.5));  // reported ten months late

@@ -36,6 +36,10 @@ std::string outlook(const RemainingLife& life) {
   return text;
 }
 
+bool no_forecast_yet(const RemainingLife& life) {
+  return !life.forecasts.empty() && life.forecasts.front().state == ForecastState::insufficient_history;
+}
+
 std::string campaign_at(const SiteConfig* site, UtcTime day) {
   if (site)
     for (const Campaign& campaign : site->campaigns)
@@ -61,7 +65,7 @@ Recommendation by_wear(const Context& c) {
   view += capitalised(outlook(c.evidence.life));
   switch (c.in_force.wear) {
     case WearLevel::none:
-      r.text = "No action needed." + view;
+      r.text = (no_forecast_yet(c.evidence.life) ? "No action follows from this test." : "No action needed.") + view;
       r.work_before = r.latest_by = std::nullopt;
       return r;
     case WearLevel::plan:

@@ -111,6 +111,10 @@ void print_text(const Explanation& explanation, const Files& files) {
               wrapped(explanation.summary, kWidth, 2).c_str());
   for (const FoundEffect& effect : explanation.effects) print_effect(effect);
   const bool changed = !explanation.effects.empty();
+  if (changed && explanation.prognosis.known)
+    std::printf("\n  R_CL %s -> %s Pa s/m3\n  %s\n", number(explanation.prognosis.R_CL_before).c_str(),
+                number(explanation.prognosis.R_CL_after).c_str(),
+                wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
   print_channels("kept aside", explanation.holdout, changed);
   print_channels("fitted", explanation.fit, changed);
   if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());

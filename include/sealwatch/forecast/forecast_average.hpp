@@ -24,7 +24,7 @@ class AverageForecaster final : public Forecaster {
  public:
   /// Members by their settings, which must not be averages themselves; none: default_members().
   [[nodiscard]] static Result<std::unique_ptr<const Forecaster>> make(const ForecasterSettings& settings);
-  /// state_space over the window of the settings, ols_drift over 24, 36 and 48 months.
+  /// fleet and state_space over the window of the settings, ols_drift over 24, 36 and 48 months.
   [[nodiscard]] static std::vector<ForecasterSettings> default_members(const ForecasterSettings& settings);
 
   [[nodiscard]] std::vector<ConditionForecast> predict_conditions(const ForecastRequest& request,

@@ -1,6 +1,10 @@
 #include "services/cli/replay_source.hpp"
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <utility>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/plant_description.hpp"
@@ -29,7 +33,21 @@ std::optional<ReplaySource> ReplaySource::open(const ReplayOptions& options, con
                    .advice = folder ? "give its recordings: " + (std::filesystem::path(file) / "*.csv").string() : ""});
     return std::nullopt;
   }
+  source.put_in_order();
   return source;
+}
+
+// Each test is judged with those before it: names need not sort as times do (PST-10 stands before PST-2).
+void ReplaySource::put_in_order() {
+  std::vector<std::pair<UtcTime, std::string>> in_order;
+  for (const std::string& file : files_)
+    in_order.emplace_back(recorded_start_time(file).value_or(UtcTime{std::numeric_limits<std::int64_t>::max()}), file);
+  std::ranges::stable_sort(in_order, {}, &std::pair<UtcTime, std::string>::first);
+  std::vector<std::string> sorted;
+  for (auto& [time, file] : in_order) sorted.push_back(std::move(file));
+  if (sorted != files_)
+    std::fprintf(stderr, "sealwatch: the recordings are played in the order of their start times\n");
+  files_ = std::move(sorted);
 }
 
 Result<Recording> ReplaySource::read(const std::string& file) const {

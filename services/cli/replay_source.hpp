@@ -23,6 +23,7 @@ class ReplaySource {
   [[nodiscard]] std::size_t failures() const { return failures_; }
 
  private:
+  void put_in_order();
   [[nodiscard]] Result<Recording> read(const std::string& file) const;
 
   const Configuration* configuration_ = nullptr;

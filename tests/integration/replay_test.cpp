@@ -53,9 +53,11 @@ TEST_F(Replay, LiveAndOfflineConcludeTheSame) {
   const Finished live = undisturbed("state");
   ASSERT_EQ(live.status, 0) << live.output;
   EXPECT_NE(live.output.find("remaining life"), std::string::npos) << live.output;
+  // Given in another order: tests are played by their start times.
+  std::vector<std::string> reversed(recordings().rbegin(), recordings().rend());
   const Finished offline = run(with({"sealwatch", "replay", "--config", config(), "--offline", "--results",
                                      (folder_ / "offline").string(), "--quiet"},
-                                    recordings()));
+                                    reversed));
   ASSERT_EQ(offline.status, 0) << offline.output;
   for (const char* topic : {"test_features", "state_report", "health_report", "leakage_estimate", "remaining_life",
                             "pst_request", "advisory"}) {

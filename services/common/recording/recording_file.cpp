@@ -79,12 +79,25 @@ Result<Sidecar> read_sidecar(const std::string& path, const PlantDescription& pl
 
 }  // namespace
 
-Result<std::string> recorded_asset_id(const std::string& path) {
+namespace {
+
+Result<std::string> recorded_value(const std::string& path, const std::string& key) {
   const std::string file = sidecar_path(path);
   const Result<std::string> text = read_sidecar_text(file);
   if (!text) return fail(text.error());
-  Result<std::string> asset_id = parse_sidecar_asset_id(*text);
-  return asset_id ? asset_id : fail_in(file, asset_id.error());
+  Result<std::string> value = parse_sidecar_value(*text, key);
+  return value ? value : fail_in(file, value.error());
+}
+
+}  // namespace
+
+Result<std::string> recorded_asset_id(const std::string& path) { return recorded_value(path, "asset_id"); }
+
+std::optional<UtcTime> recorded_start_time(const std::string& path) {
+  const Result<std::string> text = recorded_value(path, "start_time");
+  if (!text) return {};
+  const auto time = parse_utc(*text);
+  return time ? std::optional(*time) : std::nullopt;
 }
 
 Result<Recording> read_recording(const std::string& path, const PlantDescription& plant) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "sealwatch/core/recording.hpp"
@@ -30,6 +31,9 @@ inline constexpr std::size_t kLongestSidecar_bytes = std::size_t{1} << 16U;
 
 /// The asset that the sidecar of `path` names, "" when there is none: with it the caller finds the plant to read with.
 [[nodiscard]] Result<std::string> recorded_asset_id(const std::string& path);
+
+/// The start time that the sidecar of `path` gives; nothing where there is none or it cannot be read.
+[[nodiscard]] std::optional<UtcTime> recorded_start_time(const std::string& path);
 
 /// All digits that it takes to read back the very same double.
 inline constexpr int kExactDigits = 0;

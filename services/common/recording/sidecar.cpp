@@ -122,11 +122,11 @@ Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& p
   }
 }
 
-Result<std::string> parse_sidecar_asset_id(const std::string& text) {
+Result<std::string> parse_sidecar_value(const std::string& text, const std::string& key) {
   if (!is_utf8(text)) return fail("is not UTF-8");
   try {
-    const YAML::Node asset_id = YAML::Load(text)["asset_id"];
-    return asset_id.IsDefined() && asset_id.IsScalar() ? asset_id.Scalar() : std::string();
+    const YAML::Node value = YAML::Load(text)[key];
+    return value.IsDefined() && value.IsScalar() ? value.Scalar() : std::string();
   } catch (const YAML::Exception& problem) {
     return fail(error_at(place_of(problem.mark.line + 1, ""), {}, "is not YAML: " + problem.msg));
   }

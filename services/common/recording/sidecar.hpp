@@ -24,8 +24,9 @@ struct Sidecar {
 /// Reads a sidecar's text. Errors name line and key, not the file.
 [[nodiscard]] Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& plant);
 
-/// Only the asset_id of a sidecar's text, "" when it names none: which plant the rest is to be read with.
-[[nodiscard]] Result<std::string> parse_sidecar_asset_id(const std::string& text);
+/// Only the value of one key of a sidecar's text, "" when it has none: asset_id says which plant the rest is to be read
+/// with.
+[[nodiscard]] Result<std::string> parse_sidecar_value(const std::string& text, const std::string& key);
 
 /// The sidecar's text; noise_std in SI.
 [[nodiscard]] std::string format_sidecar(const Recording& recording);

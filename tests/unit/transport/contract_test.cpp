@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <numeric>
+#include <set>
 #include <thread>
 
 #include "tests/unit/transport/kits.hpp"
@@ -143,6 +144,29 @@ TEST_P(BusContract, GivesALateSubscriberTheLastMessageOfEveryAssetOfEveryPublish
   std::ranges::sort(got);
   EXPECT_EQ(got, (std::vector<std::uint64_t>{5, 15, 25}));
   EXPECT_TRUE(late->receive(kQuiet).empty());
+}
+
+TEST_P(BusContract, GivesALateSubscriberBothAssetsOfEveryTopicOfConclusions) {
+  const std::vector<Topic> topics = {Topic::test_features,    Topic::state_report,     Topic::health_report,
+                                     Topic::leakage_estimate, Topic::remaining_life,   Topic::pst_request,
+                                     Topic::advisory,         Topic::model_discrepancy};
+  auto publisher = open();
+  const auto publish = [&]<class Report>(Report) {
+    for (const char* asset : {"a", "b"}) {
+      Report report = of_asset<Report>(asset);
+      report.header.stream_sequence = asset == std::string("a") ? 1 : 2;
+      ASSERT_TRUE(publisher->publish(Message(report)));
+    }
+  };
+  publish(TestFeatures{}), publish(StateReport{}), publish(HealthReport{}), publish(LeakageEstimate{});
+  publish(RemainingLife{}), publish(PstRequest{}), publish(Advisory{}), publish(ModelDiscrepancy{});
+  auto late = open_subscribed(topics);
+  std::map<Topic, std::set<std::string>> assets;
+  for (const BusItem& item : collect(*late, 2 * topics.size())) {
+    const Message& message = std::get<Message>(item);
+    assets[topic_of(message)].insert(asset_of(message));
+  }
+  for (const Topic topic : topics) EXPECT_EQ(assets[topic], (std::set<std::string>{"a", "b"})) << name_of(topic);
 }
 
 TEST_P(BusContract, KeepsTheOrderOfEachOfTwoPublishers) {

@@ -270,7 +270,9 @@ class CommandLine {
         ->add_option("--speed", replay_.speed,
                      "1 (as recorded) to 1000, or max; the time between tests is always skipped")
         ->capture_default_str();
-    replay->add_option("--asset", replay_.asset_file, "asset file: of recordings without asset_id; offline also in place of the configured asset")
+    replay
+        ->add_option("--asset", replay_.asset_file,
+                     "asset file: of recordings without asset_id; offline also in place of the configured asset")
         ->check(CLI::ExistingFile);
     replay->add_option("--results", replay_.results_directory,
                        "write every message there, a JSON line each, a file a topic");

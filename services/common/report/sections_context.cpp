@@ -98,7 +98,7 @@ std::string prognosis_section(const Explanation& explanation) {
   };
   table.row({"seal condition", theta(prognosis.theta_before), theta(prognosis.theta_after),
              change_text(prognosis.theta_before, prognosis.theta_after)});
-  const auto months = [](double value) { return std::isfinite(value) ? number_text(std::round(value), 4) : "–"; };
+  const auto months = [](double value) { return std::isfinite(value) ? std::to_string(std::lround(value)) : "–"; };
   table.row({"months left of a mean seal", months(prognosis.months_before), months(prognosis.months_after),
              change_text(prognosis.months_before, prognosis.months_after)});
   return section("What it does to the remaining life", paragraph(prognosis.sentence).append(table.html()));

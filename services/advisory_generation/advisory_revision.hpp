@@ -30,11 +30,10 @@ namespace sealwatch::advisory_generation {
 [[nodiscard]] Advisory with_overdue_test(const std::optional<Advisory>& current, const StateReport& report);
 
 /// The fresh start after a replacement.
+[[nodiscard]] Advisory after_replacement(const std::optional<Advisory>& current, const MaintenanceEvent& event);
 /// After a replacement that was reported when later tests were known already: what was advised stands until the next
 /// test, which is judged with the tests since.
 [[nodiscard]] Advisory after_late_replacement(const Advisory& current, const MaintenanceEvent& event);
-
-[[nodiscard]] Advisory after_replacement(const std::optional<Advisory>& current, const MaintenanceEvent& event);
 [[nodiscard]] bool is_answer_to_replacement(const Advisory& advisory);
 
 /// Message ids behind an advisory, down to the window with the waveform; each once.

@@ -263,8 +263,8 @@ int run_replaced(const ReplacedOptions& options) {
   if (!session) return kBadInput;
   const int sent = send(session, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
   if (sent == kOk)
-    std::printf("received: the history of %s begins anew on %s\n", options.asset_id.c_str(),
-                date(at->nanoseconds).c_str());
+    std::printf("received: only tests of %s since %s count for the new %s\n", options.asset_id.c_str(),
+                date(at->nanoseconds).c_str(), options.what.c_str());
   return sent;
 }
 

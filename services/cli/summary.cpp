@@ -150,9 +150,7 @@ void AssetView::take(const Message& message) {
   if (const auto* estimate = std::get_if<LeakageEstimate>(&message)) estimates_[estimate->header.pst_id] = *estimate;
   if (const auto* life = std::get_if<RemainingLife>(&message)) {
     keep_latest(life_, *life);
-    // A remaining life of no test is the answer to a replacement.
-    if (life->header.pst_id.empty() && life->header.event_time_known)
-      replaced_ns_ = std::max(replaced_ns_.value_or(life->header.event_time_ns), life->header.event_time_ns);
+    if (life->replacement_known) replaced_ns_ = std::max(replaced_ns_.value_or(life->replaced_ns), life->replaced_ns);
   }
   if (const auto* health = std::get_if<HealthReport>(&message)) keep_latest(health_, *health);
   if (const auto* state = std::get_if<StateReport>(&message)) keep_latest(state_, *state);
@@ -239,7 +237,8 @@ std::string scored_line(const RemainingLife& life) {
 
 std::string AssetView::forecast_lines() const {
   if (!life_ || life_->forecasts.empty()) return {};
-  if (life_->header.pst_id.empty()) return "  remaining life   " + life_->forecasts.front().explanation + "\n";
+  if (replaced_ns_ && life_->tests_since_replacement == 0)
+    return "  remaining life   " + life_->forecasts.front().explanation + "\n";
   // The one in charge and the straight lines beside it; the others are in the message.
   std::vector<Forecast> shown = {life_->forecasts.front()};
   for (std::size_t k = 1; k < life_->forecasts.size(); ++k)
@@ -308,9 +307,9 @@ std::string AssetView::json() const {
 std::string AssetView::screen() const {
   std::string text = "== " + asset_id_;
   const std::size_t tests = estimates_of_now().size();
-  if (replaced_ns_) text += ", replaced on " + date(*replaced_ns_) + ": its history begins anew";
-  if (life_ && !life_->header.pst_id.empty() && life_->header.event_time_known)
-    text += ", last test " + date(life_->header.event_time_ns);
+  const bool tested = life_ && life_->header.event_time_known && !(replaced_ns_ && life_->tests_since_replacement == 0);
+  if (replaced_ns_) text += ", replaced on " + date(*replaced_ns_);
+  if (tested) text += ", last test " + date(life_->header.event_time_ns);
   text += tests == 0 && replaced_ns_ ? ", no test since\n"
                                      : ", " + std::to_string(tests) + (tests == 1 ? " test" : " tests") + " in view\n";
   return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines() + model_lines() + left_out_lines();

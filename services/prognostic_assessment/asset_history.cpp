@@ -1,6 +1,7 @@
 #include "services/prognostic_assessment/asset_history.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace sealwatch::prognostic_assessment {
 namespace {
@@ -25,17 +26,15 @@ void AssetHistory::add(const LeakageEstimate& estimate) {
   entries_.insert(place, std::move(entry));
 }
 
-void AssetHistory::add_replacement(UtcTime time) { replacements_.push_back(time); }
+void AssetHistory::add_replacement(UtcTime time) { replacements_.insert(time); }
 
 bool AssetHistory::has_estimate(const std::string& estimate_id) const {
   return std::find(concluded_.begin(), concluded_.end(), estimate_id) != concluded_.end();
 }
 
 std::optional<UtcTime> AssetHistory::replaced_before(UtcTime now) const {
-  std::optional<UtcTime> last;
-  for (const UtcTime time : replacements_)
-    if (time <= now && (!last || time > *last)) last = time;
-  return last;
+  const auto later = replacements_.upper_bound(now);
+  return later == replacements_.begin() ? std::nullopt : std::optional(*std::prev(later));
 }
 
 std::vector<HistoryEntry> AssetHistory::until(UtcTime now) const {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,7 @@ class AssetHistory {
  private:
   std::vector<std::string> concluded_;
   std::vector<HistoryEntry> entries_;  ///< in the order of time; equal times by id
-  std::vector<UtcTime> replacements_;
+  std::set<UtcTime> replacements_;
 };
 
 }  // namespace sealwatch::prognostic_assessment

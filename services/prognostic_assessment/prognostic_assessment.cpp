@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "sealwatch/forecast/decision.hpp"
 #include "sealwatch/forecast/words.hpp"
@@ -79,8 +80,8 @@ std::span<const Topic> PrognosticAssessment::outputs() const { return kOutputs; 
 
 void PrognosticAssessment::restore(const Message& own_output) {
   if (const auto* estimate = std::get_if<LeakageEstimate>(&own_output)) remember(*estimate);
-  if (const auto* life = std::get_if<RemainingLife>(&own_output); life && life->header.pst_id.empty())
-    history_[life->asset_id].add_replacement({life->header.event_time_ns});
+  if (const auto* life = std::get_if<RemainingLife>(&own_output); life && life->replacement_known)
+    history_[life->asset_id].add_replacement({life->replaced_ns});
 }
 
 void PrognosticAssessment::remember(const LeakageEstimate& estimate) {
@@ -177,6 +178,8 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   mark_unconfirmed(leakage, answer.left_out);
   life.threshold = asset->seal->threshold;
   life.tests_since_replacement = static_cast<std::int32_t>(tests.size());
+  life.replacement_known = request.installed.has_value();
+  life.replaced_ns = request.installed.value_or(UtcTime{}).nanoseconds;
   life.header.source_ids = estimate_ids(tests);
   if (!answer.used.empty()) {
     life.condition_known = true;
@@ -213,24 +216,29 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   conclusion.consumed.push_back(event.header.message_id);
   if (!event.header.event_time_known) return conclusion;  // without its time it cannot part the history
   const UtcTime time{event.header.event_time_ns};
-  const std::string what = event.kind + " on " + format_date(time);
+  std::string what = event.kind + " on " + format_date(time);
+  std::ranges::replace(what, '_', ' ');
   AssetHistory& history = history_[event.asset_id];
   history.add_replacement(time);
   RemainingLife life;
+  UtcTime as_of = time;
   const auto latest = latest_.find(event.asset_id);
   if (latest != latest_.end() && latest->second.header.event_time_ns > event.header.event_time_ns) {
     // Reported late, or with a wrong date: what has been tested since is judged by itself.
     LeakageEstimate since = latest->second;
     life = remaining_life(since);
+    as_of = {since.header.event_time_ns};
     for (Forecast& forecast : life.forecasts) forecast.explanation += "; " + what + ", reported after this test";
   } else {
     const AssetConfig* asset = configuration_.find_asset(event.asset_id);
     if (asset && asset->seal) life.threshold = asset->seal->threshold;
     life.forecasts = no_forecast(what + ": the history starts anew");
   }
+  if (!std::exchange(life.replacement_known, true)) life.replaced_ns = time.nanoseconds;
   life.asset_id = event.asset_id;
   life.header = concluded_from(event.header, "remaining_life", kProducer, {event.header.message_id});
   life.header.pst_id.clear();
+  life.header.event_time_ns = as_of.nanoseconds;
   conclusion.outputs.emplace_back(std::move(life));
   return conclusion;
 }

@@ -137,9 +137,11 @@ struct RemainingLife {
   double confidence = 0.0;  ///< 0..1 that the forecaster still describes this seal; 0 where nothing is forecast
   std::vector<DecisionOption>
       decision;  ///< by the forecaster in charge, in the order of time; empty without a forecast
+  bool replacement_known = false;  ///< a replacement of this seal or actuator has been reported
+  std::int64_t replaced_ns = 0;    ///< when: only tests since then count
   SEALWATCH_FIELDS(RemainingLife, asset_id, header, threshold, condition, condition_known, condition_std, forecasts,
                    windows_disagree, disagreement, tests_since_replacement, scored_forecasts, coverage_80, coverage_95,
-                   mean_crps, confidence, decision)
+                   mean_crps, confidence, decision, replacement_known, replaced_ns)
   friend bool operator==(const RemainingLife&, const RemainingLife&) = default;
 };
 

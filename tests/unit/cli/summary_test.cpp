@@ -102,6 +102,29 @@ TEST(AssetView, ShowsTheDecisionOfTheLastTest) {
   EXPECT_THAT(view.screen(), HasSubstr("before summer, 2031-06-01: 25.0 %  |#####               |"));
 }
 
+TEST(AssetView, ShowsTheForecastOfTheTestsSinceAReplacement) {
+  RemainingLife life;
+  life.asset_id = "A";
+  life.header = header_of_test("2031-04-12");
+  life.forecasts = {forecast_of(18.0)};
+  life.tests_since_replacement = 30;
+  life.replacement_known = true;
+  life.replaced_ns = parse_utc("1999-01-01").value().nanoseconds;
+  AssetView view;
+  view.take(Message(life));
+  EXPECT_THAT(view.screen(), HasSubstr("== A, replaced on 1999-01-01, last test 2031-04-12"));
+  EXPECT_THAT(view.screen(), HasSubstr("16.0 .. 21.0"));
+
+  life.header.pst_id.clear();
+  life.replaced_ns = life.header.event_time_ns = parse_utc("2031-05-01").value().nanoseconds;
+  life.tests_since_replacement = 0;
+  life.forecasts.front().state = ForecastState::insufficient_history;
+  life.forecasts.front().explanation = "the history starts anew";
+  view.take(Message(life));
+  EXPECT_THAT(view.screen(), HasSubstr("== A, replaced on 2031-05-01, no test since"));
+  EXPECT_THAT(view.screen(), HasSubstr("the history starts anew"));
+}
+
 TEST(AssetView, KeepsTheActiveAdvisoryAndNamesWhatWasLeftOut) {
   AssetView view;
   Advisory active;

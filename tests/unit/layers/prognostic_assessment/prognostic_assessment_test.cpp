@@ -98,7 +98,10 @@ TEST_F(PrognosticAssessmentTest, AfterReplacementTheHistoryStartsAnew) {
   ASSERT_EQ(lives.size(), 71u);
   const RemainingLife& reset = lives[40];
   EXPECT_EQ(reset.tests_since_replacement, 0);
-  EXPECT_THAT(reset.forecasts.front().explanation, HasSubstr("seal_replaced on 2013-05"));
+  EXPECT_FALSE(lives[39].replacement_known);
+  EXPECT_TRUE(reset.replacement_known && lives.back().replacement_known);
+  EXPECT_EQ(lives.back().replaced_ns, reset.header.event_time_ns);
+  EXPECT_THAT(reset.forecasts.front().explanation, HasSubstr("seal replaced on 2013-05"));
   EXPECT_EQ(lives[41].tests_since_replacement, 1);
   EXPECT_EQ(lives[41].forecasts.front().state, ForecastState::insufficient_history);
   const Forecast window_24 = lives.back().forecasts[2];
@@ -117,6 +120,8 @@ TEST_F(PrognosticAssessmentTest, AReplacementFromBeforeAllTestsLeavesTheForecast
   ASSERT_EQ(after.forecasts.front().state, ForecastState::ok);
   EXPECT_EQ(straight_line(after).rul_months, straight_line(before.back()).rul_months);
   EXPECT_THAT(after.forecasts.front().explanation, HasSubstr("reported after this test"));
+  EXPECT_EQ(after.header.event_time_ns, before.back().header.event_time_ns) << "its months count from the last test";
+  EXPECT_LT(after.replaced_ns, before.front().header.event_time_ns);
 }
 
 TEST_F(PrognosticAssessmentTest, ReplacementPartsTheHistoryByEventTimeNotByArrival) {

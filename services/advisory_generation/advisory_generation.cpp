@@ -90,6 +90,8 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   advisory.header.source_ids = source_ids(evidence);
   advisory.reasons = assessment.reasons;
   advisory.reasons.insert(advisory.reasons.end(), recommendation.also.begin(), recommendation.also.end());
+  for (std::string& reason : reasons_of_dates(recommendation, assessment.verdict, in_force, site, options_))
+    advisory.reasons.push_back(std::move(reason));
   const AssetConfig* config = configuration_.find_asset(asset_id);
   advisory.decision = evidence.life.decision;
   advisory.safety = {

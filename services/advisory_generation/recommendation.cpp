@@ -156,6 +156,24 @@ Recommendation recommend(const Evidence& evidence, const Assessment& assessment,
   return chosen;
 }
 
+std::vector<std::string> reasons_of_dates(const Recommendation& recommendation, const TestVerdict& verdict,
+                                          const InForce& in_force, const SiteConfig* site, const Options& options) {
+  std::vector<std::string> reasons;
+  if (!recommendation.work_before) return reasons;
+  const UtcTime work = *recommendation.work_before;
+  if (recommendation.latest_by && *recommendation.latest_by < work)
+    reasons.push_back("latest by " + format_date(*recommendation.latest_by) + ": " +
+                      forecast::in_months(booking_lead_time_months(site)) + " before the work by " + format_date(work) +
+                      ", the time it takes to get a vessel");
+  if (work == in_force.replace_by && verdict.replace_by && *verdict.replace_by != work)
+    reasons.push_back("work by " + format_date(work) + " is held although this test by itself says " +
+                      format_date(*verdict.replace_by) + ": the date moves earlier when " +
+                      std::to_string(options.confirming_tests) + " of " + std::to_string(options.confirming_window) +
+                      " tests ask for it, later when " + std::to_string(options.easing_tests) +
+                      " in a row do, and not for small changes");
+  return reasons;
+}
+
 bool is_replacement(AdvisoryAction action) {
   return action == AdvisoryAction::plan_replacement || action == AdvisoryAction::book_vessel ||
          action == AdvisoryAction::replace_now;

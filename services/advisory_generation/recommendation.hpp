@@ -22,6 +22,12 @@ struct Recommendation {
 [[nodiscard]] Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& in_force,
                                        const SiteConfig* site);
 
+/// Why the dates are what they are: the time to book a vessel; that the date in force is held where this test by itself
+/// names another. Nothing where the recommendation names no date.
+[[nodiscard]] std::vector<std::string> reasons_of_dates(const Recommendation& recommendation,
+                                                        const TestVerdict& verdict, const InForce& in_force,
+                                                        const SiteConfig* site, const Options& options);
+
 /// Whether the action is work on the actuator, for which a work order is made.
 [[nodiscard]] bool is_replacement(AdvisoryAction action);
 

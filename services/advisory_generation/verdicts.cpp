@@ -9,12 +9,12 @@
 namespace sealwatch::advisory_generation {
 namespace {
 
-constexpr const char* kStart = "this test alone calls for: ";
-constexpr const char* kMiddle = "; all tests so far call for: ";
-constexpr const char* kNotJudged = "nothing, it says nothing about the wear";
+constexpr const char* kStart = "what this test by itself says: ";
+constexpr const char* kMiddle = "; what is in force after all tests so far: ";
+constexpr const char* kNotJudged = "nothing about the wear";
 /// In the order of WearLevel.
-constexpr std::array<const char*, 5> kWear = {"no work", "planning", "booking a vessel", "booking a vessel at once",
-                                              "replacement now"};
+constexpr std::array<const char*, 5> kWear = {"no work", "plan the work", "book a vessel", "book a vessel at once",
+                                              "replace now"};
 static_assert(kWear.size() == EnumNames<WearLevel>::kNames.size());
 constexpr std::size_t kMostRemembered = 60;  // five years of tests: more than any sensible confirmation
 
@@ -56,13 +56,15 @@ bool raised(const std::vector<TestVerdict>& last, bool TestVerdict::*flag, bool 
   return before && std::any_of(row.begin(), row.end(), says_yes);
 }
 
+constexpr const char* kBy = "the seal replaced by ";
+
 std::string words(const std::string& wear, const std::optional<UtcTime>& replace_by, bool doubted, bool failed) {
-  return wear + ", " + (replace_by ? "replacement by " + format_date(*replace_by) : "no date yet") + ", instruments " +
-         (doubted ? "doubted" : "trusted") + ", stroke " + (failed ? "failed" : "done");
+  return wear + ", " + (replace_by ? std::string(kBy).append(format_date(*replace_by)) : "no date yet") +
+         ", instruments " + (doubted ? "doubted" : "trusted") + ", stroke " + (failed ? "failed" : "done");
 }
 
-constexpr std::string_view kEarlier = " (";
-constexpr std::string_view kEarlierEnd = ", a campaign earlier)";
+constexpr std::string_view kEarlier = " (were the work one campaign earlier: ";
+constexpr std::string_view kEarlierEnd = ")";
 
 std::optional<WearLevel> level_of(std::string_view text) {
   for (std::size_t level = 0; level < kWear.size(); ++level)
@@ -81,9 +83,9 @@ struct Words {
 /// What words() wrote, from its end: "WEAR, DATE, INSTRUMENTS, STROKE".
 std::optional<Words> read(std::string text) {
   Words read;
-  if (const std::size_t end = text.find(kEarlierEnd); end != std::string::npos) {
-    const std::size_t begin = text.find(kEarlier);
-    if (begin > end) return std::nullopt;
+  if (const std::size_t begin = text.find(kEarlier); begin != std::string::npos) {
+    const std::size_t end = text.find(kEarlierEnd, begin);
+    if (end == std::string::npos) return std::nullopt;
     read.wear_a_campaign_earlier = level_of(text.substr(begin + kEarlier.size(), end - begin - kEarlier.size()));
     text.erase(begin, end + kEarlierEnd.size() - begin);
   }
@@ -96,9 +98,8 @@ std::optional<Words> read(std::string text) {
   const std::string stroke = take_last();
   const std::string instruments = take_last();
   std::string date = take_last();
-  constexpr std::string_view kBy = "replacement by ";
   if (date.starts_with(kBy)) {
-    if (const auto time = parse_utc(date.substr(kBy.size()))) read.replace_by = *time;
+    if (const auto time = parse_utc(date.substr(std::string_view(kBy).size()))) read.replace_by = *time;
   }
   read.wear = level_of(text);
   if (stroke.empty() || instruments.empty() || (!read.wear && text != kNotJudged)) return std::nullopt;

@@ -64,8 +64,8 @@ class VerdictMemory {
 };
 
 /// Both in one line that stands as the last reason of every advisory, for people and for restore():
-/// "this test alone calls for: no work (planning, a campaign earlier), replacement by 2017-06-01, instruments trusted,
-/// stroke done; all tests so far call for: ...".
+/// "what this test by itself says: no work (were the work one campaign earlier: plan the work), the seal replaced by
+/// 2017-06-01, instruments trusted, stroke done; what is in force after all tests so far: ...".
 [[nodiscard]] std::string in_words(const TestVerdict& verdict, const InForce& in_force);
 struct VerdictRecord {
   TestVerdict verdict;

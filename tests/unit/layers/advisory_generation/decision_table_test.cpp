@@ -149,6 +149,23 @@ TEST(DecisionTable, ABookingDateThatHasPassedIsUrgentWhateverTheRememberedLevel)
   EXPECT_FALSE(planned.latest_by.has_value()) << "no day in the past is named";
 }
 
+TEST(DecisionTable, DatesSayWhereTheyComeFrom) {
+  const Configuration configuration = test::configuration();
+  const SiteConfig& site = configuration.sites[0];
+  const Recommendation r = confirmed({.rul_months = 24});
+  const TestVerdict same{.replace_by = r.work_before};
+  const InForce in_force{.wear = WearLevel::book, .replace_by = r.work_before};
+  const auto alone = reasons_of_dates(r, same, in_force, &site, {});
+  ASSERT_EQ(alone.size(), 1u) << "nothing is held";
+  EXPECT_THAT(alone[0], HasSubstr("latest by " + format_date(*r.latest_by) + ": 12 months before the work by " +
+                                  format_date(*r.work_before)));
+  const UtcTime later = start_of_day(add_months(*r.work_before, 24.0));
+  const auto held = reasons_of_dates(r, {.replace_by = later}, in_force, &site, {});
+  ASSERT_EQ(held.size(), 2u);
+  EXPECT_THAT(held[1], HasSubstr("is held although this test by itself says " + format_date(later)));
+  EXPECT_TRUE(reasons_of_dates(confirmed({.rul_months = 90}), same, in_force, &site, {}).empty()) << "no work, no date";
+}
+
 TEST(DecisionTable, LessUrgentCallsStandInTheReasons) {
   const Recommendation r = confirmed({.rul_months = 24, .faults = {kSensor}});
   ASSERT_EQ(r.also.size(), 1u);

@@ -125,10 +125,19 @@ TEST_F(VerdictMemoryTest, IsNotEasedWhileACampaignEarlierWouldCallForAsMuch) {
   EXPECT_EQ(memory_.judge({.wear = WearLevel::none}, kNow, {}).wear, WearLevel::none);
 }
 
+TEST(VerdictWords, AreThoseOfTheOperator) {
+  const TestVerdict verdict{.wear = WearLevel::book_at_once, .replace_by = day("2017-06-01")};
+  EXPECT_EQ(
+      in_words(verdict, {.wear = WearLevel::book, .replace_by = day("2019-06-01")}),
+      "what this test by itself says: book a vessel at once, the seal replaced by 2017-06-01, instruments trusted, "
+      "stroke done; what is in force after all tests so far: book a vessel, the seal replaced by 2019-06-01, "
+      "instruments trusted, stroke done");
+}
+
 TEST(VerdictWords, OtherReasonsAreNoRecord) {
   EXPECT_FALSE(from_words(""));
   EXPECT_FALSE(from_words("health grade 0.7"));
-  EXPECT_FALSE(from_words("this test alone calls for: ; all tests so far call for: "));
+  EXPECT_FALSE(from_words("what this test by itself says: ; what is in force after all tests so far: "));
 }
 
 }  // namespace

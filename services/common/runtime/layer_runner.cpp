@@ -49,7 +49,7 @@ Status LayerRunner::start() {
   reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
 
   if (Status status = restore_past(); !status) return status;
-  if (Status status = publish_latest(true); !status) return status;
+  if (Status status = publish_latest(); !status) return status;
   started_ = steady_clock::now();
   ServiceStatus status;
   status.service = layer_.name();
@@ -65,9 +65,11 @@ Status LayerRunner::start() {
 
 Status LayerRunner::restore_past() {
   std::size_t restored = 0;
+  std::map<Topic, std::uint64_t> sequence;  // outputs of a topic are numbered from 1 without a gap
   Status outputs = journal_.for_each_output([&](const Message& output) {
     layer_.restore(output);
     admission_.note(output);
+    latest_.concluded(output, ++sequence[topic_of(output)]);
     replaying_ = header_of(output).replay;
     ++restored;
     return Status();
@@ -120,6 +122,8 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     last_second_ = steady_clock::now();
     give_memory_back();
     if (Status status = let_time_pass(); !status) return status;
+    if (resends_.empty())
+      if (Status status = publish_latest(); !status) return status;
   }
   report_progress();
   return {};
@@ -197,7 +201,9 @@ Status LayerRunner::keep(Conclusion conclusion, const std::string& input_id) {
   for (Message& output : conclusion.outputs) {
     auto kept = journal_.add_output(std::move(output), clock_.now());
     if (!kept) return fail(kept.error());
-    if (*kept) outbox_.push_back(std::move(**kept));
+    if (!*kept) continue;
+    latest_.concluded(**kept, header_of(**kept).stream_sequence);
+    outbox_.push_back(std::move(**kept));
   }
   for (const std::string& id : conclusion.consumed) {
     if (id == input_id) continue;
@@ -240,8 +246,12 @@ Status LayerRunner::let_time_pass() {
 bool LayerRunner::publish(const Message& message, std::string_view event) {
   log_message(event == "concluded" ? level_of(message) : LogLevel::debug, event, message);
   const Status published = bus_.publish(message);
-  if (published) return true;
+  if (published) {
+    latest_.published(message);
+    return true;
+  }
   // Its readers will miss it, and what would have followed it, and ask for it: it is in the journal.
+  latest_.give_up();
   note_error(published.error().describe());
   log_message(LogLevel::warn, "not published", message, {{"error", published.error().describe()}});
   return false;

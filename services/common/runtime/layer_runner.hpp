@@ -23,6 +23,7 @@
 #include "services/common/runtime/admission.hpp"
 #include "services/common/runtime/heartbeat.hpp"
 #include "services/common/runtime/later_work.hpp"
+#include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/resend_queue.hpp"
 #include "services/common/runtime/stream_reader.hpp"
 #include "services/common/store/journal.hpp"
@@ -77,7 +78,7 @@ class LayerRunner {
   [[nodiscard]] Status keep_what_is_done();
   [[nodiscard]] Status let_time_pass();
   [[nodiscard]] Status serve_resends();
-  [[nodiscard]] Status publish_latest(bool all);
+  [[nodiscard]] Status publish_latest();
   void send_requests();
   /// False when the bus did not take it: then what follows is left to be asked for, so that one reader that does not
   /// take its messages cannot hold up this service for long.
@@ -94,9 +95,9 @@ class LayerRunner {
   std::unique_ptr<StreamReader> reader_;
   std::deque<Message> ready_;  ///< inputs in order, not yet taken
   std::vector<Message> outbox_;
-  std::map<Key, std::uint64_t> committed_;                             ///< positions in the journal
-  std::map<Key, std::uint64_t> uncommitted_;                           ///< positions of the running batch
-  std::map<std::pair<Topic, std::string>, std::uint64_t> sent_again_;  ///< last sequence by topic and asset
+  std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
+  std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch
+  LatestOutputs latest_;
   ResendQueue resends_;
   Admission admission_;
   bool drained_ = false;    ///< the bus had nothing more at the last look

@@ -71,27 +71,21 @@ Status LayerRunner::serve_resends() {
   const auto messages = journal_.outputs(range->topic, range->first, range->last, kPiece);
   if (!messages) return fail(messages.error());
   for (const Message& message : *messages) {
-    if (!publish(message, "sent again")) {
-      resends_.clear();
-      break;
-    }
-    sent_again_[{topic_of(message), asset_of(message)}] = header_of(message).stream_sequence;
+    if (publish(message, "sent again")) continue;
+    resends_.clear();
+    return {};
   }
-  return resends_.empty() ? publish_latest(false) : Status();
+  return resends_.empty() ? publish_latest() : Status();
 }
 
-/// A late subscriber gets what each writer published last of every asset, which must be the latest: at the start (all
-/// of them), and after older messages were sent again.
-Status LayerRunner::publish_latest(bool all) {
-  if (!all && sent_again_.empty()) return {};
-  const auto latest = journal_.latest_outputs();
-  if (!latest) return fail(latest.error());
-  for (const Message& message : *latest) {
-    const auto sent = sent_again_.find({topic_of(message), asset_of(message)});
-    if (all || (sent != sent_again_.end() && sent->second < header_of(message).stream_sequence))
-      publish(message, "published again");
+/// At the start, after older messages were sent again, and after tests that came late.
+Status LayerRunner::publish_latest() {
+  for (const auto& [key, sequence] : latest_.to_publish()) {
+    const auto latest = journal_.outputs(key.first, sequence, sequence, 1);
+    if (!latest) return fail(latest.error());
+    for (const Message& message : *latest)
+      if (!publish(message, "published again")) return {};
   }
-  sent_again_.clear();
   return {};
 }
 

@@ -18,7 +18,6 @@ constexpr std::array kSchema = {
     "CREATE TABLE outputs(ordinal BIGINT PRIMARY KEY, topic VARCHAR(64) NOT NULL, sequence BIGINT NOT NULL,"
     " message_id TEXT NOT NULL UNIQUE, asset_id TEXT NOT NULL, pst_id TEXT NOT NULL, published BIGINT NOT NULL,"
     " payload TEXT NOT NULL, UNIQUE(topic, sequence))",
-    "CREATE INDEX outputs_by_asset ON outputs(topic, asset_id, sequence)",
     "CREATE TABLE positions(topic VARCHAR(64) NOT NULL, writer_id TEXT NOT NULL, sequence BIGINT NOT NULL,"
     " PRIMARY KEY(topic, writer_id))",
 };

@@ -99,20 +99,6 @@ Status Journal::for_each_open_input(const Visitor& visit) {
       visit);
 }
 
-Result<std::vector<Message>> Journal::latest_outputs() {
-  return database_->guard("reading the last messages", [&] {
-    std::vector<Message> messages;
-    const std::string query =
-        "SELECT o.ordinal, o.topic, o.payload, o.sequence, o.published FROM outputs o JOIN"
-        " (SELECT topic, asset_id, max(sequence) AS last FROM outputs GROUP BY topic, asset_id) l"
-        " ON o.topic = l.topic AND o.sequence = l.last WHERE o.ordinal > :after ORDER BY o.ordinal";
-    for (const Row& row : rows_of(database_->sql, query, 0))
-      messages.push_back(stamped(message_of(row, database_->name), writer_id(),
-                                 static_cast<std::uint64_t>(row.sequence), row.published));
-    return messages;
-  });
-}
-
 Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, std::uint64_t last, std::size_t most) {
   return database_->guard("reading messages to send again", [&] {
     const std::string query =

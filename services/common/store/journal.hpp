@@ -43,8 +43,6 @@ class Journal {
   [[nodiscard]] Status for_each_output(const Visitor& visit);
   /// Every input that was not consumed, in the order of receipt. `visit` may write to the journal.
   [[nodiscard]] Status for_each_open_input(const Visitor& visit);
-  /// The last output of every topic and asset in the order of conclusion, stamped.
-  [[nodiscard]] Result<std::vector<Message>> latest_outputs();
   /// Outputs of one topic's stream, first <= sequence <= last, at most `most`, stamped.
   [[nodiscard]] Result<std::vector<Message>> outputs(Topic topic, std::uint64_t first, std::uint64_t last,
                                                      std::size_t most);

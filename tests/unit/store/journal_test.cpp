@@ -156,15 +156,6 @@ TEST_P(JournalTest, MoreThanOnePageOfMessagesIsReadCompletely) {
   EXPECT_EQ(ids(*part), std::vector<std::string>(expected.begin() + 10, expected.begin() + 17));
 }
 
-TEST_P(JournalTest, TheLastOutputOfEveryAssetAndTopicIsFound) {
-  Journal journal = open();
-  conclude(journal, {message("a1", "A"), message("b1", "B"), message("f1", "A", Topic::test_features),
-                     message("a2", "A"), message("a3", "A")});
-  const auto latest = journal.latest_outputs();
-  ASSERT_TRUE(latest.has_value()) << latest.error().describe();
-  EXPECT_THAT(ids(*latest), ElementsAre("b1", "f1", "a3"));
-}
-
 TEST_P(JournalTest, ABatchGivenUpLeavesNothingBehind) {
   Journal journal = open();
   conclude(journal, {message("kept")});

@@ -1,0 +1,33 @@
+#include "services/common/runtime/latest_outputs.hpp"
+
+namespace sealwatch {
+
+void LatestOutputs::concluded(const Message& output, std::uint64_t sequence) {
+  const Header& header = header_of(output);
+  const Key key{topic_of(output), asset_of(output)};
+  const auto known = latest_.find(key);
+  const bool may_be_late = key.first != Topic::advisory && known != latest_.end();
+  const bool late = may_be_late && known->second.time_known && header.event_time_known &&
+                    header.event_time_ns < known->second.event_time_ns;
+  if (late) return;
+  latest_[key] = {header.event_time_known, header.event_time_ns, sequence};
+  hidden_.insert(key);
+}
+
+void LatestOutputs::published(const Message& output) {
+  const Key key{topic_of(output), asset_of(output)};
+  const auto known = latest_.find(key);
+  if (known == latest_.end()) return;
+  if (header_of(output).stream_sequence == known->second.sequence)
+    hidden_.erase(key);
+  else
+    hidden_.insert(key);
+}
+
+std::map<LatestOutputs::Key, std::uint64_t> LatestOutputs::to_publish() const {
+  std::map<Key, std::uint64_t> wanted;
+  for (const Key& key : hidden_) wanted[key] = latest_.at(key).sequence;
+  return wanted;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,39 @@
+// What a late subscriber must find, who gets what was published last of every asset: the word on the latest event. A
+// test that comes late, or a message that is sent again, must not stay the last one published.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "sealwatch/message/topics.hpp"
+
+namespace sealwatch {
+
+class LatestOutputs {
+ public:
+  using Key = std::pair<Topic, std::string>;  // asset
+
+  /// An own output of that sequence number was concluded. Of two on the same event, and where one has no time, the one
+  /// that was concluded later counts; so it does of advisories: what was advised last stands, whatever it answers to.
+  void concluded(const Message& output, std::uint64_t sequence);
+  /// A stamped output went out.
+  void published(const Message& output);
+  /// Sequence numbers of the latest outputs that were not the last published of their topic and asset.
+  [[nodiscard]] std::map<Key, std::uint64_t> to_publish() const;
+  /// A reader takes nothing: there is nothing to publish until something else goes out.
+  void give_up() { hidden_.clear(); }
+
+ private:
+  struct Latest {
+    bool time_known = false;
+    std::int64_t event_time_ns = 0;
+    std::uint64_t sequence = 0;
+  };
+  std::map<Key, Latest> latest_;
+  std::set<Key> hidden_;  ///< the last one published is another
+};
+
+}  // namespace sealwatch

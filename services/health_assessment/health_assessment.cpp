@@ -160,6 +160,11 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
                                                 failed ? state_report.verdict_reasons.front() : std::string());
     report.no_fault_likelihood = group.no_fault_likelihood;
     report.ambiguity_group = std::move(group.faults);
+    for (ProposedFault& fault : report.ambiguity_group)
+      if (!state_report.accepted_discrepancy.empty())
+        fault.evidence.push_back("what " + state_report.accepted_discrepancy +
+                                 " found may be the cause as well: these are measured quantities, which an accepted "
+                                 "model explains but does not change");
   }
   learn(state, report);
   if (const auto trend = trend_of(state.grades)) {

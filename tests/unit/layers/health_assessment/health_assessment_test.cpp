@@ -108,6 +108,23 @@ TEST(HealthAssessment, OrderOfArrivalOfTheFeaturesDoesNotMatter) {
   EXPECT_EQ(found, expected);
 }
 
+TEST(HealthAssessment, UnderAnAcceptedModelFaultsSayThatItsFindingMayBeTheCause) {
+  HealthAssessment assessment = layer();
+  Journal journal;
+  for (Message message : eventful_life()) {
+    if (auto* report = std::get_if<StateReport>(&message)) report->accepted_discrepancy = "model_discrepancy/A1-3";
+    journal.take(assessment, message);
+  }
+  int faults = 0;
+  for (const Message& message : journal.concluded)
+    for (const ProposedFault& fault : std::get<HealthReport>(message).ambiguity_group)
+      if (fault.evidence.front().rfind("carried over", 0) != 0) {
+        ++faults;
+        EXPECT_THAT(fault.evidence.back(), testing::StartsWith("what model_discrepancy/A1-3 found may be the cause"));
+      }
+  EXPECT_GT(faults, 0);
+}
+
 TEST(HealthAssessment, HeaderNamesTestAndSources) {
   HealthAssessment assessment = layer();
   Journal journal;

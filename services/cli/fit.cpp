@@ -168,6 +168,8 @@ void print_text(const AssetConfig& asset, const FitOptions& options, const FitRe
   for (std::size_t k = 0; k < fit.loads.size(); ++k)
     if (fit.loads.size() > 1)
       rows.push_back({fit.loads[k], std::filesystem::path(options.recordings[k]).filename().string()});
+  if (!fit.report.admissible && !rows.empty())
+    std::printf("\n  Where the search ended, for comparison; these values do not describe the actuator:\n");
   print_parameters(rows);
   std::printf("\n  %-22s %10s %10s %12s %14s\n", "channel", "rms/noise", "NRMSE %", "whiteness p", "independence p");
   for (const ChannelFit& channel : fit.report.channels)

@@ -48,8 +48,9 @@ echo "== replay: $(ls "$data"/*.csv | wc -l) tests through six services over DDS
 cat <<'TXT'
 
 Look further:
-  build/release/bin/sealwatch up --config config --state demo/state    the services again, with what they remember
-  build/release/bin/sealwatch status                                   the last word on every actuator, any time (in another terminal)
+  build/release/bin/sealwatch up --config config --state demo/state    the services again (they ended with the demo), with what they remember
+  build/release/bin/sealwatch status                                   then, in another terminal: the last word on every actuator, and the
+                                                                       command that acknowledges its advice
   build/release/bin/sealwatch watch                                    every message, live
   demo/results/*.jsonl                                                 all conclusions, a JSON line each
   demo/state/log/                                                      what each service did, by PST id

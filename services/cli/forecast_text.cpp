@@ -1,6 +1,7 @@
 #include "services/cli/forecast_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
@@ -60,6 +61,29 @@ std::string failure_chart(const std::vector<FailureProbability>& probabilities) 
   return aligned("P(failure)", rows);
 }
 
+/// P(at most k of n) when each comes true with `probability`: forecasts are scored three months apart, so one after the
+/// other.
+double at_most(int k, int n, double probability) {
+  double term = std::pow(1.0 - probability, n);
+  double sum = term;
+  for (int i = 1; i <= k; ++i) {
+    term *= (n - i + 1.0) / i * probability / (1.0 - probability);
+    sum += term;
+  }
+  return sum;
+}
+
+constexpr int kFewestToJudge = 5;
+constexpr double kHardlyChance = 0.05;
+constexpr double kUnremarkable = 0.20;  // of sound forecasters as few or fewer come true this often
+
+std::string verdict_on(int of_80, int of_95, int n) {
+  if (n < kFewestToJudge) return {};
+  const double chance = std::min(at_most(of_80, n, 0.80), at_most(of_95, n, 0.95));
+  if (chance < kHardlyChance) return ": too few, the intervals are too narrow";
+  return chance < kUnremarkable ? ": few, but that may be chance" : ": as it should be";
+}
+
 }  // namespace
 
 std::string forecast_table(const std::vector<Forecast>& forecasts) {
@@ -69,6 +93,18 @@ std::string forecast_table(const std::vector<Forecast>& forecasts) {
   for (const Forecast& forecast : forecasts) text += forecast_row(forecast, &forecast == &forecasts.front());
   text += "                   (months from the last test; * in charge)\n";
   return text + failure_chart(forecasts.front().failure_probability);
+}
+
+std::string scored_line(const RemainingLife& life) {
+  constexpr double kDoubtful = 0.5;  // probability that the forecaster has not drifted
+  const int n = life.scored_forecasts;
+  if (n <= 0) return {};
+  const int of_80 = static_cast<int>(std::lround(life.coverage_80 * n));
+  const int of_95 = static_cast<int>(std::lround(life.coverage_95 * n));
+  const bool drifted = life.confidence < kDoubtful;
+  return "  scored           of the last " + std::to_string(n) + " forecasts, 3 months ahead, " +
+         std::to_string(of_80) + " came true within their 80 % interval, " + std::to_string(of_95) + " within 95 %" +
+         (drifted ? "; the forecaster has probably drifted" : verdict_on(of_80, of_95, n)) + "\n";
 }
 
 std::string decision_chart(const std::vector<DecisionOption>& decision) {

@@ -80,11 +80,12 @@ Status ReplayLog::written() {
 
 Status ReplayLog::finish() {
   progress_.finish();
+  const bool services_run = !options_.offline && !options_.with_services;
   for (const auto& [asset, view] : assets_) {
     if (options_.json)
       std::printf("%s\n", view.json().c_str());
     else
-      std::printf("\n%s", view.screen().c_str());
+      std::printf("\n%s", view.screen(services_run).c_str());
   }
   if (assets_.empty()) std::printf("no test has been concluded\n");
   if (!options_.results_directory.empty() && results_.empty())

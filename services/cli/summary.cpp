@@ -221,20 +221,6 @@ std::string AssetView::history_chart() const {
   return "\n  seal condition in % over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
 }
 
-namespace {
-
-std::string scored_line(const RemainingLife& life) {
-  constexpr double kDoubtful = 0.5;  // probability that the forecaster has not drifted
-  const auto of_those = [&](double share) { return std::to_string(std::lround(share * life.scored_forecasts)); };
-  std::string text = "  scored           of the last " + std::to_string(life.scored_forecasts);
-  text += " forecasts, 3 months ahead, " + of_those(life.coverage_80) + " came true within their 80 % interval, ";
-  text += of_those(life.coverage_95) + " within 95 %";
-  if (life.confidence < kDoubtful) text += "; the forecaster has probably drifted";
-  return text + "\n";
-}
-
-}  // namespace
-
 std::string AssetView::forecast_lines() const {
   if (!life_ || life_->forecasts.empty()) return {};
   if (replaced_ns_ && life_->tests_since_replacement == 0)
@@ -244,11 +230,10 @@ std::string AssetView::forecast_lines() const {
   for (std::size_t k = 1; k < life_->forecasts.size(); ++k)
     if (life_->forecasts[k].method == "ols") shown.push_back(life_->forecasts[k]);
   std::string text = forecast_table(shown);
-  if (life_->scored_forecasts > 0) text += scored_line(*life_);
-  return text + decision_chart(life_->decision);
+  return text + scored_line(*life_) + decision_chart(life_->decision);
 }
 
-std::string AssetView::advisory_lines() const {
+std::string AssetView::advisory_lines(bool services_run) const {
   if (!advisory_) return {};
   std::string text =
       "  advisory         " + upper(name_of(advisory_->priority)) + ", " + words(name_of(advisory_->action));
@@ -257,7 +242,8 @@ std::string AssetView::advisory_lines() const {
   text += "\n                   " + wrapped(advisory_->recommendation, 100, 19) + "\n";
   for (const std::string& reason : advisory_->reasons)
     text += "                   - " + wrapped(reason, 100, 21) + "\n";
-  if (advisory_->action == AdvisoryAction::none || advisory_->state == AdvisoryState::acknowledged) return text;
+  const bool seen = advisory_->state == AdvisoryState::acknowledged;
+  if (!services_run || seen || advisory_->action == AdvisoryAction::none) return text;
   return text + "                   (sealwatch acknowledge " + asset_id_ + " " + advisory_->advisory_id +
          " --by NAME)\n";
 }
@@ -304,7 +290,7 @@ std::string AssetView::json() const {
   return text + "}";
 }
 
-std::string AssetView::screen() const {
+std::string AssetView::screen(bool services_run) const {
   std::string text = "== " + asset_id_;
   const std::size_t tests = estimates_of_now().size();
   const bool tested = life_ && life_->header.event_time_known && !(replaced_ns_ && life_->tests_since_replacement == 0);
@@ -312,7 +298,8 @@ std::string AssetView::screen() const {
   if (tested) text += ", last test " + date(life_->header.event_time_ns);
   text += tests == 0 && replaced_ns_ ? ", no test since\n"
                                      : ", " + std::to_string(tests) + (tests == 1 ? " test" : " tests") + " in view\n";
-  return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines() + model_lines() + left_out_lines();
+  return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines(services_run) + model_lines() +
+         left_out_lines();
 }
 
 }  // namespace sealwatch::cli

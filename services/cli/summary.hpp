@@ -19,8 +19,9 @@ class AssetView {
  public:
   void take(const Message& message);
   /// One screen: seal condition and its history, forecasts with intervals, advisory with its reasons, where to look
-  /// further.
-  [[nodiscard]] std::string screen() const;
+  /// further. Where no services run (any more) nobody could take an acknowledgement, so the hint to give one is left
+  /// out.
+  [[nodiscard]] std::string screen(bool services_run = true) const;
   /// The same for machines: the last message of each topic (schema sealwatch.asset/1).
   [[nodiscard]] std::string json() const;
   /// Tests seen, and those whose estimate took part in the forecast.
@@ -30,7 +31,7 @@ class AssetView {
   [[nodiscard]] std::string seal_lines() const;
   [[nodiscard]] std::string history_chart() const;
   [[nodiscard]] std::string forecast_lines() const;
-  [[nodiscard]] std::string advisory_lines() const;
+  [[nodiscard]] std::string advisory_lines(bool services_run) const;
   [[nodiscard]] std::string model_lines() const;
   [[nodiscard]] std::string left_out_lines() const;
   /// Whether this is about the actuator or seal that is there now.

@@ -60,6 +60,32 @@ TEST(ForecastTable, ShowsNumbersOnlyWhereThereIsAForecast) {
   EXPECT_THAT(table, HasSubstr("before summer, 2031-06-01: 25.0 %"));
 }
 
+RemainingLife scored(int forecasts, int within_80, int within_95, double confidence = 0.9) {
+  RemainingLife life;
+  life.scored_forecasts = forecasts;
+  life.coverage_80 = static_cast<double>(within_80) / forecasts;
+  life.coverage_95 = static_cast<double>(within_95) / forecasts;
+  life.confidence = confidence;
+  return life;
+}
+
+// P(at most 4 of 8 at 80 %) = 5.6 %, P(at most 3 of 8) = 1.0 %, P(at most 5 of 8) = 20.3 %; P(at most 6 of 8 at 95 %) =
+// 5.7 %, P(at most 5 of 8) = 0.6 %.
+TEST(ScoredLine, JudgesWhereTheFiguresBearIt) {
+  EXPECT_EQ(
+      scored_line(scored(8, 4, 8)),
+      "  scored           of the last 8 forecasts, 3 months ahead, 4 came true within their 80 % interval, 8 within "
+      "95 %: few, but that may be chance\n");
+  EXPECT_THAT(scored_line(scored(8, 3, 8)), HasSubstr("95 %: too few, the intervals are too narrow"));
+  EXPECT_THAT(scored_line(scored(8, 5, 8)), HasSubstr("95 %: as it should be"));
+  EXPECT_THAT(scored_line(scored(8, 5, 6)), HasSubstr("95 %: few, but that may be chance"));
+  EXPECT_THAT(scored_line(scored(8, 5, 5)), HasSubstr("95 %: too few"));
+  EXPECT_THAT(scored_line(scored(8, 8, 8)), HasSubstr("as it should be"));
+  EXPECT_THAT(scored_line(scored(4, 1, 4)), HasSubstr("4 within 95 %\n")) << "four tell nothing";
+  EXPECT_THAT(scored_line(scored(8, 8, 8, 0.4)), HasSubstr("95 %; the forecaster has probably drifted\n"));
+  EXPECT_EQ(scored_line({}), "");
+}
+
 DecisionOption option_of(const std::string& label, const std::string& day, double probability, double cost) {
   return {.label = label,
           .at_ns = parse_utc(day).value().nanoseconds,
@@ -123,6 +149,17 @@ TEST(AssetView, ShowsTheForecastOfTheTestsSinceAReplacement) {
   view.take(Message(life));
   EXPECT_THAT(view.screen(), HasSubstr("== A, replaced on 2031-05-01, no test since"));
   EXPECT_THAT(view.screen(), HasSubstr("the history starts anew"));
+}
+
+TEST(AssetView, HintsAtAcknowledgingOnlyWhereServicesRun) {
+  Advisory advisory;
+  advisory.asset_id = "A";
+  advisory.advisory_id = "recommendation/A-1";
+  advisory.action = AdvisoryAction::book_vessel;
+  AssetView view;
+  view.take(Message(advisory));
+  EXPECT_THAT(view.screen(), HasSubstr("(sealwatch acknowledge A recommendation/A-1 --by NAME)"));
+  EXPECT_THAT(view.screen(false), Not(HasSubstr("acknowledge")));
 }
 
 TEST(AssetView, KeepsTheActiveAdvisoryAndNamesWhatWasLeftOut) {

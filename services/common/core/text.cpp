@@ -29,11 +29,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return at(a.size(), b.size());
 }
 
+constexpr std::size_t kFewestLetters = 3;
+
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(word.size() / 2, 1);
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
+    const bool cut_short = word.size() >= kFewestLetters && candidate.starts_with(word);  // 'asset' for 'asset_id'
+    const std::size_t distance = cut_short ? 1 : edit_distance(word, candidate);
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {
       best = candidate;
       best_distance = distance;

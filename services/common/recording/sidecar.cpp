@@ -125,7 +125,10 @@ Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& p
 Result<std::string> parse_sidecar_value(const std::string& text, const std::string& key) {
   if (!is_utf8(text)) return fail("is not UTF-8");
   try {
-    const YAML::Node value = YAML::Load(text)[key];
+    const YAML::Node document = YAML::Load(text);
+    if (!document.IsMap()) return std::string();  // read_document says what is wrong with it
+    if (const auto known = entries(document, "", kKeys); !known) return fail(known.error());  // 'asset' for 'asset_id'
+    const YAML::Node value = document[key];
     return value.IsDefined() && value.IsScalar() ? value.Scalar() : std::string();
   } catch (const YAML::Exception& problem) {
     return fail(error_at(place_of(problem.mark.line + 1, ""), {}, "is not YAML: " + problem.msg));

@@ -88,6 +88,7 @@ TEST(Text, NearestFindsTyposAndRefusesStrangers) {
   const std::vector<std::string> keys = {"R_CL", "R_PL", "pressure_a", "pressure_b", "beta"};
   EXPECT_EQ(nearest("presure_a", keys), "pressure_a");
   EXPECT_EQ(nearest("R_LC", keys), "R_CL");
+  EXPECT_EQ(nearest("press", keys), "pressure_a") << "cut short";
   EXPECT_EQ(nearest("temperature_of_the_sea", keys), "");
   EXPECT_EQ(suggest("temperature_of_the_sea", keys), "known are: R_CL, R_PL, pressure_a, pressure_b, beta");
 }

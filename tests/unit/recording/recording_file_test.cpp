@@ -52,6 +52,9 @@ TEST_F(RecordingFile, NamesItsAssetBeforeThePlantIsKnown) {
   EXPECT_EQ(recorded_asset_id(file).value(), "");
   write("a.yaml", "asset_id: XT03-MV2\nnoise_std: {channel_of_another_plant: 1.0}\n");
   EXPECT_EQ(recorded_asset_id(file).value(), "XT03-MV2");
+  write("a.yaml", "asset: XT03-MV2\n");
+  EXPECT_THAT(recorded_asset_id(file).error().describe(),
+              HasSubstr("a.yaml: line 1, key asset: 'XT03-MV2': is not a known key; did you mean 'asset_id'?"));
   write("a.yaml", "asset_id: [unclosed\n");
   EXPECT_THAT(recorded_asset_id(file).error().describe(), HasSubstr("a.yaml: line"));
 }

@@ -52,7 +52,7 @@ std::vector<fs::path> RecordingsFolder::recordings() const {
   std::vector<fs::path> paths;
   std::error_code error;
   for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string suffix = entry->path().extension().string();
+    const std::string suffix = suffix_of(entry->path().string());
     std::error_code ignored;
     if ((suffix == ".csv" || suffix == ".mat") && entry->is_regular_file(ignored)) paths.push_back(entry->path());
   }

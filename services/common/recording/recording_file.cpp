@@ -1,6 +1,8 @@
 #include "services/common/recording/recording_file.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -42,7 +44,7 @@ Result<std::string> hash_file(const std::string& path) {
 }
 
 Result<ColumnarSamples> read_samples(const std::string& path, const PlantDescription& plant) {
-  if (fs::path(path).extension() != ".mat") {
+  if (suffix_of(path) != ".mat") {
     Result<std::ifstream> in = open(path);
     return in ? read_csv(*in, plant) : fail(in.error());
   }
@@ -90,6 +92,12 @@ Result<std::string> recorded_value(const std::string& path, const std::string& k
 }
 
 }  // namespace
+
+std::string suffix_of(const std::string& path) {
+  std::string suffix = fs::path(path).extension().string();
+  std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return suffix;
+}
 
 Result<std::string> recorded_asset_id(const std::string& path) { return recorded_value(path, "asset_id"); }
 

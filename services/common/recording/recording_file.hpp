@@ -29,6 +29,9 @@ inline constexpr std::size_t kLongestSidecar_bytes = std::size_t{1} << 16U;
 /// another recording of it.
 [[nodiscard]] Result<Recording> read_recording(const std::string& path, const PlantDescription& plant);
 
+/// ".csv" or ".mat" in small letters, as `path` ends: Windows writes them in capitals, too.
+[[nodiscard]] std::string suffix_of(const std::string& path);
+
 /// The asset that the sidecar of `path` names, "" when there is none: with it the caller finds the plant to read with.
 [[nodiscard]] Result<std::string> recorded_asset_id(const std::string& path);
 

@@ -198,6 +198,14 @@ INSTANTIATE_TEST_SUITE_P(Formats, MatRecording, ::testing::ValuesIn(kFormats),
 
 class OtherFile : public ScratchFolder {};
 
+TEST_F(OtherFile, SuffixInCapitalsIsTheSame) {
+  EXPECT_EQ(suffix_of("a/PST.MAT"), ".mat");
+  EXPECT_EQ(suffix_of("a/PST.Csv"), ".csv");
+  const std::string text = "time[s],position[m]\n0,0.1\n1,0.2\n";
+  EXPECT_TRUE(read_recording(write("x.CSV", text), test_plant()));
+  EXPECT_FALSE(read_recording(write("x.MAT", text), test_plant())) << "read as the MATLAB file that its name says";
+}
+
 TEST_F(OtherFile, CsvNamedMatIsAnError) {
   const Result<Recording> result = read_recording(write("a.mat", "time,position\n0,1\n"), test_plant());
   ASSERT_FALSE(result);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -28,6 +29,12 @@ std::string not_negative(const std::string& text) { return text.starts_with("-")
 /// CLI::Range lets what is not a number pass.
 std::string a_number(const std::string& text) {
   return std::isnan(std::strtod(text.c_str(), nullptr)) ? "must be a number" : "";
+}
+
+/// An asset is given by its file: whoever gives the id is told so.
+std::string an_asset_file(const std::string& text) {
+  if (std::filesystem::is_regular_file(text)) return {};
+  return "wants an asset file, and '" + text + "' is none; for example --asset config/assets/xt03-mv2.yaml";
 }
 
 /// The command line: its options, and what to run when it has been parsed.
@@ -91,7 +98,7 @@ class CommandLine {
         command("simulate", "record partial stroke tests of the virtual bench",
                 "sealwatch simulate --asset config/assets/xt03-mv2.yaml --ageing --months 108 --out recordings",
                 [this] { return run_simulate(simulate_); });
-    simulate->add_option("--asset", simulate_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    simulate->add_option("--asset", simulate_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     simulate->add_option("--out", simulate_.directory, "directory for the recordings (made if absent)")->required();
     simulate->add_option("--months", simulate_.months, "number of monthly tests")
         ->check(CLI::Range(1, 600))
@@ -125,7 +132,7 @@ class CommandLine {
     CLI::App* fit = command("fit", "estimate the actuator's parameters from recorded tests (gray-box PEM)",
                             "sealwatch fit --asset config/assets/xt03-mv2.yaml 2016-03.csv --json",
                             [this] { return run_fit(fit_); });
-    fit->add_option("--asset", fit_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    fit->add_option("--asset", fit_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     fit->add_option("recordings", fit_.recordings, "recordings, fitted jointly (CSV or MAT)")->required();
     fit->add_option("--model", fit_.model,
                     "cylinder_circuit, or the asset's whole model (default: the best the channels allow)");
@@ -135,7 +142,7 @@ class CommandLine {
         command("validate", "compare the model's simulation with recordings, channel by channel",
                 "sealwatch validate --asset config/assets/bench_eha.yaml stroke1.csv stroke2.csv --out validation",
                 [this] { return run_validate(validate_); });
-    validate->add_option("--asset", validate_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    validate->add_option("--asset", validate_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     validate->add_option("recordings", validate_.recordings, "recordings (CSV or MAT)")->required();
     validate->add_option("--out", validate_.directory, "directory for the report (made if absent)")->required();
     validate->add_flag("--fit", validate_.fit, "estimate the asset's free parameters from these recordings first");
@@ -151,7 +158,7 @@ class CommandLine {
                      "CSV: time[iso8601],theta[1],theta_std[1] (or R_CL[Pa s/m3] with --asset)")
         ->required();
     forecast->add_option("--asset", forecast_.asset_file, "asset file: seal resistances and threshold")
-        ->check(CLI::ExistingFile);
+        ->check(an_asset_file, "FILE");
     forecast->add_option("--before", forecast_.before, "dates to give the probability of failure for");
     forecast->add_option("--config", forecast_.config,
                          "configuration file or directory: campaigns, costs and forecasters of the asset's site");
@@ -214,7 +221,7 @@ class CommandLine {
 
   void add_verify_rul(CLI::App* rul) {
     VerifyRulOptions& o = verify_rul_;
-    rul->add_option("--asset", o.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    rul->add_option("--asset", o.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     rul->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
     rul->add_option("--lives", o.lives, "number of random lives")->capture_default_str();
     rul->add_option("--seed", o.seed, "same seed, same results")->check(not_negative)->capture_default_str();
@@ -243,7 +250,7 @@ class CommandLine {
         command("explain", "say where recordings and simulation differ, by what physics, and whether adding it helps",
                 "sealwatch explain --asset asset.yaml --fit fit_*.csv --holdout holdout_*.csv --out found",
                 [this] { return run_explain(explain_); });
-    explain->add_option("--asset", explain_.asset_file, "asset file")->required()->check(CLI::ExistingFile);
+    explain->add_option("--asset", explain_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     explain->add_option("--fit", explain_.fit, "recordings to fit: tests that differ in load, speed or profile")
         ->required();
     explain->add_option("--holdout", explain_.holdout,
@@ -273,11 +280,12 @@ class CommandLine {
     replay
         ->add_option("--asset", replay_.asset_file,
                      "asset file: of recordings without asset_id; offline also in place of the configured asset")
-        ->check(CLI::ExistingFile);
+        ->check(an_asset_file, "FILE");
     replay->add_option("--results", replay_.results_directory,
                        "write every message there, a JSON line each, a file a topic");
     replay->add_flag("--offline", replay_.offline, "without DDS and services: the same layers in this process");
-    replay->add_flag("--with-services", replay_.with_services, "start the six services for the time of the replay");
+    replay->add_flag("--with-services", replay_.with_services, "start the six services for the time of the replay")
+        ->excludes("--offline");
     replay->add_option("--state", replay_.state_directory,
                        "state directory of those services instead of the configuration's");
     replay->add_flag("--json", replay_.json, "advisories and the last forecasts as JSON lines on standard output");

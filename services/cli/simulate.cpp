@@ -25,6 +25,15 @@ std::optional<bench::LifeSetting> life_of(const SimulateOptions& options) {
     complain(start.error());
     return std::nullopt;
   }
+  const UtcTime last_day = parse_utc("2250-12-31").value();
+  if (months_between(*start, last_day) < options.months + 1.0) {
+    complain(Error{.file = {},
+                   .place = "--start",
+                   .value = options.start,
+                   .rule = "with " + std::to_string(options.months) + " months leads past " + format_date(last_day),
+                   .advice = "start earlier: times are counted in nanoseconds, which end soon after"});
+    return std::nullopt;
+  }
   bench::LifeSetting life;
   life.seed = options.seed;
   life.months = options.months;

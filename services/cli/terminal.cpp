@@ -73,6 +73,7 @@ std::string bar(double share, std::size_t cells) {
 }
 
 void Progress::show(std::size_t done, std::string_view remark) {
+  done = std::min(done, total_);  // services may conclude from tests of before, too: never "2 of 1"
   const std::size_t tenth = total_ == 0 ? 10 : 10 * done / total_;
   if (isatty(STDERR_FILENO) != 0) {
     constexpr int kBar = 24;

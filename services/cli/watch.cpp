@@ -41,6 +41,19 @@ std::optional<Selection> select(const std::vector<std::string>& names) {
   return selection;
 }
 
+/// A name that no asset bears would be watched in silence for ever.
+bool is_configured(const std::string& asset_id, const Configuration& configuration) {
+  if (asset_id.empty() || configuration.find_asset(asset_id) != nullptr) return true;
+  std::vector<std::string> known;
+  for (const AssetConfig& asset : configuration.assets) known.push_back(asset.asset_id);
+  complain(Error{.file = {},
+                 .place = "--asset",
+                 .value = asset_id,
+                 .rule = "is not a configured asset",
+                 .advice = suggest(asset_id, known)});
+  return false;
+}
+
 void print(const BusItem& item, const WatchOptions& options) {
   if (const auto* message = std::get_if<Message>(&item)) {
     if (!options.asset_id.empty() && asset_of(*message) != options.asset_id) return;
@@ -62,7 +75,7 @@ int run_watch(const WatchOptions& options) {
   const std::optional<Selection> selection = select(options.topics);
   if (!selection) return kBadInput;
   std::optional<Session> session = open_session(options.config);
-  if (!session) return kBadInput;
+  if (!session || !is_configured(options.asset_id, session->configuration)) return kBadInput;
   if (const Status joined = session->bus->subscribe(selection->topics); !joined) {
     complain(joined.error());
     return kInternalFailure;

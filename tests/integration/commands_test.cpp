@@ -260,6 +260,16 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
   EXPECT_THAT(refused({"sealwatch", "watch", "advisries"}), HasSubstr("did you mean 'advisory'?"));
   EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--speed", "fast", text_in_number}),
               HasSubstr("--speed"));
+  EXPECT_THAT(refused({"sealwatch", "replay", "--config", config(), "--offline", "--with-services", text_in_number}),
+              ::testing::AllOf(HasSubstr("--with-services"), HasSubstr("--offline")));
+  EXPECT_THAT(refused({"sealwatch", "watch", "--config", config(), "--asset", "XT03-MV3"}),
+              ::testing::AllOf(HasSubstr("is not a configured asset"), HasSubstr("did you mean 'XT03-MV2'?")));
+  EXPECT_THAT(refused({"sealwatch", "fit", "--asset", "XT03-MV2", text_in_number}),
+              HasSubstr("wants an asset file, and 'XT03-MV2' is none; for example --asset config/assets/"));
+  for (const char* start : {"2300-01-01", "2250-10-01"})
+    EXPECT_THAT(refused({"sealwatch", "simulate", "--asset", asset(), "--start", start, "--months", "2", "--out",
+                         folder_.string()}),
+                ::testing::AllOf(HasSubstr("--start"), HasSubstr("2250"), HasSubstr("nanoseconds")));
   EXPECT_THAT(refused({"sealwatch", "simulat"}), HasSubstr("did you mean 'simulate'?"));
   EXPECT_THAT(refused({"sealwatch", "simulate", "--asset", asset(), "--condition", "0.5", "--out", folder_.string()}),
               HasSubstr("--condition"));
@@ -328,6 +338,12 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
   EXPECT_THAT(surroundings.output,
               ::testing::AllOf(HasSubstr("key cyclonedds_uri"), HasSubstr("services.state_detection.journal"),
                                HasSubstr("mkdir -p /nowhere/at"), HasSubstr("2 faults found")));
+  (void)write("two_lines_asset.yaml", "asset_id: \"XT03\\nMV2\"\n");
+  const Finished two_lines =
+      run({"sealwatch", "config", "check", "--config",
+           write("two_lines.yaml", "assets: [two_lines_asset.yaml]\nstate_directory: " + folder_.string() + "\n")});
+  EXPECT_EQ(two_lines.status, 2);
+  EXPECT_THAT(two_lines.output, ::testing::AllOf(HasSubstr("key asset_id"), HasSubstr("control characters")));
   const Finished empty = run({"sealwatch", "config", "check", "--config",
                               write("empty.yaml", "assets: []\nstate_directory: " + folder_.string() + "\n")});
   EXPECT_EQ(empty.status, 0);

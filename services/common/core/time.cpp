@@ -18,6 +18,19 @@ tl::unexpected<Error> not_a_time(std::string_view text) {
                     .advice = "write it as 2031-04-12T03:00:00Z"});
 }
 
+// int64 nanoseconds since 1970 reach from 1678 to 2261.
+constexpr int kFirstYear = 1700;
+constexpr int kLastYear = 2250;
+
+tl::unexpected<Error> out_of_range(std::string_view text) {
+  return fail(Error{.file = {},
+                    .place = {},
+                    .value = std::string(text),
+                    .rule = "must be a time of the years " + std::to_string(kFirstYear) + " to " +
+                            std::to_string(kLastYear) + ": times are counted in nanoseconds",
+                    .advice = {}});
+}
+
 /// Reads exactly `digits` digits at the front of `text` and removes them.
 bool take_number(std::string_view& text, std::size_t digits, int& value) {
   if (text.size() < digits) return false;
@@ -81,8 +94,8 @@ Result<UtcTime> parse_utc(std::string_view text) {
     return not_a_time(text);
   const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
-  // int64 nanoseconds reach from 1678 to 2261.
-  if (!date.ok() || year < 1700 || year > 2250) return not_a_time(text);
+  if (!date.ok()) return not_a_time(text);
+  if (year < kFirstYear || year > kLastYear) return out_of_range(text);
   int hour = 0;
   int minute = 0;
   int second = 0;

@@ -211,7 +211,7 @@ Status check_chain(std::FILE* file, bool swapped) {
 
 }  // namespace
 
-Status check_mat_container(const std::string& path) {
+Result<MatFormat> check_mat_container(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) return fail("cannot be opened");
   std::array<char, 520> start{};
@@ -220,11 +220,14 @@ Status check_mat_container(const std::string& path) {
     // A header ends in the version and "IM", or "MI" with bytes swapped. With a wrong one matio reads lengths of the
     // old version 4 where there are none. Version 7.3 is an HDF5 file behind a header of 512 bytes.
     const std::string_view mark = header.substr(kHeader_bytes - 4, 4);
-    if (mark == std::string_view("\0\1IM", 4)) return check_chain(file.get(), false);
-    if (mark == std::string_view("\1\0MI", 4)) return check_chain(file.get(), true);
+    const bool swapped = mark == std::string_view("\1\0MI", 4);
+    if (swapped || mark == std::string_view("\0\1IM", 4)) {
+      if (const Status chain = check_chain(file.get(), swapped); !chain) return fail(chain.error());
+      return MatFormat::version_5;
+    }
     if (mark == std::string_view("\0\2IM", 4) && header.size() == start.size() &&
         header.substr(512) == "\x89HDF\r\n\x1a\n")
-      return {};
+      return MatFormat::version_7_3;
   }
   return fail("is not a MATLAB file of version 5 or 7.3, or it is damaged");
 }

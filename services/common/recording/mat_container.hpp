@@ -7,9 +7,12 @@
 
 namespace sealwatch {
 
-/// Ok when matio can read `path` without filling memory by what a damaged length says: the header is one of version 5
-/// or 7.3; the chain of elements ends where the file does; a compressed element's checksum holds; every length inside
-/// an element lies within it. Only vectors of numbers pass; other variables are named. Reads, keeps 64 kB.
-[[nodiscard]] Status check_mat_container(const std::string& path);
+enum class MatFormat { version_5, version_7_3 };
+
+/// The format when matio can read `path` without filling memory by what a damaged length says: the header is one of
+/// version 5 or 7.3; the chain of elements ends where the file does; a compressed element's checksum holds; every
+/// length inside an element lies within it. Only vectors of numbers pass; other variables are named. Reads, keeps 64
+/// kB. What HDF5 takes on trust in a file of version 7.3 is not looked at (hdf5_child.hpp).
+[[nodiscard]] Result<MatFormat> check_mat_container(const std::string& path);
 
 }  // namespace sealwatch

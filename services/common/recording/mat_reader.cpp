@@ -10,6 +10,7 @@
 #include <mutex>
 #include <string_view>
 
+#include "services/common/recording/hdf5_child.hpp"
 #include "services/common/recording/mat_container.hpp"
 #include "services/common/recording/recording_file.hpp"
 
@@ -87,6 +88,25 @@ Result<std::vector<double>> read_vector(mat_t* file, matvar_t* variable, const s
   return numbers(*variable, *length);
 }
 
+Result<std::vector<MatVariable>> read_variables(const std::string& path, const PlantDescription& plant) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what went wrong is returned, not printed
+  const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  if (!file) return fail("is damaged: neither MATLAB version 5 nor 7.3 can be read from it");
+  std::vector<MatVariable> variables;
+  std::size_t total = 0;
+  while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
+    std::string name = variable->name != nullptr ? variable->name : "";
+    if (const Result<Column> known = find_column(name, plant); !known)
+      return fail(variable_error(name, known.error().rule, known.error().advice));
+    Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name);
+    if (!samples) return fail(samples.error());
+    total += samples->size();
+    if (total > kMostNumbers) return fail(variable_error(name, kTooMany));
+    variables.push_back({std::move(name), std::move(*samples)});
+  }
+  return variables;
+}
+
 Error sample_error(const std::string& name, std::size_t row, double value, std::string rule) {
   return error_at("row " + std::to_string(row + 1) + ", column " + name, std::to_string(value), std::move(rule));
 }
@@ -115,24 +135,17 @@ Status check(const ColumnarSamples& read) {
 Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant) {
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what went wrong is returned, not printed
-  if (const Status container = check_mat_container(path); !container) return fail(container.error());
-  const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
-  if (!file) return fail("is damaged: neither MATLAB version 5 nor 7.3 can be read from it");
-  std::vector<std::string> names;
+  const Result<MatFormat> format = check_mat_container(path);
+  if (!format) return fail(format.error());
+  const auto read = [&] { return read_variables(path, plant); };
+  Result<std::vector<MatVariable>> variables = *format == MatFormat::version_7_3 ? in_child(read) : read();
+  if (!variables) return fail(variables.error());
+  std::vector<std::string_view> cells;
   std::vector<std::vector<double>> values;
-  std::size_t total = 0;
-  while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
-    names.emplace_back(variable->name != nullptr ? variable->name : "");
-    if (const Result<Column> known = find_column(names.back(), plant); !known)
-      return fail(variable_error(names.back(), known.error().rule, known.error().advice));
-    Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), names.back());
-    if (!samples) return fail(samples.error());
-    total += samples->size();
-    if (total > kMostNumbers) return fail(variable_error(names.back(), kTooMany));
-    values.push_back(std::move(*samples));
+  for (MatVariable& variable : *variables) {
+    cells.emplace_back(variable.name);
+    values.push_back(std::move(variable.values));
   }
-  const std::vector<std::string_view> cells(names.begin(), names.end());
   Result<std::vector<Column>> columns = find_columns(cells, plant);
   if (!columns) return fail(columns.error());
   ColumnarSamples out = assemble(std::move(*columns), std::move(values));

@@ -5,10 +5,14 @@
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <fstream>
+#include <functional>
+#include <new>
 #include <numeric>
 
 #include "sealwatch/core/text.hpp"
+#include "services/common/recording/hdf5_child.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "tests/unit/recording/plant.hpp"
 
@@ -161,6 +165,42 @@ TEST_P(MatRecording, ADamagedLengthIsAnErrorBeforeMemoryIsAskedFor) {
     write("bad.mat", bad);
     EXPECT_THAT(error_of(path("bad.mat")), HasSubstr("bad.mat: the file is cut off or damaged")) << at;
   }
+}
+
+// HDF5 follows what it finds: a damaged byte can end the process that reads it.
+TEST_P(MatRecording, AnyDamagedByteIsAnErrorOrHarmless) {
+  if (GetParam().version != MAT_FT_MAT73) GTEST_SKIP() << "the others have tests of their own";
+  MatWriter(path("a.mat"), GetParam()).column("time", {0.0, 0.01, 0.02});
+  std::ifstream file(path("a.mat"), std::ios::binary);
+  const std::string good(std::istreambuf_iterator<char>(file), {});
+  int errors = 0;
+  for (std::size_t at = 520; at < good.size(); at += 5) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ 0x74);
+    write("bad.mat", bad);
+    errors += read_recording(path("bad.mat"), test_plant()).has_value() ? 0 : 1;
+  }
+  EXPECT_GT(errors, 50);
+}
+
+TEST(Hdf5Child, ItsEndIsAnErrorAboutTheFile) {
+  using Answer = Result<std::vector<MatVariable>>;
+  const auto rule_of = [](const std::function<Answer()>& read) {
+    const Answer answer = in_child(read);
+    return answer ? "an answer" : answer.error().rule;
+  };
+  EXPECT_THAT(rule_of([]() -> Answer { return std::raise(SIGSEGV), fail("not reached"); }),
+              HasSubstr("is damaged: the library that reads MATLAB 7.3 files was stopped"));
+  EXPECT_THAT(rule_of([]() -> Answer { throw std::bad_alloc(); }), HasSubstr("ended without an answer"));
+  EXPECT_EQ(rule_of([]() -> Answer { return fail("a rule"); }), "a rule");
+  const Answer answer = in_child([]() -> Answer {
+    return std::vector<MatVariable>{{"time", {0.0, 0.5}}, {"flow", {}}};
+  });
+  ASSERT_TRUE(answer);
+  ASSERT_EQ(answer->size(), 2U);
+  EXPECT_EQ(answer->front().name, "time");
+  EXPECT_EQ(answer->front().values, (std::vector<double>{0.0, 0.5}));
+  EXPECT_THAT(answer->back().values, testing::IsEmpty());
 }
 
 TEST_P(MatRecording, NumbersOfAnotherTypeThanTheirTagAreAnError) {

@@ -1,5 +1,6 @@
 #include "services/cli/terminal.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,6 +51,13 @@ TEST(Terminal, ChartShowsEachPointAndTheThreshold) {
   EXPECT_EQ(chart({{0.0, 1.0}, {4.0, 0.5}}, options),
             "   1.0 |o    \n   0.5 |    o\n   0.0 |- - -  fails\n       +-----\n        a   b\n");
   EXPECT_EQ(chart({}, options), "");
+}
+
+TEST(ProgressLine, NeverCountsBeyondItsTotal) {
+  testing::internal::CaptureStderr();
+  Progress("replay", 1).show(2, "2031-04-12");  // a service concludes from a test of before, too
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::AnyOf(testing::HasSubstr("1 of 1 2031-04-12"), testing::HasSubstr("1/1 2031-04-12")));
 }
 
 }  // namespace

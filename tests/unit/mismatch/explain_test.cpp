@@ -88,11 +88,14 @@ TEST(Explain, FindsTheLeakInChamberAAndWhatItHadDoneToTheSeal) {
   EXPECT_EQ(explanation->missing[0].element, "chamber_a");
 }
 
-// Cut to 31 s the refit from the linear step has ended in a hollow, which drag and bristles then filled.
-TEST(Explain, FindsStribeckFrictionAndNothingBesideIt) {
+// Seconds of each test. Of the whole, the refit from the linear step has ended in a hollow, which drag and bristles
+// then filled; of half of it, a search that takes the wrong law first ends with three laws for this one curve.
+class DryFriction : public testing::TestWithParam<double> {};
+
+TEST_P(DryFriction, IsFoundAndNothingBesideIt) {
   LOAD_OR_SKIP(bench, "stribeck");
   for (auto* recordings : {&bench.fit, &bench.holdout})
-    for (Recording& recording : *recordings) cut(recording.samples, 31.0);
+    for (Recording& recording : *recordings) cut(recording.samples, GetParam());
   const auto explanation = explain(bench.asset, bench.fit, bench.holdout);
   ASSERT_TRUE(explanation) << explanation.error().describe();
   ASSERT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
@@ -100,18 +103,7 @@ TEST(Explain, FindsStribeckFrictionAndNothingBesideIt) {
   EXPECT_EQ(explanation->effects[0].what.id, "stribeck_friction");
   EXPECT_LT(worst_holdout_rms(*explanation), 1.1);
 }
-
-// Half of each test: a search that takes the wrong law first ends with three laws for this one curve.
-TEST(Explain, FindsDryFrictionAloneInHalfOfATest) {
-  LOAD_OR_SKIP(bench, "stribeck");
-  for (auto* recordings : {&bench.fit, &bench.holdout})
-    for (Recording& recording : *recordings) cut(recording.samples, 15.495);
-  const auto explanation = explain(bench.asset, bench.fit, bench.holdout);
-  ASSERT_TRUE(explanation) << explanation.error().describe();
-  ASSERT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
-  ASSERT_EQ(explanation->effects.size(), 1U) << explanation->summary;
-  EXPECT_EQ(explanation->effects[0].what.id, "stribeck_friction");
-}
+INSTANTIATE_TEST_SUITE_P(Explain, DryFriction, testing::Values(31.0, 15.495));
 
 TEST(Explain, FindsTheLeakFromTheSourcesSensorsAlone) {
   LOAD_OR_SKIP(bench, "external_leakage");

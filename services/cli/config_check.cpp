@@ -1,14 +1,11 @@
 // `sealwatch config check`: the whole configuration, every fault with file and line.
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
-#include "services/common/recording/columns.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/transport/dds_bus.hpp"
@@ -31,16 +28,6 @@ Status check_state_directory(const std::string& directory) {
                     .advice = "name another, or check as the user that the services run as"});
 }
 
-/// An asset's id stands in topics, logs and file names, each on one line.
-Status check_asset_id(const std::string& asset_id) {
-  if (std::ranges::none_of(asset_id, [](unsigned char c) { return std::iscntrl(c) != 0; })) return {};
-  return fail(Error{.file = {},
-                    .place = "key asset_id",
-                    .value = printable(asset_id),
-                    .rule = "must not have line breaks or other control characters",
-                    .advice = "write it on one line, as XT03-MV2"});
-}
-
 /// What a file may say and the machine may refuse.
 std::vector<Error> check_surroundings(const std::string& file, const Configuration& configuration) {
   std::vector<Error> errors;
@@ -53,7 +40,6 @@ std::vector<Error> check_surroundings(const std::string& file, const Configurati
   };
   check(check_dds_settings(configuration.cyclonedds_uri), {});
   check(check_state_directory(configuration.state_directory), {});
-  for (const AssetConfig& asset : configuration.assets) check(check_asset_id(asset.asset_id), {});
   for (const auto& [service, config] : configuration.services) {
     const bool by_default =
         config.journal == "sqlite3://" + (fs::path(configuration.state_directory) / (service + ".db")).string();

@@ -136,7 +136,7 @@ struct RemainingLife {
   double mean_crps = 0.0;   ///< of theta [1]
   double confidence = 0.0;  ///< 0..1 that the forecaster still describes this seal; 0 where nothing is forecast
   std::vector<DecisionOption>
-      decision;  ///< by the forecaster in charge, in the order of time; empty without a forecast
+      decision;                    ///< by the forecaster in charge, in the order of time; empty without a forecast
   bool replacement_known = false;  ///< a replacement of this seal or actuator has been reported
   std::int64_t replaced_ns = 0;    ///< when: only tests since then count
   SEALWATCH_FIELDS(RemainingLife, asset_id, header, threshold, condition, condition_known, condition_std, forecasts,

@@ -29,6 +29,13 @@ std::string identity(const SampleBlock& block) {
                   block.header.event_time_ns);
 }
 
+/// What can run at once: one live test of an actuator, and any number of recordings of its tests that are played back.
+/// Those come whole, but for one whose player was stopped: it stays open until it is played again.
+template <class Block>
+std::string place_of(const Block& block) {
+  return block.header.replay ? identity(block) : block.asset_id;
+}
+
 bool begins(const RawSamples& raw) {
   return raw.boundary == BlockBoundary::begin || raw.boundary == BlockBoundary::whole || raw.block_number == 0;
 }
@@ -81,13 +88,15 @@ OpenTest DataAcquisition::open(const std::string& asset_id) const {
 void DataAcquisition::restore(const Message& own_output) {
   const auto* block = std::get_if<SampleBlock>(&own_output);
   if (!block || finished_.contains(block->header.pst_id)) return;
-  auto found = running_.find(block->asset_id);
+  const std::string place = place_of(*block);
+  auto found = running_.find(place);
   if (found == running_.end())
-    found =
-        running_.emplace(block->asset_id, Running{block->header.pst_id, identity(*block), open(block->asset_id), {}})
-            .first;
+    found = running_
+                .emplace(place,
+                         Running{block->header.pst_id, identity(*block), open(block->asset_id), block->header.replay})
+                .first;
   found->second.test.absorb(*block);
-  if (ends(block->boundary)) finish(block->asset_id);
+  if (ends(block->boundary)) finish(place);
 }
 
 Conclusion DataAcquisition::receive(const Message& input) {
@@ -103,21 +112,22 @@ void DataAcquisition::take_raw(const RawSamples& raw, Conclusion& conclusion) {
   running->silent_s = 0.0;
   SampleBlock block = stamp(raw, running->pst_id);
   running->test.complete(raw, block);
-  if (ends(block.boundary)) finish(raw.asset_id);
+  if (ends(block.boundary)) finish(place_of(raw));
   conclusion.outputs.emplace_back(std::move(block));
 }
 
 /// The open test that the block belongs to, opened if need be; null for a block of a test that is over.
 DataAcquisition::Running* DataAcquisition::running_test(const RawSamples& raw, Conclusion& conclusion) {
-  const auto found = running_.find(raw.asset_id);
+  const std::string place = place_of(raw);
+  const auto found = running_.find(place);
   const bool same = found != running_.end() && found->second.identity == identity(raw);
   if (same && !begins(raw)) return &found->second;
   if (!begins(raw) && finished_identities_.contains(identity(raw))) return nullptr;
   const std::string pst_id = make_pst_id(raw);
   if (same && found->second.pst_id == pst_id) return &found->second;
   if (finished_.contains(pst_id)) return nullptr;
-  if (found != running_.end()) close(raw.asset_id, "cut: another test began before this one ended", conclusion);
-  return &running_.emplace(raw.asset_id, Running{pst_id, identity(raw), open(raw.asset_id), {}}).first->second;
+  if (found != running_.end()) close(place, "cut: another test began before this one ended", conclusion);
+  return &running_.emplace(place, Running{pst_id, identity(raw), open(raw.asset_id), raw.header.replay}).first->second;
 }
 
 SampleBlock DataAcquisition::stamp(const RawSamples& raw, const std::string& pst_id) const {
@@ -140,13 +150,13 @@ SampleBlock DataAcquisition::stamp(const RawSamples& raw, const std::string& pst
   return block;
 }
 
-void DataAcquisition::close(const std::string& asset_id, const std::string& reason, Conclusion& conclusion) {
-  conclusion.outputs.emplace_back(running_.at(asset_id).test.closing_block(reason));
-  finish(asset_id);
+void DataAcquisition::close(const std::string& place, const std::string& reason, Conclusion& conclusion) {
+  conclusion.outputs.emplace_back(running_.at(place).test.closing_block(reason));
+  finish(place);
 }
 
-void DataAcquisition::finish(const std::string& asset_id) {
-  const auto found = running_.find(asset_id);
+void DataAcquisition::finish(const std::string& place) {
+  const auto found = running_.find(place);
   finished_.insert(found->second.pst_id);
   finished_identities_.insert(found->second.identity);
   running_.erase(found);
@@ -157,13 +167,14 @@ Conclusion DataAcquisition::tick(UtcTime now) {
   std::vector<std::string> silent;
   const double passed_s = last_tick_ ? std::clamp(seconds_between(*last_tick_, now), 0.0, kLongestTickSeconds) : 0.0;
   last_tick_ = now;
-  for (auto& [asset_id, running] : running_) {
+  for (auto& [place, running] : running_) {
+    if (running.played_back) continue;
     running.silent_s += passed_s;
-    if (running.silent_s >= options_.time_out_s) silent.push_back(asset_id);
+    if (running.silent_s >= options_.time_out_s) silent.push_back(place);
   }
   char reason[80];
   std::snprintf(reason, sizeof reason, "cut: no samples for %.0f s", options_.time_out_s);
-  for (const std::string& asset_id : silent) close(asset_id, reason, conclusion);
+  for (const std::string& place : silent) close(place, reason, conclusion);
   return conclusion;
 }
 

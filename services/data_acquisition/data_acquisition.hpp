@@ -3,9 +3,10 @@
 //
 // One raw block gives one sample block at once. A test begins with a block that says so, or with block 0, or with a
 // block of another test than the open one. It ends with a block that says so; when another test of the same actuator
-// begins first, or (live) when nothing comes for time_out_s, it is closed as cut by an empty end block with aborted
-// set. What was seen before changes nothing: blocks whose number came already and tests that are closed are passed
-// over. Blocks out of order go on as they come, under their numbers; data manipulation sorts them.
+// begins first, or when nothing comes for time_out_s, it is closed as cut by an empty end block with aborted
+// set; not so a recording that is played back: it cuts no other test, and goes on when it is played again. What was
+// seen before changes nothing: blocks whose number came already and tests that are closed are passed over. Blocks out
+// of order go on as they come, under their numbers; data manipulation sorts them.
 #pragma once
 
 #include <map>
@@ -38,19 +39,20 @@ class DataAcquisition final : public Layer {
     std::string pst_id;
     std::string identity;
     OpenTest test;
+    bool played_back = false;
     double silent_s = 0.0;  ///< ticked since the last block; decides when, never what
   };
   void take_raw(const RawSamples& raw, Conclusion& conclusion);
   Running* running_test(const RawSamples& raw, Conclusion& conclusion);
   [[nodiscard]] OpenTest open(const std::string& asset_id) const;
   [[nodiscard]] SampleBlock stamp(const RawSamples& raw, const std::string& pst_id) const;
-  void close(const std::string& asset_id, const std::string& reason, Conclusion& conclusion);
-  void finish(const std::string& asset_id);
+  void close(const std::string& place, const std::string& reason, Conclusion& conclusion);
+  void finish(const std::string& place);
 
   std::vector<AssetConfig> assets_;
   DataAcquisitionOptions options_;
   std::optional<UtcTime> last_tick_;
-  std::map<std::string, Running> running_;     ///< by asset
+  std::map<std::string, Running> running_;     ///< by asset, or by recording where it is played back
   std::set<std::string> finished_;             ///< PST ids
   std::set<std::string> finished_identities_;  ///< what blocks without a content hash are known by
 };

@@ -49,6 +49,13 @@ std::vector<SampleBlock> send(DataAcquisition& layer, const std::vector<RawSampl
   return result;
 }
 
+/// As an actuator sends them whose test is under way.
+std::vector<RawSamples> live_blocks_of(const Recording& test) {
+  std::vector<RawSamples> blocks = blocks_of(test);
+  for (RawSamples& block : blocks) block.header.replay = false;
+  return blocks;
+}
+
 std::vector<SampleBlock> send_all(const Recording& test) {
   DataAcquisition layer(assets());
   return send(layer, blocks_of(test));
@@ -124,9 +131,9 @@ TEST(DataAcquisition, WhatComesTwiceChangesNothing) {
 
 TEST(DataAcquisition, ANewTestClosesTheOpenOneAsCut) {
   DataAcquisition layer(assets());
-  const std::vector<RawSamples> first = blocks_of(recording(1));
-  const std::vector<RawSamples> second = blocks_of(recording(2));
-  const std::vector<RawSamples> other = blocks_of(recording(1, "XT04-MV1"));
+  const std::vector<RawSamples> first = live_blocks_of(recording(1));
+  const std::vector<RawSamples> second = live_blocks_of(recording(2));
+  const std::vector<RawSamples> other = live_blocks_of(recording(1, "XT04-MV1"));
   send(layer, {first.begin(), first.begin() + 3});
   send(layer, {other.begin(), other.begin() + 1});
   const std::vector<SampleBlock> blocks = send(layer, {second.begin(), second.begin() + 1});
@@ -143,7 +150,7 @@ TEST(DataAcquisition, ANewTestClosesTheOpenOneAsCut) {
 
 TEST(DataAcquisition, ATestThatFallsSilentIsClosedByTime) {
   DataAcquisition layer(assets());
-  const std::vector<RawSamples> raw = blocks_of(recording());
+  const std::vector<RawSamples> raw = live_blocks_of(recording());
   UtcTime now{1'000'000'000};
   EXPECT_TRUE(layer.tick(now).outputs.empty());
   const auto pass = [&](int seconds) {
@@ -168,7 +175,7 @@ TEST(DataAcquisition, ATestThatFallsSilentIsClosedByTime) {
 TEST(DataAcquisition, AClockThatIsSetEndsNoTest) {
   for (const double step_s : {3600.0, -3600.0}) {
     DataAcquisition layer(assets());
-    const std::vector<RawSamples> raw = blocks_of(recording());
+    const std::vector<RawSamples> raw = live_blocks_of(recording());
     UtcTime now{1'000'000'000};
     (void)layer.tick(now);
     send(layer, {raw.begin(), raw.begin() + 3});
@@ -176,6 +183,27 @@ TEST(DataAcquisition, AClockThatIsSetEndsNoTest) {
     EXPECT_TRUE(layer.tick(now = add_seconds(now, step_s)).outputs.empty()) << step_s;
     EXPECT_EQ(send(layer, {raw.begin() + 3, raw.end()}).size(), raw.size() - 3);
   }
+}
+
+// Two engineers may replay at once, and beside a live test; one who stopped may go on.
+TEST(DataAcquisition, ARecordingThatIsPlayedBackCutsNothingAndIsNotCut) {
+  DataAcquisition layer(assets());
+  const std::vector<RawSamples> live = live_blocks_of(recording(1));
+  const std::vector<RawSamples> one = blocks_of(recording(2));
+  const std::vector<RawSamples> other = blocks_of(recording(3));
+  std::vector<RawSamples> mixed;
+  for (std::size_t k = 0; k < live.size(); ++k)
+    for (const auto* blocks : {&one, &live, &other})
+      if (k < blocks->size()) mixed.push_back((*blocks)[k]);
+  mixed.pop_back();  // its player was stopped
+  const std::vector<SampleBlock> blocks = send(layer, mixed);
+  EXPECT_EQ(blocks.size(), mixed.size());
+  for (const SampleBlock& block : blocks) EXPECT_FALSE(block.aborted) << block.header.message_id;
+  UtcTime now{1'000'000'000};
+  for (int k = 0; k < 100; ++k) EXPECT_TRUE(layer.tick(now = add_seconds(now, 1.0)).outputs.empty());
+  const std::vector<SampleBlock> again = send(layer, other);
+  ASSERT_EQ(again.size(), 1U) << "only what it missed";
+  EXPECT_EQ(again.front().boundary, BlockBoundary::end);
 }
 
 TEST(DataAcquisition, ATestWhoseBeginWasMissedIsTakenFromWhereItIs) {

@@ -3,7 +3,8 @@
 //   x = (theta, g, mu)                        condition, rate against ln t, monthly steepening (fleet_population.hpp)
 //   one step of d months, A = ln((t + d + n_0)/(t + n_0)):
 //     mu' = mu,   g' = g + mu d + w,   theta' = theta - (g' + u) A
-//     Var(w) = steepening_scatter^2 d,   Var(u A) = irregularity_std^2 A^2 / d
+//     Var(w) = k^2 steepening_scatter^2 d,   Var(u A) = k^2 irregularity_std^2 A^2 / d
+//     k           how many times as fast as by the law it ages: 1, until something makes it age faster (age_faster)
 //   measured    y = theta + e,   Var(e) = s^2, the estimate's own standard error
 //
 // Given the constants everything is linear and normal, so the filter is exact (R. E. Kalman 1960) and the remaining
@@ -38,6 +39,7 @@ struct SealBelief {
   double log_evidence = 0.0;           ///< sum of the logarithms of the predictive densities so far
   double surprise_squares = 0.0;       ///< sum of squared standardised innovations, each cut at 9
   int tests = 0;
+  double ageing_factor = 1.0;  ///< k
 };
 
 /// What is known of a new seal; `spread` widens every standard deviation of the population.
@@ -45,6 +47,10 @@ struct SealBelief {
 
 /// Carries the belief on to `age_months` in steps of at most about a month. Not back.
 void grow_old(SealBelief& belief, const DegradationLaw& law, double age_months);
+
+/// From now on it ages k `times` as fast, k known to `spread` of itself: every month's fall is k times what it would
+/// have been, so that g, mu, w and u are. (The acceleration factor of accelerated life tests: W. B. Nelson 1990.)
+void age_faster(SealBelief& belief, double times, double spread);
 
 /// Takes a test in.
 void observe(SealBelief& belief, double condition, double condition_std);

@@ -80,7 +80,7 @@ struct ForecasterSettings {
   std::string method = "ols";
   int window_months = 36;           ///< tests older than this are passed over; the laws take kWholeLife_months
   FleetPopulation population = {};  ///< of state_space, fleet and average
-  double change_per_month = 0.002;  ///< of the same: prior probability of a change of rate or level
+  double change_per_month = 0.01;   ///< of the same: prior probability that a seal begins to age faster
   std::vector<ForecasterSettings> members = {};  ///< of average; none: its default members
 };
 inline constexpr int kWholeLife_months = 240;  ///< 20 years of service

@@ -33,9 +33,10 @@ void step(SealBelief& belief, const DegradationLaw& law, double d) {
   P[gg] += d * (2.0 * P[gm] + d * P[mm]);
   P[tg] += d * P[tm];
   P[gm] += d * P[mm];
-  const double scatter = law.steepening_scatter * law.steepening_scatter * d;
+  const double faster = belief.ageing_factor * belief.ageing_factor;
+  const double scatter = faster * law.steepening_scatter * law.steepening_scatter * d;
   P[gg] += scatter;  // w enters g first, and theta through it
-  P[tt] += A * (A * P[gg] - 2.0 * P[tg]) + law.irregularity_std * law.irregularity_std * A * A / d;
+  P[tt] += A * (A * P[gg] - 2.0 * P[tg]) + faster * law.irregularity_std * law.irregularity_std * A * A / d;
   P[tg] -= A * P[gg];
   P[tm] -= A * P[gm];
   belief.age_months += d;
@@ -100,7 +101,7 @@ double below_threshold(const SealBelief& belief, const Horizon& h, double thresh
   const auto& P = belief.covariance;
   const double mean = belief.mean[0] - h.A * belief.mean[1] - h.B * belief.mean[2];
   const double variance = P[tt] - 2.0 * h.A * P[tg] - 2.0 * h.B * P[tm] + h.A * h.A * P[gg] + 2.0 * h.A * h.B * P[gm] +
-                          h.B * h.B * P[mm] + h.V;
+                          h.B * h.B * P[mm] + belief.ageing_factor * belief.ageing_factor * h.V;
   const double z = (threshold - mean) / std::sqrt(std::max(variance, kSmallestStd * kSmallestStd));
   if (std::abs(z) > kFarOut) return z < 0.0 ? 0.0 : 1.0;  // most months of most lives: no error function needed
   return normal_probability(z);
@@ -123,6 +124,20 @@ void grow_old(SealBelief& belief, const DegradationLaw& law, double age_months) 
   if (months <= 0.0) return;
   const int steps = std::max(1, static_cast<int>(std::lround(months)));
   for (int k = 0; k < steps; ++k) step(belief, law, months / steps);
+}
+
+// (g, mu) k with k = times (1 + spread e), e standard normal: to first order, and e moves both together.
+void age_faster(SealBelief& belief, double times, double spread) {
+  auto& [theta, g, mu] = belief.mean;
+  auto& P = belief.covariance;
+  belief.ageing_factor *= times;
+  g *= times;
+  mu *= times;
+  for (const Entry entry : {tg, tm}) P[entry] *= times;
+  for (const Entry entry : {gg, gm, mm}) P[entry] *= times * times;
+  P[gg] += spread * spread * g * g;
+  P[gm] += spread * spread * g * mu;
+  P[mm] += spread * spread * mu * mu;
 }
 
 // Both components' posteriors lie on the line through the prior along c = (tt, tg, tm), so that joining them is a

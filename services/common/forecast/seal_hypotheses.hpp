@@ -28,8 +28,8 @@ struct SealHypothesis {
 
 struct HypothesisOptions {
   FleetPopulation population;
-  double relative_share = 0.0;  ///< prior probability of a relative
-  double change_per_month = 0.002;
+  double relative_share = 0.0;              ///< prior probability of a relative
+  double change_per_month = 0.01;           ///< of faster ageing
   std::optional<double> age_at_first_test;  ///< [months]; none: not known
 };
 

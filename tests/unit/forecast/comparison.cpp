@@ -1,7 +1,8 @@
 // Compares forecasters on the same random lives of the reference recursion: the table of docs/forecast.md.
 //
-//   forecast_comparison [LIVES] [SCENARIO] [STD]   300 lives; scenario `reference` (below); 0: theta_std log-uniform in
-//                                                  0.003 .. 0.01, one for each life
+//   forecast_comparison [LIVES] [SCENARIO] [STD] [FIRST] [CHANGE]
+//     300 lives; scenario `reference` (random_life.hpp); 0: theta_std log-uniform in 0.003 .. 0.01, one for each life;
+//     first seed 1; CHANGE is the forecasters' change_per_month
 //
 // Each life: one test a month until theta <= 0.60, each method after each test from the 12th on, scored by
 // prognostic_metrics.hpp. Months that a scenario leaves out are not scored.
@@ -137,15 +138,18 @@ int main(int argc, char** argv) {
   const int lives = argc > 1 ? std::atoi(argv[1]) : 300;
   const std::string scenario = argc > 2 ? argv[2] : "reference";
   const double fixed_std = argc > 3 ? std::atof(argv[3]) : 0.0;
+  const int first = argc > 4 ? std::atoi(argv[4]) : 1;
   std::vector<ForecasterSettings> settings{{"ols", 24},          {"ols", 36},          {"ols", 48},
                                            {"ols_fieller", 36},  {"ols_log_time", 36}, {"ols_drift", 36},
                                            {"state_space", 240}, {"fleet", 240}};
   settings.push_back({"average", 240});
+  if (argc > 5)
+    for (ForecasterSettings& one : settings) one.change_per_month = std::atof(argv[5]);
   std::vector<std::unique_ptr<const Forecaster>> forecasters;
   for (const ForecasterSettings& one : settings)
     if (auto made = make_forecaster(one)) forecasters.push_back(std::move(*made));
   std::vector<Tally> tallies(forecasters.size() + 1);
-  for (int seed = 1; seed <= lives; ++seed) {
+  for (int seed = first; seed < first + lives; ++seed) {
     const test::RandomLife life = test::random_life(static_cast<std::uint64_t>(seed), scenario, fixed_std, kThreshold);
     std::vector<OneLife> of_life(tallies.size());
     ForecastRequest request{.threshold = kThreshold};

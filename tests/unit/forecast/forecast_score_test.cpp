@@ -108,8 +108,9 @@ double weight_of_law(const std::string& scenario, std::size_t tests) {
 
 TEST(Average, BelievesTheLawUntilItFails) {
   const double usual = weight_of_law("reference", 96);
-  EXPECT_GT(usual, 0.25);                             // of four members
-  EXPECT_LT(weight_of_law("rate", 88), 0.7 * usual);  // sixteen months after the rate has changed
+  EXPECT_GT(usual, 0.25);                               // of four members
+  EXPECT_LT(weight_of_law("triple", 78), 0.7 * usual);  // half a year after it has begun to age three times as fast
+  EXPECT_GT(weight_of_law("triple", 88), 0.7 * usual);  // seen by then
 }
 
 TEST(Average, MembersAreChecked) {

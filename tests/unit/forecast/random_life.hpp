@@ -33,9 +33,20 @@ struct RandomLife {
 ///   missing        a month in four has no usable test     rate      from month 72 on it ages 1.5 times as fast
 ///   level          from month 72 on estimates are 0.02 low          errors    true scatter is three times what is told
 ///   late           the first test comes at month 60, the installation is not known
+///   mild, double, triple, slower  as `rate`, but 1.25, 2, 3 and 0.67 times
+///   regular        as `rate`, but the months' irregularity stays what it was
 ///   unlike         of another population, that ages twice as fast     line  theta falls straight
 ///   starting       of the constants that the reference model starts from, before its calibration
 ///   replaced       at month 48 another seal, unannounced  unknown   estimates come without a standard error
+/// How many times as fast it ages from month 72 on; 1 where nothing changes.
+inline double changed_rate(const std::string& scenario) {
+  if (scenario == "rate" || scenario == "regular") return 1.5;
+  if (scenario == "mild") return 1.25;
+  if (scenario == "double") return 2.0;
+  if (scenario == "triple") return 3.0;
+  return scenario == "slower" ? 0.67 : 1.0;
+}
+
 inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, double fixed_std, double threshold) {
   constexpr double kChange = 72.0;
   constexpr int kLongest = 480;
@@ -59,20 +70,24 @@ inline RandomLife random_life(std::uint64_t seed, const std::string& scenario, d
            ConditionSample{month(offset), first.condition() + life.condition_std * normal(random), life.condition_std},
            false});
   }
+  const double faster = changed_rate(scenario);
   double extra_fall = 0.0;
   double before = 1.0;
   for (int n = 1; n <= kLongest; ++n) {
     const double last = seal.condition();
     seal.advance();
-    if (scenario == "rate" && n > kChange) extra_fall += 0.5 * (last - seal.condition());
+    if (n > kChange) {
+      const double mean_irregularity = 0.5 * (setting.irregularity.min + setting.irregularity.max);
+      const double regular = (seal.gamma() + mean_irregularity) * std::log((n + setting.n_0) / (n - 1 + setting.n_0));
+      extra_fall += (faster - 1.0) * (scenario == "regular" ? regular : last - seal.condition());
+    }
     const double condition = scenario == "line" ? 1.0 - straight_fall * n : seal.condition() - extra_fall;
-    MonthOfLife now{
-        .state = {.month = static_cast<double>(n),
-                  .condition = condition,
-                  .gamma = seal.gamma() * (scenario == "rate" && n > kChange ? 1.5 : 1.0),
-                  .steepening_limit = seal.steepening_limit() * (scenario == "rate" && n > kChange ? 1.5 : 1.0)},
-        .sample = std::nullopt};
-    if (scenario == "rate" || scenario == "level") now.foreseeable = n > kChange + 6.0;
+    MonthOfLife now{.state = {.month = static_cast<double>(n),
+                              .condition = condition,
+                              .gamma = seal.gamma() * (n > kChange ? faster : 1.0),
+                              .steepening_limit = seal.steepening_limit() * (n > kChange ? faster : 1.0)},
+                    .sample = std::nullopt};
+    if (faster != 1.0 || scenario == "level") now.foreseeable = n > kChange + 6.0;
     double estimate = condition + life.condition_std * normal(random);
     if (scenario == "errors") estimate += 2.83 * life.condition_std * normal(random);
     if (scenario == "outliers" && uniform(random) < 0.05)

@@ -365,6 +365,28 @@ TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo
   EXPECT_THAT(process->outputs(), SizeIs(2)) << "refused once is refused for good";
 }
 
+TEST_F(RunnerTest, RefusesATestFarInTheFutureOfALifeThatIsNot) {
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  auto process = cutter();
+  const std::int64_t now_ns = process->clock().now().nanoseconds;
+  auto blocks = blocks_of_tests(6, {"A"});
+  blocks.resize(10);
+  auto simulated = blocks_of_tests(1, {"B"});
+  blocks.insert(blocks.end(), simulated.begin(), simulated.end());
+  const std::vector<std::int64_t> days = {-40, 5000, -10, 20, 300, 5000};
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    blocks[k].start_time_known = true;
+    blocks[k].start_time_ns = now_ns + days[k / 2] * kDay_ns;
+  }
+  Feeder feeder(network_, blocks);
+  feeder.send(100);
+  step(*process, 3);
+  std::vector<std::string> tests;
+  for (const Message& output : process->outputs())
+    if (topic_of(output) == Topic::test_features) tests.push_back(header_of(output).pst_id);
+  EXPECT_THAT(tests, ElementsAre("A test 0", "A test 2", "A test 3", "A test 4", "B test 0"));
+}
+
 TEST_F(RunnerTest, ReceivesWhileItConcludesLaterAndKeepsTheOrderOfReceipt) {
   Process process(
       network_, [] { return std::make_unique<PatientLayer>(milliseconds(50)); }, place_.connection());

@@ -79,6 +79,8 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   if (cause.event_time_known) now = UtcTime{cause.event_time_ns};
   if (now && ((asset.last_test && *now < *asset.last_test) || (asset.replaced && *now < *asset.replaced)))
     return conclusion;
+  // One that cannot be placed: what the others advise stands, unless the actuator does not do its stroke.
+  if (!now && asset.last_test && evidence.state.verdict != PstVerdict::failed) return conclusion;
   if (now) asset.last_test = now;
 
   const SiteConfig* site = site_of(asset_id);

@@ -6,9 +6,8 @@ void LatestOutputs::concluded(const Message& output, std::uint64_t sequence) {
   const Header& header = header_of(output);
   const Key key{topic_of(output), asset_of(output)};
   const auto known = latest_.find(key);
-  const bool may_be_late = key.first != Topic::advisory && known != latest_.end();
-  const bool late = may_be_late && known->second.time_known && header.event_time_known &&
-                    header.event_time_ns < known->second.event_time_ns;
+  const bool may_be_late = key.first != Topic::advisory && known != latest_.end() && known->second.time_known;
+  const bool late = may_be_late && (!header.event_time_known || header.event_time_ns < known->second.event_time_ns);
   if (late) return;
   latest_[key] = {header.event_time_known, header.event_time_ns, sequence};
   hidden_.insert(key);

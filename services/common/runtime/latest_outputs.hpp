@@ -16,8 +16,9 @@ class LatestOutputs {
  public:
   using Key = std::pair<Topic, std::string>;  // asset
 
-  /// An own output of that sequence number was concluded. Of two on the same event, and where one has no time, the one
-  /// that was concluded later counts; so it does of advisories: what was advised last stands, whatever it answers to.
+  /// An own output of that sequence number was concluded. Of two on the same event the one that was concluded later
+  /// counts, and one without a time only where none has any; so it does of advisories: what was advised last stands,
+  /// whatever it answers to.
   void concluded(const Message& output, std::uint64_t sequence);
   /// A stamped output went out.
   void published(const Message& output);

@@ -37,7 +37,8 @@ LatestOutputs after(const std::vector<Message>& outputs) {
 }
 
 TEST(LatestOutputs, InOrderNothingIsToBePublishedAgain) {
-  EXPECT_THAT(after({of_event(1, 10), of_event(2, 20), of_event(3, 20), of_event(4, {})}).to_publish(), IsEmpty());
+  EXPECT_THAT(after({of_event(1, 10), of_event(2, 20), of_event(3, 20)}).to_publish(), IsEmpty());
+  EXPECT_THAT(after({of_event(1, {}), of_event(2, {}), of_event(3, 20)}).to_publish(), IsEmpty());
 }
 
 TEST(LatestOutputs, AfterALateEventTheLatestIsToBePublishedAgainOnce) {
@@ -47,6 +48,10 @@ TEST(LatestOutputs, AfterALateEventTheLatestIsToBePublishedAgainOnce) {
   EXPECT_THAT(latest.to_publish(), IsEmpty());
   latest.published(of_event(1, 10));  // sent again
   EXPECT_THAT(latest.to_publish(), ElementsAre(Pair(kKey, 2)));
+}
+
+TEST(LatestOutputs, OneWithoutTimeIsNotTheLatestOfThoseThatHaveOne) {
+  EXPECT_THAT(after({of_event(1, 10), of_event(2, {})}).to_publish(), ElementsAre(Pair(kKey, 1)));
 }
 
 TEST(LatestOutputs, WhatWasConcludedAndNotPublishedIsToBePublished) {

@@ -215,6 +215,14 @@ TEST_F(AdvisoryGenerationTest, TestsFromBeforeTheLastOneOrTheReplacementChangeNo
   EXPECT_EQ(run(joined(before, inputs_of({{.month = 89.5, .rul_months = 0.5}}))), run(before));
 }
 
+TEST_F(AdvisoryGenerationTest, ATestOfUnknownTimeChangesNothingUnlessItFailed) {
+  const auto before = inputs_of(life_until(60, 90, 100.0));
+  TestCase undated{.month = 90.5, .forecast = ForecastState::insufficient_history, .used = false, .time_known = false};
+  EXPECT_EQ(run(joined(before, inputs_of({undated}))), run(before));
+  undated.verdict = PstVerdict::failed;
+  EXPECT_GT(run(joined(before, inputs_of({undated}))).size(), run(before).size());
+}
+
 TEST_F(AdvisoryGenerationTest, OverdueTestIsAskedForAndGoesWithTheTest) {
   const auto before = inputs_of({{.month = 24}, {.month = 25}});
   const auto all = advisories(joined(joined(before, {overdue(26.4)}), inputs_of({{.month = 26.6}})));

@@ -5,9 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
+#include "services/cli/services_heard.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/summary.hpp"
+#include "services/cli/supervisor.hpp"
 #include "services/common/message/json.hpp"
+#include "services/common/runtime/configuration_loader.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -18,12 +21,12 @@ constexpr std::array kStateTopics = {Topic::state_report,      Topic::health_rep
 
 /// What was heard while listening.
 struct Heard {
-  std::map<std::string, ServiceStatus> services;
+  ServicesHeard services;
   std::map<std::string, AssetView> assets;
   std::map<std::string, std::map<std::string, std::string>> last;  ///< JSON by asset and topic
 
   void take(const BusItem& item) {
-    if (const auto* status = std::get_if<ServiceStatus>(&item)) services[status->service] = *status;
+    if (const auto* status = std::get_if<ServiceStatus>(&item)) services.take(*status, ServicesHeard::Clock::now());
     if (const auto* message = std::get_if<Message>(&item)) {
       assets[asset_of(*message)].take(*message);
       last[asset_of(*message)][std::string(name_of(topic_of(*message)))] = to_json(*message);
@@ -31,21 +34,40 @@ struct Heard {
   }
 };
 
+nlohmann::ordered_json as_json(const ServicesHeard::Service& service) {
+  nlohmann::ordered_json result = {{"service", service.name}};
+  if (service.heard) result = nlohmann::ordered_json::parse(to_json(service.last));
+  if (!service.heard) result["state"] = service.trouble;
+  result["trouble"] = service.trouble;
+  return result;
+}
+
 void print_json(const Heard& heard) {
   nlohmann::ordered_json result = {{"schema", "sealwatch.status/1"},
                                    {"services", nlohmann::ordered_json::array()},
                                    {"assets", nlohmann::ordered_json::object()}};
-  for (const auto& [name, status] : heard.services)
-    result["services"].push_back(nlohmann::ordered_json::parse(to_json(status)));
+  for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
+    result["services"].push_back(as_json(service));
   for (const auto& [asset, topics] : heard.last)
     for (const auto& [topic, text] : topics) result["assets"][asset][topic] = nlohmann::ordered_json::parse(text);
   std::printf("%s\n", result.dump(1).c_str());
 }
 
 void print_text(const Heard& heard) {
-  for (const auto& [name, status] : heard.services) std::printf("%s\n", one_line(status).c_str());
-  if (heard.services.empty()) std::printf("no service is running in this domain (start them with `sealwatch up`)\n");
+  if (heard.services.none()) {
+    std::printf("no service is running in this domain (start them with `sealwatch up`)\n");
+  } else {
+    for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
+      std::printf("%s\n", one_line(service).c_str());
+  }
   for (const auto& [asset, view] : heard.assets) std::printf("\n%s", view.screen().c_str());
+}
+
+std::vector<std::string> enabled_services(const Configuration& configuration) {
+  std::vector<std::string> names;
+  for (const std::string& name : service_names())
+    if (enabled(configuration, name)) names.push_back(name);
+  return names;
 }
 
 }  // namespace
@@ -60,12 +82,12 @@ int run_status(const StatusOptions& options) {
     return kInternalFailure;
   }
   catch_interrupts();
-  Heard heard;
+  Heard heard{.services = ServicesHeard(enabled_services(session->configuration)), .assets = {}, .last = {}};
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   while (!interrupted() && std::chrono::steady_clock::now() < end)
     for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100))) heard.take(item);
   options.json ? print_json(heard) : print_text(heard);
-  return heard.services.empty() ? kAnswerIsNo : kOk;
+  return heard.services.none() || !heard.services.all_well(ServicesHeard::Clock::now()) ? kAnswerIsNo : kOk;
 }
 
 }  // namespace sealwatch::cli

@@ -1,0 +1,65 @@
+#include "services/cli/services_heard.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sealwatch::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+
+ServiceStatus beat(const std::string& service, std::int32_t process, const std::string& state = "running") {
+  ServiceStatus status;
+  status.service = service;
+  status.process_id = process;
+  status.state = state;
+  return status;
+}
+
+class Listening : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string line(std::size_t k) const { return one_line(heard_.list(now_)[k]); }
+
+  ServicesHeard heard_{{"data_acquisition", "health_assessment"}};
+  ServicesHeard::Clock::time_point now_{std::chrono::hours(1)};
+};
+
+TEST_F(Listening, NamesAServiceThatIsNotHeard) {
+  EXPECT_TRUE(heard_.none());
+  heard_.take(beat("data_acquisition", 7), now_);
+  EXPECT_FALSE(heard_.all_well(now_));
+  EXPECT_EQ(line(1), "health_assessment  no heartbeat");
+  heard_.take(beat("health_assessment", 8), now_);
+  EXPECT_TRUE(heard_.all_well(now_));
+  EXPECT_THAT(line(1), HasSubstr("health_assessment  running  pid 8"));
+}
+
+TEST_F(Listening, NamesAServiceThatFallsSilent) {
+  heard_.take(beat("data_acquisition", 7), now_);
+  heard_.take(beat("health_assessment", 8), now_ - milliseconds(4000));
+  EXPECT_FALSE(heard_.all_well(now_));
+  EXPECT_THAT(line(1), HasSubstr("no heartbeat for 4 s"));
+  EXPECT_TRUE(heard_.all_well(now_ - milliseconds(2000)));
+}
+
+TEST_F(Listening, NamesAServiceThatStartsAgainAndAgainOrStops) {
+  heard_.take(beat("data_acquisition", 7), now_);
+  heard_.take(beat("data_acquisition", 9), now_);
+  heard_.take(beat("health_assessment", 8, "stopping"), now_);
+  EXPECT_THAT(line(0), HasSubstr("heard from 2 processes"));
+  EXPECT_THAT(line(1), HasSubstr("health_assessment  stopping"));
+  EXPECT_FALSE(heard_.all_well(now_));
+}
+
+TEST_F(Listening, ListsAServiceThatIsNotExpectedHereWithoutAskingForIt) {
+  heard_.take(beat("data_acquisition", 7), now_);
+  heard_.take(beat("health_assessment", 8), now_);
+  heard_.take(beat("advisory_generation", 9, "stopping"), now_);
+  ASSERT_EQ(heard_.list(now_).size(), 3U);
+  EXPECT_FALSE(heard_.list(now_)[2].expected);
+  EXPECT_TRUE(heard_.all_well(now_));
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

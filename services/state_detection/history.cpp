@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sealwatch/config/judged_quantities.hpp"
+
 namespace sealwatch {
 
 namespace {

@@ -54,9 +54,6 @@ class AssetHistory {
 /// Whether a quantity speaks of the recording and not of the actuator.
 [[nodiscard]] bool concerns_recording(std::string_view quantity);
 
-/// Quantity of the judgement that says whether a channel was lost: "channel." + channel.
-inline constexpr std::string_view kChannelQuantity = "channel.";
-
 [[nodiscard]] inline bool is_judged(PstVerdict verdict) {
   return verdict == PstVerdict::passed || verdict == PstVerdict::failed;
 }

@@ -1,10 +1,12 @@
 #include "services/state_detection/indicators.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "sealwatch/config/judged_quantities.hpp"
 #include "services/state_detection/phase_means.hpp"
 
 namespace sealwatch {
@@ -50,7 +52,7 @@ class Balances {
     hydraulic();
     electric();
     sensors();
-    add("closing_time", "s", parameter("x_C") / absolute(means_.speed_from_position(Motion::retracting)));
+    add("closing_time", parameter("x_C") / absolute(means_.speed_from_position(Motion::retracting)));
     quality();
     return std::move(result_);
   }
@@ -65,32 +67,34 @@ class Balances {
   [[nodiscard]] Optional dp(Motion motion) const { return means_.pressure_difference(motion); }
   [[nodiscard]] Optional mean(const char* channel, Motion motion) const { return means_.mean(channel, motion); }
 
-  void add(const char* name, const char* unit, const Optional& value) {
-    if (value && std::isfinite(*value)) result_.push_back({name, unit, *value, false, 0.0});
+  void add(const char* name, const Optional& value) {
+    const JudgedIndicator* const known = find_indicator(name);
+    assert(known != nullptr);
+    if (value && std::isfinite(*value)) result_.push_back({name, std::string(known->unit), *value, false, 0.0});
   }
 
   void hydraulic() {
     leakage_resistance_ = feature("leakage_resistance");
     if (leakage_resistance_ && !(*leakage_resistance_ > 0.0)) leakage_resistance_.reset();  // noise about no flow
-    add("leakage_resistance", "Pa s/m3", leakage_resistance_);
-    add("friction_pressure", "Pa", feature("friction_pressure"));
-    add("breakaway_pressure", "Pa", feature("breakaway_pressure"));
+    add("leakage_resistance", leakage_resistance_);
+    add("friction_pressure", feature("friction_pressure"));
+    add("breakaway_pressure", feature("breakaway_pressure"));
     load_pressure_ = (feature("running_pressure_out") + feature("running_pressure_back")) / Optional(2.0);
-    add("load_pressure", "Pa", load_pressure_);
-    add("hold_decay_rate", "1/s", feature("hold_decay") / absolute(feature("hold_pressure")));
+    add("load_pressure", load_pressure_);
+    add("hold_decay_rate", feature("hold_decay") / absolute(feature("hold_pressure")));
     const Optional delivered = parameter("alpha_P") * mean("shaft_speed", Motion::holding);
-    add("pump_slip", "m3/(s Pa)", (delivered - mean("flow", Motion::holding)) / dp(Motion::holding));
+    add("pump_slip", (delivered - mean("flow", Motion::holding)) / dp(Motion::holding));
   }
 
   void electric() {
     const Optional current = mean("motor_current", Motion::extending);
     const Optional speed = mean("shaft_speed", Motion::extending);
     const Optional torque = parameter("T_M") * current;
-    add("shaft_drag", "N m s/rad", (torque - parameter("alpha_P") * dp(Motion::extending)) / speed);
+    add("shaft_drag", (torque - parameter("alpha_P") * dp(Motion::extending)) / speed);
     const Optional voltage = mean("motor_voltage", Motion::extending);
-    add("back_emf", "V s/rad", (voltage - parameter("R_M") * current) / speed);
+    add("back_emf", (voltage - parameter("R_M") * current) / speed);
     const Optional load_current = parameter("alpha_P") * load_pressure_ / parameter("T_M");
-    add("load_free_current", "A", feature("peak_current") - absolute(load_current));
+    add("load_free_current", feature("peak_current") - absolute(load_current));
   }
 
   void sensors() {
@@ -100,17 +104,17 @@ class Balances {
     const Optional flow = flow_up - mean("flow", Motion::retracting);
     const Optional leakage = (dp(Motion::extending) - dp(Motion::retracting)) / leakage_resistance_;
     const Optional area = parameter("A_C") ? parameter("A_C") : parameter("A_A");
-    add("flow_gain", "1", (flow - leakage) / (area * (up - down)));
+    add("flow_gain", (flow - leakage) / (area * (up - down)));
     const Optional speed = mean("shaft_speed", Motion::extending) - mean("shaft_speed", Motion::holding);
-    add("delivery_ratio", "1", (flow_up - mean("flow", Motion::holding)) / (parameter("alpha_P") * speed));
+    add("delivery_ratio", (flow_up - mean("flow", Motion::holding)) / (parameter("alpha_P") * speed));
     const Optional velocity = mean("velocity", Motion::extending) - mean("velocity", Motion::retracting);
-    add("velocity_gain", "1", velocity / (up - down));
+    add("velocity_gain", velocity / (up - down));
   }
 
   void quality() {
-    add("fluid_temperature_deviation", "K", feature("fluid_temperature") - Optional(kDesignTemperature_K));
-    add("drive_saturation", "1", feature("drive_saturation"));
-    add("missing_share", "1", window_.missing_share);
+    add("fluid_temperature_deviation", feature("fluid_temperature") - Optional(kDesignTemperature_K));
+    add("drive_saturation", feature("drive_saturation"));
+    add("missing_share", window_.missing_share);
   }
 
   const AssetConfig& asset_;

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/config/judged_quantities.hpp"
 #include "services/state_detection/history.hpp"
 #include "services/state_detection/rules.hpp"
 
 namespace sealwatch {
 namespace {
-
-/// A lost channel blinds the diagnosis, it does not endanger the function: advisory.
-constexpr AlertLimits kChannelLost{1.0, 2.0, 3.0};
 
 RegionJudgement judgement_of(const Quantity& quantity, Reference reference, const AlertLimits& limits) {
   RegionJudgement judgement;
@@ -63,7 +61,7 @@ std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset, const std
                                              const Baseline& baseline, const Baseline& accepted_baseline) {
   std::vector<RegionJudgement> judgements;
   for (const ResidualSummary& residual : residuals) {
-    const std::string name = "residual." + residual.channel;
+    const std::string name = std::string(kResidualQuantity) + residual.channel;
     if (residual.reference == Reference::nominal_model) {
       const Quantity share{name, "%", 100.0 - residual.nrmse_percent, false, 0.0};
       if (const auto limits = fixed_limits(asset, name); limits && varies(residual))
@@ -77,7 +75,7 @@ std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset, const std
   return judgements;
 }
 
-std::vector<RegionJudgement> judge_channels(const std::vector<ChannelStatus>& channels,
+std::vector<RegionJudgement> judge_channels(const AssetConfig& asset, const std::vector<ChannelStatus>& channels,
                                             const std::set<std::string>& known) {
   std::set<std::string> judged = known;
   for (const ChannelStatus& status : channels)
@@ -87,7 +85,8 @@ std::vector<RegionJudgement> judge_channels(const std::vector<ChannelStatus>& ch
   for (const std::string& channel : judged) {
     const bool is_lost = std::any_of(lost.begin(), lost.end(), [&](const auto& l) { return l.channel == channel; });
     const Quantity quantity{std::string(kChannelQuantity) + channel, "1", is_lost ? 1.0 : 0.0, false, 0.0};
-    judgements.push_back(judgement_of(quantity, Reference::limit, kChannelLost));
+    if (const auto limits = fixed_limits(asset, quantity.name))
+      judgements.push_back(judgement_of(quantity, Reference::limit, *limits));
   }
   return judgements;
 }

@@ -25,7 +25,8 @@ namespace sealwatch {
                                                            const Baseline& baseline, const Baseline& accepted_baseline);
 
 /// "channel.<name>" for every channel that is OK or was in an earlier test: 0 is there, 1 is lost.
-[[nodiscard]] std::vector<RegionJudgement> judge_channels(const std::vector<ChannelStatus>& channels,
+[[nodiscard]] std::vector<RegionJudgement> judge_channels(const AssetConfig& asset,
+                                                          const std::vector<ChannelStatus>& channels,
                                                           const std::set<std::string>& known);
 
 /// Status of a channel that was OK in earlier tests and is not now; those that are not mentioned any more are NOT_USED.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "sealwatch/config/judged_quantities.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -28,6 +30,9 @@ constexpr AlertLimits kTemperatureDeviation_K{3.0, 6.0, 12.0};
 constexpr AlertLimits kDriveSaturation{0.01, 0.05, 0.20};
 /// Share of samples that had to be interpolated.
 constexpr AlertLimits kMissingShare{0.01, 0.10, 0.30};
+
+/// A lost channel (1) blinds the diagnosis, it does not endanger the function: advisory.
+constexpr AlertLimits kChannelLost{1.0, 2.0, 3.0};
 
 struct NamedRule {
   std::string_view quantity;
@@ -78,14 +83,15 @@ std::optional<AlertLimits> fixed_limits(const AssetConfig& asset, const std::str
   if (quantity == "fluid_temperature_deviation") return kTemperatureDeviation_K;
   if (quantity == "drive_saturation") return kDriveSaturation;
   if (quantity == "missing_share") return kMissingShare;
-  if (quantity.starts_with("residual.")) return kNominalResidual_percent;
+  if (quantity.starts_with(kResidualQuantity)) return kNominalResidual_percent;
+  if (quantity.starts_with(kChannelQuantity)) return kChannelLost;
   return std::nullopt;
 }
 
 std::optional<BaselineRule> baseline_rule(const AssetConfig& asset, std::string_view quantity) {
   // A seal with known resistances is judged on the way to its threshold; that it ages is no deviation.
   if (quantity == "leakage_resistance" && asset.seal) return std::nullopt;
-  if (quantity.starts_with("residual.")) return kResidualRule;
+  if (quantity.starts_with(kResidualQuantity)) return kResidualRule;
   for (const NamedRule& named : kRules)
     if (named.quantity == quantity) return named.rule;
   return std::nullopt;

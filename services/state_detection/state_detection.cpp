@@ -171,7 +171,7 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   for (RegionJudgement& judgement :
        judge_residuals(asset, report.residuals, history.baseline(), history.accepted_baseline()))
     report.judgements.push_back(std::move(judgement));
-  for (RegionJudgement& judgement : judge_channels(features.channel_status, history.known_channels()))
+  for (RegionJudgement& judgement : judge_channels(asset, features.channel_status, history.known_channels()))
     report.judgements.push_back(std::move(judgement));
   history.judge(report.judgements);
 }

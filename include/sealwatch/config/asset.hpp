@@ -83,7 +83,7 @@ struct AssetConfig {
   std::optional<SealSetting> seal;                     ///< none: theta, and so the RUL, is not defined for this asset
   PstSetting pst;
   std::vector<PhysicsTerm> physics;
-  std::map<std::string, AlertLimits> alert_limits;  ///< by quantity, see state_detection; missing ones take defaults
+  std::map<std::string, AlertLimits> alert_limits;  ///< by quantity (config/judged_quantities.hpp); missing: defaults
 
   /// Value of a parameter that the model has (asserts that it has it).
   [[nodiscard]] double parameter(const std::string& name) const { return parameters.at(name).value; }

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "sealwatch/config/judged_quantities.hpp"
 #include "services/state_detection/judgements.hpp"
 #include "services/state_detection/region.hpp"
 #include "services/state_detection/rules.hpp"
@@ -88,6 +89,28 @@ TEST(Rules, TheAssetsOwnLimitsComeFirst) {
   ASSERT_TRUE(fixed_limits(asset, "friction_pressure"));
   EXPECT_EQ(fixed_limits(asset, "friction_pressure")->warning, 6e5);
   EXPECT_FALSE(fixed_limits(synthetic::asset(), "friction_pressure"));
+}
+
+TEST(Rules, ALostChannelIsJudgedByTheAssetsOwnLimitsToo) {
+  AssetConfig asset = synthetic::asset();
+  const auto region = [&asset] {
+    const auto judgements = judge_channels(asset, {}, {"flow"});
+    EXPECT_EQ(judgements.size(), 1U);
+    const RegionJudgement& j = judgements.at(0);
+    return region_of(j.value, {j.advisory_limit, j.warning_limit, j.alarm_limit});
+  };
+  EXPECT_EQ(region(), AlertRegion::advisory);
+  asset.alert_limits["channel.flow"] = {1.0, 1.0, 2.0};
+  EXPECT_EQ(region(), AlertRegion::warning);
+}
+
+TEST(Indicators, AllThatATestGivesAreQuantitiesThatMayHaveLimits) {
+  const synthetic::Test test = synthetic::make({}, {});
+  for (const Quantity& quantity : condition_indicators(synthetic::asset(), test.features, test.window)) {
+    const JudgedIndicator* const known = find_indicator(quantity.name);
+    ASSERT_NE(known, nullptr) << quantity.name;
+    EXPECT_EQ(known->unit, quantity.unit) << quantity.name;
+  }
 }
 
 TEST(Rules, AColdTestIsOffTemperatureToo) {

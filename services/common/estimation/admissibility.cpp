@@ -1,5 +1,6 @@
 #include "sealwatch/estimation/admissibility.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sealwatch/model/plant_description.hpp"
@@ -35,6 +36,13 @@ void judge_resistance(const EstimatedParameter& parameter, const AdmissibilityOp
                       " % of its value (at most " + in_words(100.0 * options.largest_relative_std_error) + " %)");
 }
 
+// A sample that is far beyond what the actuator can do, 1e300 Pa, makes infinities of the sums.
+bool has_numbers(const FitReport& report) {
+  return std::ranges::none_of(report.channels,
+                              [](const ChannelFit& c) { return std::isnan(c.noise_normalised_rms); }) &&
+         std::ranges::none_of(report.parameters, [](const EstimatedParameter& p) { return std::isnan(p.value); });
+}
+
 // Of plants and models that have a seal its leakage resistance is what the fit is for.
 bool has_seal(const std::string& model) {
   const Result<const PlantDescription*> plant = find_plant(model);
@@ -62,6 +70,11 @@ Status AdmissibilityOptions::validate() const {
 }
 
 void judge_admissibility(FitReport& report, const AdmissibilityOptions& options) {
+  if (!has_numbers(report)) {
+    report.reasons.emplace_back("no fit: a sample is far beyond what the actuator can do, and no number comes of it");
+    report.admissible = false;
+    return;
+  }
   if (!report.converged) report.reasons.push_back("the fit did not converge: " + report.termination);
   for (const ChannelFit& channel : report.channels) judge_channel(channel, options, report.reasons);
   bool has_resistance = false;

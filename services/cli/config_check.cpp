@@ -1,12 +1,15 @@
 // `sealwatch config check`: the whole configuration, every fault with file and line.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
+#include "services/common/runtime/system_clock.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
@@ -15,14 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The state directory is made by whoever starts the services: what is needed is a place that may be written.
-Status check_state_directory(const std::string& directory) {
+/// Whether something can be made there: permissions do not tell of /proc, or of a disk that is read-only.
+bool may_be_written(const fs::path& directory) {
+  std::string probe = (directory / ".sealwatch-XXXXXX").string();
+  if (::mkdtemp(probe.data()) == nullptr) return false;
+  ::rmdir(probe.c_str());
+  return true;
+}
+
+/// State and recordings directories are made by the services: what is needed is a place that may be written.
+Status check_directory(const std::string& directory) {
   fs::path place = fs::absolute(directory);
   std::error_code none;
   while (!fs::exists(place, none) && place.has_relative_path()) place = place.parent_path();
-  if (fs::is_directory(place, none) && ::access(place.c_str(), W_OK) == 0) return {};
+  if (fs::is_directory(place, none) && may_be_written(place)) return {};
   return fail(Error{.file = {},
-                    .place = "key state_directory",
+                    .place = {},
                     .value = directory,
                     .rule = "cannot be made or written by this user: " + place.string() + " is in the way",
                     .advice = "name another, or check as the user that the services run as"});
@@ -31,29 +42,45 @@ Status check_state_directory(const std::string& directory) {
 /// What a file may say and the machine may refuse.
 std::vector<Error> check_surroundings(const std::string& file, const Configuration& configuration) {
   std::vector<Error> errors;
-  const auto check = [&](Status status, const std::string& place) {
+  const auto check = [&](Status status, const std::string& key) {
     if (status) return;
     Error error = status.error();
+    if (error.value.empty() && error.file != file) error.value = error.file;  // a journal's connection
     error.file = file;
-    if (!place.empty()) error.place = place;
+    error.place = place_in_configuration(file, key);
     errors.push_back(std::move(error));
   };
-  check(check_dds_settings(configuration.cyclonedds_uri), {});
-  check(check_state_directory(configuration.state_directory), {});
+  check(check_dds_settings(configuration.cyclonedds_uri), "cyclonedds_uri");
+  check(check_directory(configuration.state_directory), "state_directory");
   for (const auto& [service, config] : configuration.services) {
     const bool by_default =
         config.journal == "sqlite3://" + (fs::path(configuration.state_directory) / (service + ".db")).string();
-    if (!by_default) check(Journal::check(config.journal), "key services." + service + ".journal");
+    if (!by_default) check(Journal::check(config.journal), "services." + *service + ".journal");
+    if (!config.recordings_directory.empty())
+      check(check_directory(config.recordings_directory), "services." + service + ".recordings_directory");
   }
   return errors;
 }
 
 Checked<Configuration> load_and_check(const std::string& file) {
-  auto configuration = load_configuration(file);
+  auto configuration = load_configuration(file, {.now = SystemClock().now()});
   if (!configuration) return configuration;
   std::vector<Error> errors = check_surroundings(file, *configuration);
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return configuration;
+}
+
+/// What is allowed and yet leaves the others without work: a service of the chain that is disabled here.
+std::vector<std::string> warnings_of(const Configuration& configuration) {
+  const auto is_enabled = [&](const std::string& service) { return configuration.services.at(service).enabled; };
+  std::vector<std::string> warnings;
+  const std::vector<std::string>& chain = service_names();
+  for (auto service = chain.begin(); service != chain.end(); ++service)
+    if (!is_enabled(*service) && std::any_of(service, chain.end(), is_enabled))
+      warnings.push_back("services." + service + " is disabled here: unless it runs on another machine of domain " +
+                         std::to_string(configuration.domain) +
+                         ", the services after it get nothing, and a replay waits for them in vain");
+  return warnings;
 }
 
 }  // namespace
@@ -65,6 +92,7 @@ int run_config_check(const ConfigCheckOptions& options) {
                                      {"config", options.config},
                                      {"valid", configuration.has_value()},
                                      {"errors", nlohmann::ordered_json::array()}};
+    if (configuration) result["warnings"] = warnings_of(*configuration);
     if (!configuration)
       for (const Error& error : configuration.error())
         result["errors"].push_back({{"file", error.file},
@@ -74,9 +102,11 @@ int run_config_check(const ConfigCheckOptions& options) {
                                     {"advice", error.advice}});
     std::printf("%s\n", result.dump(1).c_str());
   } else if (configuration) {
-    std::printf("%s: valid: %zu assets, %zu sites, DDS domain %d, state in %s\n", options.config.c_str(),
-                configuration->assets.size(), configuration->sites.size(), configuration->domain,
+    std::printf("%s: valid: %s, %s, DDS domain %d, state in %s\n", options.config.c_str(),
+                count_of(configuration->assets.size(), "asset").c_str(),
+                count_of(configuration->sites.size(), "site").c_str(), configuration->domain,
                 configuration->state_directory.c_str());
+    for (const std::string& warning : warnings_of(*configuration)) std::printf("warning: %s\n", warning.c_str());
     if (configuration->assets.empty())
       std::printf("no asset is configured, so nothing will be watched: put one file for each actuator into assets/\n");
   } else {

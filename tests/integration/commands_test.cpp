@@ -338,6 +338,20 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
   EXPECT_THAT(surroundings.output,
               ::testing::AllOf(HasSubstr("key cyclonedds_uri"), HasSubstr("services.state_detection.journal"),
                                HasSubstr("mkdir -p /nowhere/at"), HasSubstr("2 faults found")));
+  const std::string unwritable = write("unwritable.yaml",
+                                       "state_directory: /proc/x\nassets: []\nservices:\n  data_acquisition:\n    "
+                                       "recordings_directory: /proc/y\n");
+  const Finished proc = run({"sealwatch", "config", "check", "--config", unwritable});
+  EXPECT_EQ(proc.status, 2);
+  EXPECT_THAT(proc.output, ::testing::AllOf(HasSubstr("line 1, key state_directory: '/proc/x': cannot be made"),
+                                            HasSubstr("line 5, key services.data_acquisition.recordings_directory"),
+                                            HasSubstr("2 faults found")));
+  const Finished without =
+      run({"sealwatch", "config", "check", "--config",
+           write("without.yaml", "assets: []\nservices: {state_detection: {enabled: false}}\nstate_directory: " +
+                                     folder_.string() + "\n")});
+  EXPECT_EQ(without.status, 0);
+  EXPECT_THAT(without.output, HasSubstr("warning: services.state_detection is disabled here"));
   (void)write("two_lines_asset.yaml", "asset_id: \"XT03\\nMV2\"\n");
   const Finished two_lines =
       run({"sealwatch", "config", "check", "--config",

@@ -5,71 +5,18 @@
 #include <cmath>
 
 #include "sealwatch/core/text.hpp"
-#include "sealwatch/model/physics.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/runtime/asset_sections.hpp"
 #include "services/common/runtime/yaml_map.hpp"
 
 namespace sealwatch {
 namespace {
-
-constexpr double kNoBound = 1e300;
-
-template <class Row>
-std::vector<std::string> names_of(const std::vector<Row>& rows) {
-  std::vector<std::string> names;
-  for (const Row& row : rows) names.push_back(row.name);
-  return names;
-}
-
-std::string text_of(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", number);
-  return text;
-}
 
 const PlantDescription* read_plant(YamlMap& asset, std::string& model) {
   std::vector<std::string> plants;
   for (const PlantDescription& plant : all_plants()) plants.push_back(plant.name);
   asset.read("model", model, plants);
   return *find_plant(model);
-}
-
-/// Bounds for a value that lies outside the table's and has none of its own.
-void widen(ParameterSetting& setting, const ParameterDescription& description) {
-  if (setting.value >= setting.min && setting.value <= setting.max) return;
-  if (description.positive) {
-    setting.min = setting.value / 10.0;
-    setting.max = setting.value * 10.0;
-  } else {
-    setting.min = std::min(setting.min, setting.value);
-    setting.max = std::max(setting.max, setting.value);
-  }
-}
-
-void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting) {
-  const std::string& name = description.name;
-  const NumberRule& rule = description.positive ? kPositive : kAnyNumber;
-  const auto node = parameters.take(name);
-  if (!node) return;
-  if (node->IsScalar()) {
-    if (parameters.read(name, setting.value, rule)) widen(setting, description);
-    return;
-  }
-  YamlMap map = parameters.inside(*node, name);
-  const bool has_bounds = map.has("min") || map.has("max");
-  bool sound = true;
-  for (auto [key, target] : {std::pair{"value", &setting.value}, {"min", &setting.min}, {"max", &setting.max}})
-    sound = (map.read(key, *target, rule) || !map.has(key)) && sound;
-  map.read("estimate", setting.estimate);
-  map.finish();
-  if (!sound) return;
-  if (!has_bounds) widen(setting, description);
-  if (setting.min > setting.max)
-    map.fault(map.has("min") ? "min" : "max", text_of(map.has("min") ? setting.min : setting.max),
-              "min must not be above max, which are " + text_of(setting.min) + " and " + text_of(setting.max));
-  else if (setting.value < setting.min || setting.value > setting.max)
-    map.fault("value", text_of(setting.value),
-              "must lie between min and max, " + text_of(setting.min) + " and " + text_of(setting.max));
 }
 
 void read_parameters(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
@@ -99,10 +46,11 @@ void read_range(YamlMap& sensor, SensorSetting& setting) {
 struct SensorKey {
   const char* name;
   double SensorSetting::*target;
+  NumberRule rule;
 };
-constexpr SensorKey kSensorKeys[] = {{"noise_std", &SensorSetting::noise_std},
-                                     {"time_constant", &SensorSetting::time_constant_s},
-                                     {"quantisation", &SensorSetting::quantisation}};
+constexpr SensorKey kSensorKeys[] = {{"noise_std", &SensorSetting::noise_std, kPositive},
+                                     {"time_constant", &SensorSetting::time_constant_s, kNotNegative},
+                                     {"quantisation", &SensorSetting::quantisation, kNotNegative}};
 
 /// Either channel by channel, {pressure_a: {noise_std: 1.0e4}}, or key by key, {noise_std: {pressure_a: 1.0e4}}.
 void read_sensors(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
@@ -114,13 +62,13 @@ void read_sensors(YamlMap& asset, const PlantDescription& plant, AssetConfig& co
     if (!sensors->has(key.name)) continue;
     auto by_channel = sensors->map(key.name);
     if (!by_channel) continue;
-    for (auto& [channel, setting] : config.sensors) by_channel->read(channel, setting.*key.target, kNotNegative);
+    for (auto& [channel, setting] : config.sensors) by_channel->read(channel, setting.*key.target, key.rule);
     by_channel->finish();
   }
   for (auto& [channel, setting] : config.sensors) {
     auto sensor = sensors->map(channel);
     if (!sensor) continue;
-    for (const SensorKey& key : kSensorKeys) sensor->read(key.name, setting.*key.target, kNotNegative);
+    for (const SensorKey& key : kSensorKeys) sensor->read(key.name, setting.*key.target, key.rule);
     read_range(*sensor, setting);
     sensor->finish();
   }
@@ -143,15 +91,23 @@ void read_seal(YamlMap& asset, AssetConfig& config) {
   config.seal = seal;
 }
 
+// What no valve actuator exceeds: the largest subsea valves travel about a metre, the fastest fail-safe ones in a
+// second. A number beyond is a wrong unit, millimetres for instance.
+constexpr NumberRule kStart{.min = 0.0, .max = 2.0, .words = "must be a position from 0 to 2 m"};
+constexpr NumberRule kStroke{.min = -2.0, .max = 2.0, .words = "must be a way from -2 to 2 m"};
+constexpr NumberRule kSpeed{.min = 1e-6, .max = 2.0, .words = "must be a speed from 1e-6 to 2 m/s"};
+constexpr NumberRule kHold{.min = 0.0, .max = 3600.0, .words = "must be a time from 0 to 3600 s"};
+constexpr NumberRule kInterval{.min = 0.1, .max = 120.0, .words = "must be a number of months from 0.1 to 120"};
+
 void read_pst(YamlMap& asset, AssetConfig& config) {
   auto map = asset.map("pst");
   if (!map) return;
   PstSetting& pst = config.pst;
-  map->read("start", pst.start_m, kNotNegative);
-  map->read("stroke", pst.stroke_m);
-  map->read("speed", pst.speed_m_s, kPositive);
-  map->read("hold", pst.hold_s, kNotNegative);
-  map->read("interval_months", pst.interval_months, kPositive);
+  map->read("start", pst.start_m, kStart);
+  map->read("stroke", pst.stroke_m, kStroke);
+  map->read("speed", pst.speed_m_s, kSpeed);
+  map->read("hold", pst.hold_s, kHold);
+  map->read("interval_months", pst.interval_months, kInterval);
   map->finish();
   if (pst.stroke_m == 0.0) map->fault("stroke", "0", "must not be 0: a test has to move the stem");
   const auto stroke = config.parameters.find("x_C");
@@ -162,69 +118,6 @@ void read_pst(YamlMap& asset, AssetConfig& config) {
     map->fault("start", text_of(pst.start_m), rule);
   else if (end_m < 0.0 || end_m > stroke->second.value)
     map->fault("stroke", text_of(pst.stroke_m), "start + stroke is " + text_of(end_m) + " m: " + rule);
-}
-
-/// A law's parameter: a plain number is fixed; {value, min, max, estimate} may be estimated. Bounds are the law's.
-ParameterDescription describe(const Law* law, const std::string& name) {
-  ParameterDescription row{.name = name, .unit = {}, .meaning = {}, .positive = false};
-  row.min = -kNoBound, row.max = kNoBound;
-  if (law == nullptr) return row;
-  for (const LawParameter& parameter : law->parameters)
-    if (parameter.name == name) row.min = parameter.min, row.max = parameter.max;
-  return row;
-}
-
-void read_law_parameters(YamlMap& map, PhysicsTerm& term) {
-  auto parameters = map.map("parameters");
-  if (!parameters) return;
-  const std::vector<std::string> names = parameters->keys();
-  const Result<const Law*> law = find_law(term.id, names);
-  if (!law && !term.id.empty()) map.fault("id", term.id, law.error().rule, law.error().advice);
-  for (const std::string& name : names) {
-    const ParameterDescription row = describe(law ? *law : nullptr, name);
-    ParameterSetting& setting = term.parameters[name] = {0.0, row.min, row.max, false};
-    read_parameter(*parameters, row, setting);
-  }
-}
-
-void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
-  std::vector<std::string> elements = names_of(plant.elements);
-  for (const ChannelDescription& channel : plant.channels)
-    elements.push_back(std::string("sensor:").append(channel.name));
-  std::size_t index = 0;
-  for (const YAML::Node& node : asset.list("physics")) {
-    YamlMap map = asset.inside(node, "physics", index++);
-    PhysicsTerm term;
-    if (!map.read("id", term.id) && !map.has("id")) map.fault("id", {}, "must be given");
-    if (!map.read("element", term.element, elements) && !map.has("element")) map.fault("element", {}, "must be given");
-    read_law_parameters(map, term);
-    map.finish();
-    config.physics.push_back(std::move(term));
-  }
-}
-
-void read_alert_limits(YamlMap& asset, AssetConfig& config) {
-  auto all = asset.map("alert_limits");
-  if (!all) return;
-  for (const std::string& quantity : all->keys()) {
-    auto map = all->map(quantity);
-    if (!map) continue;
-    AlertLimits limits;
-    bool complete = true;
-    for (auto [key, target] :
-         {std::pair{"advisory", &limits.advisory}, {"warning", &limits.warning}, {"alarm", &limits.alarm}}) {
-      if (map->read(key, *target)) continue;
-      if (!map->has(key)) map->fault(key, {}, "must be given");
-      complete = false;
-    }
-    map->finish();
-    const bool rising = limits.advisory <= limits.warning && limits.warning <= limits.alarm;
-    const bool falling = limits.advisory >= limits.warning && limits.warning >= limits.alarm;
-    if (complete && !rising && !falling)
-      map->fault("warning", text_of(limits.warning),
-                 "must lie between advisory and alarm, " + text_of(limits.advisory) + " and " + text_of(limits.alarm));
-    config.alert_limits[quantity] = limits;
-  }
 }
 
 }  // namespace
@@ -251,7 +144,7 @@ Checked<AssetConfig> check_asset(const std::string& file, const std::vector<std:
   read_seal(map, config);
   read_pst(map, config);
   read_physics(map, plant, config);
-  read_alert_limits(map, config);
+  read_alert_limits(map, plant, config);
   map.finish();
   if (!errors.empty()) return tl::unexpected(errors);
   return config;

@@ -8,6 +8,7 @@
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_options.hpp"
 #include "services/common/runtime/yaml_map.hpp"
+#include "services/common/store/journal.hpp"
 
 namespace sealwatch {
 namespace {
@@ -17,6 +18,16 @@ namespace fs = std::filesystem;
 /// DDS domains are limited by the port numbers they are mapped to.
 constexpr NumberRule kDomain{.min = 0, .max = 232, .words = "must be a whole number from 0 to 232"};
 constexpr NumberRule kFiles{.min = 1, .max = 1000, .words = "must be a whole number from 1 to 1000"};
+
+constexpr NumberRule kLeadTime{.min = 0, .max = 120, .words = "must be a number of months from 0 to 120"};
+constexpr NumberRule kInterval{.min = 0.1, .max = 600, .words = "must be a number of months from 0.1 to 600"};
+/// A valve with 1e-3 per hour fails every six weeks: a rate per 1e6 hours (OREDA) that was not divided.
+constexpr NumberRule kRate{
+    .min = 0, .max = 1e-3, .min_excluded = true, .words = "must be a rate per hour above 0, at most 1e-3"};
+
+fs::path file_of(const std::string& path) {
+  return fs::is_directory(path) ? fs::path(path) / "sealwatch.yaml" : fs::path(path);
+}
 
 template <class Enum>
 std::vector<std::string> names_of() {
@@ -43,9 +54,8 @@ void read_services(YamlMap& root, Configuration& configuration) {
     ServiceConfig& config = configuration.services[service];
     map->read("enabled", config.enabled);
     map->read("journal", config.journal);
-    if (!config.journal.empty() && config.journal.find("://") == std::string::npos)
-      map->fault("journal", config.journal, "must be a connection string",
-                 "write sqlite3://FILE or postgresql://dbname=NAME");
+    if (const Status known = Journal::check_kind(config.journal); !config.journal.empty() && !known)
+      map->fault("journal", without_password(config.journal), known.error().rule, known.error().advice);
     if (service == "data_acquisition") map->read("recordings_directory", config.recordings_directory);
     read_service_options(service, *map, configuration);
     map->finish();
@@ -73,38 +83,60 @@ void read_campaigns(YamlMap& site, SiteConfig& config) {
   for (const YAML::Node& node : site.list("campaigns")) {
     YamlMap map = site.inside(node, "campaigns", index++);
     Campaign campaign;
-    if (!map.read("start", campaign.start) && !map.has("start")) map.fault("start", {}, "must be given");
-    if (!map.read("label", campaign.label)) campaign.label = format_date(campaign.start);
+    const bool dated = map.read("start", campaign.start);
+    if (!map.has("start")) map.fault("start", {}, "must be given");
+    if (map.read("label", campaign.label) ? campaign.label.empty() : !map.has("label"))
+      map.fault("label", {}, "must be given: advice names the campaign by it");
     map.finish();
+    const auto same_day = [&](const Campaign& other) {
+      return format_date(other.start) == format_date(campaign.start);
+    };
+    const auto other = std::ranges::find_if(config.campaigns, same_day);
+    if (dated && other != config.campaigns.end())
+      map.fault("start", format_date(campaign.start), "is the day of campaign '" + other->label + "' already",
+                "take one of them out, or correct its day");
     config.campaigns.push_back(std::move(campaign));
   }
   std::ranges::stable_sort(config.campaigns, {}, &Campaign::start);
 }
 
-SiteDecision read_decision(YamlMap& site) {
+/// All or none: costs that are given would be compared with defaults in another currency.
+SiteCosts read_costs(YamlMap& map) {
+  SiteCosts costs;
+  for (auto [key, target] : {std::pair{"planned", &costs.planned},
+                             {"after_failure", &costs.after_failure},
+                             {"failed_month", &costs.failed_month},
+                             {"unused_month", &costs.unused_month}})
+    if (!map.read(key, *target, kNotNegative) && !map.has(key))
+      map.fault(key, {}, "must be given: costs are compared with each other", "write 0 where there is none");
+  map.read("currency", costs.currency);
+  map.finish();
+  return costs;
+}
+
+/// `now`: where it is known, what is said to have happened must have.
+SiteDecision read_decision(YamlMap& site, std::optional<UtcTime> now) {
   constexpr NumberRule kShare{.min = 0.0, .max = 1.0, .words = "must be a number from 0 to 1"};
   SiteDecision decision;
   if (auto map = site.map("costs")) {
-    SiteCosts& costs = decision.costs.emplace();
-    map->read("planned", costs.planned, kNotNegative);
-    map->read("after_failure", costs.after_failure, kNotNegative);
-    map->read("failed_month", costs.failed_month, kNotNegative);
-    map->read("unused_month", costs.unused_month, kNotNegative);
-    map->read("currency", costs.currency);
-    map->finish();
+    decision.costs = read_costs(*map);
   }
   if (auto map = site.map("safety")) {
     SiteSafety& safety = decision.safety.emplace();
-    map->read("dangerous_undetected_per_hour", safety.dangerous_undetected_per_hour, kPositive);
+    map->read("dangerous_undetected_per_hour", safety.dangerous_undetected_per_hour, kRate);
     map->read("partial_stroke_coverage", safety.partial_stroke_coverage, kShare);
-    map->read("full_stroke_interval_months", safety.full_stroke_interval_months, kPositive);
-    if (UtcTime last; map->read("last_full_stroke", last)) safety.last_full_stroke = last;
+    map->read("full_stroke_interval_months", safety.full_stroke_interval_months, kInterval);
+    if (UtcTime last; map->read("last_full_stroke", last)) {
+      safety.last_full_stroke = last;
+      if (now && last > *now)
+        map->fault("last_full_stroke", format_date(last), "is in the future", "write the day of the last one");
+    }
     map->finish();
   }
   return decision;
 }
 
-void read_sites(YamlMap& root, Configuration& configuration) {
+void read_sites(YamlMap& root, std::optional<UtcTime> now, Configuration& configuration) {
   std::size_t index = 0;
   for (const YAML::Node& node : root.list("sites")) {
     YamlMap map = root.inside(node, "sites", index++);
@@ -112,9 +144,9 @@ void read_sites(YamlMap& root, Configuration& configuration) {
     if (!map.read("site", site.site) && !map.has("site")) map.fault("site", {}, "must be given");
     const bool twice = configuration.find_site(site.site) != nullptr;
     if (twice) map.fault("site", site.site, "is there twice", "name each site once");
-    map.read("booking_lead_time_months", site.booking_lead_time_months, kNotNegative);
+    map.read("booking_lead_time_months", site.booking_lead_time_months, kLeadTime);
     read_campaigns(map, site);
-    configuration.decisions[site.site] = read_decision(map);
+    configuration.decisions[site.site] = read_decision(map, now);
     map.finish();
     if (!twice && !site.site.empty()) configuration.sites.push_back(std::move(site));
   }
@@ -171,6 +203,19 @@ void place_in_state_directory(Configuration& configuration) {
   }
 }
 
+/// Two services never share a journal: each would refuse the other's.
+void check_journals(const std::string& file, const Configuration& configuration, std::vector<Error>& errors) {
+  std::map<std::string, std::string> service_at;
+  for (const std::string& service : service_names()) {
+    const std::string& journal = configuration.services.at(service).journal;
+    const auto [other, is_new] = service_at.emplace(Journal::place_of(journal), service);
+    if (!is_new)
+      errors.push_back({file, place_in_yaml(file, "services." + service + ".journal"), without_password(journal),
+                        "is the journal of " + other->second + " too: each service has one of its own",
+                        "give each service its own file or, in PostgreSQL, its own schema"});
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& service_names() {
@@ -179,8 +224,12 @@ const std::vector<std::string>& service_names() {
   return names;
 }
 
+std::string place_in_configuration(const std::string& path, const std::string& key) {
+  return place_in_yaml(file_of(path).string(), key);
+}
+
 Checked<Configuration> load_configuration(const std::string& path, const ConfigurationOverrides& overrides) {
-  const fs::path file = fs::is_directory(path) ? fs::path(path) / "sealwatch.yaml" : fs::path(path);
+  const fs::path file = file_of(path);
   std::vector<Error> errors;
   const auto root = load_yaml(file.string(), errors);
   if (!root) return tl::unexpected(errors);
@@ -193,7 +242,7 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   read_logging(map, configuration.logging);
   read_services(map, configuration);
   read_topics(map, configuration);
-  read_sites(map, configuration);
+  read_sites(map, overrides.now, configuration);
   const std::vector<std::string> files = asset_files(map, file.parent_path());
   map.finish();
   read_assets(files, configuration, errors);
@@ -201,6 +250,8 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   if (overrides.state_directory) configuration.state_directory = *overrides.state_directory;
   if (overrides.domain) configuration.domain = *overrides.domain;
   place_in_state_directory(configuration);
+  check_journals(file.string(), configuration, errors);
+  if (!errors.empty()) return tl::unexpected(errors);
   return configuration;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "sealwatch/core/text.hpp"
 
@@ -27,6 +28,24 @@ std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>&
     errors.push_back({file, line_of(exception.mark), {}, "is not YAML: " + exception.msg, {}});
   }
   return std::nullopt;
+}
+
+std::string place_in_yaml(const std::string& file, const std::string& key) {
+  std::vector<Error> ignored;
+  std::optional<YAML::Node> node = load_yaml(file, ignored);
+  std::string line;
+  std::istringstream names(key);
+  for (std::string name; node && node->IsMap() && std::getline(names, name, '.');) {
+    std::optional<YAML::Node> inside;
+    line.clear();
+    for (const auto& entry : *node)
+      if (entry.first.IsScalar() && entry.first.Scalar() == name) {
+        line = line_of(entry.first.Mark()) + ", ";
+        inside = entry.second;
+      }
+    node = inside;
+  }
+  return (node ? line : "") + "key " + key;
 }
 
 std::optional<double> number_of(const std::string& text) {

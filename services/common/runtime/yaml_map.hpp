@@ -19,6 +19,9 @@ namespace sealwatch {
 /// The root of a YAML file; faults of reading it go to `errors`. An empty file is an empty mapping.
 [[nodiscard]] std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>& errors);
 
+/// "line 3, key a.b": where the key stands under its parents, without the line where it does not.
+[[nodiscard]] std::string place_in_yaml(const std::string& file, const std::string& key);
+
 /// Limits of a number, with the words for them.
 struct NumberRule {
   double min = -std::numeric_limits<double>::infinity();

@@ -11,6 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kFile = "sqlite3://";
+constexpr std::string_view kServer = "postgresql://";
+
 /// FILE of "sqlite3://FILE" or "sqlite3://dbname=FILE timeout=5".
 fs::path file_of(std::string text) {
   if (const std::size_t name = text.find("dbname="); name != std::string::npos) {
@@ -39,11 +42,28 @@ Status check_file(const std::string& connection, const fs::path& file) {
 
 }  // namespace
 
+Status Journal::check_kind(const std::string& connection) {
+  for (const std::string_view kind : {kFile, kServer})
+    if (connection.starts_with(kind)) return {};
+  return fail(Error{.file = without_password(connection),
+                    .place = "journal",
+                    .value = {},
+                    .rule = "must be a connection string of SQLite or PostgreSQL",
+                    .advice = "write sqlite3://FILE or postgresql://dbname=NAME"});
+}
+
+std::string Journal::place_of(const std::string& connection) {
+  if (!connection.starts_with(kFile)) return connection;
+  std::error_code none;
+  const fs::path file = fs::weakly_canonical(fs::absolute(file_of(connection.substr(kFile.size()))), none);
+  return std::string(kFile).append(file.string());
+}
+
 Status Journal::check(const std::string& connection) {
-  constexpr std::string_view kFile = "sqlite3://";
+  if (const Status known = check_kind(connection); !known) return known;
   if (connection.starts_with(kFile)) return check_file(connection, file_of(connection.substr(kFile.size())));
   Database database;
-  database.name = connection.substr(0, connection.find("://"));
+  database.name = without_password(connection);
   return database.guard("connecting", [&] { database.sql.open(connection); });
 }
 

@@ -31,6 +31,26 @@ std::string make_writer_id(const std::string& service) {
   return service + "-" + text.data();
 }
 
+/// What to do about the database's complaint.
+std::string advice_for(std::string_view what, bool is_server) {
+  const auto says = [what](std::string_view words) { return what.find(words) != std::string_view::npos; };
+  if (says("locked") || says("busy")) return "another process is writing to this journal: stop it, then start again";
+  if (says("not a database") || says("malformed") || says("corrupt"))
+    return "restore a backup, or move the file aside: the service then starts a new journal and asks its neighbours "
+           "for their messages again";
+  if (says("no schema")) return "create the schema named in search_path: CREATE SCHEMA name";
+  if (is_server && (says("Cannot establish connection") || says("connection to server")))
+    return "check that the server answers there and lets this user in: host, port, dbname, user; the password in "
+           "~/.pgpass";
+  if (says("connection string")) return "write sqlite3://FILE or postgresql://dbname=NAME";
+  if (says("readonly") || says("read-only") || says("unable to open") || says("Cannot establish connection"))
+    return "check that the directory exists and that this user may write to it";
+  if (says("full")) return "free some space on the disk, then start again; nothing that was committed is lost";
+  return {};
+}
+
+}  // namespace
+
 std::string without_password(std::string connection) {
   const std::size_t begin = connection.find("password=");
   if (begin == std::string::npos) return connection;
@@ -38,24 +58,12 @@ std::string without_password(std::string connection) {
   return connection.replace(begin + 9, end == std::string::npos ? end : end - begin - 9, "***");
 }
 
-/// What to do about the database's complaint.
-std::string advice_for(std::string_view what) {
-  const auto says = [what](std::string_view words) { return what.find(words) != std::string_view::npos; };
-  if (says("locked") || says("busy")) return "another process is writing to this journal: stop it, then start again";
-  if (says("not a database") || says("malformed") || says("corrupt"))
-    return "restore a backup, or move the file aside: the service then starts a new journal and asks its neighbours "
-           "for their messages again";
-  if (says("readonly") || says("read-only") || says("unable to open") || says("Cannot establish connection"))
-    return "check that the directory exists and that this user may write to it";
-  if (says("full")) return "free some space on the disk, then start again; nothing that was committed is lost";
-  if (says("no schema")) return "create the schema named in search_path: CREATE SCHEMA name";
-  return {};
-}
-
-}  // namespace
-
 Error Journal::Database::describe(const char* doing, const std::string& what) const {
-  return {.file = name, .place = doing, .value = {}, .rule = what, .advice = advice_for(what)};
+  return {.file = name,
+          .place = doing,
+          .value = {},
+          .rule = what,
+          .advice = advice_for(what, name.starts_with("postgresql://"))};
 }
 
 void Journal::Database::open(const std::string& connection) {
@@ -155,6 +163,7 @@ void Journal::Database::load_counters() {
 }
 
 Result<Journal> Journal::open(const std::string& connection, const std::string& service) {
+  if (const Status known = check_kind(connection); !known) return fail(known.error());
   auto database = std::make_unique<Database>();
   database->name = without_password(connection);
   database->service = service;

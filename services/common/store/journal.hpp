@@ -22,6 +22,9 @@
 
 namespace sealwatch {
 
+/// A connection string as it may be shown.
+[[nodiscard]] std::string without_password(std::string connection);
+
 class Journal {
  public:
   /// Opens or creates the journal of `service`. The writer id is made at creation and stays with the journal: a deleted
@@ -29,6 +32,10 @@ class Journal {
   [[nodiscard]] static Result<Journal> open(const std::string& connection, const std::string& service);
   /// Whether a journal could be opened there, without making one: the file's directory, the server's answer.
   [[nodiscard]] static Status check(const std::string& connection);
+  /// Whether it is a connection string of a database that is supported.
+  [[nodiscard]] static Status check_kind(const std::string& connection);
+  /// The same text for connection strings of the same place: a file's absolute path, or the server's string.
+  [[nodiscard]] static std::string place_of(const std::string& connection);
   ~Journal();
   Journal(Journal&& other) noexcept;
   Journal& operator=(Journal&& other) noexcept;

@@ -61,7 +61,9 @@ const BadCase kBadCases[] = {
     {"unknown_channel_by_key", "asset_id: A\nsensors: {noise_std: {presure_a: 1}}\n",
      "a.yaml: line 2, key sensors.noise_std.presure_a: 'presure_a': is not a known key; did you mean 'pressure_a'?"},
     {"negative_noise", "asset_id: A\nsensors: {flow: {noise_std: -1}}\n",
-     "a.yaml: line 2, key sensors.flow.noise_std: '-1': must be a number, 0 or above"},
+     "a.yaml: line 2, key sensors.flow.noise_std: '-1': must be a number above 0"},
+    {"no_noise", "asset_id: A\nsensors:\n  noise_std: {flow: 0}\n",
+     "a.yaml: line 3, key sensors.noise_std.flow: '0': must be a number above 0"},
     {"range", "asset_id: A\nsensors: {flow: {range: [2, 1]}}\n",
      "a.yaml: line 2, key sensors.flow.range: must be two numbers, the lower one first: [min, max]"},
     {"seal", "asset_id: A\nseal: {resistance_100: 1.0e12}\n",
@@ -73,18 +75,49 @@ const BadCase kBadCases[] = {
     {"beyond_stroke", "asset_id: A\npst: {start: 0.07, stroke: 0.02}\n",
      "a.yaml: line 2, key pst.stroke: '0.02': start + stroke is 0.09 m: must stay within the actuator's stroke, 0 to "
      "0.08 m"},
-    {"speed", "asset_id: A\npst: {speed: 0}\n", "a.yaml: line 2, key pst.speed: '0': must be a number above 0"},
-    {"physics_element", "asset_id: A\nphysics:\n  - {id: stribeck_friction, element: pisten}\n",
+    {"speed", "asset_id: A\npst: {speed: 100}\n",
+     "a.yaml: line 2, key pst.speed: '100': must be a speed from 1e-6 to 2 m/s"},
+    {"no_speed", "asset_id: A\npst: {speed: 0}\n",
+     "a.yaml: line 2, key pst.speed: '0': must be a speed from 1e-6 to 2 m/s"},
+    {"stroke_in_millimetres", "asset_id: A\nmodel: emps\npst: {stroke: -16}\n",
+     "a.yaml: line 3, key pst.stroke: '-16': must be a way from -2 to 2 m"},
+    {"start_in_millimetres", "asset_id: A\nmodel: emps\npst: {start: 60}\n",
+     "a.yaml: line 3, key pst.start: '60': must be a position from 0 to 2 m"},
+    {"hold", "asset_id: A\npst: {hold: 1.0e4}\n",
+     "a.yaml: line 2, key pst.hold: '1.0e4': must be a time from 0 to 3600 s"},
+    {"interval", "asset_id: A\npst: {interval_months: 0.01}\n",
+     "a.yaml: line 2, key pst.interval_months: '0.01': must be a number of months from 0.1 to 120"},
+    {"physics_element",
+     "asset_id: A\nphysics:\n  - {id: coulomb_friction, element: pisten, parameters: {F_c: 1, v_s: 1.0e-4}}\n",
      "a.yaml: line 3, key physics[0].element: 'pisten': is not known; did you mean 'piston'?"},
     {"physics_law", "asset_id: A\nphysics:\n  - {id: coulomb_fricton, element: piston, parameters: {F_c: 1}}\n",
      "a.yaml: line 3, key physics[0].id: 'coulomb_fricton': is not a law of the catalogue; did you mean "
      "'coulomb_friction'?"},
     {"physics_parameters", "asset_id: A\nphysics:\n  - {id: coulomb_friction, element: piston, parameters: {F: 1}}\n",
      "a.yaml: line 3, key physics[0].id: 'coulomb_friction': needs exactly the parameters F_c, v_s or F_c, v_s, m"},
-    {"limits", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5, alarm: 3}}\n",
-     "a.yaml: line 2, key alert_limits.hold_decay.warning: '5': must lie between advisory and alarm, 1 and 3"},
-    {"limit_missing", "asset_id: A\nalert_limits: {hold_decay: {advisory: 1, warning: 5}}\n",
-     "a.yaml: line 2, key alert_limits.hold_decay.alarm: must be given"},
+    {"physics_without_parameters", "asset_id: A\nphysics:\n  - {id: hose_compliance, element: chamber_a}\n", "a.yaml: line 3, key physics[0].id: 'hose_compliance': needs exactly the parameters C_h or C_p, b_h or C_s, p_h"},
+    {"physics_sign",
+     "asset_id: A\nphysics:\n  - {id: external_leakage, element: chamber_a, parameters: {G: -4.0e-14}}\n",
+     "a.yaml: line 3, key physics[0].parameters.G: '-4e-14': must stay within the law's bounds, 0 to 1e-10 m3/(s Pa)"},
+    {"physics_bound",
+     "asset_id: A\nphysics:\n  - {id: external_leakage, element: chamber_a,\n     parameters: {G: {value: 4.0e-14, "
+     "min: "
+     "0, max: 1}}}\n",
+     "a.yaml: line 4, key physics[0].parameters.G: '1': must stay within the law's bounds, 0 to 1e-10 m3/(s Pa)"},
+    {"physics_without_value",
+     "asset_id: A\nphysics:\n  - {id: external_leakage, element: chamber_a, parameters: {G: {max: 1.0e-12}}}\n",
+     "a.yaml: line 3, key physics[0].parameters.G: needs a value; write {value: ..., min: ..., max: ..., estimate: "
+     "true}"},
+    {"limits", "asset_id: A\nalert_limits: {hold_decay_rate: {advisory: 1, warning: 5, alarm: 3}}\n",
+     "a.yaml: line 2, key alert_limits.hold_decay_rate.warning: '5': must lie between advisory and alarm, 1 and 3"},
+    {"limit_missing", "asset_id: A\nalert_limits: {hold_decay_rate: {advisory: 1, warning: 5}}\n",
+     "a.yaml: line 2, key alert_limits.hold_decay_rate.alarm: must be given"},
+    {"limit_of_nothing", "asset_id: A\nalert_limits: {closing_tim: {advisory: 50, warning: 55, alarm: 60}}\n",
+     "a.yaml: line 2, key alert_limits.closing_tim: 'closing_tim': is not a quantity that is judged; did you mean "
+     "'closing_time'?"},
+    {"limit_of_no_channel", "asset_id: A\nalert_limits: {channel.presure_a: {advisory: 1, warning: 1, alarm: 2}}\n",
+     "a.yaml: line 2, key alert_limits.channel.presure_a: 'channel.presure_a': is not a quantity that is judged; did "
+     "you mean 'channel.pressure_a'?"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, BadAsset, ::testing::ValuesIn(kBadCases),
@@ -121,7 +154,7 @@ sensors:
   pressure_a: {noise_std: 5, time_constant: 0.001, quantisation: 2, range: [-1, 1.0e7]}
 seal: {resistance_100: 3.0e13, resistance_60: 5.0e12, threshold: 0.55}
 pst: {start: 0.05, stroke: 0.01, speed: 0.002, hold: 4, interval_months: 3}
-alert_limits: {seal_condition: {advisory: 0.8, warning: 0.7, alarm: 0.6}}
+alert_limits: {leakage_resistance: {advisory: 8.0e12, warning: 7.0e12, alarm: 6.0e12}}
 physics:
   - {id: coulomb_friction, element: piston, parameters: {F_c: 4000, v_s: {value: 0.001, estimate: true}}}
   - {id: sensor_bias, element: "sensor:flow", parameters: {b: 1.0e-8}}
@@ -140,7 +173,7 @@ physics:
   EXPECT_EQ(asset.sensors.at("pressure_a").range_max, 1.0e7);
   EXPECT_EQ(asset.seal->threshold, 0.55);
   EXPECT_EQ(asset.pst.interval_months, 3.0);
-  EXPECT_EQ(asset.alert_limits.at("seal_condition").alarm, 0.6);
+  EXPECT_EQ(asset.alert_limits.at("leakage_resistance").alarm, 6.0e12);
   ASSERT_EQ(asset.physics.size(), 2U);
   EXPECT_EQ(asset.physics[0].parameters.at("F_c").value, 4000.0);
   EXPECT_FALSE(asset.physics[0].parameters.at("F_c").estimate);
@@ -178,7 +211,7 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   asset.pst.hold_s = 1.0 / 7.0;
   asset.physics = {
       {"coulomb_friction", "piston", {{"F_c", {1.0 / 3.0, 0.0, 1e5, true}}, {"v_s", {1e-4, 1e-5, 1e-3, false}}}}};
-  asset.alert_limits["hold_decay"] = {1.0 / 3.0, 2.0 / 3.0, 1.0};
+  asset.alert_limits["hold_decay_rate"] = {1.0 / 3.0, 2.0 / 3.0, 1.0};
   const AssetConfig back = load(asset_to_yaml(asset));
   EXPECT_EQ(asset_to_yaml(back), asset_to_yaml(asset));
   EXPECT_EQ(back.asset_id, asset.asset_id);
@@ -188,7 +221,7 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   EXPECT_EQ(back.seal->threshold, asset.seal->threshold);
   EXPECT_EQ(back.pst.hold_s, asset.pst.hold_s);
   EXPECT_EQ(back.physics.at(0).parameters, asset.physics.at(0).parameters);
-  EXPECT_EQ(back.alert_limits.at("hold_decay").advisory, 1.0 / 3.0);
+  EXPECT_EQ(back.alert_limits.at("hold_decay_rate").advisory, 1.0 / 3.0);
   AssetConfig without = asset;
   without.seal.reset();
   EXPECT_FALSE(load(asset_to_yaml(without)).seal.has_value());

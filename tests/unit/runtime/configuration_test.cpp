@@ -58,8 +58,34 @@ const BadCase kBadCases[] = {
     {"lifespan", "topics: {advisory: {lifespan_s: -1}}\n",
      "sealwatch.yaml: line 1, key topics.advisory.lifespan_s: '-1': must be a number, 0 or above"},
     {"journal", "services: {state_detection: {journal: x.db}}\n",
-     "sealwatch.yaml: line 1, key services.state_detection.journal: 'x.db': must be a connection string; write "
-     "sqlite3://FILE or postgresql://dbname=NAME"},
+     "sealwatch.yaml: line 1, key services.state_detection.journal: 'x.db': must be a connection string of SQLite or "
+     "PostgreSQL; write sqlite3://FILE or postgresql://dbname=NAME"},
+    {"journal_of_another_database", "services:\n  state_detection: {journal: \"mysql://db=x password=y\"}\n",
+     "sealwatch.yaml: line 2, key services.state_detection.journal: 'mysql://db=x password=***': must be a connection "
+     "string of SQLite or PostgreSQL; write sqlite3://FILE or postgresql://dbname=NAME"},
+    {"journal_of_two_services",
+     "services:\n  data_manipulation: {journal: \"sqlite3:///var/j.db\"}\n"
+     "  state_detection:\n    journal: sqlite3:///var/lib/../j.db\n",
+     "sealwatch.yaml: line 4, key services.state_detection.journal: 'sqlite3:///var/lib/../j.db': is the journal of "
+     "data_manipulation too: each service has one of its own; give each service its own file or, in PostgreSQL, its "
+     "own schema"},
+    {"lead_time", "sites: [{site: a, booking_lead_time_months: 121}]\n",
+     "sealwatch.yaml: line 1, key sites[0].booking_lead_time_months: '121': must be a number of months from 0 to 120"},
+    {"campaign_without_label", "sites: [{site: a, campaigns: [{start: 2017-06-01}]}]\n",
+     "sealwatch.yaml: line 1, key sites[0].campaigns[0].label: must be given: advice names the campaign by it"},
+    {"campaign_with_empty_label", "sites: [{site: a, campaigns: [{start: 2017-06-01, label: \"\"}]}]\n",
+     "sealwatch.yaml: line 1, key sites[0].campaigns[0].label: must be given: advice names the campaign by it"},
+    {"campaigns_on_one_day",
+     "sites:\n  - site: a\n    campaigns:\n      - {start: 2017-06-01, label: x}\n"
+     "      - {start: 2017-06-01T12:00:00Z, label: y}\n",
+     "sealwatch.yaml: line 5, key sites[0].campaigns[1].start: '2017-06-01': is the day of campaign 'x' already; take "
+     "one of them out, or correct its day"},
+    {"costs_incomplete", "sites: [{site: a, costs: {planned: 1, after_failure: 5, failed_month: 2}}]\n",
+     "sealwatch.yaml: line 1, key sites[0].costs.unused_month: must be given: costs are compared with each other; "
+     "write 0 where there is none"},
+    {"failure_rate", "sites: [{site: a, safety: {dangerous_undetected_per_hour: 1.5}}]\n",
+     "sealwatch.yaml: line 1, key sites[0].safety.dangerous_undetected_per_hour: '1.5': must be a rate per hour above "
+     "0, at most 1e-3"},
     {"recordings_of_another_service", "services: {state_detection: {recordings_directory: in}}\n",
      "sealwatch.yaml: line 1, key services.state_detection.recordings_directory: 'recordings_directory': is not a "
      "known key; known are: enabled, journal"},
@@ -166,7 +192,7 @@ topics: {advisory: {keep_all: false, transient_local: false, lifespan_s: 3}}
 sites:
   - site: s
     booking_lead_time_months: 9
-    campaigns: [{label: later, start: 2019-01-02}, {start: 2018-01-02}]
+    campaigns: [{label: later, start: 2019-01-02}, {label: sooner, start: 2018-01-02}]
 assets: [mine/a.yaml]
 )"));
   ASSERT_TRUE(configuration.has_value()) << combine(configuration.error()).describe();
@@ -187,7 +213,7 @@ assets: [mine/a.yaml]
   ASSERT_NE(site, nullptr);
   EXPECT_EQ(site->booking_lead_time_months, 9.0);
   ASSERT_EQ(site->campaigns.size(), 2U);
-  EXPECT_EQ(site->campaigns[0].label, "2018-01-02") << "sorted, and named by its date where it has no label";
+  EXPECT_EQ(site->campaigns[0].label, "sooner") << "sorted";
   EXPECT_EQ(site->campaigns[1].label, "later");
   EXPECT_NE(configuration->find_asset("A"), nullptr);
 }
@@ -220,6 +246,30 @@ TEST(ConfigurationTest, ASiteThatIsThereTwiceIsSuggestedOnce) {
   const auto found = faults(place, place.write("sealwatch.yaml", "sites:\n  - site: north\n  - site: north\n"));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_THAT(found[1], ::testing::EndsWith("known are: north"));
+}
+
+TEST(ConfigurationTest, WhatHasHappenedIsNotInTheFuture) {
+  const YamlPlace place;
+  const std::string file =
+      place.write("sealwatch.yaml", "sites:\n  - site: a\n    safety:\n      last_full_stroke: 2017-05-01\n");
+  const auto at = [&](const char* day) { return load_configuration(file, {.now = *parse_utc(day)}); };
+  EXPECT_TRUE(at("2017-05-02").has_value());
+  EXPECT_TRUE(load_configuration(file).has_value()) << "a service whose clock is wrong starts nevertheless";
+  const auto before = at("2017-04-30");
+  ASSERT_FALSE(before.has_value());
+  EXPECT_EQ(place.bare(before.error().at(0).describe()),
+            "sealwatch.yaml: line 4, key sites[0].safety.last_full_stroke: '2017-05-01': is in the future; write the "
+            "day of the last one");
+}
+
+TEST(ConfigurationTest, AKeyHasAPlaceWhereItStandsInTheFile) {
+  const YamlPlace place;
+  (void)place.write("sealwatch.yaml", "domain: 1\nservices:\n  state_detection:\n    journal: \"\"\n");
+  EXPECT_EQ(place_in_configuration(place.directory(), "services.state_detection.journal"),
+            "line 4, key services.state_detection.journal");
+  EXPECT_EQ(place_in_configuration(place.directory(), "state_directory"), "key state_directory");
+  EXPECT_EQ(place_in_configuration(place.directory(), "services.state_detection.enabled"),
+            "key services.state_detection.enabled");
 }
 
 TEST(ConfigurationTest, TheCommandLineWinsOverTheFile) {

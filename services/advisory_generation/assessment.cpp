@@ -1,6 +1,7 @@
 #include "services/advisory_generation/assessment.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include "services/advisory_generation/reasons.hpp"
 
@@ -10,6 +11,7 @@ namespace {
 // When no later campaign is known, one that is longer before the P10 end of life is not the last before it: campaigns
 // come at least every year or two, later ones are just not planned yet.
 constexpr double kUnplannedAfter_months = 12.0;
+constexpr std::string_view kResidual = "residual.";
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 
 const ProposedFault* dominant_fault(const HealthReport& health, const Options& options) {
@@ -100,6 +102,22 @@ std::string actuator_alarm(const Evidence& evidence, const Options& options) {
   return describe(*fault);
 }
 
+/// Residuals in alarm: the actuator no longer behaves as its model, or as it did. The accepted model's where one is in
+/// force: what it explains is known.
+std::string model_alarm(const Evidence& evidence) {
+  const auto& judgements = evidence.state.judgements;
+  const auto is_accepted = [](const RegionJudgement& one) { return one.reference == Reference::accepted_model; };
+  const bool accepted = std::ranges::any_of(judgements, is_accepted);
+  std::vector<std::string> channels;
+  for (const RegionJudgement& one : judgements) {
+    if (one.region != AlertRegion::alarm || !one.quantity.starts_with(kResidual) || is_accepted(one) != accepted)
+      continue;
+    const std::string channel = one.quantity.substr(kResidual.size());
+    if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
+  }
+  return joined(channels);
+}
+
 std::string doubt_in_instruments(const Evidence& evidence, const Options& options) {
   const ProposedFault* fault = dominant_fault(evidence.health, options);
   if (fault && fault->kind == FaultKind::sensor) return describe(*fault);
@@ -114,8 +132,12 @@ std::string reason_to_repeat(const Evidence& evidence) {
            (state.verdict_reasons.empty() ? "" : ": " + joined(state.verdict_reasons));
   const bool repetition_helps = evidence.life.threshold > 0.0 && evidence.leakage.header.event_time_known;
   if (evidence.leakage.used_for_forecast || !repetition_helps) return {};
-  return "the test could not be used" +
-         (evidence.leakage.reasons.empty() ? "" : ": " + evidence.leakage.reasons.front());
+  std::string reason = "the test could not be used";
+  if (!evidence.leakage.reasons.empty()) reason += ": " + evidence.leakage.reasons.front();
+  const bool fit_failed = !evidence.leakage.fits.empty() && evidence.health.admissible_for_prognosis;
+  if (fit_failed)
+    reason += "; where a repetition ends alike, the model does not describe this actuator (sealwatch explain)";
+  return reason;
 }
 
 }  // namespace
@@ -133,6 +155,7 @@ Assessment assess(const Evidence& evidence, const SiteConfig* site, const Option
   Assessment assessment;
   judge_wear(assessment.verdict, evidence, site, options);
   assessment.alarm_reason = actuator_alarm(evidence, options);
+  assessment.model_alarm = model_alarm(evidence);
   assessment.instruments_reason = doubt_in_instruments(evidence, options);
   assessment.verdict.instruments_doubted = !assessment.instruments_reason.empty();
   assessment.verdict.failed = evidence.state.verdict == PstVerdict::failed;

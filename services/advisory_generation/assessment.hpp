@@ -26,6 +26,7 @@ struct Assessment {
   TestVerdict verdict;
   std::string repeat_reason;         ///< "" when the test need not be repeated
   std::string alarm_reason;          ///< "" when no alarm has its cause in the actuator
+  std::string model_alarm;           ///< channels whose residuals are in alarm
   std::string instruments_reason;    ///< "" when they are trusted
   std::vector<std::string> reasons;  ///< with numbers, units and dates
 };

@@ -15,11 +15,18 @@ const EstimatedParameter* leakage_resistance(const FitReport& fit) {
   return nullptr;
 }
 
+/// A fit that did not converge, or cannot tell R_CL from twice itself, ends near where it began: that is no estimate.
+bool tells(const FitReport& fit) {
+  constexpr double kLargestRelativeError = 0.5;
+  const EstimatedParameter* resistance = leakage_resistance(fit);
+  return resistance && fit.converged && resistance->std_error <= kLargestRelativeError * std::abs(resistance->value);
+}
+
 const FitReport* choose(const std::vector<FitReport>& fits) {
   for (const FitReport& fit : fits)
     if (fit.admissible && leakage_resistance(fit)) return &fit;
   for (const FitReport& fit : fits)
-    if (leakage_resistance(fit)) return &fit;
+    if (tells(fit)) return &fit;
   return nullptr;
 }
 

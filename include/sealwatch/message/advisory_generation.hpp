@@ -7,7 +7,8 @@
 namespace sealwatch {
 
 SEALWATCH_ENUM(AdvisoryPriority, information, low, medium, high, urgent)
-SEALWATCH_ENUM(AdvisoryAction, none, repeat_test, inspect_instrumentation, plan_replacement, book_vessel, replace_now)
+SEALWATCH_ENUM(AdvisoryAction, none, repeat_test, inspect_instrumentation, plan_replacement, book_vessel, replace_now,
+               examine_actuator)
 SEALWATCH_ENUM(AdvisoryState, active, acknowledged, superseded)
 
 /// OSA-CBM request for work: what a maintenance management system needs to make a work order.

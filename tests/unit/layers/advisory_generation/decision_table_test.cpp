@@ -45,6 +45,14 @@ const ProposedFault kSensor = fault(FaultKind::sensor, "sensor:flow", 0.8);
 const ProposedFault kSeal = fault(FaultKind::internal_leakage, "piston_seal", 0.7);
 const ProposedFault kVague = fault(FaultKind::sensor, "sensor:flow", 0.4);
 
+RegionJudgement residual(Reference reference, AlertRegion region) {
+  RegionJudgement judgement;
+  judgement.quantity = "residual.pressure_a";
+  judgement.reference = reference;
+  judgement.region = region;
+  return judgement;
+}
+
 // Month 24 is 2012-01. With 12 months to book, the last campaign before the P10 end of life decides:
 // RUL 90: P10 at 85 months, 2019-01, campaign 2018-06: book by 2017-06, 65 months to go.
 // RUL 48: P10 at 43, 2015-07, campaign 2015-06, book by 2014-06: 29 months. RUL 36: campaign 2014-06: 17 months to go.
@@ -76,6 +84,20 @@ INSTANTIATE_TEST_SUITE_P(
              P::medium,
              A::plan_replacement},
         Line{"alarm, cause unknown", {.region = AlertRegion::alarm}, P::information, A::none},
+        Line{"residuals in alarm",
+             {.region = AlertRegion::alarm, .judgements = {residual(Reference::own_baseline, AlertRegion::alarm)}},
+             P::medium,
+             A::examine_actuator},
+        Line{"residuals in alarm that the accepted model explains",
+             {.region = AlertRegion::alarm,
+              .judgements = {residual(Reference::own_baseline, AlertRegion::alarm),
+                             residual(Reference::accepted_model, AlertRegion::normal)}},
+             P::information,
+             A::none},
+        Line{"residuals in alarm that the accepted model does not explain",
+             {.region = AlertRegion::alarm, .judgements = {residual(Reference::accepted_model, AlertRegion::alarm)}},
+             P::medium,
+             A::examine_actuator},
         Line{"warning is no alarm", {.region = AlertRegion::warning, .faults = {kSeal}}, P::information, A::none},
         Line{"booking outranks a sensor fault", {.rul_months = 24, .faults = {kSensor}}, P::high, A::book_vessel}));
 

@@ -39,6 +39,7 @@ struct TestCase {
   PstVerdict verdict = PstVerdict::passed;
   AlertRegion region = AlertRegion::normal;
   std::vector<ProposedFault> faults = {};
+  std::vector<RegionJudgement> judgements = {};
   bool time_known = true;
 
   [[nodiscard]] UtcTime time() const { return add_months(kInstalled, month); }
@@ -94,6 +95,7 @@ struct TestCase {
     report.header = header("state_report");
     report.verdict = verdict;
     report.region = region;
+    report.judgements = judgements;
     if (verdict != PstVerdict::passed) report.verdict_reasons = {"stroke ended at 4.1 mm of 16 mm"};
     return report;
   }

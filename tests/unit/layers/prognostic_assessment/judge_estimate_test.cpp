@@ -39,8 +39,22 @@ TEST(JudgeEstimate, TakesTheFirstAdmissibleFit) {
   EXPECT_EQ(estimate.fits.size(), 2u);
 }
 
+FitReport refused(double resistance, double std_error, bool converged) {
+  FitReport report = fit("eha", resistance, std_error, false);
+  report.converged = converged;
+  return report;
+}
+
+TEST(JudgeEstimate, AFitThatEndedNearWhereItBeganIsNoEstimate) {
+  for (const FitReport& bad : {refused(2.6e13, 1e11, false), refused(2.6e13, 4.7e13, true)}) {
+    const LeakageEstimate estimate = judge({bad});
+    EXPECT_FALSE(estimate.estimated || estimate.condition_known || estimate.used_for_forecast);
+    EXPECT_THAT(estimate.reasons, ElementsAre("no fit gave an estimate of R_CL", HasSubstr("whiteness")));
+  }
+}
+
 TEST(JudgeEstimate, BadlyFittedTestIsEstimatedMarkedAndLeftOut) {
-  const LeakageEstimate estimate = judge({fit("eha", 1e13, 1e11, false)});
+  const LeakageEstimate estimate = judge({refused(1e13, 1e11, true)});
   EXPECT_TRUE(estimate.estimated);
   EXPECT_FALSE(estimate.used_for_forecast);
   EXPECT_THAT(estimate.reasons, ElementsAre(HasSubstr("whiteness")));

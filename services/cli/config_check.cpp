@@ -55,7 +55,7 @@ std::vector<Error> check_surroundings(const std::string& file, const Configurati
   for (const auto& [service, config] : configuration.services) {
     const bool by_default =
         config.journal == "sqlite3://" + (fs::path(configuration.state_directory) / (service + ".db")).string();
-    if (!by_default) check(Journal::check(config.journal), "services." + *service + ".journal");
+    if (!by_default) check(Journal::check(config.journal), "services." + service + ".journal");
     if (!config.recordings_directory.empty())
       check(check_directory(config.recordings_directory), "services." + service + ".recordings_directory");
   }
@@ -77,7 +77,7 @@ std::vector<std::string> warnings_of(const Configuration& configuration) {
   const std::vector<std::string>& chain = service_names();
   for (auto service = chain.begin(); service != chain.end(); ++service)
     if (!is_enabled(*service) && std::any_of(service, chain.end(), is_enabled))
-      warnings.push_back("services." + service + " is disabled here: unless it runs on another machine of domain " +
+      warnings.push_back("services." + *service + " is disabled here: unless it runs on another machine of domain " +
                          std::to_string(configuration.domain) +
                          ", the services after it get nothing, and a replay waits for them in vain");
   return warnings;

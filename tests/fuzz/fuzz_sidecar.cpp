@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   sealwatch::Recording recording;
-  sealwatch::apply_sidecar(*sidecar, {}, recording);
+  (void)sealwatch::apply_sidecar(*sidecar, {}, recording);
   const auto again = sealwatch::parse_sidecar(sealwatch::format_sidecar(recording), plant);
   if (!again || again->test != sidecar->test || again->start_time != sidecar->start_time) std::abort();
   return 0;

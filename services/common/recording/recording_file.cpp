@@ -119,7 +119,8 @@ Result<Recording> read_recording(const std::string& path, const PlantDescription
   if (!is_utf8(recording.recording_id)) recording.recording_id = printable(recording.recording_id);
   recording.content_hash = std::move(read->content_hash);
   recording.samples = std::move(read->samples);
-  apply_sidecar(*sidecar, read->columns, recording);
+  if (const Status applied = apply_sidecar(*sidecar, read->columns, recording); !applied)
+    return fail_in(sidecar_path(path), applied.error());
   return recording;
 }
 

@@ -1,8 +1,10 @@
 #include "services/common/recording/sidecar.hpp"
 
+#include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
 
@@ -86,16 +88,26 @@ Status read_noise(const KeyValue& item, const PlantDescription& plant, Sidecar& 
   return {};
 }
 
+/// A name stands in topics, logs and file names, each on one line.
+Status read_name(const KeyValue& item, std::string& target) {
+  const std::string name = item.value.IsNull() ? "" : item.value.Scalar();
+  if (name.empty()) return fail(key_error(item, "must not be empty", "leave the key out where there is none"));
+  if (std::any_of(name.begin(), name.end(), [](unsigned char letter) { return std::iscntrl(letter) != 0; }))
+    return fail(key_error(item, "must not have line breaks or other control characters"));
+  target = name;
+  return {};
+}
+
 Status read_entry(const KeyValue& item, const PlantDescription& plant, Sidecar& out) {
   if (item.key == "noise_std") return read_noise(item, plant, out);
-  if (item.value.IsNull()) return {};  // "note:" with nothing behind it
-  if (!item.value.IsScalar()) return fail(key_error(item, "must be plain text"));
+  const bool is_name = item.key == "recording_id" || item.key == "asset_id";
+  if (item.value.IsNull() && !is_name) return {};  // "note:" with nothing behind it
+  if (!item.value.IsScalar() && !item.value.IsNull()) return fail(key_error(item, "must be plain text"));
+  if (is_name) return read_name(item, item.key == "asset_id" ? out.asset_id : out.recording_id);
   if (item.key == "test") return read_test(item, out);
   if (item.key == "start_time") return read_start_time(item, out);
   if (item.key == "interpolation") return read_interpolation(item, out);
-  (item.key == "recording_id" ? out.recording_id
-   : item.key == "asset_id"   ? out.asset_id
-                              : out.note) = item.value.Scalar();
+  out.note = item.value.Scalar();
   return {};
 }
 
@@ -111,28 +123,55 @@ Result<Sidecar> read_document(const YAML::Node& document, const PlantDescription
   return out;
 }
 
+Error yaml_error(const YAML::Exception& problem) {
+  return error_at(place_of(problem.mark.line + 1, ""), {}, "is not YAML: " + problem.msg);
+}
+
+/// The library takes a quoted text that is still open at the end of the file for closed; the mark for a document's end
+/// cannot stand in one.
+constexpr const char* kDocumentEnd = "\n...\n";
+
+/// Which text was left open: the last one that stands in `text`.
+Error open_quote_error(const std::string& text, const YAML::Exception& problem) try {
+  const YAML::Node document = YAML::Load(text.ends_with('\n') ? text : text + "\n");
+  KeyValue last;
+  for (const auto& entry : document) last = {entry.first.Scalar(), entry.second, entry.first.Mark().line + 1};
+  return key_error(last, "is not YAML: the quoted text has no closing quote");
+} catch (const YAML::Exception&) {  // inside brackets, which are open then as well
+  return yaml_error(problem);
+}
+
+/// The one document of a sidecar.
+Result<YAML::Node> load_document(const std::string& text) {
+  if (!is_utf8(text)) return fail("is not UTF-8", "save it as UTF-8");
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAll(text + kDocumentEnd);
+  } catch (const YAML::Exception& problem) {
+    const bool open_quote = problem.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
+    return fail(open_quote ? open_quote_error(text, problem) : yaml_error(problem));
+  }
+  if (documents.size() > 1)
+    return fail(error_at(place_of(documents[1].Mark().line + 1, ""), {}, "a second YAML document stands here",
+                         "a recording has one: take out the line ---"));
+  return documents.empty() ? YAML::Node() : documents.front();
+}
+
 }  // namespace
 
 Result<Sidecar> parse_sidecar(const std::string& text, const PlantDescription& plant) {
-  if (!is_utf8(text)) return fail("is not UTF-8");
-  try {
-    return read_document(YAML::Load(text), plant);
-  } catch (const YAML::Exception& problem) {
-    return fail(error_at(place_of(problem.mark.line + 1, ""), {}, "is not YAML: " + problem.msg));
-  }
+  const Result<YAML::Node> document = load_document(text);
+  if (!document) return fail(document.error());
+  return read_document(*document, plant);
 }
 
 Result<std::string> parse_sidecar_value(const std::string& text, const std::string& key) {
-  if (!is_utf8(text)) return fail("is not UTF-8");
-  try {
-    const YAML::Node document = YAML::Load(text);
-    if (!document.IsMap()) return std::string();  // read_document says what is wrong with it
-    if (const auto known = entries(document, "", kKeys); !known) return fail(known.error());  // 'asset' for 'asset_id'
-    const YAML::Node value = document[key];
-    return value.IsDefined() && value.IsScalar() ? value.Scalar() : std::string();
-  } catch (const YAML::Exception& problem) {
-    return fail(error_at(place_of(problem.mark.line + 1, ""), {}, "is not YAML: " + problem.msg));
-  }
+  const Result<YAML::Node> document = load_document(text);
+  if (!document) return fail(document.error());
+  if (!document->IsMap()) return std::string();  // read_document says what is wrong with it
+  if (const auto known = entries(*document, "", kKeys); !known) return fail(known.error());  // 'asset' for 'asset_id'
+  const YAML::Node value = (*document)[key];
+  return value.IsDefined() && value.IsScalar() ? value.Scalar() : std::string();
 }
 
 std::string format_sidecar(const Recording& recording) {
@@ -158,7 +197,13 @@ std::string format_sidecar(const Recording& recording) {
   return std::string(out.c_str()) + "\n";
 }
 
-void apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, Recording& recording) {
+Status apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, Recording& recording) {
+  for (const auto& [channel, ignored] : sidecar.noise_std)
+    if (std::none_of(columns.begin(), columns.end(), [&](const Column& column) { return column.name == channel; })) {
+      std::string key = "noise_std.";
+      return fail(error_at("key " + key.append(channel), {}, "its channel is not in the recording",
+                           "take it out, or record the channel"));
+    }
   if (!sidecar.recording_id.empty()) recording.recording_id = sidecar.recording_id;
   recording.asset_id = sidecar.asset_id;
   recording.test = sidecar.test;
@@ -168,6 +213,7 @@ void apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, R
   for (std::size_t index = 0; index < columns.size(); ++index)
     if (const auto noise = sidecar.noise_std.find(columns[index].name); noise != sidecar.noise_std.end())
       recording.samples.channels[index].noise_std = noise->second * columns[index].to_si.scale;
+  return {};
 }
 
 }  // namespace sealwatch

@@ -31,8 +31,8 @@ struct Sidecar {
 /// The sidecar's text; noise_std in SI.
 [[nodiscard]] std::string format_sidecar(const Recording& recording);
 
-/// Sets what the sidecar says on a recording whose samples came from `columns`: noise_std of channels that were not
-/// recorded is passed over.
-void apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, Recording& recording);
+/// Sets what the sidecar says on a recording whose samples came from `columns`; an Error where noise_std names
+/// a channel that was not recorded.
+[[nodiscard]] Status apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, Recording& recording);
 
 }  // namespace sealwatch

@@ -97,10 +97,16 @@ TEST_F(RecordingFile, ANameThatIsNotUtf8IsMadePrintable) {
 }
 
 TEST_F(RecordingFile, NoiseIsInTheColumnsUnit) {
-  write("a.yaml", "noise_std: {pressure_a: 0.1, fluid_temperature: 0.5, flow: 1}\n");
+  write("a.yaml", "noise_std: {pressure_a: 0.1, fluid_temperature: 0.5}\n");
   const Recording recording = read(write("a.csv", "time,fluid_temperature[degC],pressure_a[bar]\n0,4,1\n"));
   EXPECT_EQ(recording.samples.find("pressure_a")->noise_std, 1e4);
   EXPECT_EQ(recording.samples.find("fluid_temperature")->noise_std, 0.5);  // a difference: no offset
+}
+
+TEST_F(RecordingFile, NoiseOfAChannelThatIsNotRecordedIsRefused) {
+  write("a.yaml", "noise_std: {pressure_a: 0.1, flow: 1}\n");
+  EXPECT_THAT(error_of(write("a.csv", "time,pressure_a[bar]\n0,1\n")),
+              HasSubstr("a.yaml: key noise_std.flow: its channel is not in the recording"));
 }
 
 TEST_F(RecordingFile, TheSidecarDoesNotChangeTheHash) {

@@ -65,5 +65,29 @@ TEST(SidecarText, ErrorsNameLineAndKey) {
   EXPECT_THAT(error_of("test: pst\nnote: [open\n"), HasSubstr("is not YAML"));
 }
 
+TEST(SidecarText, AQuotedTextThatIsNeverClosedIsNamed) {
+  EXPECT_THAT(error_of("test: pst\nasset_id: \"XT03\nnote: a\n"),
+              HasSubstr("line 2, key asset_id: 'XT03 note: a ': is not YAML: the quoted text has no closing quote"));
+  EXPECT_THAT(error_of("note: 'cut off"), HasSubstr("line 1, key note: 'cut off"));
+  EXPECT_THAT(error_of("noise_std: {position: \"5\n"), HasSubstr("is not YAML"));
+  EXPECT_TRUE(parse_sidecar("note: \"it's closed\"\n", test_plant()));
+  EXPECT_TRUE(parse_sidecar("note: |\n  \"a block\n  it's fine\n", test_plant()));
+}
+
+TEST(SidecarText, IsOneDocument) {
+  EXPECT_THAT(error_of("test: pst\n---\nasset_id: X\n"), HasSubstr("line 3: a second YAML document stands here"));
+  EXPECT_TRUE(parse_sidecar("---\ntest: pst\n...\n", test_plant()));
+}
+
+TEST(SidecarText, NamesAreNotEmptyAndOfOneLine) {
+  for (const std::string key : {"asset_id", "recording_id"}) {
+    const std::string place = "line 2, key " + key + ": ";
+    EXPECT_THAT(error_of("test: pst\n" + key + ":\n"), HasSubstr(place + "must not be empty"));
+    EXPECT_THAT(error_of("test: pst\n" + key + ": null\n"), HasSubstr(place + "must not be empty"));
+    EXPECT_THAT(error_of("test: pst\n" + key + ": \"\"\n"), HasSubstr(place + "must not be empty"));
+    EXPECT_THAT(error_of("test: pst\n" + key + ": \"A\\nB\"\n"), HasSubstr(place + "'A?B': must not have line breaks"));
+  }
+}
+
 }  // namespace
 }  // namespace sealwatch

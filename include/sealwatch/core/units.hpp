@@ -1,7 +1,9 @@
 // Units at the border: everything inside sealwatch is SI; recordings may use the units of INTERFACES section 1.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "sealwatch/core/result.hpp"
 
@@ -17,5 +19,8 @@ struct UnitConversion {
 
 /// Conversion of `unit` to SI; an Error with the nearest known unit when it is not known. "1" and "" are plain numbers.
 [[nodiscard]] Result<UnitConversion> find_unit(std::string_view unit);
+
+/// The units that can be converted to `si_unit`, itself first: "Pa", "bar", "MPa", ...
+[[nodiscard]] std::vector<std::string> units_of(std::string_view si_unit);
 
 }  // namespace sealwatch

@@ -49,6 +49,13 @@ constexpr std::array kUnits = {
 
 }  // namespace
 
+std::vector<std::string> units_of(std::string_view si_unit) {
+  std::vector<std::string> names{std::string(si_unit)};
+  for (const KnownUnit& known : kUnits)
+    if (known.conversion.si_unit == si_unit && known.name != si_unit) names.emplace_back(known.name);
+  return names;
+}
+
 Result<UnitConversion> find_unit(std::string_view unit) {
   if (unit.empty()) unit = "1";
   std::vector<std::string> names;

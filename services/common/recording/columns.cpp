@@ -39,7 +39,11 @@ Result<UnitConversion> find_conversion(std::string_view unit, std::string_view s
   if (unit.empty() || unit == si_unit) return UnitConversion{.scale = 1.0, .offset = 0.0, .si_unit = {}};
   if (unit.size() > kLongestPrinted) return fail("is not a known unit");
   Result<UnitConversion> known = find_unit(unit);
-  if (known && known->si_unit != si_unit) return fail("cannot be converted to " + std::string(si_unit));
+  if (known && known->si_unit != si_unit) {
+    std::string units;
+    for (const std::string& name : units_of(si_unit)) units.append(units.empty() ? "" : ", ").append(name);
+    return fail("cannot be converted to " + std::string(si_unit), "units of this channel: " + units);
+  }
   return known;
 }
 

@@ -1,8 +1,10 @@
 #include "services/common/recording/csv_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "services/common/recording/csv_rows.hpp"
@@ -36,6 +38,13 @@ std::size_t decimals(std::string_view number) {
   return point == std::string_view::npos ? 0 : number.size() - point - 1;
 }
 
+/// Its byte order mark, or a NUL beside the first letter (RFC 4180 knows neither).
+bool is_utf16(std::string_view first_cell) {
+  using namespace std::string_view_literals;
+  return first_cell.starts_with("\xFF\xFE"sv) || first_cell.starts_with("\xFE\xFF"sv) ||
+         first_cell.substr(0, 2).find('\0') != std::string_view::npos;
+}
+
 class CsvReader {
  public:
   CsvReader(std::istream& in, const PlantDescription& plant) : rows_(in), plant_(plant) {}
@@ -59,6 +68,8 @@ class CsvReader {
     const Result<bool> header = rows_.next(cells_);
     if (!header) return fail(header.error());
     if (!*header) return fail(error_at("row 1, column 1", {}, "the file is empty", "a header row must come first"));
+    if (is_utf16(cells_.front()))
+      return fail(error_at("row 1, column 1", {}, "the file is UTF-16 text", "save it as UTF-8"));
     for (std::string_view& cell : cells_) cell = trim(cell);
     Result<std::vector<Column>> columns = find_columns(cells_, plant_);
     if (!columns) return fail(columns.error());
@@ -93,9 +104,12 @@ class CsvReader {
   Status check_time() const {
     const std::vector<double>& time = values_[time_];
     if (time.size() < 2 || time.back() > time[time.size() - 2]) return {};
-    const bool repeats = time.back() == time[time.size() - 2];
-    return fail(error_in("time", cells_[time_], repeats ? "time repeats" : "time goes back",
-                         "time must increase from row to row"));
+    const double before = time[time.size() - 2];
+    const bool repeats = time.back() == before;
+    std::array<char, 64> rule{};
+    std::snprintf(rule.data(), rule.size(), "time goes back: the row before is at %.9g s", before);
+    return fail(error_in("time", cells_[time_], repeats ? "time repeats" : rule.data(),
+                         "time must increase from row to row: sort the rows, or take the wrong one out"));
   }
 
   /// Tells a cut-off number from a missing last line break (see the header).

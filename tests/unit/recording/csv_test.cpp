@@ -74,7 +74,8 @@ TEST(Csv, HeaderErrorsNameRowAndColumn) {
   EXPECT_THAT(error_of("time,presure_a\n0,1\n"), HasSubstr("did you mean 'pressure_a'?"));
   EXPECT_THAT(error_of("time,pressure_a[baar]\n0,1\n"),
               HasSubstr("unit 'baar' is not a known unit; did you mean 'bar'?"));
-  EXPECT_THAT(error_of("time,pressure_a[mm]\n0,1\n"), HasSubstr("unit 'mm' cannot be converted to Pa"));
+  EXPECT_THAT(error_of("time,pressure_a[mm]\n0,1\n"),
+              HasSubstr("unit 'mm' cannot be converted to Pa; units of this channel: Pa, bar, MPa, kPa, psi"));
   EXPECT_THAT(error_of("time,pressure_a[bar\n0,1\n"), HasSubstr("channel[unit]"));
   EXPECT_THAT(error_of("time,pressure_a[bar]x\n0,1\n"), HasSubstr("channel[unit]"));
   EXPECT_THAT(error_of("time;position\n0;1\n"), HasSubstr("separated by commas"));
@@ -112,8 +113,21 @@ TEST(Csv, SampleErrorsNameRowAndColumn) {
               HasSubstr("row 4, column 1: follows a blank row; take out row 3"));
 }
 
+TEST(Csv, Utf16IsNamed) {
+  const std::string says = "row 1, column 1: the file is UTF-16 text; save it as UTF-8";
+  for (const bool little_end_first : {true, false}) {
+    std::string marked = little_end_first ? "\xFF\xFE" : "\xFE\xFF";
+    std::string bare;
+    for (const char letter : std::string("time,position\r\n0,1\r\n"))
+      bare.append(little_end_first ? std::string{letter, '\0'} : std::string{'\0', letter});
+    EXPECT_THAT(error_of(bare), HasSubstr(says));
+    EXPECT_THAT(error_of(marked.append(bare)), HasSubstr(says));
+  }
+}
+
 TEST(Csv, TimeMustIncrease) {
-  EXPECT_THAT(error_of("time,position\n0,1\n1,2\n0.5,3\n"), HasSubstr("row 4, column time: '0.5': time goes back"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1,2\n0.5,3\n"),
+              HasSubstr("row 4, column time: '0.5': time goes back: the row before is at 1 s; time must increase"));
   EXPECT_THAT(error_of("position,time[ms]\n0,1\n1,2\n0.5,2\n"), HasSubstr("row 4, column time: '2': time repeats"));
 }
 

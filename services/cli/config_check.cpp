@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
+#include "services/cli/terminal.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/system_clock.hpp"
 #include "services/common/store/journal.hpp"

@@ -196,7 +196,7 @@ std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& 
                        : in_charge.state == ForecastState::past_threshold ? "bad"
                                                                           : "warn";
   std::string html = "<h1>Remaining life of the piston seal" + report::escaped(of) + "</h1>";
-  html.append(report::paragraph(std::to_string(question.tests) + " tests, " + format_date(question.first) + " to " +
+  html.append(report::paragraph(count_of(question.tests, "test") + ", " + format_date(question.first) + " to " +
                                     format_date(question.last) + "; the seal fails at " +
                                     report::percent_text(question.request.threshold) + " of its elastic modulus.",
                                 "muted"));

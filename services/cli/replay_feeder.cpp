@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "services/cli/terminal.hpp"
+
 namespace sealwatch::cli {
 namespace {
 
@@ -101,8 +103,7 @@ std::string Quiescence::explain() const {
   std::string text;
   for (const auto& [service, status] : last_)
     if (status.pending_inputs != 0)
-      text +=
-          (text.empty() ? "" : ", ") + service + " has " + std::to_string(status.pending_inputs) + " inputs waiting";
+      text += (text.empty() ? "" : ", ") + service + " has " + count_of(status.pending_inputs, "input") + " waiting";
   return text.empty() ? "no service has inputs waiting" : text;
 }
 

@@ -120,9 +120,10 @@ int run_simulate(const SimulateOptions& options) {
     return kBadInput;
   }
   const bench::PlannedTest& last = plan->back();
-  std::printf("%zu months in %s, %s to %s; seal condition %s at the last (the truth is in truth.jsonl)\n", plan->size(),
-              options.directory.c_str(), format_date(plan->front().start_time).c_str(),
-              format_date(last.start_time).c_str(), percent(last.condition).c_str());
+  std::printf("%s in %s, %s to %s; seal condition %s at the last (the truth is in truth.jsonl)\n",
+              count_of(plan->size(), "month").c_str(), options.directory.c_str(),
+              format_date(plan->front().start_time).c_str(), format_date(last.start_time).c_str(),
+              percent(last.condition).c_str());
   return kOk;
 }
 

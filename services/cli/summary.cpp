@@ -3,143 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sealwatch/core/time.hpp"
 #include "services/cli/forecast_text.hpp"
+#include "services/cli/message_words.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
-std::string event_date(const Header& header) {
-  return header.event_time_known ? date(header.event_time_ns) : "(no date) ";
-}
-
-std::string join(const std::vector<std::string>& parts, const char* separator = "; ") {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : separator) + part;
-  return text;
-}
-
-std::string upper(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return static_cast<char>(std::toupper(c)); });
-  return result;
-}
-
-std::string words(std::string_view name) {
-  std::string text(name);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
-/// Below this a fault is proposed only because some fault must come first.
-constexpr double kWorthNaming = 0.10;
-
-/// "most likely internal leakage (81 %)", "possibly pump (30 %)", "no fault stands out".
-std::string fault_words(const std::vector<ProposedFault>& group) {
-  const ProposedFault& first = group.front();
-  if (first.likelihood < kWorthNaming) return "no fault stands out";
-  return (first.likelihood > 0.5 ? "most likely " : "possibly ") + words(name_of(first.kind)) + " (" +
-         percent(first.likelihood, 0) + ")";
-}
-
-std::string samples_words(std::size_t count) { return count == 0 ? "no samples" : std::to_string(count) + " samples"; }
-
-std::string forecast_words(const Forecast& forecast) {
-  if (forecast.state != ForecastState::ok) return words(name_of(forecast.state));
-  return number(forecast.rul_months, 3) + " months, 95 % within " + number(forecast.interval_95_low_months, 3) +
-         " to " + number(forecast.interval_95_high_months, 3);
-}
-
-std::string content(const RawSamples& m) {
-  return m.source_id + " block " + std::to_string(m.block_number) + " (" + std::string(name_of(m.boundary)) + "), " +
-         samples_words(m.samples.time_s.size()) + " of " + std::to_string(m.samples.channels.size()) + " channels";
-}
-std::string content(const SampleBlock& m) {
-  return "block " + std::to_string(m.block_number) + " (" + std::string(name_of(m.boundary)) + "), " +
-         samples_words(m.samples.time_s.size());
-}
-std::string content(const TestWindow& m) {
-  if (m.samples.time_s.empty()) return "no samples" + (m.abort_reason.empty() ? "" : ": " + m.abort_reason);
-  return samples_words(m.samples.time_s.size()) + " at " + number(m.sample_rate_Hz, 3) + " Hz, " +
-         std::to_string(m.samples.channels.size()) + " channels" + (m.complete ? "" : ", incomplete");
-}
-std::string content(const TestFeatures& m) {
-  std::string text;
-  for (const Quantity& feature : m.features)
-    text += (text.empty() ? "" : ", ") + feature.name + " " + number(feature.value, 3) + " " + feature.unit;
-  return text;
-}
-std::string content(const StateReport& m) {
-  std::string text = m.header.pst_id.empty() ? "test overdue" : "PST " + words(name_of(m.verdict));
-  if (!m.verdict_reasons.empty()) text += " (" + join(m.verdict_reasons) + ")";
-  text += ", region " + std::string(name_of(m.region));
-  if (m.pst_overdue) text += ", " + number(m.overdue_days, 2) + " days overdue";
-  return text;
-}
-std::string content(const HealthReport& m) {
-  std::string text = "grade " + number(m.health_grade, 2);
-  if (m.trend_known) text += " (" + number(m.health_trend_per_year, 2) + " a year)";
-  if (!m.ambiguity_group.empty()) text += ", " + fault_words(m.ambiguity_group);
-  if (!m.admissible_for_prognosis) text += ", not for prognosis: " + join(m.inadmissible_reasons);
-  return text;
-}
-std::string content(const LeakageEstimate& m) {
-  if (!m.estimated) return "no estimate: " + join(m.reasons);
-  std::string text =
-      "R_CL " + number(m.resistance_Pa_s_m3, 3) + " +- " + number(m.resistance_std_Pa_s_m3, 2) + " Pa s/m3";
-  if (m.condition_known) text += ", seal condition " + percent(m.condition);
-  if (!m.used_for_forecast) text += ", left out: " + join(m.reasons);
-  return text;
-}
-std::string content(const RemainingLife& m) {
-  if (m.forecasts.empty()) return "no forecast";
-  return "remaining life " + forecast_words(m.forecasts.front()) + (m.windows_disagree ? ", windows disagree" : "");
-}
-std::string content(const PstRequest& m) { return "test due " + date(m.due_time_ns) + ": " + m.reason; }
-std::string content(const Advisory& m) {
-  std::string text = upper(name_of(m.priority)) + " " + words(name_of(m.action));
-  if (m.latest_by_known) text += " by " + date(m.latest_by_ns);
-  if (m.state != AdvisoryState::active) text += " [" + std::string(name_of(m.state)) + "]";
-  return text + ": " + m.recommendation;
-}
-std::string content(const Acknowledgement& m) { return m.advisory_id + " by " + m.acknowledged_by + " " + m.remark; }
-std::string content(const MaintenanceEvent& m) { return words(m.kind) + " by " + m.reported_by + " " + m.remark; }
-std::string content(const ModelDiscrepancy& m) {
-  std::string text = "version " + std::to_string(m.version) + ", ";
-  if (!m.analysed) return text.append("not analysed: ").append(m.failure);
-  text.append(name_of(m.verdict)).append(": ").append(m.summary);
-  return text;
-}
-std::string content(const ModelAcceptance& m) {
-  std::string text = m.discrepancy_id;
-  return text.append(m.revoked ? " revoked by " : " accepted by ").append(m.accepted_by).append(" ").append(m.remark);
-}
-
-}  // namespace
-
-std::string one_line(const Message& message) {
-  return event_date(header_of(message)) + "  " + asset_of(message) + "  " + std::string(name_of(topic_of(message))) +
-         "  " + std::visit([](const auto& m) { return content(m); }, message);
-}
-
-std::string one_line(const ServiceStatus& status) {
-  std::uint64_t written = 0;
-  for (const StreamPosition& stream : status.written) written += stream.sequence;
-  return status.service + "  " + status.state + "  pid " + std::to_string(status.process_id) + "  " +
-         std::to_string(written) + " messages written, " + std::to_string(status.pending_inputs) + " inputs waiting" +
-         (status.last_error.empty() ? "" : "  last error: " + status.last_error);
-}
-
-namespace {
-
-/// Keeps the word on the latest test: a test that is replayed late does not take its place.
+/// Keeps the word on the latest test: a test that is replayed late does not take its place, nor does one without a
+/// date.
 template <typename T>
 void keep_latest(std::optional<T>& kept, const T& next) {
-  const bool earlier = kept && kept->header.event_time_known && next.header.event_time_known &&
-                       next.header.event_time_ns < kept->header.event_time_ns;
+  const bool earlier = kept && kept->header.event_time_known &&
+                       (!next.header.event_time_known || next.header.event_time_ns < kept->header.event_time_ns);
   if (!earlier) kept = next;
 }
 
@@ -211,14 +88,17 @@ std::string AssetView::history_chart() const {
   }
   if (points.size() < 3 || !life_) return {};
   ChartOptions options;
-  options.threshold = 100.0 * life_->threshold;
-  options.threshold_label = "fails";
-  options.y_low = 5.0 * std::floor(20.0 * std::min(lowest, life_->threshold)) - 5.0;
+  if (life_->threshold > 0.0) {  // a word without forecast does not say at which condition the seal fails
+    options.threshold = 100.0 * life_->threshold;
+    options.threshold_label = "fails";
+    lowest = std::min(lowest, life_->threshold);
+  }
+  options.y_low = 5.0 * std::floor(20.0 * lowest) - 5.0;
   options.y_high = 5.0 * std::ceil(20.0 * highest);
   options.height = 1 + static_cast<int>(std::lround((options.y_high - options.y_low) / 2.5));
   options.x_low_label = date(first);
   options.x_high_label = date(last);
-  return "\n  seal condition in % over " + std::to_string(points.size()) + " tests\n" + chart(points, options) + "\n";
+  return "\n  seal condition in % over " + count_of(points.size(), "test") + "\n" + chart(points, options) + "\n";
 }
 
 std::string AssetView::forecast_lines() const {
@@ -258,7 +138,7 @@ std::string AssetView::model_lines() const {
             ", to accept: " + found.header.message_id + ")\n";
   }
   if (acceptance_ && (!discrepancy_ || is_of_now(discrepancy_->header)))
-    text += "                   " + content(*acceptance_) + "\n";
+    text += "                   " + acceptance_words(*acceptance_) + "\n";
   return text;
 }
 
@@ -296,8 +176,9 @@ std::string AssetView::screen(bool services_run) const {
   const bool tested = life_ && life_->header.event_time_known && !(replaced_ns_ && life_->tests_since_replacement == 0);
   if (replaced_ns_) text += ", replaced on " + date(*replaced_ns_);
   if (tested) text += ", last test " + date(life_->header.event_time_ns);
-  text += tests == 0 && replaced_ns_ ? ", no test since\n"
-                                     : ", " + std::to_string(tests) + (tests == 1 ? " test" : " tests") + " in view\n";
+  if (tests == 0 && replaced_ns_ && !tested) text += ", no test since";
+  if (tests > 0 || !replaced_ns_) text += ", " + count_of(tests, "test") + " in view";
+  text += "\n";
   return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines(services_run) + model_lines() +
          left_out_lines();
 }

@@ -32,6 +32,12 @@ std::string percent(double share, int decimals) {
 
 std::string date(std::int64_t time_ns) { return format_date(UtcTime{time_ns}); }
 
+std::string count_of(std::size_t count, std::string_view thing) {
+  std::string text = std::to_string(count);
+  text.append(" ").append(thing);
+  return count == 1 ? text : text.append("s");
+}
+
 std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
   std::string result;
   std::size_t column = indent;
@@ -120,8 +126,10 @@ std::string chart(const std::vector<ChartPoint>& points, const ChartOptions& opt
   }
   std::vector<std::string> rows(static_cast<std::size_t>(options.height),
                                 std::string(static_cast<std::size_t>(options.width), ' '));
-  const int threshold_row = options.height - 1 - cell(options.threshold, options.y_low, options.y_high, options.height);
-  for (int column = 0; column < options.width; column += 2)
+  int threshold_row = -1;
+  if (options.threshold)
+    threshold_row = options.height - 1 - cell(*options.threshold, options.y_low, options.y_high, options.height);
+  for (int column = 0; threshold_row >= 0 && column < options.width; column += 2)
     rows[static_cast<std::size_t>(threshold_row)][static_cast<std::size_t>(column)] = '-';
   for (const ChartPoint& point : points) {
     const int row = options.height - 1 - cell(point.y, options.y_low, options.y_high, options.height);

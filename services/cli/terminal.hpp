@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,9 @@ namespace sealwatch::cli {
 [[nodiscard]] std::string percent(double share, int decimals = 1);
 /// Date of a UTC time in nanoseconds, "2031-04-12".
 [[nodiscard]] std::string date(std::int64_t time_ns);
+
+/// "1 test", "2 tests".
+[[nodiscard]] std::string count_of(std::size_t count, std::string_view thing);
 
 /// Breaks `text` into lines of at most `width` characters at blanks, each later line behind `indent` blanks.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width, std::size_t indent);
@@ -57,7 +61,7 @@ struct ChartOptions {
   int height = 10;
   double y_low = 0.0;
   double y_high = 1.0;
-  double threshold = 0.0;  ///< a dashed line across
+  std::optional<double> threshold;  ///< a dashed line across
   std::string threshold_label;
   std::string x_low_label;
   std::string x_high_label;

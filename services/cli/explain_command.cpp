@@ -1,5 +1,6 @@
 #include "services/cli/explain_command.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -106,15 +107,20 @@ void print_channels(const char* which, const mismatch::PooledFit& fit, bool chan
   }
 }
 
+void print_prognosis(const Explanation& explanation) {
+  const auto leakage = std::ranges::find(explanation.parameters, "R_CL", &ParameterShift::name);
+  if (!explanation.prognosis.known || leakage == explanation.parameters.end()) return;
+  std::printf("\n  R_CL %s +- %s -> %s +- %s Pa s/m3\n  %s\n", number(leakage->before).c_str(),
+              number(leakage->before_std, 2).c_str(), number(leakage->after).c_str(),
+              number(leakage->after_std, 2).c_str(), wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
+}
+
 void print_text(const Explanation& explanation, const Files& files) {
   std::printf("%s: %s\n  %s\n", explanation.asset_id.c_str(), std::string(name_of(explanation.verdict)).c_str(),
               wrapped(explanation.summary, kWidth, 2).c_str());
   for (const FoundEffect& effect : explanation.effects) print_effect(effect);
   const bool changed = !explanation.effects.empty();
-  if (changed && explanation.prognosis.known)
-    std::printf("\n  R_CL %s -> %s Pa s/m3\n  %s\n", number(explanation.prognosis.R_CL_before).c_str(),
-                number(explanation.prognosis.R_CL_after).c_str(),
-                wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
+  if (changed) print_prognosis(explanation);
   print_channels("kept aside", explanation.holdout, changed);
   print_channels("fitted", explanation.fit, changed);
   if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());

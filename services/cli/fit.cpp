@@ -176,6 +176,8 @@ void print_text(const AssetConfig& asset, const FitOptions& options, const FitRe
     std::printf("  %-22s %10.3f %10.2f %12.3g %14.3g\n", channel.channel.c_str(), channel.noise_normalised_rms,
                 channel.nrmse_percent, channel.whiteness_p, channel.independence_p);
   std::printf("\n  %s\n", wrapped(fit.report.termination, 110, 2).c_str());
+  if (!fit.report.admissible)
+    std::printf("\n  Where other tests of this actuator end alike, the model lacks something: sealwatch explain\n");
 }
 
 std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConfig& asset,

@@ -114,7 +114,8 @@ class ArrayElement {
     if (!name) return damaged();
     const std::uint32_t array = number(flags->data()), kind = array & 0xFFU;
     if (kind < kDoubleClass || kind > kUint64Class)
-      return fail(error_at("row 1, column " + printable(*name), {}, "must be one vector of real numbers"));
+      return fail(
+          error_at("row 1, column " + printable(*name), {}, "must be one vector of real numbers", kTakeOutOrStore));
     const std::optional<Tag> numbers = tag();
     if (!numbers || numbers->bytes > left_ || numbers->type >= kNumber_bytes.size()) return damaged();
     // Of complex numbers this is the real part.

@@ -15,4 +15,7 @@ enum class MatFormat { version_5, version_7_3 };
 /// kB. What HDF5 takes on trust in a file of version 7.3 is not looked at (hdf5_child.hpp).
 [[nodiscard]] Result<MatFormat> check_mat_container(const std::string& path);
 
+/// What to do about a variable that is no measurement.
+inline constexpr const char* kTakeOutOrStore = "take it out, or store one real number for each sample";
+
 }  // namespace sealwatch

@@ -68,11 +68,21 @@ std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
   }
 }
 
+/// A text or a single number that is no mistyped channel is what somebody wanted to say with the measurement.
+Error no_channel(const matvar_t& variable, const std::string& name, const Error& why) {
+  const bool single = variable.rank == 2 && variable.dims[0] == 1 && variable.dims[1] == 1;
+  const bool remark = single || variable.class_type < MAT_C_DOUBLE || variable.class_type > MAT_C_UINT64;
+  const bool take_out = remark && !why.advice.starts_with("did you mean");
+  return variable_error(
+      name, why.rule,
+      take_out ? "take it out: what is no channel belongs into the sidecar, as its note for instance" : why.advice);
+}
+
 Result<std::size_t> vector_length(const matvar_t& variable, const std::string& name) {
   const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
   const bool vector = variable.rank == 2 && (variable.dims[0] == 1 || variable.dims[1] == 1);
   if (!numeric || variable.isComplex != 0 || !vector)
-    return fail(variable_error(name, "must be one vector of real numbers"));
+    return fail(variable_error(name, "must be one vector of real numbers", kTakeOutOrStore));
   const std::size_t length = variable.dims[0] * variable.dims[1];
   if (length == 0) return fail(variable_error(name, "holds no samples"));
   if (length > kMostNumbers) return fail(variable_error(name, kTooMany));
@@ -97,7 +107,7 @@ Result<std::vector<MatVariable>> read_variables(const std::string& path, const P
   while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
     std::string name = variable->name != nullptr ? variable->name : "";
     if (const Result<Column> known = find_column(name, plant); !known)
-      return fail(variable_error(name, known.error().rule, known.error().advice));
+      return fail(no_channel(*variable, name, known.error()));
     Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name);
     if (!samples) return fail(samples.error());
     total += samples->size();
@@ -117,12 +127,16 @@ Status check(const ColumnarSamples& read) {
   for (std::size_t row = 0; row < time.size(); ++row) {
     if (!std::isfinite(time[row])) return fail(sample_error("time", row, time[row], "must be a finite number"));
     if (row > 0 && time[row] <= time[row - 1])
-      return fail(sample_error("time", row, time[row], "time must increase from row to row"));
+      return fail(sample_error(
+          "time", row, time[row],
+          "time must increase from row to row: the one before is " + std::to_string(time[row - 1]) + " s"));
   }
   for (const Series& channel : read.samples.channels) {
     if (channel.values.size() != time.size())
-      return fail(variable_error(channel.name, "has " + std::to_string(channel.values.size()) +
-                                                   " samples where time has " + std::to_string(time.size())));
+      return fail(variable_error(
+          channel.name,
+          "has " + std::to_string(channel.values.size()) + " samples where time has " + std::to_string(time.size()),
+          kTakeOutOrStore));
     for (std::size_t row = 0; row < time.size(); ++row)
       if (!std::isfinite(channel.values[row]))
         return fail(sample_error(channel.name, row, channel.values[row], "must be a finite number"));

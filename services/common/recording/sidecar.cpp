@@ -129,7 +129,7 @@ Error yaml_error(const YAML::Exception& problem) {
 
 /// The library takes a quoted text that is still open at the end of the file for closed; the mark for a document's end
 /// cannot stand in one.
-constexpr const char* kDocumentEnd = "\n...\n";
+std::string with_end(const std::string& text) { return text + (text.ends_with('\n') ? "...\n" : "\n...\n"); }
 
 /// Which text was left open: the last one that stands in `text`.
 Error open_quote_error(const std::string& text, const YAML::Exception& problem) try {
@@ -146,7 +146,7 @@ Result<YAML::Node> load_document(const std::string& text) {
   if (!is_utf8(text)) return fail("is not UTF-8", "save it as UTF-8");
   std::vector<YAML::Node> documents;
   try {
-    documents = YAML::LoadAll(text + kDocumentEnd);
+    documents = YAML::LoadAll(with_end(text));
   } catch (const YAML::Exception& problem) {
     const bool open_quote = problem.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
     return fail(open_quote ? open_quote_error(text, problem) : yaml_error(problem));

@@ -19,6 +19,7 @@
 namespace sealwatch {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -101,15 +102,16 @@ TEST_P(MatRecording, BadVectorsAreErrors) {
                 w.column("positio", {1.0});
               }),
               HasSubstr("did you mean 'position'?"));
-  EXPECT_THAT(error_with([](MatWriter& w) {
-                w.column("time", {0.0, 1.0});
-                w.column("position", {1.0});
-              }),
-              HasSubstr("row 1, column position: has 1 samples where time has 2"));
+  EXPECT_THAT(
+      error_with([](MatWriter& w) {
+        w.column("time", {0.0, 1.0});
+        w.column("position", {1.0});
+      }),
+      HasSubstr("row 1, column position: has 1 samples where time has 2; take it out, or store one real number"));
   EXPECT_THAT(error_with([](MatWriter& w) {
                 w.column("time", {0.0, 1.0, 1.0});
               }),
-              HasSubstr("row 3, column time: '1.000000': time must increase"));
+              HasSubstr("row 3, column time: '1.000000': time must increase from row to row: the one before is"));
   EXPECT_THAT(error_with([](MatWriter& w) {
                 w.column("time", {0.0, 1.0});
                 w.column("position", {0.0, std::nan("")});
@@ -125,6 +127,30 @@ TEST_P(MatRecording, BadVectorsAreErrors) {
                 w.put("time", MAT_C_CHAR, MAT_T_UTF8, {1, 3}, text.data());
               }),
               HasSubstr("must be one vector"));
+}
+
+TEST_P(MatRecording, TextAndSingleNumbersThatAreNoChannelsAreToBeTakenOut) {
+  {
+    MatWriter writer(path("a.mat"), GetParam());
+    writer.column("time", {0.0, 1.0});
+    writer.column("sampling_rate", {200.0});
+  }
+  EXPECT_THAT(error_of(path("a.mat")), HasSubstr("row 1, column sampling_rate: is not a channel of plant test_plant; "
+                                                 "take it out: what is no channel belongs into the sidecar"));
+  {
+    MatWriter writer(path("b.mat"), GetParam());
+    writer.column("time", {0.0, 1.0});
+    std::string text = "spring";
+    writer.put("season", MAT_C_CHAR, MAT_T_UINT8, {1, text.size()}, text.data());
+  }
+  EXPECT_THAT(error_of(path("b.mat")), AllOf(HasSubstr("row 1, column season: "), HasSubstr("; take it out")));
+  {
+    MatWriter writer(path("c.mat"), GetParam());
+    writer.column("time", {0.0, 1.0});
+    std::string text = "open";
+    writer.put("position", MAT_C_CHAR, MAT_T_UINT8, {1, text.size()}, text.data());
+  }
+  EXPECT_THAT(error_of(path("c.mat")), HasSubstr("must be one vector of real numbers; take it out, or store one"));
 }
 
 TEST_P(MatRecording, ACutFileIsAnError) {

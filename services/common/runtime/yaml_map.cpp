@@ -4,8 +4,12 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
+
+#include <yaml-cpp/exceptions.h>
 
 #include "sealwatch/core/text.hpp"
 
@@ -14,13 +18,46 @@ namespace {
 
 std::string line_of(const YAML::Mark& mark) { return mark.line < 0 ? "" : "line " + std::to_string(mark.line + 1); }
 
+/// The text that stands last.
+YAML::Node last_text(YAML::Node node) {
+  while (node.size() > 0) {
+    YAML::Node last;
+    for (const auto& entry : node) last.reset(node.IsMap() ? entry.second : YAML::Node(entry));
+    node.reset(last);
+  }
+  return node;
+}
+
+/// The library takes a quoted text that is still open at the end of the file for closed, and passes over all documents
+/// but the first. The mark for a document's end cannot stand in a quoted text.
+std::optional<Error> broken_off(const std::string& file, const std::string& text) {
+  const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+  if (documents.size() > 1)
+    return Error{file, line_of(documents[1].Mark()), {}, "a second YAML document stands here", "take out the line ---"};
+  try {
+    (void)YAML::LoadAll(text + (text.ends_with('\n') ? "...\n" : "\n...\n"));
+  } catch (const YAML::Exception& exception) {
+    if (exception.msg != YAML::ErrorMsg::DOC_IN_SCALAR || documents.empty()) throw;
+    const YAML::Node open = last_text(documents.front());
+    return Error{file, line_of(open.Mark()), open.Scalar(), "is not YAML: the quoted text has no closing quote", {}};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>& errors) {
   std::error_code ignored;
   try {
     if (!std::filesystem::is_regular_file(file, ignored)) throw YAML::BadFile(file);
-    YAML::Node root = YAML::LoadFile(file);
+    std::ifstream stream(file);
+    if (!stream) throw YAML::BadFile(file);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (const std::optional<Error> broken = broken_off(file, text)) {
+      errors.push_back(*broken);
+      return std::nullopt;
+    }
+    YAML::Node root = YAML::Load(text);
     return root.IsNull() ? YAML::Node(YAML::NodeType::Map) : root;
   } catch (const YAML::BadFile&) {
     errors.push_back({file, {}, {}, "cannot be read", "check that the file exists and may be read"});

@@ -136,6 +136,16 @@ TEST(ConfigurationTest, ABrokenFileIsNamedWithItsLine) {
   EXPECT_THAT(found[0], HasSubstr("sealwatch.yaml: line 3: is not YAML: "));
 }
 
+TEST(ConfigurationTest, WhatTheYamlLibraryPassesOverIsNamed) {
+  const YamlPlace place;
+  EXPECT_THAT(faults(place, place.write("sealwatch.yaml", "domain: 1\nlogging:\n  level: \"info\n  directory: x\n")),
+              ElementsAre("sealwatch.yaml: line 3: 'info directory: x ': is not YAML: the quoted text has no closing "
+                          "quote"));
+  EXPECT_THAT(faults(place, place.write("sealwatch.yaml", "domain: 1\n---\ndomain: 2\n")),
+              ElementsAre("sealwatch.yaml: line 3: a second YAML document stands here; take out the line ---"));
+  EXPECT_THAT(faults(place, place.write("sealwatch.yaml", "---\ndomain: 1\n...\n")), ElementsAre());
+}
+
 TEST(ConfigurationTest, AMissingFileIsNamed) {
   const YamlPlace place;
   EXPECT_THAT(faults(place, place.directory()),

@@ -182,6 +182,17 @@ std::optional<Error> objection(const Explained& explained, const AcceptOptions& 
   return error;
 }
 
+/// The latest replacement of the asset that prognosis knew before, from the last remaining_life.
+std::optional<std::int64_t> known_replacement(Bus& bus, const std::string& asset_id) {
+  const auto end = std::chrono::steady_clock::now() + kPatienceForAnswer;
+  std::optional<RemainingLife> last;
+  while (!last && std::chrono::steady_clock::now() < end)
+    for (const BusItem& item : bus.receive(std::chrono::milliseconds(100)))
+      if (const auto* message = std::get_if<Message>(&item); message != nullptr && asset_of(*message) == asset_id)
+        if (const auto* life = std::get_if<RemainingLife>(message)) last = *life;
+  return last && last->replacement_known ? std::optional(last->replaced_ns) : std::nullopt;
+}
+
 }  // namespace
 
 int run_accept(const AcceptOptions& options) {
@@ -261,7 +272,25 @@ int run_replaced(const ReplacedOptions& options) {
   message.header.message_id = "maintenance_event/" + options.asset_id + "/" + format_utc(*at);
   std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
-  const int sent = send(session, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  constexpr std::array kLife = {Topic::remaining_life};
+  if (const Status joined = session->bus->subscribe(kLife); !joined) {
+    complain(joined.error());
+    return kInternalFailure;
+  }
+  const std::optional<std::int64_t> known = known_replacement(*session->bus, options.asset_id);
+  const bool later = known && *known > at->nanoseconds;
+  // The same one may have reached only some of the services: it is sent again.
+  const int sent =
+      later ? kOk : send(session, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  if (sent == kOk && known && *known >= at->nanoseconds) {
+    complain(Error{.file = {},
+                   .place = "--at",
+                   .value = options.at,
+                   .rule = "changes nothing: a replacement on " + date(*known) + " is known already" +
+                           (later ? ", which is later" : "") + "; only tests since " + date(*known) + " count",
+                   .advice = {}});
+    return kAnswerIsNo;
+  }
   if (sent == kOk)
     std::printf("received: only tests of %s since %s count for the new %s\n", options.asset_id.c_str(),
                 date(at->nanoseconds).c_str(), options.what.c_str());

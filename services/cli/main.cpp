@@ -279,7 +279,7 @@ class CommandLine {
         ->capture_default_str();
     replay
         ->add_option("--asset", replay_.asset_file,
-                     "asset file: of recordings without asset_id; offline also in place of the configured asset")
+                     "asset file: all recordings are of this asset; offline also in place of the configured one")
         ->check(an_asset_file, "FILE");
     replay->add_option("--results", replay_.results_directory,
                        "write every message there, a JSON line each, a file a topic");

@@ -1,5 +1,6 @@
 #include "services/cli/replay_log.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -19,13 +20,44 @@ ReplayLog::ReplayLog(const ReplayOptions& options, std::size_t tests) : options_
 
 std::span<const Topic> ReplayLog::topics() { return kTopics; }
 
+void ReplayLog::take_earlier(const Message& message) {
+  assets_[asset_of(message)].take(message);
+  const Header& header = header_of(message);
+  if (!header.event_time_known || topic_of(message) == Topic::model_discrepancy) return;
+  std::int64_t& latest = latest_known_.try_emplace(asset_of(message), header.event_time_ns).first->second;
+  latest = std::max(latest, header.event_time_ns);
+}
+
 void ReplayLog::take(const Message& message) {
   bool wanted = false;
   for (const Topic topic : kTopics) wanted = wanted || topic == topic_of(message);
   if (!wanted) return;
   write(message);
   assets_[asset_of(message)].take(message);
+  if (const auto* life = std::get_if<RemainingLife>(&message); life != nullptr && !life->header.pst_id.empty()) {
+    const auto latest = latest_known_.find(life->asset_id);
+    taken_in_[life->header.pst_id] =
+        life->header.event_time_known && latest != latest_known_.end() && life->header.event_time_ns < latest->second;
+  }
   if (const auto* advisory = std::get_if<Advisory>(&message)) show_advisory(*advisory, message);
+}
+
+std::string ReplayLog::without_advice() const {
+  if (taken_in_.empty() && concluded_.empty())
+    return "these tests were known already (same recording_id and content), nothing new was advised";
+  std::size_t silent = 0;
+  std::size_t earlier = 0;
+  for (const auto& [pst_id, later_known] : taken_in_) {
+    if (concluded_.contains(pst_id)) continue;
+    ++silent;
+    if (later_known) ++earlier;
+  }
+  if (silent == 0) return {};
+  const std::string stands = ": taken into the history; the advice stands";
+  if (silent == earlier)
+    return count_of(silent, "test") + (silent == 1 ? " is" : " are") +
+           " earlier than the newest test or replacement that was known" + stands;
+  return count_of(silent, "test") + " gave no new advice" + stands;
 }
 
 void ReplayLog::show_advisory(const Advisory& advisory, const Message& message) {

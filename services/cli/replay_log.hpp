@@ -23,9 +23,9 @@ class ReplayLog {
   [[nodiscard]] static std::span<const Topic> topics();
   void take(const Message& message);
   /// A conclusion from before this replay: part of the final screen, not of the results.
-  void take_earlier(const Message& message) { assets_[asset_of(message)].take(message); }
-  /// Tests that were concluded in this replay.
-  [[nodiscard]] std::size_t concluded() const { return concluded_.size(); }
+  void take_earlier(const Message& message);
+  /// Why there is no new advice from tests that could be read, in words; "" when each gave some.
+  [[nodiscard]] std::string without_advice() const;
   /// Something that happened besides, like a service that was started again.
   void remark(const std::string& text);
   /// The final screen: each asset's forecast, interval, reasons, and where to look further. An error when the files of
@@ -40,7 +40,9 @@ class ReplayLog {
 
   ReplayOptions options_;
   Progress progress_;
-  std::set<std::string> concluded_;                   ///< PST ids that reached the last layer
+  std::set<std::string> concluded_;       ///< PST ids that reached the last layer
+  std::map<std::string, bool> taken_in_;  ///< by PST id: tests judged in this replay; whether a later one was known
+  std::map<std::string, std::int64_t> latest_known_;  ///< by asset: event time of the last test or replacement before
   std::map<std::string, std::string> last_advisory_;  ///< advisory id and state shown last, by asset
   std::map<std::string, AssetView> assets_;
   std::map<Topic, std::unique_ptr<std::ofstream>> results_;

@@ -14,6 +14,20 @@
 #include "services/data_acquisition/recording_blocks.hpp"
 
 namespace sealwatch::cli {
+namespace {
+
+std::optional<Error> not_a_file(const std::string& file) {
+  const bool folder = std::filesystem::is_directory(file);
+  if (std::filesystem::exists(file) && !folder) return std::nullopt;
+  return Error{.file = file,
+               .place = {},
+               .value = {},
+               .rule = folder ? "is a folder" : "is not there",
+               .advice = folder ? "give its recordings: " + (std::filesystem::path(file) / "*.csv").string() : ""};
+}
+
+}  // namespace
+
 std::optional<ReplaySource> ReplaySource::open(const ReplayOptions& options, const Configuration& configuration) {
   ReplaySource source;
   source.configuration_ = &configuration;
@@ -21,16 +35,11 @@ std::optional<ReplaySource> ReplaySource::open(const ReplayOptions& options, con
   if (!options.asset_file.empty()) {
     const auto asset = load_asset_or_explain(options.asset_file);
     if (!asset) return std::nullopt;
-    source.default_asset_ = asset->asset_id;
+    source.asset_ = asset->asset_id;
   }
-  for (const std::string& file : source.files_) {
-    const bool folder = std::filesystem::is_directory(file);
-    if (std::filesystem::exists(file) && !folder) continue;
-    complain(Error{.file = file,
-                   .place = {},
-                   .value = {},
-                   .rule = folder ? "is a folder" : "is not there",
-                   .advice = folder ? "give its recordings: " + (std::filesystem::path(file) / "*.csv").string() : ""});
+  // One that is missing is passed over as one that is damaged; where all are, nothing needs to be started.
+  if (std::ranges::all_of(source.files_, [](const std::string& file) { return not_a_file(file).has_value(); })) {
+    for (const std::string& file : source.files_) complain(*not_a_file(file));
     return std::nullopt;
   }
   source.put_in_order();
@@ -51,9 +60,16 @@ void ReplaySource::put_in_order() {
 }
 
 Result<Recording> ReplaySource::read(const std::string& file) const {
+  if (const auto error = not_a_file(file)) return fail(*error);
   Result<std::string> asset_id = recorded_asset_id(file);
   if (!asset_id) return fail(asset_id.error());
-  if (asset_id->empty()) *asset_id = default_asset_;
+  if (!asset_.empty() && !asset_id->empty() && *asset_id != asset_)
+    return fail(Error{.file = file,
+                      .place = "asset_id",
+                      .value = *asset_id,
+                      .rule = "is not the asset " + asset_,
+                      .advice = "give recordings of this one asset, or leave --asset out"});
+  if (asset_id->empty()) *asset_id = asset_;
   const AssetConfig* asset = configuration_->find_asset(*asset_id);
   if (asset == nullptr) {
     std::vector<std::string> known;

@@ -14,7 +14,7 @@ namespace sealwatch::cli {
 
 class ReplaySource {
  public:
-  /// Checks that every file is there. Recordings are read one at a time, when their turn comes.
+  /// Recordings are read one at a time, when their turn comes. None where not a single file is there.
   [[nodiscard]] static std::optional<ReplaySource> open(const ReplayOptions& options,
                                                         const Configuration& configuration);
   /// Blocks of the next readable recording; none at the end. A bad recording is complained about and passed over.
@@ -28,7 +28,7 @@ class ReplaySource {
 
   const Configuration* configuration_ = nullptr;
   std::vector<std::string> files_;
-  std::string default_asset_;  ///< for recordings that name none
+  std::string asset_;  ///< of all recordings, where the command line names one
   std::size_t next_ = 0;
   std::size_t failures_ = 0;
 };

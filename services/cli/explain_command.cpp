@@ -108,7 +108,7 @@ void print_channels(const char* which, const mismatch::PooledFit& fit, bool chan
 }
 
 void print_prognosis(const Explanation& explanation) {
-  const auto leakage = std::ranges::find(explanation.parameters, "R_CL", &ParameterShift::name);
+  const auto leakage = std::ranges::find(explanation.parameters, "R_CL", &mismatch::ParameterShift::name);
   if (!explanation.prognosis.known || leakage == explanation.parameters.end()) return;
   std::printf("\n  R_CL %s +- %s -> %s +- %s Pa s/m3\n  %s\n", number(leakage->before).c_str(),
               number(leakage->before_std, 2).c_str(), number(leakage->after).c_str(),

@@ -87,6 +87,24 @@ TEST(JournalFile, OfAnUnknownKindOfDatabaseIsRefused) {
   EXPECT_THAT(journal.error().describe(), HasSubstr("oracel"));
 }
 
+TEST(JournalPlace, IsTheSameHoweverTheFileIsWritten) {
+  EXPECT_EQ(Journal::place_of("sqlite3:///var/lib/../j.db"), "sqlite3:///var/j.db");
+  EXPECT_EQ(Journal::place_of("sqlite3://dbname=/var/j.db timeout=5"), "sqlite3:///var/j.db");
+  EXPECT_EQ(Journal::place_of("sqlite3://j.db"), Journal::place_of("sqlite3://./j.db"));
+  EXPECT_NE(Journal::place_of("sqlite3://a.db"), Journal::place_of("sqlite3://b.db"));
+  EXPECT_EQ(Journal::place_of("postgresql://dbname=x"), "postgresql://dbname=x");
+}
+
+TEST(JournalServer, ThatDoesNotAnswerIsNoMatterOfDirectories) {
+  const Status reached = Journal::check("postgresql://host=127.0.0.1 port=1 dbname=x password=secret");
+  ASSERT_FALSE(reached.has_value());
+  EXPECT_THAT(reached.error().describe(), ::testing::Not(HasSubstr("directory")));
+  EXPECT_THAT(reached.error().describe(), ::testing::Not(HasSubstr("secret")));
+  if (reached.error().rule.find("onnection") != std::string::npos) {  // SOCI's part for PostgreSQL is installed
+    EXPECT_THAT(reached.error().advice, HasSubstr("check that the server answers there"));
+  }
+}
+
 TEST(JournalFile, ThatAnotherProcessWritesToIsALockedErrorNotALoss) {
   const Place place;
   auto first = Journal::open(place.connection(), "state_detection");

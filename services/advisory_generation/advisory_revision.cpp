@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "sealwatch/forecast/words.hpp"
-
 namespace sealwatch::advisory_generation {
 namespace {
 
@@ -92,7 +90,10 @@ Advisory with_overdue_test(const std::optional<Advisory>& current, const StateRe
   Recommendation call;
   call.priority = AdvisoryPriority::medium;
   call.action = AdvisoryAction::repeat_test;
-  call.text = "Run the partial stroke test: it is overdue by " + forecast::in_days(report.overdue_days) + ".";
+  // Since when: this stands until the test comes, while the days grow.
+  constexpr double kDay_s = 86400.0;
+  const UtcTime due = add_seconds({report.header.event_time_ns}, -kDay_s * report.overdue_days);
+  call.text = "Run the partial stroke test: it is overdue since " + format_date(due) + ".";
   const bool same = current && current->priority == call.priority && current->action == call.action;
   const bool more_urgent_stands = current && current->priority >= call.priority && !same;
   if (!more_urgent_stands) {

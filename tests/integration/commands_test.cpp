@@ -12,6 +12,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Commands : public SixServices {
  protected:
@@ -301,6 +302,26 @@ TEST_F(Commands, ReplayPassesOverABadRecordingAndSaysSo) {
   EXPECT_EQ(replay.status, 2) << replay.output;
   EXPECT_THAT(replay.output, HasSubstr("empty.csv"));
   EXPECT_THAT(replay.output, HasSubstr("R_CL")) << "the good recording is concluded all the same";
+}
+
+TEST_F(Commands, ReplayPassesOverAMissingRecordingAndAFolder) {
+  const auto [recording, truth] = worn_test();
+  const std::string missing = (folder_ / "nofile.csv").string();
+  const Finished replay =
+      run({"sealwatch", "replay", "--config", config(), "--offline", "--quiet", missing, folder_.string(), recording});
+  EXPECT_EQ(replay.status, 2) << replay.output;
+  EXPECT_THAT(replay.output,
+              ::testing::AllOf(HasSubstr("nofile.csv: is not there"), HasSubstr("is a folder"), HasSubstr("R_CL")));
+}
+
+TEST_F(Commands, ReplayOfAnotherAssetsRecordingIsRefused) {
+  const auto [recording, truth] = worn_test();
+  const std::string other = write("other.yaml", "asset_id: XT04-MV2\n");
+  const Finished replay =
+      run({"sealwatch", "replay", "--config", config(), "--offline", "--quiet", "--asset", other, recording});
+  EXPECT_EQ(replay.status, 2) << replay.output;
+  EXPECT_THAT(replay.output,
+              ::testing::AllOf(HasSubstr("XT03-MV2"), HasSubstr("is not the asset XT04-MV2"), Not(HasSubstr("R_CL"))));
 }
 
 TEST_F(Commands, ReplayWhoseResultsFindNoRoomSaysSo) {

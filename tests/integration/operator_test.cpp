@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "tests/integration/six_services.hpp"
@@ -89,10 +90,45 @@ TEST_F(Operator, IsToldOfAServiceThatHangs) {
   EXPECT_EQ(state_of(machine.output).at("state_detection")["trouble"], "");
 }
 
+TEST_F(Operator, IsToldThatAnEarlierTestLeavesTheAdvice) {
+  const auto state = state_directory("late");
+  const auto play = [&](std::size_t k) {
+    return run({"sealwatch", "replay", "--config", config(), "--quiet", recordings()[k]});
+  };
+  kill(up_, SIGTERM);
+  waitpid(up_, nullptr, 0);
+  up_ = start({"sealwatch", "up", "--config", config(), "--state", state.string()}, folder_ / "late.log");
+  Finished newest;
+  for (int attempt = 0; attempt < 10 && newest.status != 0; ++attempt) newest = play(2);
+  ASSERT_EQ(newest.status, 0) << newest.output;
+  const Finished earlier = play(0);
+  EXPECT_EQ(earlier.status, 0) << earlier.output;
+  EXPECT_THAT(earlier.output, AllOf(HasSubstr("1 test is earlier than"), HasSubstr("the advice stands"),
+                                    Not(HasSubstr("known already"))));
+  EXPECT_THAT(play(0).output, HasSubstr("known already"));
+}
+
+TEST_F(Operator, IsToldThatAllAreUpOnlyOnceAllAre) {
+  std::ostringstream log;
+  log << std::ifstream(folder_ / "up.log").rdbuf();
+  EXPECT_THAT(log.str(), HasSubstr("sealwatch is up"));
+  kill(up_, SIGTERM);
+  waitpid(up_, nullptr, 0);
+  const auto blocked = state_directory("blocked");
+  std::ofstream(blocked) << "a file where the state directory should be";
+  const Finished refused = run({"sealwatch", "up", "--config", config(), "--state", blocked.string()});
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_THAT(refused.output, AllOf(HasSubstr("one could not start"), Not(HasSubstr("sealwatch is up"))));
+  up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
+              folder_ / "up_again.log");
+}
+
 TEST_F(Operator, IsToldWhatBecameOfIt) {
   const Finished again = replay({"--results", (folder_ / "again").string()});
   EXPECT_EQ(again.status, 0) << again.output;
-  EXPECT_THAT(again.output, AllOf(HasSubstr("nothing was written to"), HasSubstr("replay --offline")));
+  EXPECT_THAT(again.output, AllOf(HasSubstr("nothing was written to"), HasSubstr("replay --offline"),
+                                  HasSubstr("were known already"), HasSubstr("1 test in view")))
+      << "what was known is on the screen all the same";
 
   const Finished second = run({"sealwatch", "up", "--config", config(), "--state", state_directory("other").string()});
   EXPECT_EQ(second.status, 2) << second.output;
@@ -120,6 +156,14 @@ TEST_F(Operator, IsToldWhatBecameOfIt) {
   const Finished status = run({"sealwatch", "status", "--config", config()});
   EXPECT_THAT(status.output, AllOf(HasSubstr("replaced on 2020-01-01, no test since"), Not(HasSubstr("R_CL")),
                                    Not(HasSubstr("grade")), Not(HasSubstr("last test"))));
+
+  for (const char* day : {"2019-01-01", "2020-01-01"}) {
+    const Finished vain =
+        run({"sealwatch", "replaced", "--config", config(), "XT03-MV2", "--at", day, "--by", "operator"});
+    EXPECT_EQ(vain.status, 1) << vain.output;
+    EXPECT_THAT(vain.output, AllOf(HasSubstr("a replacement on 2020-01-01 is known already"),
+                                   HasSubstr("only tests since 2020-01-01 count"), Not(HasSubstr("received"))));
+  }
 }
 
 }  // namespace

@@ -151,6 +151,83 @@ TEST(AssetView, ShowsTheForecastOfTheTestsSinceAReplacement) {
   EXPECT_THAT(view.screen(), HasSubstr("the history starts anew"));
 }
 
+RemainingLife life_of(const std::string& day) {
+  RemainingLife life;
+  life.asset_id = "A";
+  life.header = header_of_test(day);
+  life.threshold = 0.6;
+  life.forecasts = {forecast_of(18.0)};
+  return life;
+}
+
+LeakageEstimate used_estimate(const std::string& day, double condition) {
+  LeakageEstimate estimate;
+  estimate.asset_id = "A";
+  estimate.header = header_of_test(day);
+  estimate.estimated = estimate.condition_known = estimate.used_for_forecast = true;
+  estimate.condition = condition;
+  return estimate;
+}
+
+// A replacement that is reported late: tests have come since, but a late subscriber has heard none of them.
+TEST(AssetView, DoesNotSayNoTestSinceBesideALastTest) {
+  RemainingLife life = life_of("2018-02-13");
+  life.replacement_known = true;
+  life.replaced_ns = parse_utc("2018-01-20").value().nanoseconds;
+  life.tests_since_replacement = 1;
+  AssetView view;
+  view.take(Message(life));
+  EXPECT_THAT(view.screen(), HasSubstr("== A, replaced on 2018-01-20, last test 2018-02-13\n"));
+  view.take(Message(used_estimate("2018-02-13", 0.9)));
+  EXPECT_THAT(view.screen(), HasSubstr("last test 2018-02-13, 1 test in view\n"));
+}
+
+TEST(AssetView, DrawsTheFailureLimitOnlyWhereItIsKnown) {
+  RemainingLife life = life_of("2031-03-12");
+  AssetView with;
+  AssetView without;
+  for (const auto& [day, condition] : {std::pair("2031-01-12", 0.92), {"2031-02-12", 0.91}, {"2031-03-12", 0.90}}) {
+    with.take(Message(used_estimate(day, condition)));
+    without.take(Message(used_estimate(day, condition)));
+  }
+  with.take(Message(life));
+  EXPECT_THAT(with.screen(), ::testing::AllOf(HasSubstr("fails\n"), HasSubstr("  55.0 |")));
+  life.threshold = 0.0;
+  without.take(Message(life));
+  EXPECT_THAT(without.screen(), ::testing::AllOf(Not(HasSubstr("fails")), HasSubstr("  85.0 |"), Not(HasSubstr("- -")),
+                                                 Not(HasSubstr("   0.0 |"))));
+}
+
+TEST(AssetView, KeepsADatedWordBeforeAnUndatedOne) {
+  RemainingLife undated = life_of("2031-04-12");
+  undated.header.event_time_known = false;
+  undated.header.event_time_ns = 0;
+  AssetView view;
+  view.take(Message(undated));
+  EXPECT_THAT(view.screen(), Not(HasSubstr(", last test")));
+  view.take(Message(life_of("2031-04-12")));
+  view.take(Message(undated));
+  EXPECT_THAT(view.screen(), HasSubstr("last test 2031-04-12"));
+}
+
+TEST(OneLine, NamesTheSensorAndCountsInTheSingular) {
+  HealthReport health;
+  health.asset_id = "A";
+  health.header = header_of_test("2031-04-12");
+  health.admissible_for_prognosis = true;
+  ProposedFault fault;
+  fault.kind = FaultKind::sensor;
+  fault.element = "sensor:pressure_a";
+  fault.likelihood = 0.51;
+  health.ambiguity_group = {fault};
+  EXPECT_THAT(one_line(Message(health)), HasSubstr("most likely sensor pressure a (51 %)"));
+  ServiceStatus status;
+  status.pending_inputs = 1;
+  status.written = {{.topic = "advisory", .writer_id = "w", .sequence = 1}};
+  EXPECT_THAT(one_line(status), HasSubstr("1 message written, 1 input waiting"));
+  EXPECT_THAT(scored_line(scored(1, 1, 1)), HasSubstr("of the last 1 forecast, "));
+}
+
 TEST(AssetView, HintsAtAcknowledgingOnlyWhereServicesRun) {
   Advisory advisory;
   advisory.asset_id = "A";

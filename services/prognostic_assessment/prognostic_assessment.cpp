@@ -117,7 +117,17 @@ Conclusion PrognosticAssessment::join(const Input& input, std::optional<Input> P
   return conclusion;
 }
 
+/// The first report after a replacement names it, by an id that ends in its time: so it is known even where this
+/// service's journal was lost, as nobody sends a maintenance_event again.
+void PrognosticAssessment::learn_replacement(const HealthReport& health) {
+  for (const std::string& source : health.header.source_ids)
+    if (source.starts_with("maintenance_event/"))
+      if (const auto time = parse_utc(source.substr(source.rfind('/') + 1)))
+        history_[health.asset_id].add_replacement(*time);
+}
+
 std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, const TestWindow& window) {
+  learn_replacement(health);
   LeakageEstimate leakage = estimate(health, window);
   leakage.header = concluded_from(health.header, "leakage_estimate", kProducer,
                                   {health.header.message_id, window.header.message_id});

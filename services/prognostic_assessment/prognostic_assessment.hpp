@@ -60,6 +60,7 @@ class PrognosticAssessment final : public Layer {
 
   template <class Input>
   [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
+  void learn_replacement(const HealthReport& health);
   [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
   void remember(const LeakageEstimate& estimate);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);

@@ -110,6 +110,19 @@ TEST_F(PrognosticAssessmentTest, AfterReplacementTheHistoryStartsAnew) {
   EXPECT_NEAR(window_24.rul_months, 40.5 + 80.0 - 70.0, 1e-6);
 }
 
+TEST_F(PrognosticAssessmentTest, AReplacementThatALostJournalForgotIsLearntFromTheFirstTestAfterIt) {
+  auto inputs = inputs_of(straight_life(1, 40));
+  for (Message& later : inputs_of(straight_life(41, 44))) {
+    auto* health = std::get_if<HealthReport>(&later);
+    if (health && health->header.pst_id == straight_life(41, 41).front().pst_id())
+      health->header.source_ids.push_back(replacement(40.5).header.message_id);
+    inputs.push_back(later);
+  }
+  const RemainingLife life = of_kind<RemainingLife>(run(inputs)).back();
+  EXPECT_EQ(life.tests_since_replacement, 4);
+  EXPECT_EQ(life.replaced_ns, replacement(40.5).header.event_time_ns);
+}
+
 TEST_F(PrognosticAssessmentTest, AReplacementFromBeforeAllTestsLeavesTheForecast) {
   auto inputs = inputs_of(straight_life(1, 40));
   inputs.emplace_back(replacement(-120.0));  // a wrong year

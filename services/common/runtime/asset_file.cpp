@@ -46,11 +46,17 @@ void read_range(YamlMap& sensor, SensorSetting& setting) {
 struct SensorKey {
   const char* name;
   double SensorSetting::*target;
-  NumberRule rule;
 };
-constexpr SensorKey kSensorKeys[] = {{"noise_std", &SensorSetting::noise_std, kPositive},
-                                     {"time_constant", &SensorSetting::time_constant_s, kNotNegative},
-                                     {"quantisation", &SensorSetting::quantisation, kNotNegative}};
+constexpr SensorKey kSensorKeys[] = {{"noise_std", &SensorSetting::noise_std},
+                                     {"time_constant", &SensorSetting::time_constant_s},
+                                     {"quantisation", &SensorSetting::quantisation}};
+
+/// What is measured has noise, by which its residuals are divided; commands and switch positions may have none.
+NumberRule rule_of(const SensorKey& key, const std::string& channel, const PlantDescription& plant) {
+  const auto row = std::ranges::find(plant.channels, channel, &ChannelDescription::name);
+  const bool has_noise = row != plant.channels.end() && row->noise_std > 0.0;
+  return key.target == &SensorSetting::noise_std && has_noise ? kPositive : kNotNegative;
+}
 
 /// Either channel by channel, {pressure_a: {noise_std: 1.0e4}}, or key by key, {noise_std: {pressure_a: 1.0e4}}.
 void read_sensors(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
@@ -62,13 +68,14 @@ void read_sensors(YamlMap& asset, const PlantDescription& plant, AssetConfig& co
     if (!sensors->has(key.name)) continue;
     auto by_channel = sensors->map(key.name);
     if (!by_channel) continue;
-    for (auto& [channel, setting] : config.sensors) by_channel->read(channel, setting.*key.target, key.rule);
+    for (auto& [channel, setting] : config.sensors)
+      by_channel->read(channel, setting.*key.target, rule_of(key, channel, plant));
     by_channel->finish();
   }
   for (auto& [channel, setting] : config.sensors) {
     auto sensor = sensors->map(channel);
     if (!sensor) continue;
-    for (const SensorKey& key : kSensorKeys) sensor->read(key.name, setting.*key.target, key.rule);
+    for (const SensorKey& key : kSensorKeys) sensor->read(key.name, setting.*key.target, rule_of(key, channel, plant));
     read_range(*sensor, setting);
     sensor->finish();
   }

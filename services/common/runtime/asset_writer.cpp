@@ -42,7 +42,7 @@ void write_sensors(YAML::Emitter& out, const AssetConfig& asset) {
   out << YAML::Key << "sensors" << YAML::Value << YAML::BeginMap;
   for (const auto& [channel, sensor] : asset.sensors) {
     out << YAML::Key << channel << YAML::Value << YAML::Flow << YAML::BeginMap;
-    if (sensor.noise_std > 0.0) out << YAML::Key << "noise_std" << YAML::Value << exact(sensor.noise_std);
+    out << YAML::Key << "noise_std" << YAML::Value << exact(sensor.noise_std);
     out << YAML::Key << "time_constant" << YAML::Value << exact(sensor.time_constant_s);
     out << YAML::Key << "quantisation" << YAML::Value << exact(sensor.quantisation);
     if (sensor.range_max > sensor.range_min)

@@ -95,7 +95,8 @@ const BadCase kBadCases[] = {
      "'coulomb_friction'?"},
     {"physics_parameters", "asset_id: A\nphysics:\n  - {id: coulomb_friction, element: piston, parameters: {F: 1}}\n",
      "a.yaml: line 3, key physics[0].id: 'coulomb_friction': needs exactly the parameters F_c, v_s or F_c, v_s, m"},
-    {"physics_without_parameters", "asset_id: A\nphysics:\n  - {id: hose_compliance, element: chamber_a}\n", "a.yaml: line 3, key physics[0].id: 'hose_compliance': needs exactly the parameters C_h or C_p, b_h or C_s, p_h"},
+    {"physics_without_parameters", "asset_id: A\nphysics:\n  - {id: hose_compliance, element: chamber_a}\n",
+     "a.yaml: line 3, key physics[0].id: 'hose_compliance': needs exactly the parameters C_h or C_p, b_h or C_s, p_h"},
     {"physics_sign",
      "asset_id: A\nphysics:\n  - {id: external_leakage, element: chamber_a, parameters: {G: -4.0e-14}}\n",
      "a.yaml: line 3, key physics[0].parameters.G: '-4e-14': must stay within the law's bounds, 0 to 1e-10 m3/(s Pa)"},
@@ -179,6 +180,14 @@ physics:
   EXPECT_FALSE(asset.physics[0].parameters.at("F_c").estimate);
   EXPECT_TRUE(asset.physics[0].parameters.at("v_s").estimate);
   EXPECT_EQ(asset.physics[1].element, "sensor:flow");
+}
+
+TEST(AssetTest, ACommandMayBeWithoutNoise) {
+  EXPECT_EQ(load("asset_id: A\nsensors: {motor_voltage: {noise_std: 0}}\n").sensors.at("motor_voltage").noise_std, 0.0);
+  for (const PlantDescription& plant : all_plants()) {
+    const AssetConfig asset = load("asset_id: A\nmodel: " + plant.name + "\n");
+    EXPECT_EQ(asset_to_yaml(load(asset_to_yaml(asset))), asset_to_yaml(asset)) << plant.name;
+  }
 }
 
 TEST(AssetTest, AValueOutsideTheTablesBoundsBringsItsOwn) {

@@ -190,11 +190,12 @@ class LiveReplay {
   }
 
   int stalled() {
+    const std::string disabled = explain_disabled(session_.configuration);
     complain(Error{.file = {},
                    .place = {},
                    .value = {},
                    .rule = "nothing has come for 60 s; " + quiescence_.explain(),
-                   .advice = "see the services' logs, and `sealwatch status`"});
+                   .advice = disabled.empty() ? "see the services' logs, and `sealwatch status`" : disabled});
     return kInternalFailure;
   }
 

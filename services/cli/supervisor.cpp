@@ -48,6 +48,13 @@ bool enabled(const Configuration& configuration, const std::string& service) {
   return named == configuration.services.end() || named->second.enabled;
 }
 
+std::string explain_disabled(const Configuration& configuration) {
+  std::string text;
+  for (const std::string& service : service_names())
+    if (!enabled(configuration, service)) text.append(text.empty() ? "services." : ", services.").append(service);
+  return text.empty() ? "" : text.append(" disabled here (enabled: false): the services after it get nothing");
+}
+
 std::vector<ServiceProgram> service_programs(const std::string& config, const std::string& state_directory,
                                              const Configuration& configuration) {
   std::vector<ServiceProgram> programs;

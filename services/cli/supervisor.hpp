@@ -26,6 +26,8 @@ struct ServiceProgram {
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<ServiceProgram>& programs);
 /// Whether this machine is to run the service: `services.NAME.enabled`, true where nothing is said.
 [[nodiscard]] bool enabled(const Configuration& configuration, const std::string& service);
+/// "services.state_detection disabled here ...": what a chain that stands still may lack; "" where all are enabled.
+[[nodiscard]] std::string explain_disabled(const Configuration& configuration);
 
 class Supervisor {
  public:

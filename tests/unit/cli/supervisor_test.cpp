@@ -26,6 +26,15 @@ TEST(Supervisor, StartsAgainWhatCrashes) {
   EXPECT_FALSE(supervisor.refused());
 }
 
+TEST(Supervisor, DisabledServicesAreNamed) {
+  Configuration configuration;
+  EXPECT_EQ(explain_disabled(configuration), "");
+  configuration.services["state_detection"].enabled = false;
+  configuration.services["health_assessment"].enabled = true;
+  EXPECT_EQ(explain_disabled(configuration),
+            "services.state_detection disabled here (enabled: false): the services after it get nothing");
+}
+
 TEST(Supervisor, DoesNotStartAgainWhatRefusesItsInput) {
   Supervisor supervisor({{.name = "refusing", .arguments = {"/bin/sh", "-c", "exit 2"}}}, milliseconds(50));
   EXPECT_EQ(second_of(supervisor), std::vector<std::string>{"refusing ended with exit status 2"});

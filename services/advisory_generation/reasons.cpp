@@ -103,8 +103,12 @@ std::string limit_of(const RemainingLife& life) {
 }
 
 std::string describe(const ProposedFault& fault) {
-  return in_words(name_of(fault.kind)) + " of " + in_words(fault.element) + ", likelihood " +
-         in_percent(fault.likelihood) + (fault.iso14224_code.empty() ? "" : " (ISO 14224 " + fault.iso14224_code + ")");
+  constexpr std::string_view kSensor = "sensor:";  // the kind says so already
+  const std::string_view element = fault.element;
+  const bool named_twice = fault.kind == FaultKind::sensor && element.starts_with(kSensor);
+  return in_words(name_of(fault.kind)) + " of " + in_words(named_twice ? element.substr(kSensor.size()) : element) +
+         ", likelihood " + in_percent(fault.likelihood) +
+         (fault.iso14224_code.empty() ? "" : " (ISO 14224 " + fault.iso14224_code + ")");
 }
 
 std::string joined(const std::vector<std::string>& parts) {

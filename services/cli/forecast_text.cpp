@@ -91,7 +91,12 @@ std::string forecast_table(const std::vector<Forecast>& forecasts) {
   std::string text =
       "  remaining life   method         window     forecast   95 % interval      P10 /   P50 /   P90   end of life\n";
   for (const Forecast& forecast : forecasts) text += forecast_row(forecast, &forecast == &forecasts.front());
-  text += "                   (months from the last test; * in charge)\n";
+  const auto is_line = [](const Forecast& forecast) {
+    return forecast.method == "ols" && forecast.state == ForecastState::ok;
+  };
+  const bool lines = std::ranges::any_of(forecasts, is_line);
+  text += std::string("                   (months from the last test; * in charge") +
+          (lines ? "; ols: a straight line, whose own interval is too narrow for an ageing seal)\n" : ")\n");
   return text + failure_chart(forecasts.front().failure_probability);
 }
 

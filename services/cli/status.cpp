@@ -53,7 +53,7 @@ void print_json(const Heard& heard) {
   std::printf("%s\n", result.dump(1).c_str());
 }
 
-void print_text(const Heard& heard) {
+void print_text(const Heard& heard, const std::vector<std::string>& configured) {
   if (heard.services.none()) {
     std::printf("no service is running in this domain (start them with `sealwatch up`)\n");
   } else {
@@ -61,6 +61,9 @@ void print_text(const Heard& heard) {
       std::printf("%s\n", one_line(service).c_str());
   }
   for (const auto& [asset, view] : heard.assets) std::printf("\n%s", view.screen().c_str());
+  if (heard.services.none()) return;
+  for (const std::string& asset : configured)
+    if (!heard.assets.contains(asset)) std::printf("\n== %s, no test yet\n", asset.c_str());
 }
 
 std::vector<std::string> enabled_services(const Configuration& configuration) {
@@ -86,7 +89,9 @@ int run_status(const StatusOptions& options) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   while (!interrupted() && std::chrono::steady_clock::now() < end)
     for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100))) heard.take(item);
-  options.json ? print_json(heard) : print_text(heard);
+  std::vector<std::string> configured;
+  for (const AssetConfig& asset : session->configuration.assets) configured.push_back(asset.asset_id);
+  options.json ? print_json(heard) : print_text(heard, configured);
   return heard.services.none() || !heard.services.all_well(ServicesHeard::Clock::now()) ? kAnswerIsNo : kOk;
 }
 

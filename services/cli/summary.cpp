@@ -135,7 +135,10 @@ std::string AssetView::model_lines() const {
     text += "  model            ";
     text += wrapped(found.analysed ? found.summary : "residuals persist, not analysed: " + found.failure, 100, 19);
     text += "\n                   (version " + std::to_string(found.version) +
-            ", to accept: " + found.header.message_id + ")\n";
+            (state_ && state_->accepted_discrepancy == found.header.message_id
+                 ? ", accepted: tests are simulated with it)\n"
+                 : ": sealwatch accept --asset-id " + asset_id_ + " --discrepancy " + found.header.message_id +
+                       " --by NAME)\n");
   }
   if (acceptance_ && (!discrepancy_ || is_of_now(discrepancy_->header)))
     text += "                   " + acceptance_words(*acceptance_) + "\n";

@@ -45,7 +45,7 @@ std::string missing_history(const OlsOptions& options, const ForecastRequest& re
   const double reach = months_between(request.history.front().time, request.history.back().time);
   if (reach < options.window_months - kJitterMonths)
     return "history reaches back " + in_months(reach) + " of the " + std::to_string(options.window_months) +
-           " of this window (" + std::to_string(tests) + " usable tests so far)";
+           " of this window (" + std::to_string(tests) + " usable " + (tests == 1 ? "test" : "tests") + " so far)";
   const int fewest =
       std::max(kFewestTests, static_cast<int>(std::ceil(options.fewest_tests_share * options.window_months)));
   if (static_cast<int>(tests) < fewest)

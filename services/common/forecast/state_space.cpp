@@ -161,8 +161,8 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
                                  "the condition is " + as_condition(present) +
                                      " (median of the last tests), the threshold " + as_condition(request.threshold))};
     return {say(forecast, ForecastState::insufficient_history,
-                std::to_string(forecast.tests_used) + " usable tests so far, at least " +
-                    std::to_string(options_.fewest_tests) + " are needed")};
+                std::to_string(forecast.tests_used) + (forecast.tests_used == 1 ? " usable test" : " usable tests") +
+                    " so far, at least " + std::to_string(options_.fewest_tests) + " are needed")};
   }
   const SealOpinion opinion = opinion_of(options_, request, opened, request.now);
   std::vector<WeightedBelief> beliefs;

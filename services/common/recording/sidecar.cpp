@@ -198,12 +198,10 @@ std::string format_sidecar(const Recording& recording) {
 }
 
 Status apply_sidecar(const Sidecar& sidecar, const std::vector<Column>& columns, Recording& recording) {
-  for (const auto& [channel, ignored] : sidecar.noise_std)
-    if (std::none_of(columns.begin(), columns.end(), [&](const Column& column) { return column.name == channel; })) {
-      std::string key = "noise_std.";
-      return fail(error_at("key " + key.append(channel), {}, "its channel is not in the recording",
+  for (const auto& entry : sidecar.noise_std)
+    if (std::ranges::find(columns, entry.first, &Column::name) == columns.end())
+      return fail(error_at(std::string("key noise_std.").append(entry.first), {}, "its channel is not in the recording",
                            "take it out, or record the channel"));
-    }
   if (!sidecar.recording_id.empty()) recording.recording_id = sidecar.recording_id;
   recording.asset_id = sidecar.asset_id;
   recording.test = sidecar.test;

@@ -191,7 +191,7 @@ TEST(DecisionTable, DatesSayWhereTheyComeFrom) {
 TEST(DecisionTable, LessUrgentCallsStandInTheReasons) {
   const Recommendation r = confirmed({.rul_months = 24, .faults = {kSensor}});
   ASSERT_EQ(r.also.size(), 1u);
-  EXPECT_THAT(r.also[0], HasSubstr("also: Inspect the instrumentation: sensor of sensor:flow"));
+  EXPECT_THAT(r.also[0], HasSubstr("also: Inspect the instrumentation: sensor of flow"));
 }
 
 TEST(DecisionTable, OptionsAreChecked) {

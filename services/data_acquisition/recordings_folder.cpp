@@ -19,11 +19,12 @@ constexpr const char* kSourceId = "recordings_folder";
 }  // namespace
 
 RecordingsFolder::RecordingsFolder(fs::path directory, std::vector<AssetConfig> assets, IsConcluded is_concluded,
-                                   Report report)
+                                   Report report, int looks_until_settled)
     : directory_(std::move(directory)),
       assets_(std::move(assets)),
       is_concluded_(std::move(is_concluded)),
-      report_(std::move(report)) {
+      report_(std::move(report)),
+      looks_until_settled_(looks_until_settled) {
   std::error_code error;
   fs::create_directories(directory_, error);
   if (error)
@@ -74,11 +75,14 @@ bool RecordingsFolder::is_settled(const fs::path& path) {
   const std::uintmax_t size = fs::file_size(path, error);
   const fs::file_time_type changed = fs::last_write_time(path, error);
   if (error) return false;
+  const fs::file_time_type sidecar_changed = fs::last_write_time(fs::path(path).replace_extension(".yaml"), error);
   File& file = files_[path];
-  const bool settled = file.size == size && file.changed == changed;
+  const bool same = file.size == size && file.changed == changed && file.sidecar_changed == sidecar_changed;
   file.size = size;
   file.changed = changed;
-  return settled;
+  file.sidecar_changed = sidecar_changed;
+  file.unchanged_looks = same ? file.unchanged_looks + 1 : 0;
+  return file.unchanged_looks >= looks_until_settled_;
 }
 
 void RecordingsFolder::take(const fs::path& path, std::vector<Message>& messages) {

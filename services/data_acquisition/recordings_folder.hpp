@@ -1,8 +1,8 @@
 // The folder where recordings are dropped (ServiceConfig::recordings_directory).
 //
-// A file is read when its size and time have not changed since the last look, so that a copy in progress is left alone.
-// When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
-// NAME.error.txt; its sidecar, which must be there before the recording, moves along. Until then it stays, and a
+// A file is read when it and its sidecar have not changed for ten looks, one a second: a copy in progress is left
+// alone. When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
+// NAME.error.txt; its sidecar, which must be there when the recording is read, moves along. Until then it stays, and a
 // restart reads it again: nothing is lost, and what comes twice is taken once, by its message id.
 #pragma once
 
@@ -26,7 +26,7 @@ class RecordingsFolder {
   using IsConcluded = std::function<bool(const RawSamples&)>;
   using Report = std::function<void(const Error&)>;
   RecordingsFolder(std::filesystem::path directory, std::vector<AssetConfig> assets, IsConcluded is_concluded,
-                   Report report);
+                   Report report, int looks_until_settled = 10);
 
   /// One look: puts away what is done, returns the blocks of what is new.
   [[nodiscard]] std::vector<Message> look();
@@ -34,7 +34,8 @@ class RecordingsFolder {
  private:
   struct File {
     std::uintmax_t size = 0;
-    std::filesystem::file_time_type changed;
+    std::filesystem::file_time_type changed, sidecar_changed;
+    int unchanged_looks = 0;
     bool taken = false;
     bool stuck = false;      ///< could not be moved away: reported once, then left alone
     RawSamples first_block;  ///< without samples it would not be known again: content_hash is always set
@@ -52,6 +53,7 @@ class RecordingsFolder {
   std::vector<AssetConfig> assets_;
   IsConcluded is_concluded_;
   Report report_;
+  int looks_until_settled_;
   std::map<std::filesystem::path, File> files_;
 };
 

@@ -31,9 +31,9 @@ class RecordingsFolderTest : public testing::Test {
     recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = 6.0}.record();
     ASSERT_TRUE(write_recording_csv(recording, (directory_ / (name + ".csv")).string()));
   }
-  RecordingsFolder folder(DataAcquisition& layer) {
+  RecordingsFolder folder(DataAcquisition& layer, int looks_until_settled = 1) {
     return {directory_, assets_, [&layer](const RawSamples& first) { return layer.is_closed(first); },
-            [this](const Error& error) { errors_.push_back(error.describe()); }};
+            [this](const Error& error) { errors_.push_back(error.describe()); }, looks_until_settled};
   }
   /// Names in the folder and, with a slash, below it.
   std::set<std::string> files() const {
@@ -61,6 +61,28 @@ TEST_F(RecordingsFolderTest, TakesARecordingAndPutsItAwayWhenItsTestIsConcluded)
   for (const Message& block : blocks) (void)layer.receive(block);
   EXPECT_TRUE(watched.look().empty());
   EXPECT_THAT(files(), testing::ElementsAre("done/april.csv", "done/april.yaml"));
+  EXPECT_THAT(errors_, testing::IsEmpty());
+}
+
+TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer, 3);
+  const auto looks = [&watched](int count) {
+    std::size_t blocks = 0;
+    for (int k = 0; k < count; ++k) blocks += watched.look().size();
+    return blocks;
+  };
+  drop("april", "XT03-MV2");
+  std::ifstream whole(directory_ / "april.csv");
+  const std::string text(std::istreambuf_iterator<char>(whole), {});
+  fs::rename(directory_ / "april.yaml", directory_ / "later");
+  std::ofstream(directory_ / "april.csv") << text.substr(0, text.size() / 2);
+  EXPECT_EQ(looks(3), 0U);
+  std::ofstream(directory_ / "april.csv") << text;
+  EXPECT_EQ(looks(3), 0U) << "it grew";
+  fs::rename(directory_ / "later", directory_ / "april.yaml");
+  EXPECT_EQ(looks(3), 0U) << "its sidecar came";
+  EXPECT_EQ(looks(1), 2U);
   EXPECT_THAT(errors_, testing::IsEmpty());
 }
 

@@ -33,4 +33,8 @@ class ContentHasher {
   std::uint64_t hash_ = 14695981039346656037ULL;  // FNV offset basis
 };
 
+/// The line, from 1, on which a second YAML document begins in `text`; 0: none. By its mark at the start of a line:
+/// yaml-cpp's LoadAll does not end on some damaged texts.
+[[nodiscard]] int line_of_second_document(std::string_view text);
+
 }  // namespace sealwatch

@@ -74,4 +74,17 @@ std::string content_hash(std::string_view bytes) {
   return hasher.hex();
 }
 
+int line_of_second_document(std::string_view text) {
+  bool content = false;
+  for (int line = 1; !text.empty(); ++line) {
+    const std::string_view row = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(row.size() + 1, text.size()));
+    const bool mark = row.starts_with("---") && (row.size() == 3 || row[3] == ' ' || row[3] == '\r');
+    if (mark && content) return line;
+    const std::size_t first = row.find_first_not_of(" \t\r");
+    content = content || (first != std::string_view::npos && row[first] != '#');
+  }
+  return 0;
+}
+
 }  // namespace sealwatch

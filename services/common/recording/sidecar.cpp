@@ -144,17 +144,15 @@ Error open_quote_error(const std::string& text, const YAML::Exception& problem) 
 /// The one document of a sidecar.
 Result<YAML::Node> load_document(const std::string& text) {
   if (!is_utf8(text)) return fail("is not UTF-8", "save it as UTF-8");
-  std::vector<YAML::Node> documents;
+  if (const int line = line_of_second_document(text))
+    return fail(error_at(place_of(line, ""), {}, "a second YAML document stands here",
+                         "a recording has one: take out the line ---"));
   try {
-    documents = YAML::LoadAll(with_end(text));
+    return YAML::Load(with_end(text));
   } catch (const YAML::Exception& problem) {
     const bool open_quote = problem.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
     return fail(open_quote ? open_quote_error(text, problem) : yaml_error(problem));
   }
-  if (documents.size() > 1)
-    return fail(error_at(place_of(documents[1].Mark().line + 1, ""), {}, "a second YAML document stands here",
-                         "a recording has one: take out the line ---"));
-  return documents.empty() ? YAML::Node() : documents.front();
 }
 
 }  // namespace

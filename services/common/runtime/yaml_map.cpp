@@ -31,14 +31,15 @@ YAML::Node last_text(YAML::Node node) {
 /// The library takes a quoted text that is still open at the end of the file for closed, and passes over all documents
 /// but the first. The mark for a document's end cannot stand in a quoted text.
 std::optional<Error> broken_off(const std::string& file, const std::string& text) {
-  const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-  if (documents.size() > 1)
-    return Error{file, line_of(documents[1].Mark()), {}, "a second YAML document stands here", "take out the line ---"};
+  if (const int line = line_of_second_document(text))
+    return Error{
+        file, "line " + std::to_string(line), {}, "a second YAML document stands here", "take out the line ---"};
+  const YAML::Node document = YAML::Load(text);
   try {
-    (void)YAML::LoadAll(text + (text.ends_with('\n') ? "...\n" : "\n...\n"));
+    (void)YAML::Load(text + (text.ends_with('\n') ? "...\n" : "\n...\n"));
   } catch (const YAML::Exception& exception) {
-    if (exception.msg != YAML::ErrorMsg::DOC_IN_SCALAR || documents.empty()) throw;
-    const YAML::Node open = last_text(documents.front());
+    if (exception.msg != YAML::ErrorMsg::DOC_IN_SCALAR) throw;
+    const YAML::Node open = last_text(document);
     return Error{file, line_of(open.Mark()), open.Scalar(), "is not YAML: the quoted text has no closing quote", {}};
   }
   return std::nullopt;

@@ -75,7 +75,7 @@ TEST(SidecarText, AQuotedTextThatIsNeverClosedIsNamed) {
 }
 
 TEST(SidecarText, IsOneDocument) {
-  EXPECT_THAT(error_of("test: pst\n---\nasset_id: X\n"), HasSubstr("line 3: a second YAML document stands here"));
+  EXPECT_THAT(error_of("test: pst\n---\nasset_id: X\n"), HasSubstr("line 2: a second YAML document stands here"));
   EXPECT_TRUE(parse_sidecar("---\ntest: pst\n...\n", test_plant()));
 }
 

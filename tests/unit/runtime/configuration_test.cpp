@@ -142,7 +142,7 @@ TEST(ConfigurationTest, WhatTheYamlLibraryPassesOverIsNamed) {
               ElementsAre("sealwatch.yaml: line 3: 'info directory: x ': is not YAML: the quoted text has no closing "
                           "quote"));
   EXPECT_THAT(faults(place, place.write("sealwatch.yaml", "domain: 1\n---\ndomain: 2\n")),
-              ElementsAre("sealwatch.yaml: line 3: a second YAML document stands here; take out the line ---"));
+              ElementsAre("sealwatch.yaml: line 2: a second YAML document stands here; take out the line ---"));
   EXPECT_THAT(faults(place, place.write("sealwatch.yaml", "---\ndomain: 1\n...\n")), ElementsAre());
 }
 

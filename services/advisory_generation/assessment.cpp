@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "sealwatch/config/judged_quantities.hpp"
 #include "services/advisory_generation/reasons.hpp"
 
 namespace sealwatch::advisory_generation {
@@ -11,7 +12,6 @@ namespace {
 // When no later campaign is known, one that is longer before the P10 end of life is not the last before it: campaigns
 // come at least every year or two, later ones are just not planned yet.
 constexpr double kUnplannedAfter_months = 12.0;
-constexpr std::string_view kResidual = "residual.";
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 
 const ProposedFault* dominant_fault(const HealthReport& health, const Options& options) {
@@ -110,9 +110,10 @@ std::string model_alarm(const Evidence& evidence) {
   const bool accepted = std::ranges::any_of(judgements, is_accepted);
   std::vector<std::string> channels;
   for (const RegionJudgement& one : judgements) {
-    if (one.region != AlertRegion::alarm || !one.quantity.starts_with(kResidual) || is_accepted(one) != accepted)
+    if (one.region != AlertRegion::alarm || !one.quantity.starts_with(kResidualQuantity) ||
+        is_accepted(one) != accepted)
       continue;
-    const std::string channel = one.quantity.substr(kResidual.size());
+    const std::string channel = one.quantity.substr(kResidualQuantity.size());
     if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
   }
   return joined(channels);

@@ -5,13 +5,13 @@
 #include <iterator>
 #include <utility>
 
+#include "sealwatch/config/judged_quantities.hpp"
 #include "sealwatch/message/provenance.hpp"
 
 namespace sealwatch {
 namespace {
 
 constexpr const char* kProducer = "health_assessment 0.1.0";
-constexpr std::string_view kResidual = "residual.";
 
 /// Both, one after the other, as one piece of work.
 void add_later(Conclusion& conclusion, std::function<Conclusion()> work) {
@@ -57,7 +57,7 @@ std::vector<std::string> persistent_residuals(const StateReport& report) {
       report.judgements, [](const RegionJudgement& j) { return j.reference == Reference::accepted_model; });
   std::vector<std::string> found;
   for (const RegionJudgement& judgement : report.judgements)
-    if (judgement.quantity.starts_with(kResidual) && judgement.raw_region >= AlertRegion::warning &&
+    if (judgement.quantity.starts_with(kResidualQuantity) && judgement.raw_region >= AlertRegion::warning &&
         (!accepted || judgement.reference == Reference::accepted_model))
       found.push_back(in_words(judgement));
   return found;

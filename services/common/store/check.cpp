@@ -14,16 +14,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kFile = "sqlite3://";
 constexpr std::string_view kServer = "postgresql://";
 
-/// FILE of "sqlite3://FILE" or "sqlite3://dbname=FILE timeout=5".
-fs::path file_of(std::string text) {
-  if (const std::size_t name = text.find("dbname="); name != std::string::npos) {
-    text = text.substr(name + 7);
-    const bool quoted = !text.empty() && text.front() == '"';
-    return quoted ? text.substr(1, text.find('"', 1) - 1) : text.substr(0, text.find(' '));
-  }
-  return text;
-}
-
 Status check_file(const std::string& connection, const fs::path& file) {
   const auto refuse = [&](std::string rule, std::string advice) {
     return fail(Error{connection, "journal", file.string(), std::move(rule), std::move(advice)});
@@ -42,6 +32,16 @@ Status check_file(const std::string& connection, const fs::path& file) {
 
 }  // namespace
 
+std::string Journal::file_of(const std::string& connection) {
+  std::string text = connection.substr(kFile.size());
+  if (const std::size_t name = text.find("dbname="); name != std::string::npos) {
+    text = text.substr(name + 7);
+    const bool quoted = !text.empty() && text.front() == '"';
+    return quoted ? text.substr(1, text.find('"', 1) - 1) : text.substr(0, text.find(' '));
+  }
+  return text;
+}
+
 Status Journal::check_kind(const std::string& connection) {
   for (const std::string_view kind : {kFile, kServer})
     if (connection.starts_with(kind)) return {};
@@ -55,13 +55,13 @@ Status Journal::check_kind(const std::string& connection) {
 std::string Journal::place_of(const std::string& connection) {
   if (!connection.starts_with(kFile)) return connection;
   std::error_code none;
-  const fs::path file = fs::weakly_canonical(fs::absolute(file_of(connection.substr(kFile.size()))), none);
+  const fs::path file = fs::weakly_canonical(fs::absolute(file_of(connection)), none);
   return std::string(kFile).append(file.string());
 }
 
 Status Journal::check(const std::string& connection) {
   if (const Status known = check_kind(connection); !known) return known;
-  if (connection.starts_with(kFile)) return check_file(connection, file_of(connection.substr(kFile.size())));
+  if (connection.starts_with(kFile)) return check_file(connection, file_of(connection));
   Database database;
   database.name = without_password(connection);
   return database.guard("connecting", [&] { database.sql.open(connection); });

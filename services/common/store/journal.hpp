@@ -36,6 +36,8 @@ class Journal {
   [[nodiscard]] static Status check_kind(const std::string& connection);
   /// The same text for connection strings of the same place: a file's absolute path, or the server's string.
   [[nodiscard]] static std::string place_of(const std::string& connection);
+  /// The file of a connection to SQLite: FILE of "sqlite3://FILE" or "sqlite3://dbname=FILE timeout=5".
+  [[nodiscard]] static std::string file_of(const std::string& connection);
   ~Journal();
   Journal(Journal&& other) noexcept;
   Journal& operator=(Journal&& other) noexcept;

@@ -52,7 +52,7 @@ class Balances {
     hydraulic();
     electric();
     sensors();
-    add("closing_time", parameter("x_C") / absolute(means_.speed_from_position(Motion::retracting)));
+    add("closing_time", parameter("x_C") / absolute(means_.speed(Motion::retracting)));
     quality();
     return std::move(result_);
   }

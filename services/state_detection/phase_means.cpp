@@ -1,6 +1,7 @@
 #include "services/state_detection/phase_means.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sealwatch {
 namespace {
@@ -24,7 +25,6 @@ const Series* PhaseMeans::usable(std::string_view channel) const {
 
 std::vector<PhaseMeans::Span> PhaseMeans::spans(Motion motion) const {
   const std::vector<double>& time = window_.samples.time_s;
-  const Series* position = usable("position");
   std::vector<Span> result;
   for (const Phase& phase : window_.phases) {
     if (motion == Motion::holding ? !is_hold(phase) : !is_motion(phase)) continue;
@@ -34,14 +34,21 @@ std::vector<PhaseMeans::Span> PhaseMeans::spans(Motion motion) const {
     };
     const Span span{index(phase.begin_s + kLeftOutAtBegin * length), index(phase.end_s - kLeftOutAtEnd * length)};
     if (span.last < span.first + kFewestSamples) continue;
-    if (motion != Motion::holding) {
-      if (position == nullptr) continue;
-      const bool extends = position->values[span.last - 1] > position->values[span.first];
-      if (extends != (motion == Motion::extending)) continue;
-    }
+    if (motion != Motion::holding && extends(span) != (motion == Motion::extending)) continue;
     result.push_back(span);
   }
   return result;
+}
+
+std::optional<bool> PhaseMeans::extends(const Span& span) const {
+  if (const Series* position = usable("position"))
+    return position->values[span.last - 1] > position->values[span.first];
+  if (const Series* velocity = usable("velocity")) {
+    const auto begin = velocity->values.begin();
+    return std::accumulate(begin + static_cast<std::ptrdiff_t>(span.first),
+                           begin + static_cast<std::ptrdiff_t>(span.last), 0.0) > 0.0;
+  }
+  return std::nullopt;
 }
 
 std::optional<double> PhaseMeans::mean(std::string_view channel, Motion motion) const {
@@ -59,6 +66,7 @@ std::optional<double> PhaseMeans::mean(std::string_view channel, Motion motion) 
 
 std::optional<double> PhaseMeans::speed_from_position(Motion motion) const {
   const Series* position = usable("position");
+  if (position == nullptr) return std::nullopt;
   double way = 0.0;
   double time = 0.0;
   for (const Span& span : spans(motion)) {
@@ -67,6 +75,10 @@ std::optional<double> PhaseMeans::speed_from_position(Motion motion) const {
   }
   if (!(time > 0.0)) return std::nullopt;
   return way / time;
+}
+
+std::optional<double> PhaseMeans::speed(Motion motion) const {
+  return usable("position") != nullptr ? speed_from_position(motion) : mean("velocity", motion);
 }
 
 std::optional<double> PhaseMeans::pressure_difference(Motion motion) const {

@@ -24,6 +24,8 @@ class PhaseMeans {
   [[nodiscard]] std::optional<double> mean(std::string_view channel, Motion motion) const;
   /// Speed from the position's change over the steady part [m/s].
   [[nodiscard]] std::optional<double> speed_from_position(Motion motion) const;
+  /// The same, or the mean of the velocity where the position is not OK [m/s].
+  [[nodiscard]] std::optional<double> speed(Motion motion) const;
   /// p_A - p_B, from both pressures or from the differential sensor [Pa].
   [[nodiscard]] std::optional<double> pressure_difference(Motion motion) const;
 
@@ -33,6 +35,8 @@ class PhaseMeans {
     std::size_t last;  // one past
   };
   [[nodiscard]] const Series* usable(std::string_view channel) const;
+  /// Whether the piston runs in +x there, by the position, else by the velocity; nothing where neither is OK.
+  [[nodiscard]] std::optional<bool> extends(const Span& span) const;
   [[nodiscard]] std::vector<Span> spans(Motion motion) const;
 
   const TestWindow& window_;

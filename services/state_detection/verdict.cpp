@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "services/state_detection/indicators.hpp"
 #include "services/state_detection/rules.hpp"
@@ -43,27 +44,65 @@ double required_stroke_m(const AssetConfig& asset, const TestFeatures& features)
   return std::abs(asset.pst.stroke_m);
 }
 
+/// What the stroke was measured by: the position, or where that is not in order the velocity, integrated, as data
+/// manipulation does it.
+struct StrokeMeasure {
+  const Series* series = nullptr;
+  bool is_velocity = false;
+  std::string position_fault;  ///< "position is FAILED: frozen for 4.0 s", "position was not recorded"; "" in order
+};
+
+/// Why the channel cannot measure, or "".
+std::string fault_of(const TestFeatures& features, const TestWindow& window, const std::string& channel) {
+  for (const ChannelStatus& status : features.channel_status)
+    if (status.channel == channel && status.state == ChannelState::FAILED)
+      return channel + " is FAILED" + (status.reason.empty() ? "" : ": " + status.reason);
+  const Series* series = window.samples.find(channel);
+  return series == nullptr || series->values.empty() ? channel + " was not recorded" : "";
+}
+
+StrokeMeasure measure_of_stroke(const TestFeatures& features, const TestWindow& window) {
+  StrokeMeasure measure{nullptr, false, fault_of(features, window, "position")};
+  measure.is_velocity = !measure.position_fault.empty() && fault_of(features, window, "velocity").empty();
+  if (measure.is_velocity)
+    measure.series = window.samples.find("velocity");
+  else if (measure.position_fault.empty())
+    measure.series = window.samples.find("position");
+  return measure;
+}
+
+/// Position over the test: that of the channel, or the sum of the velocity.
+std::vector<double> path_m(const StrokeMeasure& measure, const std::vector<double>& time_s) {
+  std::vector<double> path = measure.series->values;
+  if (!measure.is_velocity) return path;
+  double position = 0.0;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const double velocity = std::exchange(path[k], position);
+    if (k + 1 < path.size()) position += velocity * (time_s[k + 1] - time_s[k]);
+  }
+  return path;
+}
+
 /// Largest distance from the start. A piston that never moved has no feature `travel`, but that must not go unjudged.
-std::optional<double> travel_m(const TestFeatures& features, const TestWindow& window) {
+std::optional<double> travel_m(const TestFeatures& features, const TestWindow& window, const StrokeMeasure& measure) {
+  if (measure.series == nullptr) return std::nullopt;
   if (const auto travel = feature_of(features, "travel")) return travel;
-  const bool in_order = std::any_of(
-      features.channel_status.begin(), features.channel_status.end(),
-      [](const ChannelStatus& status) { return status.channel == "position" && status.state == ChannelState::OK; });
-  const Series* position = window.samples.find("position");
-  if (!in_order || position == nullptr || position->values.empty()) return std::nullopt;
-  const auto [least, largest] = std::minmax_element(position->values.begin(), position->values.end());
+  const std::vector<double> path = path_m(measure, window.samples.time_s);
+  const auto [least, largest] = std::minmax_element(path.begin(), path.end());
   return *largest - *least;
 }
 
 /// Why nothing can be said, or "".
-std::string why_not_judged(const AssetConfig& asset, const TestFeatures& features, bool travel_known) {
+std::string why_not_judged(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
+                           const StrokeMeasure& measure) {
   if (!features.test_kind.empty() && features.test_kind != "pst" && !is_full_stroke(features))
     return "the recording is of kind '" + features.test_kind + "', not a stroke test";
   const double expected_s = asset.pst.expected_duration_s();
   if (!moved_as_a_test_does(features) && features.duration_s < kWholeShare * expected_s)
     return text("the recording was cut after %.1f s of about %.0f s", features.duration_s, expected_s);
   if (!features.complete) return text("the end of the test was not recorded (%.1f s were)", features.duration_s);
-  if (!travel_known) return "the position was not recorded, so the stroke cannot be judged";
+  if (measure.series == nullptr)
+    return "nothing measured the stroke: " + measure.position_fault + ", " + fault_of(features, window, "velocity");
   return {};
 }
 
@@ -85,15 +124,22 @@ void judge_stroke(const AssetConfig& asset, const TestFeatures& features, double
 void judge_speed(const AssetConfig& asset, const std::vector<Quantity>& indicators, Verdict& verdict,
                  std::vector<std::string>& failures) {
   const double longest_s = longest_closing_time_s(asset);
-  for (const Quantity& indicator : indicators) {
-    if (indicator.name != "closing_time") continue;
-    const std::string closing = text("at the speed of this test the full stroke closes in %.1f s, %.1f s are allowed",
-                                     indicator.value, longest_s);
-    if (indicator.value > longest_s)
-      failures.push_back(closing);
-    else
-      verdict.reasons.push_back(closing);
+  const auto indicator = std::ranges::find(indicators, "closing_time", &Quantity::name);
+  if (indicator == indicators.end()) {
+    verdict.reasons.push_back("how fast it closes was not measured");
+    return;
   }
+  const std::string closing = text("at the speed of this test the full stroke closes in %.1f s, %.1f s are allowed",
+                                   indicator->value, longest_s);
+  (indicator->value > longest_s ? failures : verdict.reasons).push_back(closing);
+}
+
+std::string judged_by(const StrokeMeasure& measure, const TestFeatures& features) {
+  if (measure.is_velocity) return "judged by the velocity, integrated: " + measure.position_fault;
+  for (const ChannelStatus& status : features.channel_status)
+    if (status.channel == "position" && status.state == ChannelState::UNKNOWN)
+      return "judged by the position, which is in doubt" + (status.reason.empty() ? "" : ": " + status.reason);
+  return "judged by the position";
 }
 
 }  // namespace
@@ -104,8 +150,9 @@ Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const
     const std::string why = features.abort_reason.empty() ? "no reason given" : features.abort_reason;
     return {PstVerdict::aborted, {text("given up after %.1f s: ", features.duration_s) + why}};
   }
-  const std::optional<double> travel = travel_m(features, window);
-  if (const std::string why = why_not_judged(asset, features, travel.has_value()); !why.empty())
+  const StrokeMeasure measure = measure_of_stroke(features, window);
+  const std::optional<double> travel = travel_m(features, window, measure);
+  if (const std::string why = why_not_judged(asset, features, window, measure); !why.empty())
     return {PstVerdict::not_judged, {why}};
 
   Verdict verdict{PstVerdict::passed, {}};
@@ -113,7 +160,8 @@ Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const
   std::vector<std::string> failures;
   judge_stroke(asset, features, *travel, failures);
   judge_speed(asset, indicators, verdict, failures);
-  if (!failures.empty()) return {PstVerdict::failed, failures};
+  if (!failures.empty()) verdict = {PstVerdict::failed, failures};
+  verdict.reasons.push_back(judged_by(measure, features));
   return verdict;
 }
 

@@ -142,7 +142,8 @@ inline Test make(const Condition& c, const Circumstances& w) {
     for (std::size_t k = 0; k < names.size(); ++k)
       window.samples.channels[k].values.push_back(values[k] + noise[k] * normal(random));
   }
-  std::erase_if(window.samples.channels, [&](const Series& s) { return s.name == w.absent_channel; });
+  std::erase_if(window.samples.channels,
+                [&](const Series& s) { return s.name == w.absent_channel || s.name == w.failed_channel; });
 
   Header header;
   header.pst_id = w.asset_id + "-" + std::to_string(w.number);
@@ -181,8 +182,9 @@ inline Test make(const Condition& c, const Circumstances& w) {
   const Steady out = detail::steady(c, -c.speed_m_s), back = detail::steady(c, c.speed_m_s),
                hold = detail::steady(c, 0);
   const bool whole = end_s >= whole_s;
-  if (has("position")) {
-    add("travel", c.position_gain * (whole ? c.stroke_m : std::max(0.0, end_s - 1) * c.speed_m_s));
+  if (has("position") || has("velocity")) {  // without the position data manipulation integrates the velocity
+    add("travel", (has("position") ? c.position_gain : c.velocity_gain) *
+                      (whole ? c.stroke_m : std::max(0.0, end_s - 1) * c.speed_m_s));
     if (whole) add("return_error", 1e-5);
   }
   add("drive_saturation", w.drive_saturation);

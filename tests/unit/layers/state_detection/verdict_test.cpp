@@ -8,6 +8,7 @@
 namespace sealwatch {
 namespace {
 
+using testing::_;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -20,7 +21,8 @@ Verdict judge(const synthetic::Condition& condition, const synthetic::Circumstan
 TEST(Verdict, HealthyTestPasses) {
   const Verdict verdict = judge({}, {});
   EXPECT_EQ(verdict.verdict, PstVerdict::passed);
-  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("16.00 mm"), HasSubstr("closes in 60.1 s, 63.2 s are allowed")));
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("16.00 mm"), HasSubstr("closes in 60.1 s, 63.2 s are allowed"),
+                                           "judged by the position"));
 }
 
 TEST(Verdict, ShortStrokeFails) {
@@ -28,7 +30,7 @@ TEST(Verdict, ShortStrokeFails) {
   condition.stroke_m = 0.012;
   const Verdict verdict = judge(condition, {});
   EXPECT_EQ(verdict.verdict, PstVerdict::failed);
-  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("12.00 mm of the 16.0 mm")));
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("12.00 mm of the 16.0 mm"), "judged by the position"));
 }
 
 TEST(Verdict, APistonThatNeverMovedFails) {
@@ -41,7 +43,7 @@ TEST(Verdict, APistonThatNeverMovedFails) {
     if (series.name == "position") std::fill(series.values.begin(), series.values.end(), 0.06);
   const Verdict verdict = judge_test(asset, test.features, test.window, {});
   EXPECT_EQ(verdict.verdict, PstVerdict::failed);
-  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("0.00 mm of the 16.0 mm")));
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("0.00 mm of the 16.0 mm"), _));
 }
 
 TEST(Verdict, SlowClosingFails) {
@@ -49,7 +51,7 @@ TEST(Verdict, SlowClosingFails) {
   condition.speed_m_s = 1.1e-3;
   const Verdict verdict = judge(condition, {});
   EXPECT_EQ(verdict.verdict, PstVerdict::failed);
-  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("72.7 s")));
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("72.7 s"), _));
 }
 
 TEST(Verdict, NotComingBackFails) {
@@ -57,11 +59,11 @@ TEST(Verdict, NotComingBackFails) {
   synthetic::Test test = synthetic::make({}, {});
   for (Quantity& feature : test.features.features)
     if (feature.name == "return_error") feature.value = -2e-3;
-  EXPECT_THAT(judge_test(asset, test.features, test.window, {}).reasons, ElementsAre(HasSubstr("2.00 mm away")));
+  EXPECT_THAT(judge_test(asset, test.features, test.window, {}).reasons, ElementsAre(HasSubstr("2.00 mm away"), _));
   std::erase_if(test.features.features, [](const Quantity& f) { return f.name == "return_error"; });
   const Verdict verdict = judge_test(asset, test.features, test.window, {});
   EXPECT_EQ(verdict.verdict, PstVerdict::failed);
-  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("did not come back")));
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("did not come back"), _));
 }
 
 TEST(Verdict, CutTestIsNotJudged) {
@@ -81,10 +83,61 @@ TEST(Verdict, AbortedTestSaysWhy) {
   EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("MCS command had priority")));
 }
 
-TEST(Verdict, WithoutPositionItIsNotJudged) {
+TEST(Verdict, WithoutPositionItIsJudgedByTheVelocityAndSaysSo) {
+  synthetic::Circumstances failed;
+  failed.failed_channel = "position";
+  const Verdict verdict = judge({}, failed);
+  EXPECT_EQ(verdict.verdict, PstVerdict::passed);
+  EXPECT_THAT(verdict.reasons,
+              ElementsAre(HasSubstr("16.00 mm"), HasSubstr("closes in 60.2 s"),
+                          "judged by the velocity, integrated: position is FAILED: frozen for 4.0 s from 2.0 s"));
+  synthetic::Circumstances absent;
+  absent.absent_channel = "position";
+  EXPECT_EQ(judge({}, absent).reasons.back(), "judged by the velocity, integrated: position was not recorded");
+  synthetic::Condition slow;
+  slow.speed_m_s = 1.1e-3;
+  EXPECT_EQ(judge(slow, failed).verdict, PstVerdict::failed);
+  EXPECT_THAT(judge(slow, failed).reasons, ElementsAre(HasSubstr("closes in 72.8 s"), HasSubstr("judged by the velocity")));
+}
+
+TEST(Verdict, APistonThatNeverMovedFailsByTheVelocityToo) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Circumstances absent;
+  absent.absent_channel = "position";
+  synthetic::Test test = synthetic::make({}, absent);
+  std::erase_if(test.features.features,
+                [](const Quantity& f) { return f.name == "travel" || f.name == "return_error"; });
+  test.features.phases = {{PhaseKind::rest, 0.0, 31.0}};
+  for (Series& series : test.window.samples.channels)
+    if (series.name == "velocity") std::fill(series.values.begin(), series.values.end(), 1e-5);  // its bias
+  const Verdict verdict = judge_test(asset, test.features, test.window, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::failed);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("0.31 mm of the 16.0 mm"), HasSubstr("judged by the velocity")));
+}
+
+TEST(Verdict, WhereNothingMeasuredTheStrokeItIsNotJudged) {
+  const AssetConfig asset = synthetic::asset();
   synthetic::Circumstances circumstances;
   circumstances.failed_channel = "position";
-  EXPECT_EQ(judge({}, circumstances).verdict, PstVerdict::not_judged);
+  circumstances.absent_channel = "velocity";
+  synthetic::Test test = synthetic::make({}, circumstances);
+  test.features.features.push_back({"travel", "m", 0.016, false, 0.0});  // whatever else may have given it
+  const Verdict verdict = judge_test(asset, test.features, test.window, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::not_judged);
+  EXPECT_THAT(verdict.reasons,
+              ElementsAre(HasSubstr("nothing measured the stroke: position is FAILED: frozen for 4.0 s "
+                                    "from 2.0 s, velocity was not recorded")));
+}
+
+TEST(Verdict, APositionInDoubtIsNamed) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Test test = synthetic::make({}, {});
+  for (ChannelStatus& status : test.features.channel_status)
+    if (status.channel == "position") status = {"position", ChannelState::UNKNOWN, "0.4 % out of range"};
+  const Verdict verdict = judge_test(asset, test.features, test.window, {});
+  EXPECT_EQ(verdict.verdict, PstVerdict::passed);
+  EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("16.00 mm"), "how fast it closes was not measured",
+                                           "judged by the position, which is in doubt: 0.4 % out of range"));
 }
 
 TEST(Verdict, OtherRecordingsAreNotJudged) {

@@ -3,12 +3,17 @@
 #include <algorithm>
 
 #include "sealwatch/config/judged_quantities.hpp"
+#include "services/state_detection/judgements.hpp"
 
 namespace sealwatch {
 
 namespace {
 
 constexpr std::string_view kOfAccepted = "/accepted_model";  // how the keys of its filters end
+
+std::string key_of(const RegionJudgement& judgement) {
+  return judgement.quantity + "/" + std::string(name_of(judgement.reference));
+}
 
 /// Off temperature, saturated or with many samples missing: this test alone is in the warning region of one of them.
 bool is_poor_recording(const std::vector<RegionJudgement>& judgements) {
@@ -30,7 +35,7 @@ AssetHistory::AssetHistory(const RegionOptions& region, const BaselineOptions& b
 void AssetHistory::restart() {
   baseline_ = Baseline(baseline_options_);
   filters_.clear();
-  known_channels_.clear();
+  channels_.clear();
   accepted_baseline_ = Baseline(baseline_options_);
 }
 
@@ -43,9 +48,12 @@ void AssetHistory::use_accepted(const std::string& discrepancy_id) {
 
 void AssetHistory::judge(std::vector<RegionJudgement>& judgements) {
   const bool poor = is_poor_recording(judgements);
+  std::erase_if(filters_, [&](const auto& entry) {
+    return entry.first.starts_with(kChannelQuantity) &&
+           std::ranges::none_of(judgements, [&](const auto& one) { return key_of(one) == entry.first; });
+  });
   for (RegionJudgement& judgement : judgements) {
-    const std::string key = judgement.quantity + "/" + std::string(name_of(judgement.reference));
-    RegionFilter& filter = filters_.try_emplace(key, region_options_).first->second;
+    RegionFilter& filter = filters_.try_emplace(key_of(judgement), region_options_).first->second;
     if (poor && !concerns_recording(judgement.quantity))
       filter.look(judgement);
     else
@@ -63,14 +71,32 @@ void AssetHistory::learn(const StateReport& report) {
   last_judged_id = report.header.message_id;
   if (report.header.event_time_known) schedule.tested(UtcTime{report.header.event_time_ns});
   const bool teaches = report.verdict == PstVerdict::passed && !is_poor_recording(report.judgements);
+  learn_channels(report.judgements);
   for (const RegionJudgement& judgement : report.judgements) {
-    if (judgement.quantity.starts_with(kChannelQuantity))
-      known_channels_.insert(judgement.quantity.substr(kChannelQuantity.size()));
-    else if (judgement.reference == Reference::own_baseline && judgement.raw_region == AlertRegion::normal && teaches)
+    if (judgement.reference == Reference::own_baseline && judgement.raw_region == AlertRegion::normal && teaches)
       baseline_.learn(judgement.quantity, judgement.value);
     else if (judgement.reference == Reference::accepted_model && judgement.raw_region == AlertRegion::normal && teaches)
       accepted_baseline_.learn(judgement.quantity, judgement.value);
   }
+}
+
+void AssetHistory::learn_channels(const std::vector<RegionJudgement>& judgements) {
+  std::set<std::string> there;
+  for (const RegionJudgement& judgement : judgements)
+    if (judgement.quantity.starts_with(kChannelQuantity) && judgement.value == kChannelThere)
+      there.insert(judgement.quantity.substr(kChannelQuantity.size()));
+  channels_.push_back(std::move(there));
+  if (channels_.size() > kTestsForChannels) channels_.pop_front();
+}
+
+std::set<std::string> AssetHistory::expected_channels() const {
+  std::map<std::string, std::size_t> tests;
+  for (const std::set<std::string>& there : channels_)
+    for (const std::string& channel : there) ++tests[channel];
+  std::set<std::string> expected;
+  for (const auto& [channel, count] : tests)
+    if (2 * count > channels_.size()) expected.insert(channel);
+  return expected;
 }
 
 AlertRegion AssetHistory::worst_region() const {

@@ -2,6 +2,8 @@
 // the layer plays them through the same two functions as the live run.
 #pragma once
 
+#include <cstddef>
+#include <deque>
 #include <map>
 #include <set>
 #include <string>
@@ -15,24 +17,31 @@
 
 namespace sealwatch {
 
+/// Two years of monthly tests.
+inline constexpr std::size_t kTestsForChannels = 24;
+
 class AssetHistory {
  public:
   AssetHistory(const RegionOptions& region, const BaselineOptions& baseline);
 
-  /// The actuator is a new one: baseline, regions and known channels start anew.
+  /// The actuator is a new one: baseline, regions and expected channels start anew.
   void restart();
   /// The tests from here on are judged with the model of this model_discrepancy besides ("": with none): its baseline
   /// and regions start anew where it is another than before.
   void use_accepted(const std::string& discrepancy_id);
   /// Takes one test's judgements into their quantities' filters and fills in their regions. A poor recording is looked
-  /// at but moves no filter: warm oil leaks more, and that is no wear.
+  /// at but moves no filter: warm oil leaks more, and that is no wear. A channel without a judgement is expected no
+  /// more.
   void judge(std::vector<RegionJudgement>& judgements);
   /// Takes a finished report whose judgements went through judge() already.
   void learn(const StateReport& report);
 
   [[nodiscard]] const Baseline& baseline() const { return baseline_; }
   [[nodiscard]] const Baseline& accepted_baseline() const { return accepted_baseline_; }
-  [[nodiscard]] const std::set<std::string>& known_channels() const { return known_channels_; }
+  /// Channels that a test is expected to have: OK in more than half of the judged tests since the last replacement, of
+  /// the last kTestsForChannels where there are more. Not one that a test or two had besides; and one that is recorded
+  /// no more is expected for a year of monthly tests, then no longer.
+  [[nodiscard]] std::set<std::string> expected_channels() const;
   /// Worst region of all quantities, those included that the last test could not give.
   [[nodiscard]] AlertRegion worst_region() const;
 
@@ -42,13 +51,15 @@ class AssetHistory {
   std::string last_judged_id;   ///< message id of the last report with a verdict of passed or failed
 
  private:
+  void learn_channels(const std::vector<RegionJudgement>& judgements);
+
   RegionOptions region_options_;
   BaselineOptions baseline_options_;
   Baseline baseline_;
   Baseline accepted_baseline_;
   std::string accepted_;
   std::map<std::string, RegionFilter> filters_;  // by quantity and reference
-  std::set<std::string> known_channels_;         // OK in some judged test
+  std::deque<std::set<std::string>> channels_;   // OK in the last judged tests, oldest first
 };
 
 /// Whether a quantity speaks of the recording and not of the actuator.

@@ -76,15 +76,16 @@ std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset, const std
 }
 
 std::vector<RegionJudgement> judge_channels(const AssetConfig& asset, const std::vector<ChannelStatus>& channels,
-                                            const std::set<std::string>& known) {
-  std::set<std::string> judged = known;
+                                            const std::set<std::string>& expected) {
+  std::set<std::string> judged = expected;
   for (const ChannelStatus& status : channels)
     if (status.state == ChannelState::OK) judged.insert(status.channel);
-  const std::vector<ChannelStatus> lost = stale_channels(channels, known);
+  const std::vector<ChannelStatus> lost = stale_channels(channels, expected);
   std::vector<RegionJudgement> judgements;
   for (const std::string& channel : judged) {
     const bool is_lost = std::any_of(lost.begin(), lost.end(), [&](const auto& l) { return l.channel == channel; });
-    const Quantity quantity{std::string(kChannelQuantity) + channel, "1", is_lost ? 1.0 : 0.0, false, 0.0};
+    const Quantity quantity{std::string(kChannelQuantity) + channel, "1", is_lost ? kChannelLost : kChannelThere, false,
+                            0.0};
     if (const auto limits = fixed_limits(asset, quantity.name))
       judgements.push_back(judgement_of(quantity, Reference::limit, *limits));
   }
@@ -92,9 +93,9 @@ std::vector<RegionJudgement> judge_channels(const AssetConfig& asset, const std:
 }
 
 std::vector<ChannelStatus> stale_channels(const std::vector<ChannelStatus>& channels,
-                                          const std::set<std::string>& known) {
+                                          const std::set<std::string>& expected) {
   std::vector<ChannelStatus> stale;
-  for (const std::string& channel : known) {
+  for (const std::string& channel : expected) {
     const auto found = std::find_if(channels.begin(), channels.end(),
                                     [&](const ChannelStatus& status) { return status.channel == channel; });
     if (found == channels.end())

@@ -24,13 +24,17 @@ namespace sealwatch {
                                                            const std::vector<ResidualSummary>& residuals,
                                                            const Baseline& baseline, const Baseline& accepted_baseline);
 
-/// "channel.<name>" for every channel that is OK or was in an earlier test: 0 is there, 1 is lost.
+/// Values of "channel.<name>".
+inline constexpr double kChannelThere = 0.0;
+inline constexpr double kChannelLost = 1.0;
+
+/// "channel.<name>" for every channel that is OK or was expected (AssetHistory::expected_channels): there or lost.
 [[nodiscard]] std::vector<RegionJudgement> judge_channels(const AssetConfig& asset,
                                                           const std::vector<ChannelStatus>& channels,
-                                                          const std::set<std::string>& known);
+                                                          const std::set<std::string>& expected);
 
-/// Status of a channel that was OK in earlier tests and is not now; those that are not mentioned any more are NOT_USED.
+/// Status of a channel that was expected and is not OK; those that are not mentioned any more are NOT_USED.
 [[nodiscard]] std::vector<ChannelStatus> stale_channels(const std::vector<ChannelStatus>& channels,
-                                                        const std::set<std::string>& known);
+                                                        const std::set<std::string>& expected);
 
 }  // namespace sealwatch

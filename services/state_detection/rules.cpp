@@ -32,7 +32,7 @@ constexpr AlertLimits kDriveSaturation{0.01, 0.05, 0.20};
 constexpr AlertLimits kMissingShare{0.01, 0.10, 0.30};
 
 /// A lost channel (1) blinds the diagnosis, it does not endanger the function: advisory.
-constexpr AlertLimits kChannelLost{1.0, 2.0, 3.0};
+constexpr AlertLimits kLostChannel{1.0, 2.0, 3.0};
 
 struct NamedRule {
   std::string_view quantity;
@@ -84,7 +84,7 @@ std::optional<AlertLimits> fixed_limits(const AssetConfig& asset, const std::str
   if (quantity == "drive_saturation") return kDriveSaturation;
   if (quantity == "missing_share") return kMissingShare;
   if (quantity.starts_with(kResidualQuantity)) return kNominalResidual_percent;
-  if (quantity.starts_with(kChannelQuantity)) return kChannelLost;
+  if (quantity.starts_with(kChannelQuantity)) return kLostChannel;
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <set>
 #include <utility>
 
 #include "services/state_detection/indicators.hpp"
@@ -85,8 +86,8 @@ void StateDetection::restore(const Message& own_output) {
   AssetHistory& history = state_of(report->asset_id).history;
   if (is_first_after_replacement(*report)) history.restart();
   if (!report->header.pst_id.empty()) history.use_accepted(report->accepted_discrepancy);
-  std::vector<RegionJudgement> judgements = report->judgements;
-  history.judge(judgements);
+  if (std::vector<RegionJudgement> judgements = report->judgements; is_judged(report->verdict))
+    history.judge(judgements);
   history.learn(*report);
 }
 
@@ -159,9 +160,10 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   report.verdict = verdict.verdict;
   report.verdict_reasons = std::move(verdict.reasons);
   note_lateness(state, asset, report);
-  for (const ChannelStatus& stale : stale_channels(features.channel_status, history.known_channels())) {
+  const std::set<std::string> expected = history.expected_channels();
+  for (const ChannelStatus& stale : stale_channels(features.channel_status, expected)) {
     report.stale_channels.push_back(stale.channel);
-    report.verdict_reasons.push_back("channel " + stale.channel + ", OK in earlier tests, is " +
+    report.verdict_reasons.push_back("channel " + stale.channel + ", OK in most earlier tests, is " +
                                      std::string(name_of(stale.state)) +
                                      (stale.reason.empty() ? "" : ": " + stale.reason));
   }
@@ -171,7 +173,7 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   for (RegionJudgement& judgement :
        judge_residuals(asset, report.residuals, history.baseline(), history.accepted_baseline()))
     report.judgements.push_back(std::move(judgement));
-  for (RegionJudgement& judgement : judge_channels(asset, features.channel_status, history.known_channels()))
+  for (RegionJudgement& judgement : judge_channels(asset, features.channel_status, expected))
     report.judgements.push_back(std::move(judgement));
   history.judge(report.judgements);
 }

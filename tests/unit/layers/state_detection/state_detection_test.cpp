@@ -331,6 +331,47 @@ TEST(StateDetection, ALostChannelIsStaleAndAnAdvisory) {
   }
 }
 
+/// Adds a channel to a test as a recording with one more column would.
+void record_also(synthetic::Test& test, const std::string& channel) {
+  test.window.channel_status.push_back({channel, ChannelState::OK, ""});
+  test.features.channel_status = test.window.channel_status;
+}
+
+TEST(StateDetection, AChannelThatOneTestHadBesidesIsNotMissed) {
+  for (const int with_it : {0, 1, 5}) {
+    Journal journal;
+    StateDetection detection = layer();
+    for (int number = 0; number < 12; ++number) {
+      Circumstances circumstances;
+      circumstances.number = number;
+      synthetic::Test test = synthetic::make({}, circumstances);
+      if (number == with_it) record_also(test, "pressure_differential");
+      journal.take(detection, test.window);
+      journal.take(detection, test.features);
+      const StateReport& report = last_report(journal);
+      const bool after_the_first = with_it == 0 && number == 1;  // one of one: nobody can know better
+      EXPECT_EQ(report.stale_channels.size(), after_the_first ? 1U : 0U) << number;
+      EXPECT_EQ(report.region, AlertRegion::normal) << number;
+    }
+  }
+}
+
+TEST(StateDetection, AChannelThatIsGivenUpIsMissedForAYear) {
+  Journal journal;
+  StateDetection detection = layer();
+  for (int number = 0; number < 60; ++number) {
+    Circumstances circumstances;
+    circumstances.number = number;
+    if (number >= 30) circumstances.absent_channel = "flow";
+    play(detection, journal, {}, circumstances);
+    const bool missed = number >= 30 && number < 42;
+    EXPECT_EQ(last_report(journal).stale_channels.size(), missed ? 1U : 0U) << number;
+    EXPECT_EQ(last_report(journal).region, missed && number > 30 ? AlertRegion::advisory : AlertRegion::normal)
+        << number;
+    if (number == 36 || number == 45) detection = journal.restart();
+  }
+}
+
 TEST(StateDetection, AReplacementStartsTheBaselineAnew) {
   Journal journal;
   StateDetection detection = layer();

@@ -32,6 +32,10 @@ bool AssetHistory::has_estimate(const std::string& estimate_id) const {
   return std::find(concluded_.begin(), concluded_.end(), estimate_id) != concluded_.end();
 }
 
+std::optional<UtcTime> AssetHistory::last_replacement() const {
+  return replacements_.empty() ? std::nullopt : std::optional(*replacements_.rbegin());
+}
+
 std::optional<UtcTime> AssetHistory::replaced_before(UtcTime now) const {
   const auto later = replacements_.upper_bound(now);
   return later == replacements_.begin() ? std::nullopt : std::optional(*std::prev(later));

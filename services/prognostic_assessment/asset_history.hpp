@@ -30,6 +30,8 @@ class AssetHistory {
   void add_replacement(UtcTime time);
 
   [[nodiscard]] bool has_estimate(const std::string& estimate_id) const;
+  /// The latest replacement of all.
+  [[nodiscard]] std::optional<UtcTime> last_replacement() const;
   /// Last replacement not after `now`.
   [[nodiscard]] std::optional<UtcTime> replaced_before(UtcTime now) const;
   /// Tests after the last replacement up to and including `now`, in the order of time.

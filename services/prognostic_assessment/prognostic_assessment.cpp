@@ -80,8 +80,10 @@ std::span<const Topic> PrognosticAssessment::outputs() const { return kOutputs; 
 
 void PrognosticAssessment::restore(const Message& own_output) {
   if (const auto* estimate = std::get_if<LeakageEstimate>(&own_output)) remember(*estimate);
-  if (const auto* life = std::get_if<RemainingLife>(&own_output); life && life->replacement_known)
+  if (const auto* life = std::get_if<RemainingLife>(&own_output); life && life->replacement_known) {
     history_[life->asset_id].add_replacement({life->replaced_ns});
+    learn_replacements(life->asset_id, life->header);
+  }
 }
 
 void PrognosticAssessment::remember(const LeakageEstimate& estimate) {
@@ -118,16 +120,15 @@ Conclusion PrognosticAssessment::join(const Input& input, std::optional<Input> P
 }
 
 /// The first report after a replacement names it, by an id that ends in its time: so it is known even where this
-/// service's journal was lost, as nobody sends a maintenance_event again.
-void PrognosticAssessment::learn_replacement(const HealthReport& health) {
-  for (const std::string& source : health.header.source_ids)
+/// service's journal was lost, as nobody sends a maintenance_event again. So does the answer to it.
+void PrognosticAssessment::learn_replacements(const std::string& asset_id, const Header& header) {
+  for (const std::string& source : header.source_ids)
     if (source.starts_with("maintenance_event/"))
-      if (const auto time = parse_utc(source.substr(source.rfind('/') + 1)))
-        history_[health.asset_id].add_replacement(*time);
+      if (const auto time = parse_utc(source.substr(source.rfind('/') + 1))) history_[asset_id].add_replacement(*time);
 }
 
 std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, const TestWindow& window) {
-  learn_replacement(health);
+  learn_replacements(health.asset_id, health.header);
   LeakageEstimate leakage = estimate(health, window);
   leakage.header = concluded_from(health.header, "leakage_estimate", kProducer,
                                   {health.header.message_id, window.header.message_id});
@@ -135,8 +136,9 @@ std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, 
   std::vector<Message> outputs{leakage, life};
   const AssetHistory& history = history_[leakage.asset_id];
   const AssetConfig* asset = configuration_.find_asset(leakage.asset_id);
-  const bool latest = leakage.header.event_time_known && !history.has_later_than({leakage.header.event_time_ns});
-  if (asset && latest) {
+  const UtcTime tested{leakage.header.event_time_ns};
+  const bool latest = leakage.header.event_time_known && !history.has_later_than(tested);
+  if (asset && latest && history.last_replacement().value_or(tested) <= tested) {
     PstRequest request = next_test(*asset, leakage);
     request.header = concluded_from(health.header, "pst_request", kProducer, {leakage.header.message_id});
     outputs.emplace_back(std::move(request));
@@ -221,6 +223,7 @@ std::size_t PrognosticAssessment::held() const {
       std::count_if(accepted_.begin(), accepted_.end(), [](const auto& one) { return one.second.in_force(); }));
 }
 
+/// Of several replacements the latest counts, whichever was reported last.
 Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   Conclusion conclusion{.outputs = {}, .consumed = accepted_[event.asset_id].take(event)};
   conclusion.consumed.push_back(event.header.message_id);
@@ -230,26 +233,36 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   std::ranges::replace(what, '_', ' ');
   AssetHistory& history = history_[event.asset_id];
   history.add_replacement(time);
+  const UtcTime last = *history.last_replacement();
+  const AssetConfig* asset = configuration_.find_asset(event.asset_id);
   RemainingLife life;
-  UtcTime as_of = time;
+  UtcTime as_of = last;
   const auto latest = latest_.find(event.asset_id);
-  if (latest != latest_.end() && latest->second.header.event_time_ns > event.header.event_time_ns) {
+  const bool tested_since = latest != latest_.end() && latest->second.header.event_time_ns > last.nanoseconds;
+  if (tested_since) {
     // Reported late, or with a wrong date: what has been tested since is judged by itself.
     LeakageEstimate since = latest->second;
     life = remaining_life(since);
     as_of = {since.header.event_time_ns};
     for (Forecast& forecast : life.forecasts) forecast.explanation += "; " + what + ", reported after this test";
   } else {
-    const AssetConfig* asset = configuration_.find_asset(event.asset_id);
     if (asset && asset->seal) life.threshold = asset->seal->threshold;
-    life.forecasts = no_forecast(what + ": the history starts anew");
+    life.forecasts = no_forecast(time == last ? what + ": the history starts anew"
+                                              : "replaced on " + format_date(last) + ": the history starts anew; " +
+                                                    what + ", reported after it, changes nothing");
   }
-  if (!std::exchange(life.replacement_known, true)) life.replaced_ns = time.nanoseconds;
+  if (!std::exchange(life.replacement_known, true)) life.replaced_ns = last.nanoseconds;
   life.asset_id = event.asset_id;
   life.header = concluded_from(event.header, "remaining_life", kProducer, {event.header.message_id});
   life.header.pst_id.clear();
   life.header.event_time_ns = as_of.nanoseconds;
   conclusion.outputs.emplace_back(std::move(life));
+  if (asset && !tested_since && time == last) {
+    PstRequest request = first_test(*asset, time, what);
+    request.header = concluded_from(event.header, "pst_request", kProducer, {event.header.message_id});
+    request.header.pst_id.clear();
+    conclusion.outputs.emplace_back(std::move(request));
+  }
   return conclusion;
 }
 

@@ -2,8 +2,9 @@
 // request for the next test.
 //
 // Driven by health_report, joined with the test_window of the same pst_id, in whatever order they come. A
-// maintenance_event is answered at once by a remaining_life that says so: by it the layer finds the replacement again
-// after a restart. Tests that are concluded while a model_acceptance is in force are estimated with the accepted model.
+// maintenance_event is answered at once by a remaining_life that says so, by which the layer finds the replacement
+// again after a restart, and, where no test since is known, by a new pst_request. Tests that are concluded while a
+// model_acceptance is in force are estimated with the accepted model.
 #pragma once
 
 #include <map>
@@ -60,7 +61,7 @@ class PrognosticAssessment final : public Layer {
 
   template <class Input>
   [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
-  void learn_replacement(const HealthReport& health);
+  void learn_replacements(const std::string& asset_id, const Header& header);
   [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
   void remember(const LeakageEstimate& estimate);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);

@@ -20,8 +20,17 @@ PstRequest next_test(const AssetConfig& asset, const LeakageEstimate& estimate) 
                      (estimate.reasons.empty() ? std::string("no reason given") : estimate.reasons.front());
   } else {
     request.due_time_ns = add_months(tested, asset.pst.interval_months).nanoseconds;
-    request.reason = "regular test, " + forecast::in_months(asset.pst.interval_months) + " after the last";
+    request.reason =
+        "regular test, " + forecast::in_months(asset.pst.interval_months) + " after that of " + format_date(tested);
   }
+  return request;
+}
+
+PstRequest first_test(const AssetConfig& asset, UtcTime replaced, const std::string& what) {
+  PstRequest request;
+  request.asset_id = asset.asset_id;
+  request.due_time_ns = add_months(replaced, asset.pst.interval_months).nanoseconds;
+  request.reason = what + ": first regular test " + forecast::in_months(asset.pst.interval_months) + " after it";
   return request;
 }
 

@@ -10,4 +10,8 @@ namespace sealwatch::prognostic_assessment {
 /// later. The header is not filled.
 [[nodiscard]] PstRequest next_test(const AssetConfig& asset, const LeakageEstimate& estimate);
 
+/// The request that follows a replacement ("seal replaced on 2018-06-10"), in place of the one that rests on a test of
+/// what was replaced: one interval after it. The header is not filled.
+[[nodiscard]] PstRequest first_test(const AssetConfig& asset, UtcTime replaced, const std::string& what);
+
 }  // namespace sealwatch::prognostic_assessment

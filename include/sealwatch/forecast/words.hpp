@@ -5,7 +5,7 @@
 
 namespace sealwatch::forecast {
 
-/// 18.43 -> "18 months", 2.34 -> "2.3 months", 1.0 -> "1.0 months".
+/// 18.43 -> "18 months", 2.34 -> "2.3 months", 2.0 (an interval) -> "2 months", 1.0 -> "1 month".
 [[nodiscard]] std::string in_months(double months);
 /// 12.3 -> "12 days", 2.34 -> "2.3 days".
 [[nodiscard]] std::string in_days(double days);

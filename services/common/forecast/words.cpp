@@ -15,7 +15,11 @@ std::string print(const char* form, double value) {
 
 }  // namespace
 
-std::string in_months(double months) { return print(std::abs(months) < 10.0 ? "%.1f months" : "%.0f months", months); }
+std::string in_months(double months) {
+  if (months == 1.0) return "1 month";
+  const bool whole = months == std::round(months);
+  return print(std::abs(months) < 10.0 && !whole ? "%.1f months" : "%.0f months", months);
+}
 
 std::string in_days(double days) { return print(std::abs(days) < 10.0 ? "%.1f days" : "%.0f days", days); }
 

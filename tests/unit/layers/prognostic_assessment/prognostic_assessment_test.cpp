@@ -137,6 +137,72 @@ TEST_F(PrognosticAssessmentTest, AReplacementFromBeforeAllTestsLeavesTheForecast
   EXPECT_LT(after.replaced_ns, before.front().header.event_time_ns);
 }
 
+TEST_F(PrognosticAssessmentTest, OfTwoReplacementsTheLatestCountsWhicheverWasReportedLast) {
+  const std::int64_t second = replacement(40.5).header.event_time_ns;
+  for (const double first : {30.5, -5.0, 40.2}) {
+    auto inputs = inputs_of(straight_life(1, 40));
+    inputs.emplace_back(replacement(40.5));
+    inputs.emplace_back(replacement(first));
+    const auto lives = of_kind<RemainingLife>(run(inputs));
+    ASSERT_EQ(lives.size(), 42u);
+    EXPECT_EQ(lives.back().replaced_ns, second) << first;
+    EXPECT_EQ(lives.back().header.event_time_ns, second);
+    EXPECT_EQ(lives.back().tests_since_replacement, 0);
+    EXPECT_THAT(lives.back().forecasts.front().explanation,
+                HasSubstr("replaced on 2013-05-17: the history starts anew; seal replaced on 20"));
+    for (const Message& message : inputs_of(straight_life(41, 43))) inputs.push_back(message);
+    EXPECT_EQ(of_kind<RemainingLife>(run(inputs)).back().tests_since_replacement, 3) << first;
+    EXPECT_EQ(of_kind<RemainingLife>(run(inputs)).back().replaced_ns, second) << first;
+  }
+}
+
+TEST_F(PrognosticAssessmentTest, AnEarlierReplacementAfterTestsOfTheLaterOneChangesNothing) {
+  auto inputs = inputs_of(straight_life(1, 40));
+  inputs.emplace_back(replacement(20.5));
+  const RemainingLife before = of_kind<RemainingLife>(run(inputs)).back();
+  inputs.emplace_back(replacement(10.5));
+  const RemainingLife after = of_kind<RemainingLife>(run(inputs)).back();
+  EXPECT_EQ(after.replaced_ns, replacement(20.5).header.event_time_ns);
+  EXPECT_EQ(after.tests_since_replacement, before.tests_since_replacement);
+  EXPECT_EQ(straight_line(after).rul_months, straight_line(before).rul_months);
+}
+
+TEST_F(PrognosticAssessmentTest, DeathBetweenTwoReplacementsChangesNothing) {
+  auto inputs = inputs_of(straight_life(1, 8));
+  inputs.emplace_back(replacement(8.5));
+  inputs.emplace_back(replacement(4.5));
+  for (const Message& message : inputs_of({{.month = 6.2}, {.month = 3.2}, {.month = 9.0}})) inputs.push_back(message);
+  const auto undisturbed = run(inputs);
+  for (std::size_t death = 0; death < inputs.size(); ++death) ASSERT_EQ(run(inputs, death), undisturbed) << death;
+}
+
+TEST_F(PrognosticAssessmentTest, AReplacementRenewsTheRequest) {
+  auto inputs = inputs_of(straight_life(1, 3));
+  inputs.emplace_back(replacement(3.5));
+  auto requests = of_kind<PstRequest>(run(inputs));
+  ASSERT_EQ(requests.size(), 4u);
+  EXPECT_EQ(requests.back().due_time_ns, add_months(add_months(kInstalled, 3.5), 1.0).nanoseconds);
+  EXPECT_EQ(requests.back().reason, "seal replaced on 2010-04-17: first regular test 1 month after it");
+  EXPECT_EQ(requests.back().header.message_id, "pst_request/" + replacement(3.5).header.message_id);
+  EXPECT_EQ(requests.back().header.event_time_ns, replacement(3.5).header.event_time_ns);
+  // A test of the old seal that comes after it asks for nothing, nor does an earlier replacement.
+  for (const Message& message : inputs_of({{.month = 3.2}})) inputs.push_back(message);
+  inputs.emplace_back(replacement(2.5));
+  EXPECT_EQ(of_kind<PstRequest>(run(inputs)), requests);
+  // The next test of the new one does, and says what it rests on.
+  for (const Message& message : inputs_of({{.month = 4.5}})) inputs.push_back(message);
+  requests = of_kind<PstRequest>(run(inputs));
+  ASSERT_EQ(requests.size(), 5u);
+  EXPECT_EQ(requests.back().reason, "regular test, 1 month after that of 2010-05-17");
+}
+
+TEST_F(PrognosticAssessmentTest, AReplacementThatIsReportedAfterLaterTestsLeavesTheirRequest) {
+  auto inputs = inputs_of(straight_life(1, 3));
+  const auto before = of_kind<PstRequest>(run(inputs));
+  inputs.emplace_back(replacement(1.5));
+  EXPECT_EQ(of_kind<PstRequest>(run(inputs)), before);
+}
+
 TEST_F(PrognosticAssessmentTest, ReplacementPartsTheHistoryByEventTimeNotByArrival) {
   auto inputs = inputs_of(straight_life(1, 40));
   inputs.emplace_back(replacement(30.5));  // reported ten months late

@@ -1,7 +1,5 @@
 #include "services/common/mismatch/effects.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,8 @@
 
 #include "sealwatch/forecast/fleet_population.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/resolution.hpp"
+#include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -73,61 +73,21 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   return found;
 }
 
-// Standard error of each shared unknown in its own unit: (J'J)^-1 with every recording's own unknowns eliminated, over
-// the dispersion; infinite where the data cannot tell or where the unknown is at its bound.
-std::vector<double> standard_errors(const FittedModel& model) {
-  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  std::vector<double> errors(model.problem.shared.size(), std::numeric_limits<double>::infinity());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(shared, shared);
-  for (const Linearisation& at : model.optimum.at_optimum) {
-    const Eigen::MatrixXd gram = at.jacobian.transpose() * at.jacobian;
-    const Eigen::Index own = gram.cols() - shared;
-    Eigen::MatrixXd of_own = gram.bottomRightCorner(own, own);
-    of_own.diagonal() *= 1.0 + 1e-12;
-    of_own.diagonal().array() += 1e-300;
-    information += gram.topLeftCorner(shared, shared) -
-                   gram.topRightCorner(shared, own) * of_own.ldlt().solve(gram.bottomLeftCorner(own, shared));
-  }
-  std::vector<Eigen::Index> seen;
-  for (Eigen::Index k = 0; k < shared; ++k) {
-    const Unknown& unknown = model.problem.shared[static_cast<std::size_t>(k)];
-    const double at = model.optimum.point.shared[static_cast<std::size_t>(k)];
-    const bool held = at - unknown.to_unknown(unknown.min) < 1e-6 || unknown.to_unknown(unknown.max) - at < 1e-6;
-    if (!held && information(k, k) > 0.0) seen.push_back(k);
-  }
-  const auto count = static_cast<Eigen::Index>(seen.size());
-  Eigen::MatrixXd scaled(count, count);
-  for (Eigen::Index j = 0; j < count; ++j)
-    for (Eigen::Index k = 0; k < count; ++k)
-      scaled(j, k) = information(seen[static_cast<std::size_t>(j)], seen[static_cast<std::size_t>(k)]) /
-                     std::sqrt(information(seen[static_cast<std::size_t>(j)], seen[static_cast<std::size_t>(j)]) *
-                               information(seen[static_cast<std::size_t>(k)], seen[static_cast<std::size_t>(k)]));
-  scaled.diagonal().array() += 1e-12;
-  const Eigen::MatrixXd covariance = scaled.inverse();
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const auto k = static_cast<std::size_t>(seen[static_cast<std::size_t>(j)]);
-    const double variance = covariance(j, j) * dispersion(model) /
-                            information(seen[static_cast<std::size_t>(j)], seen[static_cast<std::size_t>(j)]);
-    errors[k] = std::sqrt(variance) * std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
-  }
-  return errors;
-}
-
+// A strength is known no better than the simulation's own errors allow (k_0), whatever its standard error.
 std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedModel& model,
-                                          const std::vector<double>& errors) {
+                                          const std::vector<double>& errors, const Resolution& resolution) {
   std::vector<FoundParameter> parameters;
   for (const LawParameter& parameter : effect.law->parameters) {
     const std::string name = physics_parameter_name(effect.element, effect.law->id, parameter.name);
-    FoundParameter found{
-        .name = std::string(parameter.name),
-        .unit = unit_of(parameter, effect.element, model.problem.recordings.front().simulation->plant())};
+    FoundParameter found{.name = std::string(parameter.name),
+                         .unit = unit_of(parameter, effect.element, *resolution.plant)};
     for (const PhysicsTerm& term : model.asset.physics)
       if (term.id == effect.law->id && term.element == effect.element)
         if (const auto setting = term.parameters.find(found.name); setting != term.parameters.end())
           found.value = setting->second.value;
     for (std::size_t k = 0; k < errors.size(); ++k) {
       if (model.problem.shared[k].name != name) continue;
-      found.std_error = errors[k];
+      found.std_error = std::hypot(errors[k], parameter.strength ? resolution.of(parameter) : 0.0);
       found.at_bound = !std::isfinite(errors[k]);
     }
     parameters.push_back(std::move(found));
@@ -208,6 +168,8 @@ bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b) {
 std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
                                           const ExplainOptions& options) {
   const std::vector<double> errors = standard_errors(*best.model);
+  const PlantDescription& plant = best.model->problem.recordings.front().simulation->plant();
+  const Resolution resolution = resolution_of(data, plant);
   std::vector<FoundEffect> effects;
   for (std::size_t slot = 0; slot < best.effects.size(); ++slot) {
     const std::vector<Trial> alternatives = alternatives_of(naming, best, slot, data, options);
@@ -215,9 +177,8 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     for (const Trial& trial : alternatives) phi = std::min(phi, dispersion(*trial.model));
     FoundEffect effect;
     effect.what = law_at(best.effects[slot]);
-    effect.parameters = parameters_of(best.effects[slot], *best.model, errors);
-    effect.engineering_share =
-        engineering_share(effect, *best.effects[slot].law, best.model->problem.recordings.front().simulation->plant());
+    effect.parameters = parameters_of(best.effects[slot], *best.model, errors, resolution);
+    effect.engineering_share = engineering_share(effect, *best.effects[slot].law, plant);
     weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), best.model->misfit, phi);
     const FittedModel* fewer = naming.baseline.get();
     for (const Trial& trial : naming.trials) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "services/common/mismatch/linear_algebra.hpp"
+#include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/sensitivity_pass.hpp"
 #include "services/common/mismatch/tail.hpp"
 
@@ -114,25 +115,7 @@ std::vector<bool> sign_bounds(const Screening& screening, const Variant& variant
   return positive;
 }
 
-// What the simulation's own errors can feign.
-struct Resolution {
-  double share = 0.0;     ///< of a significant strength
-  double timing_s = 0.0;  ///< of delays and lags
-};
-
-// An input that is not held may change anywhere between two samples: when, is known to a part of their distance.
-Resolution resolution_of(const Data& data) {
-  constexpr double kShareOfInterval = 0.05;
-  Resolution resolution{.share = data.resolution};
-  for (const TimeSeries& recorded : data.samples) {
-    const double interval_s =
-        (recorded.time_s.back() - recorded.time_s.front()) / static_cast<double>(recorded.time_s.size());
-    if (!recorded.input_hold) resolution.timing_s = std::max(resolution.timing_s, kShareOfInterval * interval_s);
-  }
-  return resolution;
-}
-
-// Strengths, in usual sizes, that errors of a measured input can feign.
+// k_0 in usual sizes.
 Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant, const Resolution& resolution) {
   const Candidate& candidate = screening.candidates[variant.candidate];
   const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
@@ -143,8 +126,7 @@ Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant
     const double unit =
         std::abs(screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
     const bool bias = candidate.law->kind == SiteKind::sensor_bias;
-    least(k) = resolution.share * (bias ? 1.0 : strength.significant / unit);
-    if (strength.unit == "s") least(k) = std::max(least(k), resolution.timing_s / unit);
+    least(k) = bias ? resolution.share : resolution.of(strength) / unit;
   }
   return least;
 }
@@ -349,7 +331,8 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
   screening.block_scores = stacked(sums, blocks);
   screening.gradient = screening.block_scores.colwise().sum();
   if (shared > 0) find_leakage_shifts(screening, model, gram, cross);
-  evaluate(screening, raw_norm, stacked(grams, blocks), resolution_of(data));
+  evaluate(screening, raw_norm, stacked(grams, blocks),
+           resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);
   return screening;
 }

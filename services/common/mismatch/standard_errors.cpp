@@ -1,0 +1,82 @@
+#include "services/common/mismatch/standard_errors.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/linear_algebra.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kBlock_s = 2.0;      // longer than the transients that a wrong form leaves at a corner of a test
+constexpr double kLeastBlock = 10.0;  // samples, where they are further apart than a plant for which that is long
+
+struct Normal {
+  Eigen::MatrixXd information, scores;  ///< A, B
+  int blocks = 0;
+};
+
+// `scores` of one recording, block by block.
+void add_recording(const Linearisation& at, const std::vector<double>& time_s, Normal& normal) {
+  const Eigen::Index shared = normal.information.cols();
+  RowMatrix jacobian = at.jacobian.leftCols(shared);
+  const RowMatrix own = at.jacobian.rightCols(at.jacobian.cols() - shared);
+  Projection(own).remove_from(jacobian);
+  normal.information.noalias() += jacobian.transpose() * jacobian;
+  const double spacing_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  const auto samples = static_cast<Eigen::Index>(std::max(kLeastBlock, std::round(kBlock_s / spacing_s)));
+  const Eigen::Index rows = samples * at.simulated.cols();
+  for (Eigen::Index begin = 0; begin < jacobian.rows(); begin += rows) {
+    const Eigen::Index count = std::min(rows, jacobian.rows() - begin);
+    const Eigen::VectorXd score = jacobian.middleRows(begin, count).transpose() * at.residual.segment(begin, count);
+    normal.scores.noalias() += score * score.transpose();
+    ++normal.blocks;
+  }
+}
+
+bool at_bound(const Unknown& unknown, double at) {
+  return at - unknown.to_unknown(unknown.min) < 1e-6 || unknown.to_unknown(unknown.max) - at < 1e-6;
+}
+
+// What the data tell of: scaled to a unit diagonal, as the unknowns differ by twenty orders of magnitude.
+std::vector<Eigen::Index> told_by_data(const FittedModel& model, const Eigen::MatrixXd& information) {
+  std::vector<Eigen::Index> told;
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const auto j = static_cast<Eigen::Index>(k);
+    if (information(j, j) > 0.0 && !at_bound(model.problem.shared[k], model.optimum.point.shared[k])) told.push_back(j);
+  }
+  return told;
+}
+
+}  // namespace
+
+std::vector<double> standard_errors(const FittedModel& model) {
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  Normal normal{.information = Eigen::MatrixXd::Zero(shared, shared), .scores = Eigen::MatrixXd::Zero(shared, shared)};
+  for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k)
+    add_recording(model.optimum.at_optimum[k], model.problem.recordings[k].time_s, normal);
+  if (normal.blocks > 1) normal.scores *= normal.blocks / (normal.blocks - 1.0);
+
+  const std::vector<Eigen::Index> told = told_by_data(model, normal.information);
+  const Eigen::VectorXd scale =
+      subvector(normal.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(), told);
+  Eigen::MatrixXd scaled = scale.asDiagonal() * submatrix(normal.information, told) * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-12;
+  const Eigen::MatrixXd inverse = scaled.inverse();
+  const Eigen::MatrixXd robust =
+      inverse * (scale.asDiagonal() * submatrix(normal.scores, told) * scale.asDiagonal()) * inverse;
+  const double phi = dispersion(model);
+  std::vector<double> errors(model.problem.shared.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t j = 0; j < told.size(); ++j) {
+    const auto at = static_cast<Eigen::Index>(j);
+    const auto k = static_cast<std::size_t>(told[j]);
+    errors[k] = std::sqrt(std::max(phi * inverse(at, at), robust(at, at))) * scale(at) *
+                std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
+  }
+  return errors;
+}
+
+}  // namespace sealwatch::mismatch

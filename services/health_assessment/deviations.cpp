@@ -45,10 +45,17 @@ const Deviation* find_deviation(const std::vector<Deviation>& deviations, std::s
   return found == deviations.end() ? nullptr : &*found;
 }
 
+std::string in_words(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
 std::string in_words(const RegionJudgement& judgement) {
   char text[200];
-  std::snprintf(text, sizeof text, "%s %.3g %s, advisory %s %.3g", judgement.quantity.c_str(), judgement.value,
-                judgement.unit.c_str(), judgement.alarm_limit < judgement.advisory_limit ? "below" : "above",
+  const std::string unit = judgement.unit == "1" ? "" : " " + judgement.unit;  // a plain number has none to name
+  std::snprintf(text, sizeof text, "%s %.3g%s, advisory %s %.3g", in_words(judgement.quantity).c_str(), judgement.value,
+                unit.c_str(), judgement.alarm_limit < judgement.advisory_limit ? "below" : "above",
                 judgement.advisory_limit);
   return text;
 }

@@ -7,6 +7,7 @@
 
 #include "sealwatch/config/judged_quantities.hpp"
 #include "sealwatch/message/provenance.hpp"
+#include "services/health_assessment/deviations.hpp"
 
 namespace sealwatch {
 namespace {
@@ -28,12 +29,14 @@ void add_later(Conclusion& conclusion, std::function<Conclusion()> work) {
   };
 }
 
-std::string in_words(const RegionJudgement& judgement) {
+std::string residual_words(const RegionJudgement& judgement) {
   char figures[120];
-  std::snprintf(figures, sizeof figures, " is %.3g %s, in region ", judgement.value, judgement.unit.c_str());
-  std::string text = judgement.quantity;
-  text.append(figures).append(name_of(judgement.raw_region)).append(" against ");
-  return text.append(name_of(judgement.reference));
+  const std::string unit = judgement.unit == "1" ? "" : " " + judgement.unit;
+  std::snprintf(figures, sizeof figures, " is %.3g%s, in region ", judgement.value, unit.c_str());
+  std::string text = "difference from the simulation in ";
+  text.append(in_words(std::string_view(judgement.quantity).substr(kResidualQuantity.size()))).append(figures);
+  text.append(name_of(judgement.raw_region)).append(" against ");
+  return text.append(in_words(name_of(judgement.reference)));
 }
 
 /// The test as the analysis takes it: channels that the test's own status calls OK.
@@ -59,7 +62,7 @@ std::vector<std::string> persistent_residuals(const StateReport& report) {
   for (const RegionJudgement& judgement : report.judgements)
     if (judgement.quantity.starts_with(kResidualQuantity) && judgement.raw_region >= AlertRegion::warning &&
         (!accepted || judgement.reference == Reference::accepted_model))
-      found.push_back(in_words(judgement));
+      found.push_back(residual_words(judgement));
   return found;
 }
 

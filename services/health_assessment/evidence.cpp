@@ -22,13 +22,13 @@ std::string separating(const Signature& one, const Signature& other, const std::
   for (const Deviation& deviation : deviations) {
     const std::string& quantity = deviation.judgement.quantity;
     if (!deviation.informative || one.moves.count(quantity) == other.moves.count(quantity)) continue;
-    names += (names.empty() ? "" : ", ") + quantity;
+    names += (names.empty() ? "" : ", ") + in_words(quantity);
   }
   return names;
 }
 
 std::string separation_text(const ProposedFault& other, const std::string& names) {
-  const std::string rival = std::string(name_of(other.kind)) + " (" + other.element + ")";
+  const std::string rival = in_words(name_of(other.kind)) + " (" + in_words(other.element) + ")";
   if (names.empty()) return "cannot be told apart from " + rival + " by the recorded channels";
   return "told apart from " + rival + " by " + names;
 }

@@ -163,9 +163,12 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   const std::set<std::string> expected = history.expected_channels();
   for (const ChannelStatus& stale : stale_channels(features.channel_status, expected)) {
     report.stale_channels.push_back(stale.channel);
-    report.verdict_reasons.push_back("channel " + stale.channel + ", OK in most earlier tests, is " +
-                                     std::string(name_of(stale.state)) +
-                                     (stale.reason.empty() ? "" : ": " + stale.reason));
+    std::string text = "channel " + stale.channel + ", OK in most earlier tests, ";
+    if (stale.state == ChannelState::NOT_USED)
+      text += "was not recorded";
+    else
+      text.append("is ").append(name_of(stale.state)).append(stale.reason.empty() ? "" : ": ").append(stale.reason);
+    report.verdict_reasons.push_back(std::move(text));
   }
   if (!is_judged(report.verdict)) return;
   report.judgements = judge_indicators(asset, indicators, history.baseline());

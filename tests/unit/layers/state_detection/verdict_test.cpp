@@ -97,7 +97,8 @@ TEST(Verdict, WithoutPositionItIsJudgedByTheVelocityAndSaysSo) {
   synthetic::Condition slow;
   slow.speed_m_s = 1.1e-3;
   EXPECT_EQ(judge(slow, failed).verdict, PstVerdict::failed);
-  EXPECT_THAT(judge(slow, failed).reasons, ElementsAre(HasSubstr("closes in 72.8 s"), HasSubstr("judged by the velocity")));
+  EXPECT_THAT(judge(slow, failed).reasons,
+              ElementsAre(HasSubstr("closes in 72.8 s"), HasSubstr("judged by the velocity")));
 }
 
 TEST(Verdict, APistonThatNeverMovedFailsByTheVelocityToo) {

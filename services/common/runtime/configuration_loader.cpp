@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/message/topics.hpp"
@@ -27,6 +28,17 @@ constexpr NumberRule kRate{
 
 fs::path file_of(const std::string& path) {
   return fs::is_directory(path) ? fs::path(path) / "sealwatch.yaml" : fs::path(path);
+}
+
+/// Whoever is told of a configuration that is not there learns where it was looked for, and how to name another.
+Error not_there(const fs::path& file) {
+  return {.file = fs::absolute(file).lexically_normal().string(),
+          .place = {},
+          .value = {},
+          .rule = "is not there, or may not be read: no configuration",
+          .advice =
+              "name the folder that holds sealwatch.yaml with --config or in SEALWATCH_CONFIG; an installed system "
+              "has it in /etc/sealwatch, a checkout in config"};
 }
 
 template <class Enum>
@@ -231,6 +243,7 @@ std::string place_in_configuration(const std::string& path, const std::string& k
 Checked<Configuration> load_configuration(const std::string& path, const ConfigurationOverrides& overrides) {
   const fs::path file = file_of(path);
   std::vector<Error> errors;
+  if (!std::ifstream(file) || !fs::is_regular_file(file)) return tl::unexpected(std::vector{not_there(file)});
   const auto root = load_yaml(file.string(), errors);
   if (!root) return tl::unexpected(errors);
   YamlMap map(file.string(), *root, {}, errors);

@@ -149,7 +149,12 @@ TEST(ConfigurationTest, WhatTheYamlLibraryPassesOverIsNamed) {
 TEST(ConfigurationTest, AMissingFileIsNamed) {
   const YamlPlace place;
   EXPECT_THAT(faults(place, place.directory()),
-              ElementsAre("sealwatch.yaml: cannot be read; check that the file exists and may be read"));
+              ElementsAre(::testing::AllOf(HasSubstr("sealwatch.yaml: is not there"),
+                                           HasSubstr("--config or in SEALWATCH_CONFIG"), HasSubstr("/etc/sealwatch"))));
+  // A relative path is told in full: where the program was started is the reader's first question.
+  const auto relative = load_configuration("no/such/folder");
+  ASSERT_FALSE(relative);
+  EXPECT_EQ(relative.error().front().file, (std::filesystem::current_path() / "no/such/folder").string());
 }
 
 TEST(ConfigurationTest, AllFaultsOfAllFilesAreNamedAtOnce) {

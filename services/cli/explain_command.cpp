@@ -92,7 +92,9 @@ void print_effect(const FoundEffect& effect) {
   for (const FoundParameter& parameter : effect.parameters) std::printf("    %s\n", parameter_text(parameter).c_str());
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    others += (others.empty() ? "" : ", ") + report::words_of(other.id) + " of " + report::words_of(other.element);
+    others += (others.empty() ? "" : ", ") +
+              (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
+                                             : report::words_of(other.id) + " of " + report::words_of(other.element));
   if (!others.empty()) std::printf("    %s\n", wrapped("cannot be told from: " + others, kWidth, 4).c_str());
 }
 

@@ -56,6 +56,11 @@ struct FoundEffect {
   std::string regime;                      ///< where it acts: "moving, both directions, above 0.5 mm/s"
   std::string evidence;                    ///< one sentence
   std::vector<Alternative> alternatives;   ///< most likely first
+
+  /// Whether `other` is the same law at the same element in another closed form.
+  [[nodiscard]] bool is_another_form(const LawAt& other) const {
+    return other.id == what.id && other.element == what.element;
+  }
 };
 
 /// The missing force, flow, torque or voltage of one element over one recording, as the data alone demands it

@@ -36,7 +36,8 @@ DiscrepancyPhysics physics_of(const mismatch::FoundEffect& effect) {
     physics.parameters.push_back({found.name, found.unit, found.value, known, known ? found.std_error : 0.0});
   }
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    physics.indistinguishable_from.push_back(std::string(other.id).append(" at ").append(other.element));
+    if (!effect.is_another_form(other))
+      physics.indistinguishable_from.push_back(std::string(other.id).append(" at ").append(other.element));
   return physics;
 }
 

@@ -7,10 +7,10 @@
 namespace sealwatch::mismatch {
 namespace {
 
-std::string joined(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words, const char* last) {
   std::string text;
   for (std::size_t k = 0; k < words.size(); ++k) {
-    if (k > 0) text += k + 1 == words.size() ? " or " : ", ";
+    if (k > 0) text += k + 1 == words.size() ? last : ", ";
     text += words[k];
   }
   return text;
@@ -90,12 +90,9 @@ std::string summary_of(const Explanation& explanation) {
     return text;
   }
   if (explanation.verdict == Verdict::mismatch) {
-    text = "The simulation lacks ";
-    for (std::size_t k = 0; k < explanation.effects.size(); ++k) {
-      if (k > 0) text += " and ";
-      text += law_in_words(explanation.effects[k].what);
-    }
-    text += ". With it ";
+    std::vector<std::string> laws;
+    for (const FoundEffect& effect : explanation.effects) laws.push_back(law_in_words(effect.what));
+    text = "The simulation lacks " + joined(laws, " and ") + (laws.size() > 1 ? ". With them " : ". With it ");
     const ChannelComparison* proof = worst_channel(explanation.holdout);
     if (proof != nullptr) {
       text.append("the misfit of ").append(proof->channel).append(" on recordings that took no part falls from ");
@@ -107,8 +104,11 @@ std::string summary_of(const Explanation& explanation) {
     for (const FoundEffect& effect : explanation.effects) {
       if (effect.indistinguishable.empty()) continue;
       std::vector<std::string> others;
-      for (const LawAt& other : effect.indistinguishable) others.push_back(law_in_words(other));
-      text.append(" These recordings cannot tell it from ").append(joined(others)).append(".");
+      for (const LawAt& other : effect.indistinguishable)
+        others.push_back(effect.is_another_form(other) ? "another form of it (" + other.law + ")"
+                                                       : law_in_words(other));
+      text.append(" These recordings cannot tell ").append(law_in_words(effect.what));
+      text.append(" from ").append(joined(others, " or ")).append(".");
     }
     return text;
   }

@@ -47,7 +47,7 @@ void take_resistance(LeakageEstimate& estimate, const FitReport& fit, const Esti
 
 void take_condition(LeakageEstimate& estimate, const AssetConfig& asset, double largest_condition_std) {
   if (!asset.seal) {
-    estimate.reasons.push_back("the asset file gives no seal resistances: the seal condition theta is not defined");
+    estimate.reasons.push_back("the asset file gives no seal resistances: the seal condition is not defined");
     return;
   }
   estimate.condition_known = estimate.estimated && estimate.resistance_Pa_s_m3 > 0.0;
@@ -55,8 +55,9 @@ void take_condition(LeakageEstimate& estimate, const AssetConfig& asset, double 
   estimate.condition = asset.seal->condition(estimate.resistance_Pa_s_m3);
   estimate.condition_std = asset.seal->condition_std(estimate.resistance_std_Pa_s_m3);
   if (estimate.condition_std > largest_condition_std)
-    estimate.reasons.push_back("the standard error of theta, " + forecast::as_condition(estimate.condition_std) +
-                               ", is above " + forecast::as_condition(largest_condition_std));
+    estimate.reasons.push_back("the standard error of the seal condition, " +
+                               forecast::condition_in_percent(estimate.condition_std) + ", is above " +
+                               forecast::condition_in_percent(largest_condition_std));
 }
 
 }  // namespace

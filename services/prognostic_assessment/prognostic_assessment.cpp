@@ -27,8 +27,8 @@ std::string dates_after(const std::vector<forecast::ConditionSample>& samples, U
   std::string text;
   for (const forecast::ConditionSample& sample : samples)
     if (sample.time > begin)
-      text +=
-          (text.empty() ? "" : ", ") + format_date(sample.time) + " (" + forecast::as_condition(sample.condition) + ")";
+      text += (text.empty() ? "" : ", ") + format_date(sample.time) + " (" +
+              forecast::condition_in_percent(sample.condition) + ")";
   return text;
 }
 
@@ -47,8 +47,9 @@ void mark_unconfirmed(LeakageEstimate& estimate, const std::vector<forecast::Con
   });
   if (!alone || !estimate.used_for_forecast) return;
   estimate.used_for_forecast = false;
-  estimate.reasons.push_back(kUnconfirmed + std::string("theta = ") + forecast::as_condition(estimate.condition) +
-                             " is more than five robust standard deviations off its neighbours; it counts "
+  estimate.reasons.push_back(kUnconfirmed + std::string("the seal condition, ") +
+                             forecast::condition_in_percent(estimate.condition) +
+                             ", is more than five robust standard deviations off its neighbours; it counts "
                              "once the next test confirms it");
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace sealwatch::forecast {
 
@@ -13,9 +14,17 @@ namespace sealwatch::forecast {
 [[nodiscard]] std::string in_percent(double share);
 /// 0.72345 -> "0.723": theta and its standard errors.
 [[nodiscard]] std::string as_condition(double condition);
-/// Value and standard error of theta: "0.7235 +- 0.0021".
+/// 0.667 -> "66.7 %": the seal condition as on operators' screens, of the elastic modulus when new.
+[[nodiscard]] std::string condition_in_percent(double condition);
+/// Seal condition and its standard error: "72.35 +- 0.2 %".
 [[nodiscard]] std::string condition_with_std(double condition, double condition_std);
+/// How far estimates of it scatter: 0.00123 -> "0.12 %".
+[[nodiscard]] std::string spread_in_percent(double spread);
 /// 2.2e13 -> "2.20e+13": quantities over many orders of magnitude, three digits.
 [[nodiscard]] std::string three_digits(double value);
+/// Names of states and quantities in sentences: "not_judged" -> "not judged".
+[[nodiscard]] std::string in_words(std::string_view name);
+/// 5.91e12, "Pa s/m3" -> "5.91e+12 Pa s/m3"; a unit of "1" (a plain number) is not named.
+[[nodiscard]] std::string with_unit(double value, std::string_view unit);
 
 }  // namespace sealwatch::forecast

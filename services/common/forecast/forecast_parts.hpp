@@ -21,7 +21,7 @@ Forecast& say_past_threshold(Forecast& forecast, const ForecastRequest& request,
 /// Numbers of a forecast that is ok; failure probabilities included.
 void fill_numbers(Forecast& forecast, const ForecastRequest& request, const PredictiveDistribution& remaining);
 
-/// "; the last usable test was 5.0 months ago", "" when it was not long ago.
+/// "; the last usable test was 5 months ago", "" when it was not long ago.
 [[nodiscard]] std::string age_of_last_test(const ForecastRequest& request);
 
 }  // namespace sealwatch::forecast

@@ -98,8 +98,8 @@ void fill_failure_probabilities(Forecast& forecast, const ForecastRequest& reque
 }
 
 std::string describe_ok(const Forecast& forecast, const ForecastRequest& request, const DegradationLine& line) {
-  std::string text = std::to_string(forecast.tests_used) + " tests, scatter of one " +
-                     three_digits(std::sqrt(line.scatter_variance)) + " of theta";
+  std::string text = std::to_string(forecast.tests_used) + " tests that scatter by " +
+                     spread_in_percent(std::sqrt(line.scatter_variance)) + " about the line";
   text += age_of_last_test(request);
   if (forecast.interval_95_high_months >= kLongestMonths)
     text += "; upper limits are cut at " + in_months(kLongestMonths);
@@ -146,8 +146,9 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
   const double present = present_condition(request.history);
   if (present <= request.threshold)
     return {say_past_threshold(forecast, request,
-                               "the condition is " + as_condition(present) +
-                                   " (median of the last tests), the threshold " + as_condition(request.threshold))};
+                               "the condition is " + condition_in_percent(present) +
+                                   " (median of the last tests), the limit " +
+                                   condition_in_percent(request.threshold))};
   if (const std::string missing = missing_history(options_, request, window.size()); !missing.empty())
     return {say(forecast, ForecastState::insufficient_history, missing)};
 
@@ -162,8 +163,9 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
                 "the condition does not fall significantly over these months (p = " + three_digits(p) + ")")};
   if (remaining->quantile(0.5) <= 0.0)
     return {say_past_threshold(forecast, request,
-                               "the fitted line is at " + as_condition(line->condition_at(axis.y(axis.now_months))) +
-                                   " now, the threshold is " + as_condition(request.threshold))};
+                               "the fitted line is at " +
+                                   condition_in_percent(line->condition_at(axis.y(axis.now_months))) +
+                                   " now, the limit is " + condition_in_percent(request.threshold))};
   if (remaining->quantile(0.5) > options_.horizon_months)
     return {say(forecast, ForecastState::no_significant_trend,
                 "at this rate the end of life is more than " + in_months(options_.horizon_months) +

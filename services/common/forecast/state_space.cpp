@@ -101,16 +101,17 @@ std::string describe_change(const SealOpinion& opinion, UtcTime first) {
 std::string describe_ok(const Forecast& forecast, const SealOpinion& opinion, const Opened& opened,
                         const ForecastRequest& request) {
   std::string text = std::to_string(opened.tests.size());
-  text += " tests, condition now ";
+  text += " tests up to " + format_date(request.history.back().time) + ", condition now ";
   const ConditionForecast now = condition_of(opinion, request.now);
   text += condition_with_std(now.condition, now.condition_std);
+  text += request.history.back().time < request.now ? " (carried on from then)" : " (by sensor noise alone)";
   double stranger = 0.0;
   for (const SealHypothesis& hypothesis : opinion.hypotheses)
     stranger += (hypothesis.kin == Kinship::stranger) * hypothesis.weight;
   if (stranger > kWorthSaying) text += "; it ages unlike the population";
   if (const std::string change = describe_change(opinion, opened.first); !change.empty()) text += "; " + change;
   if (opinion.extra_std > 0.0)
-    text += "; tests scatter by " + three_digits(opinion.extra_std) + " besides their errors";
+    text += "; tests scatter by " + spread_in_percent(opinion.extra_std) + " besides their errors";
   if (opinion.irregularity_scale > 1.0) text += "; it ages less regularly than the law says";
   if (forecast.interval_95_high_months >= kLongestMonths)
     text += "; upper limits are cut at " + in_months(kLongestMonths);
@@ -158,8 +159,9 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
   if (forecast.tests_used < options_.fewest_tests) {
     if (const double present = present_condition(request.history); present <= request.threshold)
       return {say_past_threshold(forecast, request,
-                                 "the condition is " + as_condition(present) +
-                                     " (median of the last tests), the threshold " + as_condition(request.threshold))};
+                                 "the condition is " + condition_in_percent(present) +
+                                     " (median of the last tests), the limit " +
+                                     condition_in_percent(request.threshold))};
     return {say(forecast, ForecastState::insufficient_history,
                 std::to_string(forecast.tests_used) + (forecast.tests_used == 1 ? " usable test" : " usable tests") +
                     " so far, at least " + std::to_string(options_.fewest_tests) + " are needed")};
@@ -175,7 +177,7 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
   if (remaining.cdf(0.0) >= 0.5)
     return {say_past_threshold(forecast, request,
                                "the condition is " + condition_with_std(now.condition, now.condition_std) +
-                                   ", the threshold " + as_condition(request.threshold))};
+                                   ", the limit " + condition_in_percent(request.threshold))};
   if (const double falls = fall_probability(opinion); falls < kSureOfFall)
     return {say(forecast, ForecastState::no_significant_trend,
                 "the condition does not fall significantly (probability that it falls: " + in_percent(falls) + ")")};

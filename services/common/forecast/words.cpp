@@ -1,5 +1,6 @@
 #include "sealwatch/forecast/words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -32,8 +33,24 @@ std::string in_percent(double share) {
 
 std::string as_condition(double condition) { return print("%.3f", condition); }
 
+std::string condition_in_percent(double condition) { return print("%.1f %%", 100.0 * condition); }
+
 std::string condition_with_std(double condition, double condition_std) {
-  return print("%.4f", condition) + " +- " + print(condition_std < 1e-4 ? "%.0e" : "%.4f", condition_std);
+  return print("%.2f", 100.0 * condition) + " +- " + print("%.1g %%", 100.0 * condition_std);
+}
+
+std::string spread_in_percent(double spread) { return print("%.2g %%", 100.0 * spread); }
+
+std::string in_words(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string with_unit(double value, std::string_view unit) {
+  std::string text = print("%.3g", value);
+  if (unit != "1" && !unit.empty()) text.append(" ").append(unit);
+  return text;
 }
 
 std::string three_digits(double value) { return print("%.2e", value); }

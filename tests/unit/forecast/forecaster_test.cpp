@@ -150,7 +150,7 @@ TEST(Ols, RemainingLifeCountsFromNowNotFromTheLastTest) {
                          ->forecast({.history = straight_life(40, 0.004, 0.001), .threshold = 0.60, .now = month(45)})
                          .value();
   EXPECT_NEAR(f.rul_months, 55.0, kNanosecondRounding_months);
-  EXPECT_THAT(f.explanation, HasSubstr("5.0 months ago"));
+  EXPECT_THAT(f.explanation, HasSubstr("5 months ago"));
 }
 
 TEST(States, InsufficientHistory) {

@@ -84,7 +84,8 @@ TEST(JudgeEstimate, NumbersThatAreNoneAreNoEstimate) {
 TEST(JudgeEstimate, VagueEstimateIsLeftOut) {
   const LeakageEstimate estimate = judge({fit("eha", 2e13, 6e12)});  // 0.11 of theta
   EXPECT_FALSE(estimate.used_for_forecast);
-  EXPECT_THAT(estimate.reasons, ElementsAre(HasSubstr("standard error of theta, 0.112")));
+  EXPECT_THAT(estimate.reasons,
+              ElementsAre(HasSubstr("standard error of the seal condition, 11.2 %, is above 10.0 %")));
 }
 
 TEST(JudgeEstimate, WithoutSealResistancesThereIsNoCondition) {

@@ -252,7 +252,7 @@ TEST_F(PrognosticAssessmentTest, LoneMonthWaitsForConfirmation) {
   EXPECT_TRUE(estimates[60].used_for_forecast);
   const auto lives = of_kind<RemainingLife>(outputs);
   EXPECT_NEAR(straight_line(lives[59]).rul_months, 40.0, 1e-6);
-  EXPECT_THAT(lives[59].forecasts.front().explanation, HasSubstr("2015-01-01 (0.650)"));
+  EXPECT_THAT(lives[59].forecasts.front().explanation, HasSubstr("2015-01-01 (65.0 %)"));
   EXPECT_LT(straight_line(lives[60]).rul_months, 35.0);  // both count now
   EXPECT_LT(lives[60].forecasts.front().rul_months, 35.0);
 }

@@ -1,8 +1,6 @@
 #include "services/advisory_generation/reasons.hpp"
 
-#include <algorithm>
-#include <cstdio>
-
+#include "sealwatch/config/judged_quantities.hpp"
 #include "sealwatch/forecast/words.hpp"
 #include "services/advisory_generation/assessment.hpp"
 
@@ -10,23 +8,57 @@ namespace sealwatch::advisory_generation {
 namespace {
 
 using forecast::as_condition;
+using forecast::condition_in_percent;
 using forecast::in_months;
 using forecast::in_percent;
+using forecast::in_words;
 using forecast::three_digits;
+using forecast::with_unit;
 
 /// Below this a fault is proposed only because some fault must come first.
 constexpr double kWorthNaming = 0.10;
 
-std::string in_words(std::string_view name) {
-  std::string text(name);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
+/// "test of 2018-03-24".
+std::string name_of_test(const Header& header) {
+  return header.event_time_known ? "test of " + format_date({header.event_time_ns}) : "this test";
+}
+
+std::string quantity_words(std::string_view quantity) {
+  if (quantity.starts_with(kResidualQuantity))
+    return "difference from the simulation in " + in_words(quantity.substr(kResidualQuantity.size()));
+  if (quantity.starts_with(kChannelQuantity))
+    return "loss of the channel " + in_words(quantity.substr(kChannelQuantity.size()));
+  return in_words(quantity);
+}
+
+std::string_view reference_words(Reference reference) {
+  switch (reference) {
+    case Reference::limit:
+      return "fixed limits";
+    case Reference::nominal_model:
+      return "the model of the asset file";
+    case Reference::own_baseline:
+      return "this actuator's first tests";
+    case Reference::accepted_model:
+      return "the accepted model";
+  }
+  return {};
+}
+
+/// "leakage resistance in region warning: 5.91e+12 Pa s/m3 (warning below 7.31e+12, alarm below 4.64e+12; by fixed
+/// limits)"
+std::string region_words(const RegionJudgement& one) {
+  const std::string side = one.alarm_limit < one.advisory_limit ? " below " : " above ";
+  return quantity_words(one.quantity) + " in region " + std::string(name_of(one.region)) + ": " +
+         with_unit(one.value, one.unit) + " (warning" + side + with_unit(one.warning_limit, "1") + ", alarm" + side +
+         with_unit(one.alarm_limit, "1") + "; by " + std::string(reference_words(one.reference)) + ")";
 }
 
 void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) {
   if (life.forecasts.empty()) return;
   const Forecast& forecast = life.forecasts.front();
-  const std::string name = "forecast " + forecast.method + ", " + std::to_string(forecast.window_months) + " months: ";
+  const std::string name =
+      "forecast (" + in_words(forecast.method) + ", " + std::to_string(forecast.window_months) + " months): ";
   if (forecast.state != ForecastState::ok) {
     reasons.push_back(name + in_words(name_of(forecast.state)) + ", " + forecast.explanation);
   } else {
@@ -44,16 +76,25 @@ void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) 
 
 void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& leakage, const RemainingLife& life) {
   if (leakage.estimated) {
-    std::string text = "R_CL = " + three_digits(leakage.resistance_Pa_s_m3) + " +- " +
+    std::string text = "leakage resistance R_CL = " + three_digits(leakage.resistance_Pa_s_m3) + " +- " +
                        three_digits(leakage.resistance_std_Pa_s_m3) + " Pa s/m3 (by sensor noise alone)";
     if (leakage.condition_known)
-      text = "seal condition " + seal_condition(leakage.condition) + limit_of(life) + ", " + text;
-    reasons.push_back(text);
+      text = "seal condition " + condition_in_percent(leakage.condition) + limit_of(life) + ", " + text;
+    reasons.push_back(name_of_test(leakage.header) + ": " + text);
   }
-  if (!leakage.used_for_forecast) reasons.push_back("left out of the forecast: " + joined(leakage.reasons));
+  if (!leakage.used_for_forecast)
+    reasons.push_back(name_of_test(leakage.header) + " left out of the forecast: " + joined(leakage.reasons));
 }
 
-void add_health(std::vector<std::string>& reasons, const HealthReport& health) {
+/// Whether grade and proposals are those of an earlier test, as this one does not tell.
+bool is_carried_over(const HealthReport& health, const StateReport& state) {
+  if (state.judgements.empty()) return true;
+  const auto& group = health.ambiguity_group;
+  return !group.empty() && !group.front().evidence.empty() &&
+         group.front().evidence.front().starts_with("carried over");
+}
+
+void add_health(std::vector<std::string>& reasons, const HealthReport& health, const StateReport& state) {
   std::string text = "health grade " + as_condition(health.health_grade);
   if (health.trend_known)
     text += ", " + as_condition(health.health_trend_per_year) + " +- " +
@@ -65,18 +106,16 @@ void add_health(std::vector<std::string>& reasons, const HealthReport& health) {
     else
       text += (first.likelihood > 0.5 ? "; most likely fault: " : "; possible fault: ") + describe(first);
   }
+  if (is_carried_over(health, state)) text += "; this test itself does not tell";
   reasons.push_back(text);
 }
 
 void add_state(std::vector<std::string>& reasons, const StateReport& state) {
   for (const RegionJudgement& judgement : state.judgements)
     if (judgement.region == AlertRegion::alarm || judgement.region == AlertRegion::warning)
-      reasons.push_back(in_words(judgement.quantity) + " is in region " + std::string(name_of(judgement.region)) +
-                        " against " + std::string(name_of(judgement.reference)) + ": " + three_digits(judgement.value) +
-                        " " + judgement.unit + " (warning " + three_digits(judgement.warning_limit) + ", alarm " +
-                        three_digits(judgement.alarm_limit) + ")");
+      reasons.push_back(region_words(judgement));
   if (state.verdict != PstVerdict::passed)
-    reasons.push_back("partial stroke test " + std::string(name_of(state.verdict)) +
+    reasons.push_back("partial stroke test " + in_words(name_of(state.verdict)) +
                       (state.verdict_reasons.empty() ? "" : ": " + joined(state.verdict_reasons)));
   if (state.pst_overdue) reasons.push_back("the test came " + forecast::in_days(state.overdue_days) + " late");
 }
@@ -87,19 +126,13 @@ std::vector<std::string> reasons_of(const Evidence& evidence) {
   std::vector<std::string> reasons;
   add_forecast(reasons, evidence.life);
   add_condition(reasons, evidence.leakage, evidence.life);
-  add_health(reasons, evidence.health);
+  add_health(reasons, evidence.health, evidence.state);
   add_state(reasons, evidence.state);
   return reasons;
 }
 
-std::string seal_condition(double condition) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f %%", 100.0 * condition);
-  return text;
-}
-
 std::string limit_of(const RemainingLife& life) {
-  return life.threshold > 0.0 ? " (limit " + seal_condition(life.threshold) + ")" : "";
+  return life.threshold > 0.0 ? " (limit " + condition_in_percent(life.threshold) + ")" : "";
 }
 
 std::string describe(const ProposedFault& fault) {

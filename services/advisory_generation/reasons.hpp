@@ -14,8 +14,6 @@ struct Evidence;
 /// Forecast, failure probabilities, seal condition, health, alert regions, verdict of the test; in this order.
 [[nodiscard]] std::vector<std::string> reasons_of(const Evidence& evidence);
 
-/// Seal condition as everywhere on operators' screens: 0.667 -> "66.7 %", of the elastic modulus when new.
-[[nodiscard]] std::string seal_condition(double condition);
 /// " (limit 60.0 %)", or nothing where the message knows of none.
 [[nodiscard]] std::string limit_of(const RemainingLife& life);
 

@@ -14,9 +14,13 @@ std::string capitalised(std::string text) {
 }
 
 /// "Seal condition is 76.0 % (limit 60.0 %); its end of life is expected on 2018-05-02, with 80 % between ... and ...".
-std::string outlook(const RemainingLife& life) {
+std::string outlook(const Evidence& evidence) {
+  const RemainingLife& life = evidence.life;
   std::string text;
-  if (life.condition_known) text = "Seal condition is " + seal_condition(life.condition) + limit_of(life);
+  if (life.condition_known) {
+    text = "Seal condition is " + forecast::condition_in_percent(life.condition) + limit_of(life);
+    if (!evidence.leakage.used_for_forecast) text += " by the last test that counts, which this one does not";
+  }
   if (life.forecasts.empty()) return text.empty() ? text : text + ".";
   const Forecast& forecast = life.forecasts.front();
   const std::string join = text.empty() ? "" : text + "; ";
@@ -62,7 +66,7 @@ Recommendation by_wear(const Context& c) {
   const std::string when = r.work_before ? campaign_at(c.site, *r.work_before) : "at the next opportunity";
   const std::string booked_by = c.book_by ? format_date(*c.book_by) : "the next schedule meeting";
   std::string view = " ";
-  view += capitalised(outlook(c.evidence.life));
+  view += capitalised(outlook(c.evidence));
   switch (c.in_force.wear) {
     case WearLevel::none:
       r.text = (no_forecast_yet(c.evidence.life) ? "No action follows from this test." : "No action needed.") + view;
@@ -110,8 +114,7 @@ std::vector<Recommendation> calls(const Context& c) {
   const Assessment& a = c.assessment;
   if (c.in_force.failing && !c.in_force.instruments_doubted) {
     call(AdvisoryPriority::urgent, AdvisoryAction::replace_now,
-         "Replace the actuator now: it failed its partial stroke test repeatedly. " +
-             capitalised(outlook(c.evidence.life)));
+         "Replace the actuator now: it failed its partial stroke test repeatedly. " + capitalised(outlook(c.evidence)));
     if (const Header& test = c.evidence.life.header; test.event_time_known)
       calls.back().latest_by = calls.back().work_before = start_of_day({test.event_time_ns});
   }

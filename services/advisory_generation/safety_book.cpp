@@ -80,8 +80,9 @@ std::vector<std::string> in_words(const std::vector<DecisionOption>& decision, c
   for (const DecisionOption& option : decision) {
     if (!option.cheapest) continue;
     std::string text = "cheapest on average: ";
-    text.append(option.label).append(", ").append(amount(option.expected_cost)).append(" ");
-    text.append(option.currency).append(" expected; now ").append(amount(decision.front().expected_cost));
+    text.append(option.label).append(", ").append(amount(option.expected_cost));
+    if (!option.currency.empty()) text.append(" ").append(option.currency);
+    text.append(" expected; now ").append(amount(decision.front().expected_cost));
     text.append(", waiting for the failure ").append(amount(decision.back().expected_cost));
     words.push_back(std::move(text));
   }

@@ -9,11 +9,20 @@
 namespace sealwatch::advisory_generation {
 namespace {
 
-constexpr const char* kStart = "what this test by itself says: ";
-constexpr const char* kMiddle = "; what is in force after all tests so far: ";
+constexpr std::string_view kStart = "this test alone says: ";
+constexpr std::string_view kMiddle = ". The advice goes by all tests so far, which say";
+constexpr std::string_view kTheSame = " the same";
+constexpr std::string_view kOther = ": ";
+constexpr std::string_view kSeparator = "; ";
+/// As versions up to 0.1.0 wrote it: their journals are read too.
+constexpr std::string_view kOldStart = "what this test by itself says: ";
+constexpr std::string_view kOldMiddle = "; what is in force after all tests so far: ";
+constexpr std::string_view kOldSeparator = ", ";
+constexpr std::string_view kOldNone = "no work";
+constexpr std::string_view kOldNoDate = "no date yet";
 constexpr const char* kNotJudged = "nothing about the wear";
 /// In the order of WearLevel.
-constexpr std::array<const char*, 5> kWear = {"no work", "plan the work", "book a vessel", "book a vessel at once",
+constexpr std::array<const char*, 5> kWear = {"no work yet", "plan the work", "book a vessel", "book a vessel at once",
                                               "replace now"};
 static_assert(kWear.size() == EnumNames<WearLevel>::kNames.size());
 constexpr std::size_t kMostRemembered = 60;  // five years of tests: more than any sensible confirmation
@@ -56,11 +65,13 @@ bool raised(const std::vector<TestVerdict>& last, bool TestVerdict::*flag, bool 
   return before && std::any_of(row.begin(), row.end(), says_yes);
 }
 
-constexpr const char* kBy = "the seal replaced by ";
+constexpr std::string_view kBy = "the seal replaced by ";
 
 std::string words(const std::string& wear, const std::optional<UtcTime>& replace_by, bool doubted, bool failed) {
-  return wear + ", " + (replace_by ? std::string(kBy).append(format_date(*replace_by)) : "no date yet") +
-         ", instruments " + (doubted ? "doubted" : "trusted") + ", stroke " + (failed ? "failed" : "done");
+  std::string text = wear;
+  if (replace_by) text.append(kSeparator).append(kBy).append(format_date(*replace_by));
+  text.append(kSeparator).append(doubted ? "instruments doubted" : "instruments trusted");
+  return text.append(kSeparator).append(failed ? "stroke failed" : "stroke done");
 }
 
 constexpr std::string_view kEarlier = " (were the work one campaign earlier: ";
@@ -69,7 +80,7 @@ constexpr std::string_view kEarlierEnd = ")";
 std::optional<WearLevel> level_of(std::string_view text) {
   for (std::size_t level = 0; level < kWear.size(); ++level)
     if (text == kWear[level]) return static_cast<WearLevel>(level);
-  return std::nullopt;
+  return text == kOldNone ? std::optional(WearLevel::none) : std::nullopt;
 }
 
 struct Words {
@@ -80,8 +91,8 @@ struct Words {
   bool failed = false;
 };
 
-/// What words() wrote, from its end: "WEAR, DATE, INSTRUMENTS, STROKE".
-std::optional<Words> read(std::string text) {
+/// What words() wrote, from its end: "WEAR; DATE; INSTRUMENTS; STROKE", the date only where there is one.
+std::optional<Words> read(std::string text, std::string_view separator) {
   Words read;
   if (const std::size_t begin = text.find(kEarlier); begin != std::string::npos) {
     const std::size_t end = text.find(kEarlierEnd, begin);
@@ -89,20 +100,23 @@ std::optional<Words> read(std::string text) {
     read.wear_a_campaign_earlier = level_of(text.substr(begin + kEarlier.size(), end - begin - kEarlier.size()));
     text.erase(begin, end + kEarlierEnd.size() - begin);
   }
-  const auto take_last = [&text] {
-    const std::size_t comma = text.rfind(", ");
-    std::string last = comma == std::string::npos ? "" : text.substr(comma + 2);
-    text.resize(comma == std::string::npos ? 0 : comma);
-    return last;
+  const auto last = [&] {
+    const std::size_t begin = text.rfind(separator);
+    return begin == std::string::npos ? "" : text.substr(begin + separator.size());
   };
-  const std::string stroke = take_last();
-  const std::string instruments = take_last();
-  std::string date = take_last();
-  if (date.starts_with(kBy)) {
-    if (const auto time = parse_utc(date.substr(std::string_view(kBy).size()))) read.replace_by = *time;
+  const auto drop = [&](const std::string& part) { text.resize(text.size() - part.size() - separator.size()); };
+  const std::string stroke = last();
+  if (stroke.empty()) return std::nullopt;
+  drop(stroke);
+  const std::string instruments = last();
+  if (instruments.empty()) return std::nullopt;
+  drop(instruments);
+  if (const std::string date = last(); date.starts_with(kBy) || date == kOldNoDate) {
+    if (const auto time = parse_utc(date.substr(std::min(kBy.size(), date.size())))) read.replace_by = *time;
+    drop(date);
   }
   read.wear = level_of(text);
-  if (stroke.empty() || instruments.empty() || (!read.wear && text != kNotJudged)) return std::nullopt;
+  if (!read.wear && text != kNotJudged) return std::nullopt;
   read.doubted = instruments == "instruments doubted";
   read.failed = stroke == "stroke failed";
   return read;
@@ -174,19 +188,34 @@ void VerdictMemory::remember(const TestVerdict& verdict) {
 
 std::string in_words(const TestVerdict& verdict, const InForce& in_force) {
   const auto wear = [](WearLevel level) { return std::string(kWear.at(static_cast<std::size_t>(level))); };
-  std::string alone = verdict.wear ? wear(*verdict.wear) : kNotJudged;
+  const auto of_test = [&](const std::string& level) {
+    return words(level, verdict.replace_by, verdict.instruments_doubted, verdict.failed);
+  };
+  const std::string level = verdict.wear ? wear(*verdict.wear) : kNotJudged;
+  std::string alone = level;
   if (verdict.wear_a_campaign_earlier)
     alone.append(kEarlier).append(wear(*verdict.wear_a_campaign_earlier)).append(kEarlierEnd);
-  return kStart + words(alone, verdict.replace_by, verdict.instruments_doubted, verdict.failed) + kMiddle +
-         words(wear(in_force.wear), in_force.replace_by, in_force.instruments_doubted, in_force.failing);
+  const std::string all =
+      words(wear(in_force.wear), in_force.replace_by, in_force.instruments_doubted, in_force.failing);
+  std::string line(kStart);
+  line.append(of_test(alone)).append(kMiddle);
+  return of_test(level) == all ? line.append(kTheSame) : line.append(kOther).append(all);
 }
 
 std::optional<VerdictRecord> from_words(const std::string& line) {
-  const auto middle = line.find(kMiddle);
-  if (line.rfind(kStart, 0) != 0 || middle == std::string::npos) return std::nullopt;
-  const std::size_t start = std::string(kStart).size();
-  const auto test = read(line.substr(start, middle - start));
-  const auto force = read(line.substr(middle + std::string(kMiddle).size()));
+  const bool old = line.starts_with(kOldStart);
+  const std::string_view start = old ? kOldStart : kStart;
+  const std::string_view separator = old ? kOldSeparator : kSeparator;
+  const auto middle = line.find(old ? kOldMiddle : kMiddle);
+  if (!line.starts_with(start) || middle == std::string::npos) return std::nullopt;
+  const std::string alone = line.substr(start.size(), middle - start.size());
+  std::string all = line.substr(middle + (old ? kOldMiddle : kMiddle).size());
+  if (!old && all == kTheSame)
+    all = alone;
+  else if (!old)
+    all.erase(0, kOther.size());
+  const auto test = read(alone, separator);
+  const auto force = read(all, separator);
   if (!test || !force) return std::nullopt;
   VerdictRecord record;
   record.verdict = {.wear = test->wear,

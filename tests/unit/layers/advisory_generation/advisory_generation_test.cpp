@@ -80,8 +80,55 @@ TEST_F(AdvisoryGenerationTest, AdvisoryLeadsDownToTheWaveform) {
   EXPECT_EQ(advisory.action, AdvisoryAction::none);
   EXPECT_TRUE(advisory.request_for_work.empty());
   EXPECT_THAT(advisory.reasons,
-              Contains(HasSubstr("forecast ols, 36 months: 90 months left (80 %: 85 months to 95 months)")));
+              Contains(HasSubstr("forecast (ols, 36 months): 90 months left (80 %: 85 months to 95 months)")));
   EXPECT_THAT(advisory.reasons, Contains(HasSubstr("failure before summer 2019")));
+}
+
+TEST_F(AdvisoryGenerationTest, ReasonsNameTheTestAndSpeakToPeople) {
+  TestCase one{.month = 24, .used = false, .verdict = PstVerdict::not_judged};
+  one.judgements = {{.quantity = "velocity_gain",
+                     .reference = Reference::own_baseline,
+                     .unit = "1",
+                     .value = 1.2,
+                     .advisory_limit = 1.05,
+                     .warning_limit = 1.1,
+                     .alarm_limit = 1.3,
+                     .region = AlertRegion::warning},
+                    {.quantity = "residual.pressure_a",
+                     .reference = Reference::nominal_model,
+                     .unit = "%",
+                     .value = 310.0,
+                     .advisory_limit = 50.0,
+                     .warning_limit = 300.0,
+                     .alarm_limit = 1000.0,
+                     .region = AlertRegion::warning}};
+  const Advisory advisory = advisories(inputs_of({one})).back();
+  EXPECT_THAT(advisory.recommendation, testing::Not(HasSubstr("_")));
+  for (std::string reason : advisory.reasons) {
+    if (const auto symbol = reason.find("R_CL"); symbol != std::string::npos) reason.erase(symbol, 4);
+    EXPECT_THAT(reason, testing::Not(HasSubstr("_")));
+  }
+  EXPECT_THAT(advisory.reasons, Contains("test of 2012-01-01 left out of the forecast: cut after 7.4 s of about 31 s"));
+  EXPECT_THAT(advisory.reasons, Contains(HasSubstr("test of 2012-01-01: seal condition")));
+  EXPECT_THAT(advisory.reasons, Contains(HasSubstr("partial stroke test not judged: stroke ended")));
+  EXPECT_THAT(advisory.reasons, Contains("velocity gain in region warning: 1.2 (warning above 1.1, alarm above 1.3; by "
+                                         "this actuator's first tests)"));
+  EXPECT_THAT(
+      advisory.reasons,
+      Contains("difference from the simulation in pressure a in region warning: 310 % (warning above 300, alarm "
+               "above 1e+03; by the model of the asset file)"));
+}
+
+TEST_F(AdvisoryGenerationTest, AConditionOfAnEarlierTestIsNamedSo) {
+  auto tests = life_until(80, 90, 100.0);
+  const auto of_last = advisories(inputs_of(tests));
+  EXPECT_THAT(of_last.back().recommendation, testing::Not(HasSubstr("last test that counts")));
+  tests.back().used = false;
+  const auto of_earlier = advisories(inputs_of(tests));
+  EXPECT_THAT(of_earlier.back().recommendation,
+              HasSubstr("(limit 60.0 %) by the last test that counts, which this one does not; its end of life"));
+  EXPECT_THAT(of_earlier.back().reasons,
+              Contains(HasSubstr("test of " + format_date(tests.back().time()) + " left out of the forecast")));
 }
 
 TEST_F(AdvisoryGenerationTest, OrderOfTheJoinDoesNotMatter) {
@@ -198,7 +245,7 @@ TEST_F(AdvisoryGenerationTest, ReplacementClosesTheWorkAndStartsAnew) {
   const Advisory& fresh = all[all.size() - 2];
   EXPECT_EQ(all[all.size() - 3].state, AdvisoryState::superseded);
   EXPECT_EQ(fresh.action, AdvisoryAction::none);
-  EXPECT_THAT(fresh.recommendation, HasSubstr("seal_replaced on 2018-05"));
+  EXPECT_THAT(fresh.recommendation, HasSubstr("seal replaced on 2018-05"));
   EXPECT_EQ(all.back().action, AdvisoryAction::none);
   const auto next_seal =
       advisories(joined(joined(before, {replacement(100.5)}), inputs_of(life_until(150, 160, 170.0))));

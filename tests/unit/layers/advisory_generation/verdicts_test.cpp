@@ -112,6 +112,12 @@ TEST(VerdictWords, RoundTripOfWhatWouldHoldACampaignEarlier) {
   ASSERT_TRUE(record);
   EXPECT_EQ(record->verdict, verdict);
   EXPECT_EQ(record->in_force, InForce{.wear = WearLevel::plan});
+  const InForce as_the_test{.wear = WearLevel::none, .replace_by = verdict.replace_by};
+  const std::string same = in_words(verdict, as_the_test);
+  EXPECT_TRUE(same.ends_with("which say the same")) << same;
+  ASSERT_TRUE(from_words(same));
+  EXPECT_EQ(from_words(same)->in_force, as_the_test);
+  EXPECT_EQ(from_words(same)->verdict, verdict);
 }
 
 TEST_F(VerdictMemoryTest, IsNotEasedWhileACampaignEarlierWouldCallForAsMuch) {
@@ -129,15 +135,37 @@ TEST(VerdictWords, AreThoseOfTheOperator) {
   const TestVerdict verdict{.wear = WearLevel::book_at_once, .replace_by = day("2017-06-01")};
   EXPECT_EQ(
       in_words(verdict, {.wear = WearLevel::book, .replace_by = day("2019-06-01")}),
-      "what this test by itself says: book a vessel at once, the seal replaced by 2017-06-01, instruments trusted, "
-      "stroke done; what is in force after all tests so far: book a vessel, the seal replaced by 2019-06-01, "
-      "instruments trusted, stroke done");
+      "this test alone says: book a vessel at once; the seal replaced by 2017-06-01; instruments trusted; stroke done. "
+      "The advice goes by all tests so far, which say: book a vessel; the seal replaced by 2019-06-01; instruments "
+      "trusted; stroke done");
+  EXPECT_EQ(
+      in_words({.wear = WearLevel::none}, {}),
+      "this test alone says: no work yet; instruments trusted; stroke done. The advice goes by all tests so far, which "
+      "say the same");
+}
+
+TEST(VerdictWords, OfOlderJournalsAreReadToo) {
+  const auto record = from_words(
+      "what this test by itself says: no work (were the work one campaign earlier: plan the work), the seal replaced "
+      "by "
+      "2017-06-01, instruments doubted, stroke done; what is in force after all tests so far: plan the work, no date "
+      "yet, "
+      "instruments trusted, stroke failed");
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->verdict, (TestVerdict{.wear = WearLevel::none,
+                                          .wear_a_campaign_earlier = WearLevel::plan,
+                                          .replace_by = day("2017-06-01"),
+                                          .instruments_doubted = true}));
+  EXPECT_EQ(record->in_force, (InForce{.wear = WearLevel::plan, .failing = true}));
 }
 
 TEST(VerdictWords, OtherReasonsAreNoRecord) {
   EXPECT_FALSE(from_words(""));
   EXPECT_FALSE(from_words("health grade 0.7"));
   EXPECT_FALSE(from_words("what this test by itself says: ; what is in force after all tests so far: "));
+  EXPECT_FALSE(from_words("this test alone says: . The advice goes by all tests so far, which say"));
+  EXPECT_FALSE(
+      from_words("this test alone says: no work yet. The advice goes by all tests so far, which say the same"));
 }
 
 }  // namespace

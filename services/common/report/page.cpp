@@ -1,5 +1,6 @@
 #include "services/common/report/page.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace sealwatch::report {
@@ -47,12 +48,12 @@ code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
 .figures{display:flex;flex-wrap:wrap;gap:.6rem 2.2rem;margin:.7rem 0}.figures div{min-width:8rem}
 .figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}
 .scroll{overflow-x:auto}table{border-collapse:collapse;margin:.5rem 0 1rem;font-size:.9rem;font-variant-numeric:tabular-nums}
-td{white-space:nowrap}td.prose{white-space:normal;min-width:13rem}tr.strong td.prose{font-weight:400}th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
-th{color:var(--muted);font-weight:600;white-space:nowrap}th.n,td.n{text-align:right;white-space:nowrap}
+td.prose{min-width:12rem}tr.strong td.prose{font-weight:400}th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
+th{color:var(--muted);font-weight:600;vertical-align:bottom}th.n,td.n{text-align:right}.whole{white-space:nowrap}
 tr.strong td{font-weight:600}.better{color:var(--good)}.worse{color:var(--bad)}
 .plots{display:flex;flex-wrap:wrap;gap:.4rem 1.2rem}.plots>div{flex:0 0 auto;max-width:100%}
 svg[role]{max-width:100%;height:auto;display:block}svg text{font:11px system-ui,"Segoe UI","DejaVu Sans",sans-serif;fill:var(--text)}
-svg .tick{fill:var(--muted)}svg .title{font-weight:600}svg .grid{stroke:var(--line);stroke-width:.6}
+svg .tick{fill:var(--muted)}svg .named{paint-order:stroke;stroke:var(--page);stroke-width:3px;stroke-linejoin:round}svg .title{font-weight:600}svg .grid{stroke:var(--line);stroke-width:.6}
 svg .frame{fill:none;stroke:var(--muted);stroke-width:.8}
 .ink-foreground{--ink:var(--text)}.ink-muted{--ink:var(--muted)}.ink-first{--ink:var(--first)}.ink-second{--ink:var(--second)}
 .ink-third{--ink:var(--third)}.ink-fourth{--ink:var(--fourth)}.ink-bad{--ink:var(--bad)}
@@ -62,6 +63,11 @@ svg .frame{fill:none;stroke:var(--muted);stroke-width:.8}
 .pipe{fill:none;stroke:var(--first);stroke-width:3;stroke-opacity:.55}.wire{fill:none;stroke:var(--muted);stroke-width:2}
 .rod{fill:var(--metal);stroke:var(--muted)}.lead{fill:none;stroke:var(--muted);stroke-width:.8;stroke-dasharray:2 2}
 svg .share{fill:var(--second);font-weight:700}svg .letters{font-size:10px}
+.scroll{background:linear-gradient(90deg,var(--page) 40%,transparent) 0/2.5rem 100%,linear-gradient(270deg,var(--page) 40%,transparent) 100%/2.5rem 100%,
+linear-gradient(90deg,var(--line),transparent) 0/.9rem 100%,linear-gradient(270deg,var(--line),transparent) 100%/.9rem 100%;
+background-repeat:no-repeat;background-attachment:local,local,scroll,scroll}
+@media (min-width:1001px){table:has(td.prose) td:not(.prose){white-space:nowrap}}
+@media (max-width:1000px){table{font-size:.8rem}th,td{padding-right:.5rem}td.prose{min-width:9rem}}
 details{margin:.5rem 0}summary{cursor:pointer;color:var(--first)}
 @media print{:root{color-scheme:light;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
 --second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
@@ -97,6 +103,24 @@ std::string escaped(std::string_view text) {
     else
       html += text.substr(0, length);
     text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return html;
+}
+
+std::string unbroken(std::string_view text) {
+  constexpr std::string_view kDash = "\xE2\x80\x93";
+  std::string html;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, std::min(text.find(' '), text.size() - 1) + 1);
+    const bool figures = word.find_first_of("0123456789") != std::string_view::npos;
+    const bool breaks = word.find('-') != std::string_view::npos || word.find(kDash) != std::string_view::npos;
+    const std::string_view bare = word.ends_with(' ') ? word.substr(0, word.size() - 1) : word;
+    if (figures && breaks)
+      html.append("<span class=\"whole\">").append(bare).append("</span>");
+    else
+      html.append(bare);
+    if (bare.size() < word.size()) html += ' ';
+    text.remove_prefix(word.size());
   }
   return html;
 }
@@ -160,7 +184,11 @@ void Table::row_of_html(const std::vector<std::string>& cells, std::string_view 
   if (!css_class.empty()) rows_.append(" class=\"").append(css_class).append("\"");
   rows_ += ">";
   for (std::size_t k = 0; k < cells.size(); ++k)
-    rows_.append("<td").append(k < classes_.size() ? classes_[k] : "").append(">").append(cells[k]).append("</td>");
+    rows_.append("<td")
+        .append(k < classes_.size() ? classes_[k] : "")
+        .append(">")
+        .append(cells[k].find('<') == std::string::npos ? unbroken(cells[k]) : cells[k])
+        .append("</td>");
   rows_ += "</tr>\n";
 }
 

@@ -11,6 +11,9 @@ namespace sealwatch::report {
 /// not UTF-8 become U+FFFD.
 [[nodiscard]] std::string escaped(std::string_view text);
 
+/// HTML text (no elements) in which figures that contain a dash, a date or an interval, stay on one line.
+[[nodiscard]] std::string unbroken(std::string_view text);
+
 /// A whole page: <!DOCTYPE html> to </html>. `title` is escaped, `body` is HTML.
 [[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
 
@@ -23,11 +26,11 @@ namespace sealwatch::report {
 /// A closed part that opens on click (and for print). The label is escaped.
 [[nodiscard]] std::string folded(std::string_view label, std::string_view body);
 
-/// A table. Cells are escaped unless given as html.
+/// A table. Cells are escaped unless given as html. All cells wrap where the page is too narrow.
 class Table {
  public:
-  /// Columns whose header begins with '>' are numbers, right-aligned; with '~' prose, which wraps (the signs are not
-  /// shown).
+  /// Columns whose header begins with '>' are numbers, right-aligned; with '~' prose, which keeps some width (the signs
+  /// are not shown).
   explicit Table(const std::vector<std::string>& headers);
   void row(const std::vector<std::string>& cells);
   void row_of_html(const std::vector<std::string>& cells, std::string_view css_class = {});

@@ -25,6 +25,7 @@ struct LegendEntry {
   std::string label;
   bool dashed = false;
   bool area = false;
+  bool dot = false;
 };
 
 /// Letters of UTF-8 text.
@@ -44,6 +45,7 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
             if (one.label.empty()) return;
             LegendEntry entry{.ink = one.ink, .label = one.label};
             if constexpr (std::is_same_v<Kind, Line>) entry.dashed = one.dashed;
+            entry.dot = std::is_same_v<Kind, Scatter>;
             entry.area = std::is_same_v<Kind, Band> || std::is_same_v<Kind, Bars> || std::is_same_v<Kind, Boxes>;
             entries.push_back(std::move(entry));
           }
@@ -60,6 +62,21 @@ std::string text_at(double x, double y, std::string_view css_class, std::string_
   return svg.append("\" text-anchor=\"").append(anchor).append("\">").append(escaped(text)).append("</text>\n");
 }
 
+std::string sample_dot(const LegendEntry& entry, double x, double baseline) {
+  std::string svg = "<circle class=\"";
+  svg.append(ink_class(entry.ink)).append(" fill\" cx=\"").append(pixel(x + 0.5 * kSample));
+  return svg.append("\" cy=\"").append(pixel(baseline - 4.0)).append("\" r=\"2.5\"/>\n");
+}
+
+std::string sample_line(const LegendEntry& entry, double x, double baseline) {
+  std::string svg = "<line class=\"";
+  svg.append(ink_class(entry.ink)).append(" stroke\" x1=\"").append(pixel(x));
+  svg.append("\" x2=\"").append(pixel(x + kSample)).append("\" y1=\"").append(pixel(baseline - 4.0));
+  svg.append("\" y2=\"").append(pixel(baseline - 4.0)).append("\" stroke-width=\"");
+  svg.append(entry.area ? "8\" stroke-opacity=\".35\"" : "2\"");
+  return svg.append(entry.dashed ? " stroke-dasharray=\"5 3\"/>\n" : "/>\n");
+}
+
 /// Rows of the legend, right-aligned; returns the height that they take.
 double draw_legend(const std::vector<LegendEntry>& entries, double first_baseline, double width, std::string& svg) {
   std::size_t begin = 0;
@@ -72,11 +89,7 @@ double draw_legend(const std::vector<LegendEntry>& entries, double first_baselin
     double x = width - kRight - row + 12.0;
     for (; begin < end; ++begin) {
       const LegendEntry& entry = entries[begin];
-      svg.append("<line class=\"").append(ink_class(entry.ink)).append(" stroke\" x1=\"").append(pixel(x));
-      svg.append("\" x2=\"").append(pixel(x + kSample)).append("\" y1=\"").append(pixel(baseline - 4.0));
-      svg.append("\" y2=\"").append(pixel(baseline - 4.0)).append("\" stroke-width=\"");
-      svg.append(entry.area ? "8\" stroke-opacity=\".35\"" : "2\"");
-      svg.append(entry.dashed ? " stroke-dasharray=\"5 3\"/>\n" : "/>\n");
+      svg += entry.dot ? sample_dot(entry, x, baseline) : sample_line(entry, x, baseline);
       svg += text_at(x + kSample + 4.0, baseline, "tick", "start", entry.label);
       x += width_of(entry);
     }

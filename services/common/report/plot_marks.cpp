@@ -178,7 +178,7 @@ struct Draw {
     if (line.label.empty()) return svg;
     const double text_x = line.vertical ? at + 4.0 : x.to - 4.0;
     const double text_y = line.vertical ? y.to + 11.0 : std::max(at - 4.0, 10.0);
-    return svg.append("<text class=\"tick\" ")
+    return svg.append("<text class=\"tick named\" ")
         .append(with("x", text_x))
         .append(with("y", text_y))
         .append(line.vertical ? ">" : "text-anchor=\"end\">")

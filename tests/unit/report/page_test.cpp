@@ -32,6 +32,17 @@ TEST(Page, IsWellFormed) {
   EXPECT_NE(page.find("<td>&lt;flow&gt;</td><td class=\"n\">1 &amp; 2</td>"), std::string::npos);
 }
 
+TEST(Page, FiguresStayOnOneLineWhereATableIsNarrow) {
+  EXPECT_EQ(unbroken("about 2021-04-15, then"), "about <span class=\"whole\">2021-04-15,</span> then");
+  EXPECT_EQ(unbroken("100 (47.8\u2013100)"), "100 <span class=\"whole\">(47.8\u2013100)</span>");
+  EXPECT_EQ(unbroken("well-known 36 "), "well-known 36 ");
+  Table table({"date", ">of"});
+  table.row({"2021-04-15", "1 \u00B1 2"});
+  EXPECT_NE(table.html().find("<td><span class=\"whole\">2021-04-15</span></td><td class=\"n\">1 \u00B1 2</td>"),
+            std::string::npos);
+  EXPECT_EQ(what_is_wrong(html_page("t", table.html())), "");
+}
+
 TEST(Page, NeedsNoNetwork) {
   const std::string page = html_page("t", "");
   for (const char* fetched : {"http:", "https:", "src=", "href=", "@import", "url("})

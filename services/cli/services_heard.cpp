@@ -48,6 +48,10 @@ bool ServicesHeard::all_well(Clock::time_point now) const {
   return std::ranges::all_of(expected_, [&](const std::string& name) { return service(name, now).trouble.empty(); });
 }
 
+bool ServicesHeard::incomplete() const {
+  return !none() && std::ranges::any_of(expected_, [&](const std::string& name) { return !heard_.contains(name); });
+}
+
 std::string one_line(const ServicesHeard::Service& service) {
   if (!service.heard) return service.name + "  " + service.trouble;
   const std::string line = one_line(service.last);

@@ -33,6 +33,8 @@ class ServicesHeard {
   /// Whether every expected service is well.
   [[nodiscard]] bool all_well(Clock::time_point now) const;
   [[nodiscard]] bool none() const { return heard_.empty(); }
+  /// Whether some services are heard and an expected one is not: just started, or found last.
+  [[nodiscard]] bool incomplete() const;
 
  private:
   struct Heard {

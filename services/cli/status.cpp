@@ -19,6 +19,9 @@ constexpr std::array kStateTopics = {Topic::state_report,      Topic::health_rep
                                      Topic::remaining_life,    Topic::pst_request,     Topic::advisory,
                                      Topic::model_discrepancy, Topic::model_acceptance};
 
+/// Where some services are heard, the others are waited for so much longer: they may just be starting.
+constexpr std::chrono::seconds kPatienceForTheRest{3};
+
 /// What was heard while listening.
 struct Heard {
   ServicesHeard services;
@@ -87,7 +90,11 @@ int run_status(const StatusOptions& options) {
   catch_interrupts();
   Heard heard{.services = ServicesHeard(enabled_services(session->configuration)), .assets = {}, .last = {}};
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
-  while (!interrupted() && std::chrono::steady_clock::now() < end)
+  const auto go_on = [&] {
+    const auto now = std::chrono::steady_clock::now();
+    return now < end || (heard.services.incomplete() && now < end + kPatienceForTheRest);
+  };
+  while (!interrupted() && go_on())
     for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100))) heard.take(item);
   std::vector<std::string> configured;
   for (const AssetConfig& asset : session->configuration.assets) configured.push_back(asset.asset_id);

@@ -35,6 +35,14 @@ TEST_F(Listening, NamesAServiceThatIsNotHeard) {
   EXPECT_THAT(line(1), HasSubstr("health_assessment  running  pid 8"));
 }
 
+TEST_F(Listening, KnowsThatOthersMayStillBeFound) {
+  EXPECT_FALSE(heard_.incomplete()) << "nothing runs: nobody is waited for";
+  heard_.take(beat("data_acquisition", 7), now_);
+  EXPECT_TRUE(heard_.incomplete());
+  heard_.take(beat("health_assessment", 8), now_);
+  EXPECT_FALSE(heard_.incomplete());
+}
+
 TEST_F(Listening, NamesAServiceThatFallsSilent) {
   heard_.take(beat("data_acquisition", 7), now_);
   heard_.take(beat("health_assessment", 8), now_ - milliseconds(4000));

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "sealwatch/core/text.hpp"
 #include "services/cli/commands.hpp"
@@ -14,6 +16,8 @@ namespace sealwatch::cli {
 namespace {
 
 constexpr const char* kServiceStatus = "service_status";
+/// A service that runs is heard within its heartbeat's second and a little.
+constexpr std::chrono::milliseconds kPatience{1800};
 
 struct Selection {
   std::vector<Topic> topics;
@@ -54,6 +58,66 @@ bool is_configured(const std::string& asset_id, const Configuration& configurati
   return false;
 }
 
+/// The service that writes a topic; "" where others do: a control system, an operator.
+std::string writer_of(Topic topic) {
+  switch (topic) {
+    case Topic::sample_block:
+      return "data_acquisition";
+    case Topic::test_window:
+    case Topic::test_features:
+      return "data_manipulation";
+    case Topic::state_report:
+      return "state_detection";
+    case Topic::health_report:
+    case Topic::model_discrepancy:
+      return "health_assessment";
+    case Topic::leakage_estimate:
+    case Topic::remaining_life:
+    case Topic::pst_request:
+      return "prognostic_assessment";
+    case Topic::advisory:
+      return "advisory_generation";
+    case Topic::raw_samples:
+    case Topic::acknowledgement:
+    case Topic::maintenance_event:
+    case Topic::model_acceptance:
+      break;
+  }
+  return {};
+}
+
+/// Says once that what is watched has no writer that is heard: silence would look like a quiet day.
+class Writers {
+ public:
+  explicit Writers(const Selection& selection) {
+    for (const Topic topic : selection.topics)
+      if (const std::string writer = writer_of(topic); !writer.empty()) silent_.insert(writer);
+    expected_ = silent_.size();
+  }
+  void take(const BusItem& item) {
+    if (const auto* status = std::get_if<ServiceStatus>(&item)) silent_.erase(status->service);
+    if (const auto* message = std::get_if<Message>(&item)) silent_.erase(writer_of(topic_of(*message)));
+  }
+  void tell(std::chrono::steady_clock::time_point now, std::int32_t domain) {
+    if (told_ || silent_.empty() || now < begin_ + kPatience) return;
+    told_ = true;
+    std::string names;
+    for (const std::string& name : silent_) names.append(names.empty() ? "" : ", ").append(name);
+    const bool all = silent_.size() == expected_;
+    std::fprintf(
+        stderr,
+        "sealwatch: no heartbeat from %s in DDS domain %d: %s comes until %s (`sealwatch up` starts the services; "
+        "CYCLONEDDS_URI must be the same for all); waiting\n",
+        names.c_str(), domain, all ? "nothing" : "not everything", silent_.size() == 1 ? "it runs" : "they run");
+  }
+
+ private:
+  std::set<std::string> silent_;
+  std::size_t expected_ = 0;
+  bool told_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 void print(const BusItem& item, const WatchOptions& options) {
   if (const auto* message = std::get_if<Message>(&item)) {
     if (!options.asset_id.empty() && asset_of(*message) != options.asset_id) return;
@@ -76,15 +140,11 @@ int run_watch(const WatchOptions& options) {
   if (!selection) return kBadInput;
   std::optional<Session> session = open_session(options.config);
   if (!session || !is_configured(options.asset_id, session->configuration)) return kBadInput;
-  if (const Status joined = session->bus->subscribe(selection->topics); !joined) {
+  Status joined = session->bus->subscribe(selection->topics);
+  if (joined) joined = session->bus->subscribe_service_topics();
+  if (!joined) {
     complain(joined.error());
     return kInternalFailure;
-  }
-  if (selection->service_status) {
-    if (const Status joined = session->bus->subscribe_service_topics(); !joined) {
-      complain(joined.error());
-      return kInternalFailure;
-    }
   }
   catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
@@ -92,8 +152,14 @@ int run_watch(const WatchOptions& options) {
     return options.seconds > 0.0 &&
            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > options.seconds;
   };
-  while (!interrupted() && !over())
-    for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(200))) print(item, options);
+  Writers writers(*selection);
+  while (!interrupted() && !over()) {
+    for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100))) {
+      writers.take(item);
+      if (selection->service_status || !std::holds_alternative<ServiceStatus>(item)) print(item, options);
+    }
+    writers.tell(std::chrono::steady_clock::now(), session->configuration.domain);
+  }
   return kOk;
 }
 

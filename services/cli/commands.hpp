@@ -56,8 +56,9 @@ struct ValidateOptions {
 int run_validate(const ValidateOptions& options);
 
 struct ForecastOptions {
-  std::string history_file;
-  std::string asset_file;
+  std::string history_file;         ///< "": what the services keep
+  std::string state_directory;      ///< where they keep it; "": by the configuration
+  std::string asset;                ///< file; for what the services keep also an id, or "" where there is one asset
   std::vector<std::string> before;  ///< dates to give the probability of failure for
   std::string config;               ///< whose campaigns, costs and forecasters are taken; "": none
   std::vector<double> costs;        ///< planned, after failure, a failed month, an unused month; empty: not known
@@ -75,6 +76,7 @@ struct ReplayOptions {
   std::string asset_file;       ///< whose recordings are meant where they do not say
   std::string speed = "max";
   std::string results_directory;  ///< write each message as one JSON line per topic
+  std::string page;               ///< HTML file for the forecasts at the end; "": none
   bool offline = false;
   bool with_services = false;  ///< start the six services for the time of the replay
   bool json = false;
@@ -90,6 +92,15 @@ struct WatchOptions {
   bool json = false;
 };
 int run_watch(const WatchOptions& options);
+
+struct ShowOptions {
+  std::string config;
+  std::string state_directory;  ///< "": the journals of the configuration
+  std::string id;               ///< of a message, a test or an asset
+  std::string csv;              ///< file for the waveform of the test; "": none
+  bool json = false;
+};
+int run_show(const ShowOptions& options);
 
 struct UpOptions {
   std::string config;

@@ -1,7 +1,6 @@
 // `sealwatch forecast`: remaining useful life from a history of estimates (INTERFACES section 6).
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
@@ -56,6 +55,7 @@ Json decision_json(const std::vector<DecisionOption>& decision) {
 void print_json(const ForecastQuestion& question, const forecast::ForecastPanel::Answer& answer,
                 const std::vector<DecisionOption>& decision) {
   Json json = {{"schema", "sealwatch.forecast/1"},
+               {"asset_id", question.asset_id},
                {"at", format_utc(question.last)},
                {"threshold", question.request.threshold},
                {"tests", question.tests},
@@ -67,6 +67,7 @@ void print_json(const ForecastQuestion& question, const forecast::ForecastPanel:
   for (const Forecast& forecast : answer.forecasts) json["forecasts"].push_back(forecast_json(forecast));
   for (const auto* samples : {&answer.left_out, &question.vague})
     for (const ConditionSample& sample : *samples) json["left_out"].push_back(format_utc(sample.time));
+  for (const TestNotCounted& test : question.not_counted) json["left_out"].push_back(format_utc(test.time));
   std::printf("%s\n", json.dump(1).c_str());
 }
 
@@ -87,16 +88,9 @@ void print_text(const ForecastQuestion& question, const forecast::ForecastPanel:
   for (const ConditionSample& sample : answer.left_out)
     std::printf("left out as an isolated outlier: %s, theta %s\n", format_date(sample.time).c_str(),
                 number(sample.condition, 3).c_str());
+  for (const TestNotCounted& test : question.not_counted)
+    std::printf("left out by the services: %s, %s\n", format_date(test.time).c_str(), test.why.c_str());
   if (answer.windows_disagree) std::printf("windows disagree: %s\n", answer.disagreement.c_str());
-}
-
-Status write_page(const std::string& file, const Result<std::string>& page) {
-  if (!page) return fail(page.error());
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << *page;
-  stream.close();
-  if (stream) return {};
-  return fail(Error{.file = file, .place = "--page", .value = {}, .rule = "cannot be written", .advice = {}});
 }
 
 }  // namespace
@@ -117,7 +111,8 @@ int run_forecast(const ForecastOptions& options) {
   const forecast::ForecastPanel::Answer& answer = *answered;
   const std::vector<DecisionOption> decision = decision_of(*question, answer);
   if (!options.page.empty())
-    if (const Status written = write_page(options.page, forecast_page(*question, answer, decision)); !written) {
+    if (const Status written = write_forecast_page(options.page, forecast_body(*question, answer, decision));
+        !written) {
       complain(written.error());
       return kBadInput;
     }

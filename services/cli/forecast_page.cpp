@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "sealwatch/forecast/normal.hpp"
 #include "sealwatch/forecast/student_t.hpp"
@@ -178,6 +179,8 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
                 std::to_string(question.request.history.size()) + " tests; how the tests scatter stands for them.");
   list_samples(question.vague, "left out as too vague", list);
   list_samples(answer.left_out, "left out as an isolated outlier", list);
+  for (const TestNotCounted& test : question.not_counted)
+    list.append("<li>").append(report::escaped(format_date(test.time) + ", left out by the services: " + test.why));
   return report::section("Reasons", list + "</ul>");
 }
 
@@ -201,12 +204,12 @@ std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& 
                                     report::percent_text(question.request.threshold) + " of its elastic modulus.",
                                 "muted"));
   html.append("<div class=\"banner ").append(colour).append("\"><p class=\"verdict\">");
-  return html.append(report::escaped(headline(in_charge))).append("</p></div>");
+  return html.append(report::unbroken(report::escaped(headline(in_charge)))).append("</p></div>");
 }
 
 }  // namespace
 
-Result<std::string> forecast_page(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
+Result<std::string> forecast_body(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
                                   const std::vector<DecisionOption>& decision) {
   const auto in_charge = forecast::make_forecaster(question.forecasters.front());
   if (!in_charge) return fail(in_charge.error());
@@ -220,7 +223,30 @@ Result<std::string> forecast_page(const ForecastQuestion& question, const Foreca
   body += report::section("Remaining life", remaining_life_table(answer) + report::to_svg(side_by_side(answer)));
   body += forecast_decision_part(question, answer, decision);
   body += reasons_part(question, answer);
-  return report::html_page("Remaining life of the piston seal", body);
+  return body;
+}
+
+Status write_forecast_page(const std::string& file, const Result<std::string>& body) {
+  if (!body) return fail(body.error());
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << report::html_page("Remaining life of the piston seal", *body);
+  stream.close();
+  if (stream) return {};
+  return fail(Error{.file = file, .place = "--page", .value = {}, .rule = "cannot be written", .advice = {}});
+}
+
+Status write_forecasts(const std::string& file, const std::vector<ForecastQuestion>& questions) {
+  std::string bodies;
+  for (const ForecastQuestion& question : questions) {
+    const auto panel = ForecastPanel::make(question.forecasters);
+    if (!panel) return fail(panel.error());
+    const auto answer = panel->forecast(question.request);
+    if (!answer) return fail(answer.error());
+    const auto body = forecast_body(question, *answer, decision_of(question, *answer));
+    if (!body) return fail(body.error());
+    bodies += *body;
+  }
+  return write_forecast_page(file, bodies);
 }
 
 }  // namespace sealwatch::cli

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
+#include "sealwatch/core/text.hpp"
 #include "sealwatch/forecast/configured.hpp"
+#include "services/cli/concluded_history.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/forecast/history.hpp"
@@ -55,8 +58,7 @@ bool take_site(const ForecastOptions& options, const std::optional<AssetConfig>&
   }
   const std::optional<Configuration> configuration = load_or_explain(options.config);
   if (!configuration) return false;
-  const SiteConfig* site = configuration->find_site(asset->site);
-  if (!site) {
+  if (configuration->find_site(asset->site) == nullptr) {
     complain(Error{.file = options.config,
                    .place = "key sites",
                    .value = asset->site,
@@ -64,10 +66,7 @@ bool take_site(const ForecastOptions& options, const std::optional<AssetConfig>&
                    .advice = {}});
     return false;
   }
-  for (const Campaign& campaign : site->campaigns)
-    question.request.horizons.push_back({.label = campaign.label, .before = campaign.start});
-  question.months_to_vessel = site->booking_lead_time_months;
-  question.costs = configuration->decision_of(asset->site).costs;
+  take_site(*configuration, asset->site, question);
   question.forecasters = forecast::configured_forecasters(*configuration);
   return true;
 }
@@ -101,7 +100,110 @@ bool sensible_threshold(double threshold) {
   return false;
 }
 
+/// The asset that --asset names by its file.
+std::optional<AssetConfig> asset_in_file(const std::string& file) {
+  if (std::filesystem::is_regular_file(file)) return load_asset_or_explain(file);
+  complain(Error{.file = {},
+                 .place = "--asset",
+                 .value = file,
+                 .rule = "wants an asset file, and '" + file + "' is none",
+                 .advice = "for example --asset config/assets/xt03-mv2.yaml"});
+  return std::nullopt;
+}
+
+std::optional<ForecastQuestion> question_of_file(const ForecastOptions& options) {
+  std::optional<AssetConfig> asset;
+  if (!options.asset.empty() && !(asset = asset_in_file(options.asset))) return std::nullopt;
+  const std::optional<SealSetting> seal = asset ? asset->seal : std::nullopt;
+  auto history = forecast::read_history(options.history_file, seal);
+  if (!history) {
+    complain(history.error());
+    return std::nullopt;
+  }
+  ForecastQuestion question{
+      .request = {.history = std::move(*history),
+                  .threshold = options.threshold_given || !seal ? options.threshold : seal->threshold},
+      .asset_id = asset ? asset->asset_id : "",
+      .forecasters = forecast::default_forecasters()};
+  forecast::ForecastRequest& request = question.request;
+  question.tests = request.history.size();
+  question.first = request.history.front().time;
+  question.last = request.now = request.history.back().time;
+  question.vague = take_vague(request.history);
+  question.without_error = static_cast<std::size_t>(
+      std::count_if(request.history.begin(), request.history.end(),
+                    [](const ConditionSample& sample) { return sample.condition_std == 0.0; }));
+  if (!take_site(options, asset, question)) return std::nullopt;
+  return question;
+}
+
+/// The id that is meant: the one that is given, or of the only asset that has been tested.
+std::optional<std::string> asset_id_in(StateJournals& journals, const std::string& given) {
+  const auto tested = journals.assets(Topic::leakage_estimate);
+  if (!tested) {
+    complain(tested.error());
+    return std::nullopt;
+  }
+  if (given.empty() && tested->size() == 1) return tested->front();
+  if (std::ranges::find(*tested, given) != tested->end()) return given;
+  complain(Error{.file = journals.place(),
+                 .place = "--asset",
+                 .value = given,
+                 .rule = tested->empty() ? "no test of any asset has been concluded here"
+                         : given.empty() ? "must say which asset is meant"
+                                         : "is no asset that has been tested here",
+                 .advice = tested->empty() ? "replay its recordings first" : suggest(given, *tested)});
+  return std::nullopt;
+}
+
+/// The asset whose history is asked for: its file, or its id in the configuration.
+std::optional<AssetConfig> asset_of_journals(const std::string& given, const Configuration& configuration,
+                                             StateJournals& journals) {
+  if (std::error_code none; std::filesystem::is_regular_file(given, none)) return load_asset_or_explain(given);
+  const std::optional<std::string> asset_id = asset_id_in(journals, given);
+  if (!asset_id) return std::nullopt;
+  if (const AssetConfig* asset = configuration.find_asset(*asset_id)) return *asset;
+  complain(Error{.file = {},
+                 .place = {},
+                 .value = *asset_id,
+                 .rule = "is not a configured asset: its seal and its site are not known",
+                 .advice = "give the configuration of the services with --config"});
+  return std::nullopt;
+}
+
+/// From what the services keep, as they ask it themselves.
+std::optional<ForecastQuestion> question_of_journals(const ForecastOptions& options) {
+  const std::string config = options.config.empty() ? default_config() : options.config;
+  const std::optional<Configuration> configuration = load_or_explain(config);
+  if (!configuration) return std::nullopt;
+  std::optional<StateJournals> journals = StateJournals::open(options.state_directory, config);
+  if (!journals) return std::nullopt;
+  const std::optional<AssetConfig> asset = asset_of_journals(options.asset, *configuration, *journals);
+  if (!asset) return std::nullopt;
+  const std::optional<ConcludedHistory> history = history_in(*journals, asset->asset_id);
+  if (!history) return std::nullopt;
+  std::optional<ForecastQuestion> question = history->question(*asset, *configuration);
+  if (!question)
+    complain(Error{.file = journals->place(),
+                   .place = {},
+                   .value = asset->asset_id,
+                   .rule = asset->seal ? "has no test with a date since its last replacement"
+                                       : "has no seal condition by its asset file: nothing is forecast",
+                   .advice = {}});
+  if (question && options.threshold_given) question->request.threshold = options.threshold;
+  return question;
+}
+
 }  // namespace
+
+void take_site(const Configuration& configuration, const std::string& name, ForecastQuestion& question) {
+  const SiteConfig* site = configuration.find_site(name);
+  if (site == nullptr) return;
+  for (const Campaign& campaign : site->campaigns)
+    question.request.horizons.push_back({.label = campaign.label, .before = campaign.start});
+  question.months_to_vessel = site->booking_lead_time_months;
+  question.costs = configuration.decision_of(name).costs;
+}
 
 bool tells_probability(const Forecast& forecast) {
   return forecast.state == ForecastState::ok || forecast.state == ForecastState::past_threshold;
@@ -117,31 +219,11 @@ forecast::InterventionCosts intervention_costs(const ForecastQuestion& question)
 }
 
 std::optional<ForecastQuestion> forecast_question(const ForecastOptions& options) {
-  std::optional<AssetConfig> asset;
-  if (!options.asset_file.empty() && !(asset = load_asset_or_explain(options.asset_file))) return std::nullopt;
-  const std::optional<SealSetting> seal = asset ? asset->seal : std::nullopt;
-  auto history = forecast::read_history(options.history_file, seal);
-  if (!history) {
-    complain(history.error());
+  auto question = options.history_file.empty() ? question_of_journals(options) : question_of_file(options);
+  if (!question || !sensible_threshold(question->request.threshold) || !take_dates(options, question->request) ||
+      !take_costs(options, *question))
     return std::nullopt;
-  }
-  ForecastQuestion question{
-      .request = {.history = std::move(*history),
-                  .threshold = options.threshold_given || !seal ? options.threshold : seal->threshold},
-      .asset_id = asset ? asset->asset_id : "",
-      .forecasters = forecast::default_forecasters()};
-  forecast::ForecastRequest& request = question.request;
-  if (!sensible_threshold(request.threshold)) return std::nullopt;
-  question.tests = request.history.size();
-  question.first = request.history.front().time;
-  question.last = request.now = request.history.back().time;
-  question.vague = take_vague(request.history);
-  question.without_error = static_cast<std::size_t>(
-      std::count_if(request.history.begin(), request.history.end(),
-                    [](const ConditionSample& sample) { return sample.condition_std == 0.0; }));
-  if (!take_site(options, asset, question) || !take_dates(options, request) || !take_costs(options, question))
-    return std::nullopt;
-  std::stable_sort(request.horizons.begin(), request.horizons.end(),
+  std::stable_sort(question->request.horizons.begin(), question->request.horizons.end(),
                    [](const auto& a, const auto& b) { return a.before < b.before; });
   return question;
 }

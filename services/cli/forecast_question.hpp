@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/config/configuration.hpp"
 #include "sealwatch/config/site_decision.hpp"
 #include "sealwatch/forecast/decision.hpp"
 #include "sealwatch/forecast/forecaster.hpp"
@@ -12,19 +13,29 @@
 
 namespace sealwatch::cli {
 
+/// A test that the services left out of their forecasts, and why.
+struct TestNotCounted {
+  UtcTime time;
+  std::string why;
+};
+
 struct ForecastQuestion {
   forecast::ForecastRequest request;
   std::string asset_id;   ///< "" without an asset file
   std::size_t tests = 0;  ///< of the whole history
   UtcTime first = {}, last = {};
   std::vector<forecast::ConditionSample> vague = {};  ///< left out as the services would leave them out
+  std::vector<TestNotCounted> not_counted = {};       ///< of a history that the services judged
   std::size_t without_error = 0;                      ///< tests whose standard error is not known
   std::vector<forecast::ForecasterSettings> forecasters = {};
   std::optional<SiteCosts> costs = {};
   double months_to_vessel = 12.0;  ///< from call to arrival
 };
 
-/// None when something is wrong; it is on standard error then.
+/// Campaigns, costs and lead time of a site; the site may be unknown.
+void take_site(const Configuration& configuration, const std::string& site, ForecastQuestion& question);
+
+/// Of a history in a file, or of what the services keep. None when something is wrong; it is on standard error then.
 [[nodiscard]] std::optional<ForecastQuestion> forecast_question(const ForecastOptions& options);
 
 /// Whether the answer gives the probability of failure before a date.

@@ -48,6 +48,7 @@ class CommandLine {
     add_estimation();
     add_verification();
     add_live();
+    add_show();
     add_operator();
     add_accept();
     add_configuration();
@@ -150,18 +151,27 @@ class CommandLine {
 
     add_explain();
 
-    CLI::App* forecast = command("forecast", "remaining useful life from a history of estimates",
-                                 "sealwatch forecast --history history.csv --before 2019-06-01 --json",
+    add_forecast();
+  }
+
+  void add_forecast() {
+    CLI::App* forecast = command("forecast", "remaining useful life from what the services keep, or from a history",
+                                 "sealwatch forecast --asset XT03-MV2 --state demo/state --page forecast.html\n"
+                                 "  sealwatch forecast --history history.csv --before 2019-06-01 --json",
                                  [this] { return run_forecast(forecast_); });
+    CLI::Option* history = forecast->add_option(
+        "--history", forecast_.history_file,
+        "CSV: time[iso8601],theta[1],theta_std[1] (or R_CL[Pa s/m3] with --asset); default: what the services keep");
     forecast
-        ->add_option("--history", forecast_.history_file,
-                     "CSV: time[iso8601],theta[1],theta_std[1] (or R_CL[Pa s/m3] with --asset)")
-        ->required();
-    forecast->add_option("--asset", forecast_.asset_file, "asset file: seal resistances and threshold")
-        ->check(an_asset_file, "FILE");
+        ->add_option("--state", forecast_.state_directory,
+                     "state directory of the services, which need not run, instead of the configuration's")
+        ->excludes(history);
+    forecast->add_option("--asset", forecast_.asset,
+                         "asset file: seal resistances and threshold; without --history also an asset's id");
     forecast->add_option("--before", forecast_.before, "dates to give the probability of failure for");
     forecast->add_option("--config", forecast_.config,
-                         "configuration file or directory: campaigns, costs and forecasters of the asset's site");
+                         "configuration file or directory: campaigns, costs and forecasters of the asset's site; "
+                         "without --history as for the other commands");
     forecast
         ->add_option("--costs", forecast_.costs,
                      "what replacements cost: PLANNED,AFTER_FAILURE,FAILED_MONTH,UNUSED_MONTH")
@@ -283,6 +293,8 @@ class CommandLine {
         ->check(an_asset_file, "FILE");
     replay->add_option("--results", replay_.results_directory,
                        "write every message there, a JSON line each, a file a topic");
+    replay->add_option("--page", replay_.page,
+                       "HTML file to write at the end: forecast of each asset, history, decision, reasons");
     replay->add_flag("--offline", replay_.offline, "without DDS and services: the same layers in this process");
     replay->add_flag("--with-services", replay_.with_services, "start the six services for the time of the replay")
         ->excludes("--offline");
@@ -313,6 +325,18 @@ class CommandLine {
         ->check(a_number)
         ->capture_default_str();
     status->add_flag("--json", status_.json, "machine-readable result (schema sealwatch.status/1)");
+  }
+
+  void add_show() {
+    CLI::App* show = command("show", "a message by its id, and what it was concluded from, down to the waveform",
+                             "sealwatch show XT03-MV2 --state demo/state", [this] { return run_show(show_); });
+    add_config(show, show_.config);
+    show->add_option("id", show_.id, "message id, or a test's PST id, or an asset id for its newest advisory")
+        ->required();
+    show->add_option("--state", show_.state_directory,
+                     "state directory of the services, which need not run, instead of the configuration's");
+    show->add_option("--csv", show_.csv, "file to write the waveform of the test to, as a recording");
+    show->add_flag("--json", show_.json, "machine-readable result (schema sealwatch.message/1): the message in full");
   }
 
   void add_operator() {
@@ -391,6 +415,7 @@ class CommandLine {
   VerifyMergeOptions verify_merge_;
   ReplayOptions replay_;
   WatchOptions watch_;
+  ShowOptions show_;
   UpOptions up_;
   StatusOptions status_;
   AcknowledgeOptions acknowledge_;

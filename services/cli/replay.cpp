@@ -10,6 +10,7 @@
 #include "services/cli/layers.hpp"
 #include "services/cli/replay_feeder.hpp"
 #include "services/cli/replay_log.hpp"
+#include "services/cli/replay_page.hpp"
 #include "services/cli/replay_source.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/supervisor.hpp"
@@ -274,12 +275,13 @@ int run_replay(const ReplayOptions& options) {
   }
   ReplayLog log(options, source->tests());
   catch_interrupts();
-  const int result = options.offline ? replay_offline(std::move(*layers), *source, log)
-                                     : replay_live(options, *layers, *source, log, *speed);
+  int result = options.offline ? replay_offline(std::move(*layers), *source, log)
+                               : replay_live(options, *layers, *source, log, *speed);
   if (const Status written = log.finish(); !written) {
     complain(written.error());
     return kBadInput;
   }
+  if (!options.page.empty() && result == kOk) result = write_replay_page(options, *configuration, log.histories());
   const std::string silence = log.without_advice();
   if (result == kOk && !silence.empty() && source->tests() > source->failures())
     std::fprintf(stderr, "sealwatch: %s\n", silence.c_str());

@@ -34,6 +34,7 @@ void ReplayLog::take(const Message& message) {
   if (!wanted) return;
   write(message);
   assets_[asset_of(message)].take(message);
+  if (!options_.page.empty()) histories_[asset_of(message)].take(message);
   if (const auto* life = std::get_if<RemainingLife>(&message); life != nullptr && !life->header.pst_id.empty()) {
     const auto latest = latest_known_.find(life->asset_id);
     taken_in_[life->header.pst_id] =

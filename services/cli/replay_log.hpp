@@ -11,6 +11,7 @@
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/message/topics.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/concluded_history.hpp"
 #include "services/cli/summary.hpp"
 #include "services/cli/terminal.hpp"
 
@@ -26,6 +27,8 @@ class ReplayLog {
   void take_earlier(const Message& message);
   /// Why there is no new advice from tests that could be read, in words; "" when each gave some.
   [[nodiscard]] std::string without_advice() const;
+  /// What was concluded of each asset's tests in this replay.
+  [[nodiscard]] const std::map<std::string, ConcludedHistory>& histories() const { return histories_; }
   /// Something that happened besides, like a service that was started again.
   void remark(const std::string& text);
   /// The final screen: each asset's forecast, interval, reasons, and where to look further. An error when the files of
@@ -45,6 +48,7 @@ class ReplayLog {
   std::map<std::string, std::int64_t> latest_known_;  ///< by asset: event time of the last test or replacement before
   std::map<std::string, std::string> last_advisory_;  ///< advisory id and state shown last, by asset
   std::map<std::string, AssetView> assets_;
+  std::map<std::string, ConcludedHistory> histories_;
   std::map<Topic, std::unique_ptr<std::ofstream>> results_;
 };
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "sealwatch/core/time.hpp"
 #include "tests/integration/six_services.hpp"
 
 namespace sealwatch::testing {
@@ -333,6 +334,46 @@ TEST_F(Commands, ReplayWhoseResultsFindNoRoomSaysSo) {
       {"sealwatch", "replay", "--config", config(), "--offline", "--quiet", "--results", results.string(), recording});
   EXPECT_EQ(replay.status, 2) << replay.output;
   EXPECT_THAT(replay.output, ::testing::AllOf(HasSubstr("advisory.jsonl"), HasSubstr("make room")));
+}
+
+TEST_F(Commands, ReplayWritesThePageOfTheForecastThatItShows) {
+  const std::string page = (folder_ / "life.html").string();
+  std::vector<std::string> command{"sealwatch", "replay", "--config", config(),    "--offline",
+                                   "--quiet",   "--page", page,       "--results", folder_.string()};
+  command.insert(command.end(), recordings().begin(), recordings().end());
+  const Finished replay = run(command);
+  ASSERT_EQ(replay.status, 0) << replay.output;
+  EXPECT_THAT(replay.output, HasSubstr("in " + page));
+  std::ifstream lives(folder_ / "remaining_life.jsonl");
+  std::string last;
+  for (std::string line; std::getline(lives, line);) last = line;
+  const json in_charge = json::parse(last)["forecasts"][0];
+  ASSERT_EQ(in_charge["state"], "ok");
+  std::ostringstream html;
+  html << std::ifstream(page).rdbuf();
+  const std::string end_of_life = format_date(UtcTime{in_charge["end_of_life_ns"].get<std::int64_t>()});
+  EXPECT_THAT(html.str(), ::testing::AllOf(HasSubstr("Remaining life of the piston seal of XT03-MV2"),
+                                           HasSubstr("end of life about <span class=\"whole\">" + end_of_life),
+                                           HasSubstr("left out by the services: not judged")));
+}
+
+TEST_F(Commands, WhatIsKeptIsLookedForWithWords) {
+  const Finished nothing = run({"sealwatch", "show", "advisory/A", "--state", folder_.string()});
+  EXPECT_EQ(nothing.status, 2) << nothing.output;
+  EXPECT_THAT(nothing.output, ::testing::AllOf(HasSubstr("holds no journal of a service"), HasSubstr("--state")));
+  const Finished forecast = run({"sealwatch", "forecast", "--config", config(), "--state", folder_.string()});
+  EXPECT_EQ(forecast.status, 2) << forecast.output;
+  EXPECT_THAT(forecast.output, HasSubstr("holds no journal of a service"));
+}
+
+TEST_F(Commands, WatchSaysThatNobodyWritesWhatIsWatched) {
+  const Finished watch = run({"sealwatch", "watch", "--config", config(), "--seconds", "2.2", "advisory"});
+  EXPECT_EQ(watch.status, 0) << watch.output;
+  EXPECT_THAT(watch.output, ::testing::AllOf(HasSubstr("no heartbeat from advisory_generation in DDS domain"),
+                                             HasSubstr("`sealwatch up`")));
+  EXPECT_THAT(run({"sealwatch", "watch", "--config", config(), "--seconds", "2.2", "raw_samples"}).output,
+              ::testing::IsEmpty())
+      << "a control system writes these";
 }
 
 TEST_F(Commands, ReplayWithoutServicesSaysWhatToDo) {

@@ -52,6 +52,46 @@ class Operator : public SixServices {
   pid_t up_ = -1;
 };
 
+TEST_F(Operator, OpensAnAdvisoryDownToTheWaveformWhileTheServicesRun) {
+  const std::string state = state_directory("state").string();
+  const Finished shown = run({"sealwatch", "show", "XT03-MV2", "--state", state, "--json"});
+  ASSERT_EQ(shown.status, 0) << shown.output;
+  json node = json::parse(shown.output);
+  EXPECT_EQ(node["topic"], "advisory");
+  const std::string pst_id = node["message"]["header"]["pst_id"];
+  std::vector<std::string> topics;
+  for (; !node["sources"].empty(); node = json(node["sources"][0])) topics.push_back(node["topic"]);
+  EXPECT_THAT(topics, ::testing::IsSupersetOf({"advisory", "health_report", "test_window", "sample_block"}));
+  EXPECT_EQ(node["topic"], "raw_samples") << "the last is what came from outside";
+
+  const std::string waveform = (folder_ / "waveform.csv").string();
+  const Finished text = run({"sealwatch", "show", "leakage_estimate/" + pst_id, "--state", state, "--csv", waveform});
+  ASSERT_EQ(text.status, 0) << text.output;
+  EXPECT_THAT(text.output, AllOf(HasSubstr("test_window/" + pst_id), HasSubstr("samples of recording")));
+  const Finished again = run({"sealwatch", "fit", "--asset", config() + "/assets/xt03-mv2.yaml", waveform, "--json"});
+  EXPECT_EQ(again.status, 0) << "the waveform is a recording: " << again.output;
+
+  const Finished unknown = run({"sealwatch", "show", "advisory/" + pst_id + "x", "--state", state});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.output, HasSubstr("the nearest are advisory/" + pst_id));
+}
+
+TEST_F(Operator, ForecastsFromWhatTheServicesKeep) {
+  const std::string page = (folder_ / "life.html").string();
+  const Finished forecast = run({"sealwatch", "forecast", "--config", config(), "--state",
+                                 state_directory("state").string(), "--page", page, "--json"});
+  ASSERT_EQ(forecast.status, 0) << forecast.output;  // the fleet tells something after three tests
+  const json result = json::parse(forecast.output);
+  EXPECT_EQ(result["asset_id"], "XT03-MV2");
+  EXPECT_EQ(result["tests"], 3);
+  EXPECT_EQ(result["forecasts"][0]["state"], "insufficient_history");
+  EXPECT_TRUE(std::filesystem::exists(page));
+  EXPECT_THAT(run({"sealwatch", "forecast", "--config", config(), "--state", state_directory("state").string(),
+                   "--asset", "XT03-MV3"})
+                  .output,
+              HasSubstr("did you mean 'XT03-MV2'?"));
+}
+
 TEST_F(Operator, LeavesNoServiceBehindWhenUpIsKilled) {
   kill(up_, SIGKILL);
   waitpid(up_, nullptr, 0);

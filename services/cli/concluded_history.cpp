@@ -1,0 +1,71 @@
+#include "services/cli/concluded_history.hpp"
+
+#include <algorithm>
+
+#include "sealwatch/forecast/configured.hpp"
+#include "services/cli/session.hpp"
+#include "services/prognostic_assessment/asset_history.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using prognostic_assessment::HistoryEntry;
+
+const LeakageEstimate& estimate_of(const HistoryEntry& test, const std::vector<LeakageEstimate>& estimates) {
+  return *std::ranges::find_if(
+      estimates, [&](const LeakageEstimate& estimate) { return estimate.header.message_id == test.estimate_id; });
+}
+
+}  // namespace
+
+void ConcludedHistory::take(const Message& message) {
+  if (const auto* estimate = std::get_if<LeakageEstimate>(&message); estimate && estimate->header.event_time_known)
+    estimates_.push_back(*estimate);
+  if (const auto* life = std::get_if<RemainingLife>(&message); life && life->replacement_known)
+    replacements_.push_back({life->replaced_ns});
+}
+
+std::optional<ForecastQuestion> ConcludedHistory::question(const AssetConfig& asset,
+                                                           const Configuration& configuration) const {
+  prognostic_assessment::AssetHistory history;
+  for (const LeakageEstimate& estimate : estimates_) history.add(estimate);
+  for (const UtcTime time : replacements_) history.add_replacement(time);
+  UtcTime now{};
+  for (const LeakageEstimate& estimate : estimates_) now = std::max(now, UtcTime{estimate.header.event_time_ns});
+  const std::vector<HistoryEntry> tests = history.until(now);
+  if (!asset.seal || tests.empty()) return std::nullopt;
+  ForecastQuestion question{.request = {.threshold = asset.seal->threshold,
+                                        .now = now,
+                                        .installed = history.replaced_before(now),
+                                        .horizons = {}},
+                            .asset_id = asset.asset_id,
+                            .tests = tests.size(),
+                            .first = tests.front().sample.time,
+                            .last = now,
+                            .forecasters = forecast::configured_forecasters(configuration)};
+  for (const HistoryEntry& test : tests) {
+    if (test.eligible) {
+      question.request.history.push_back(test.sample);
+      continue;
+    }
+    const std::vector<std::string>& reasons = estimate_of(test, estimates_).reasons;
+    question.not_counted.push_back({test.sample.time, reasons.empty() ? "no reason is given" : reasons.front()});
+  }
+  take_site(configuration, asset.site, question);
+  return question;
+}
+
+std::optional<ConcludedHistory> history_in(StateJournals& journals, const std::string& asset_id) {
+  ConcludedHistory history;
+  for (const Topic topic : {Topic::leakage_estimate, Topic::remaining_life}) {
+    const auto messages = journals.all(topic, asset_id);
+    if (!messages) {
+      complain(messages.error());
+      return std::nullopt;
+    }
+    for (const Message& message : *messages) history.take(message);
+  }
+  return history;
+}
+
+}  // namespace sealwatch::cli

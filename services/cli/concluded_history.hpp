@@ -1,0 +1,33 @@
+// The history of a seal as prognosis judged it, out of its own conclusions: what the services forecast from, test by
+// test, with the reasons for which a test was left out.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/cli/forecast_question.hpp"
+#include "services/cli/state_journals.hpp"
+
+namespace sealwatch::cli {
+
+class ConcludedHistory {
+ public:
+  /// Takes estimates, and the replacements that remaining_life tells; passes over all else.
+  void take(const Message& message);
+  [[nodiscard]] bool empty() const { return estimates_.empty(); }
+
+  /// What prognosis asked its forecasters with the latest test: the tests since the last replacement, the campaigns and
+  /// costs of the asset's site. Nothing where the asset has no seal condition or no test with a date.
+  [[nodiscard]] std::optional<ForecastQuestion> question(const AssetConfig& asset,
+                                                         const Configuration& configuration) const;
+
+ private:
+  std::vector<LeakageEstimate> estimates_;
+  std::vector<UtcTime> replacements_;
+};
+
+/// The history of one asset in prognosis's journal; a fault is complained of.
+[[nodiscard]] std::optional<ConcludedHistory> history_in(StateJournals& journals, const std::string& asset_id);
+
+}  // namespace sealwatch::cli

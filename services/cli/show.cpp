@@ -1,0 +1,129 @@
+// `sealwatch show`: a message by its id, and what it was concluded from, down to the waveform.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "sealwatch/core/recording.hpp"
+#include "sealwatch/core/text.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/message_words.hpp"
+#include "services/cli/provenance_tree.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/state_journals.hpp"
+#include "services/common/recording/recording_file.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+/// From the last conclusion of a test to the first: what a PST id alone stands for.
+constexpr std::array kFromTheEnd = {Topic::advisory,      Topic::remaining_life, Topic::leakage_estimate,
+                                    Topic::health_report, Topic::state_report,   Topic::test_features,
+                                    Topic::test_window};
+constexpr std::string_view kRecommendation = "recommendation/";  ///< how the id of an advisory begins
+constexpr std::size_t kNearest = 3;
+
+std::string topic_name(Topic topic) { return std::string(name_of(topic)); }
+
+/// Ids that `name` may stand for, the likeliest first: itself, a test's last conclusion, an advisory's id.
+std::vector<std::string> meanings_of(const std::string& name) {
+  std::vector<std::string> ids{name};
+  for (const Topic topic : kFromTheEnd) ids.push_back(topic_name(topic) + "/" + name);
+  if (name.starts_with(kRecommendation)) ids.push_back("advisory/" + name.substr(kRecommendation.size()));
+  return ids;
+}
+
+/// The known ids that look most like `name`.
+Result<std::string> advice_for(const std::string& name, StateJournals& journals) {
+  std::vector<std::pair<std::size_t, std::string>> known;
+  for (std::size_t index = 0; index < EnumNames<Topic>::kNames.size(); ++index) {
+    const auto topic = static_cast<Topic>(index);
+    if (topic == Topic::sample_block && !name.starts_with(topic_name(topic))) continue;
+    const auto ids = journals.ids(topic);
+    if (!ids) return fail(ids.error());
+    for (const std::string& id : *ids) known.emplace_back(edit_distance(name, id), id);
+  }
+  std::ranges::sort(known);
+  std::string advice;
+  for (std::size_t k = 0; k < std::min(kNearest, known.size()); ++k)
+    if (known[k].first <= name.size() / 2) advice += (advice.empty() ? "the nearest are " : ", ") + known[k].second;
+  if (!advice.empty()) return advice;
+  const auto assets = journals.assets(Topic::advisory);
+  if (!assets) return fail(assets.error());
+  for (const std::string& asset : *assets) advice += (advice.empty() ? "" : ", ") + asset;
+  return "give the id of a message, of a test (PST id), or an asset for its newest advisory; assets here: " +
+         (advice.empty() ? "none" : advice);
+}
+
+/// The id that is meant; complains where none is.
+Result<std::string> resolve(const std::string& name, StateJournals& journals) {
+  for (const std::string& id : meanings_of(name)) {
+    const auto kept = journals.find(id);
+    if (!kept) return fail(kept.error());
+    if (*kept) return id;
+  }
+  const auto of_asset = journals.ids(Topic::advisory, name);
+  if (!of_asset) return fail(of_asset.error());
+  if (!of_asset->empty()) return of_asset->back();
+  const auto received = journals.received(name);
+  if (!received) return fail(received.error());
+  const auto advice = advice_for(name, journals);
+  if (!advice) return fail(advice.error());
+  return fail(Error{.file = journals.place(),
+                    .place = {},
+                    .value = name,
+                    .rule = *received ? "came from outside: of such messages the id is kept, not what they said"
+                                      : "is no message that was concluded here",
+                    .advice = *received ? "open what was concluded from it" : *advice});
+}
+
+Status write_waveform(const SourceNode& root, const std::string& file) {
+  const TestWindow* window = window_of(root);
+  if (window == nullptr || window->samples.time_s.empty())
+    return fail(Error{.file = {},
+                      .place = "--csv",
+                      .value = root.message_id,
+                      .rule = "has no waveform behind it here",
+                      .advice = "its test_window is in data_manipulation's journal"});
+  Recording recording{.file = file,
+                      .recording_id = window->recording_id,
+                      .asset_id = window->asset_id,
+                      .start_time = {},
+                      .content_hash = {},
+                      .note = "samples of " + window->header.message_id,
+                      .samples = window->samples};
+  if (const auto kind = value_of<TestKind>(window->test_kind)) recording.test = *kind;
+  if (window->header.event_time_known) recording.start_time = UtcTime{window->header.event_time_ns};
+  return write_recording_csv(recording, file);
+}
+
+int complained(const Error& error) {
+  complain(error);
+  return kBadInput;
+}
+
+}  // namespace
+
+int run_show(const ShowOptions& options) {
+  std::optional<StateJournals> journals = StateJournals::open(options.state_directory, options.config);
+  if (!journals) return kBadInput;
+  const Result<std::string> id = resolve(options.id, *journals);
+  if (!id) return complained(id.error());
+  const LookUp look_up = [&](const std::string& message_id) -> Result<Looked> {
+    auto kept = journals->find(message_id);
+    if (!kept) return fail(kept.error());
+    if (!*kept) return Looked{};
+    return Looked{std::make_shared<const Message>(std::move((*kept)->message)), (*kept)->place};
+  };
+  const Result<SourceNode> tree = provenance_tree(*id, look_up);
+  if (!tree) return complained(tree.error());
+  if (!options.csv.empty())
+    if (const Status written = write_waveform(*tree, options.csv); !written) return complained(written.error());
+  std::printf("%s", options.json ? (tree_json(*tree) + "\n").c_str() : tree_text(*tree).c_str());
+  if (options.csv.empty() && !options.json)
+    std::printf("(sealwatch show ID opens each of them; --json: all it says; --csv FILE: the waveform of the test)\n");
+  if (!options.csv.empty() && !options.json)
+    std::printf("in %s: the waveform of the test, as all layers used it\n", options.csv.c_str());
+  return kOk;
+}
+
+}  // namespace sealwatch::cli

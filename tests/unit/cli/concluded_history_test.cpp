@@ -1,0 +1,79 @@
+// The question behind a forecast, out of what prognosis concluded.
+#include "services/cli/concluded_history.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sealwatch::cli {
+namespace {
+
+LeakageEstimate estimate(const std::string& day, double condition, const std::vector<std::string>& reasons = {}) {
+  LeakageEstimate one;
+  one.asset_id = "A";
+  one.header.message_id = "leakage_estimate/" + day;
+  one.header.event_time_known = true;
+  one.header.event_time_ns = parse_utc(day).value().nanoseconds;
+  one.condition = condition;
+  one.condition_std = 0.001;
+  one.reasons = reasons;
+  one.used_for_forecast = reasons.empty();
+  return one;
+}
+
+class Question : public ::testing::Test {
+ protected:
+  Question() {
+    asset_.asset_id = "A";
+    asset_.site = "field";
+    asset_.seal.emplace();
+    SiteConfig site;
+    site.site = "field";
+    site.booking_lead_time_months = 9.0;
+    site.campaigns = {{.label = "late", .start = parse_utc("2034-06-01").value()},
+                      {.label = "early", .start = parse_utc("2032-06-01").value()}};
+    configuration_.sites.push_back(site);
+    for (const auto& one : {estimate("2031-02-10", 0.98), estimate("2031-01-10", 0.99),
+                            estimate("2031-03-10", 0.5, {"the recording was cut"})})
+      history_.take(one);
+  }
+
+  AssetConfig asset_;
+  Configuration configuration_;
+  ConcludedHistory history_;
+};
+
+TEST_F(Question, HasTheTestsInTheOrderOfTimeAndSaysWhatWasLeftOut) {
+  const auto question = history_.question(asset_, configuration_);
+  ASSERT_TRUE(question);
+  EXPECT_EQ(question->tests, 3U);
+  ASSERT_EQ(question->request.history.size(), 2U);
+  EXPECT_EQ(question->request.history.front().condition, 0.99);
+  EXPECT_EQ(question->request.now, parse_utc("2031-03-10").value()) << "a test that was left out is the latest still";
+  ASSERT_EQ(question->not_counted.size(), 1U);
+  EXPECT_EQ(question->not_counted.front().why, "the recording was cut");
+  EXPECT_EQ(question->months_to_vessel, 9.0);
+  EXPECT_EQ(question->request.horizons.size(), 2U);
+  EXPECT_FALSE(question->request.installed);
+}
+
+TEST_F(Question, BeginsAnewWithAReplacement) {
+  RemainingLife life;
+  life.asset_id = "A";
+  life.replacement_known = true;
+  life.replaced_ns = parse_utc("2031-01-20").value().nanoseconds;
+  history_.take(life);
+  const auto question = history_.question(asset_, configuration_);
+  ASSERT_TRUE(question);
+  EXPECT_EQ(question->tests, 2U);
+  EXPECT_EQ(question->request.installed, UtcTime{life.replaced_ns});
+  EXPECT_EQ(question->first, parse_utc("2031-02-10").value());
+}
+
+TEST_F(Question, IsNoneWithoutASealOrATest) {
+  EXPECT_FALSE(ConcludedHistory().question(asset_, configuration_));
+  asset_.seal.reset();
+  EXPECT_FALSE(history_.question(asset_, configuration_));
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

@@ -48,6 +48,9 @@ echo "== replay: $(ls "$data"/*.csv | wc -l) tests through six services over DDS
 cat <<'TXT'
 
 Look further:
+  build/release/bin/sealwatch forecast --config config --state demo/state --page demo/forecast.html
+                                                                       the forecast as a page for a browser
+  build/release/bin/sealwatch show XT03-MV2 --state demo/state         what the advice was concluded from, down to the recording
   build/release/bin/sealwatch up --config config --state demo/state    the services again (they ended with the demo), with what they remember
   build/release/bin/sealwatch status                                   then, in another terminal: the last word on every actuator, and the
                                                                        command that acknowledges its advice

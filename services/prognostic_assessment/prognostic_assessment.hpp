@@ -22,6 +22,8 @@
 
 namespace sealwatch::prognostic_assessment {
 
+inline constexpr const char* kProducer = "prognostic_assessment 0.1.0";
+
 struct Options {
   std::vector<forecast::ForecasterSettings> forecasters = forecast::default_forecasters();  ///< the one in charge first
   /// A test whose theta is less certain tells nothing: a tenth of theta is a quarter of the way from new to failed.

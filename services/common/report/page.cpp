@@ -34,7 +34,7 @@ constexpr std::string_view kStyle = R"css(
 @media (prefers-color-scheme:dark){:root{--page:#14181c;--text:#e4e8ec;--muted:#9aa5b0;--line:#39424b;--soft:#1d2329;
 --first:#63b8f2;--second:#f0954e;--third:#45c79b;--fourth:#dd95d6;--bad:#ff8a80;--good:#5fce8c;--warn:#e5b75a;--metal:#2a323a}}
 *{box-sizing:border-box}
-body{margin:0 auto;padding:1.2rem 1.4rem 3rem;max-width:1040px;background:var(--page);color:var(--text);
+body{margin:0 auto;padding:1.2rem 1.4rem 3rem;max-width:1080px;background:var(--page);color:var(--text);
 font:15px/1.5 system-ui,"Segoe UI","DejaVu Sans",sans-serif}
 h1{font-size:1.5rem;line-height:1.25;margin:.2rem 0 .1rem}h2{font-size:1.15rem;margin:2.2rem 0 .5rem;padding-bottom:.25rem;
 border-bottom:1px solid var(--line)}h3{font-size:1rem;margin:1.3rem 0 .3rem}

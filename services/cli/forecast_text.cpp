@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/forecast/words.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
 #include "services/common/report/readable.hpp"
@@ -55,7 +56,7 @@ std::string failure_chart(const std::vector<FailureProbability>& probabilities) 
   for (const FailureProbability& item : probabilities) {
     const std::string day = date(item.before_ns);
     const std::string before = item.label == day ? day : item.label + ", " + day;
-    rows.push_back({"before " + before + ": " + percent(item.probability), bar(item.probability)});
+    rows.push_back({"before " + before + ": " + forecast::in_percent(item.probability), bar(item.probability)});
     if (item.probability > kCertain) break;  // later ones are certain too
   }
   return aligned("P(failure)", rows);
@@ -119,10 +120,11 @@ std::string decision_chart(const std::vector<DecisionOption>& decision) {
     dearest = std::max(dearest, option.expected_cost);
   }
   if (decision.empty()) return {};
+  const std::string& currency = decision.front().currency;
   std::vector<std::vector<std::string>> rows{
-      {"replacement", "", "", "fails before", "", "expected cost, " + decision.front().currency}};
+      {"replacement", "", "", "fails before", "", "expected cost" + (currency.empty() ? "" : ", " + currency)}};
   for (const DecisionOption& option : decision)
-    rows.push_back({option.label, date(option.at_ns), percent(option.failure_probability),
+    rows.push_back({option.label, date(option.at_ns), forecast::in_percent(option.failure_probability),
                     bar(option.failure_probability), number(option.expected_cost, 3),
                     bar(dearest > 0.0 ? option.expected_cost / dearest : 0.0), option.cheapest ? "cheapest" : ""});
   return aligned("decision", rows);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sealwatch/forecast/words.hpp"
 #include "services/cli/summary.hpp"
 #include "services/cli/terminal.hpp"
 
@@ -33,7 +34,7 @@ std::string fault_words(const std::vector<ProposedFault>& group) {
   std::string text = first.likelihood > 0.5 ? "most likely " : "possibly ";
   text += words(name_of(first.kind));
   if (first.element.starts_with(kSensor)) text.append(" ").append(words(first.element.substr(kSensor.size())));
-  return text.append(" (").append(percent(first.likelihood, 0)).append(")");
+  return text.append(" (").append(forecast::in_percent(first.likelihood)).append(")");
 }
 
 std::string acceptance_words(const ModelAcceptance& m) {

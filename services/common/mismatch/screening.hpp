@@ -4,8 +4,7 @@
 //   s_j    whitened change of all outputs by law j at strength 0 (for its usual size)
 //   s~_j   = P s_j, with the columns of all free parameters, loads and initial states projected off
 //   g = S~' r,  G = S~' S~,  U_b = S~_b' r_b   per block b of time, V = sum_b (U_b - U_mean)(U_b - U_mean)'
-//   score of a law with strengths I   T = min(g_I' V_I^-1 g_I, g_I' G_I^-1 g_I)   (chi-squared of |I| under noise
-//   alone),
+//   score of a law with strengths I   T = min(g_I' V_I^-1 g_I, g_I' G_I^-1 g_I), chi-squared of |I| under noise alone;
 //                                     V here from U_b - G_b k: without the law's own best share k = G_I^-1 g_I
 //   against an interval: with |k| <= k_0 = resolution x significant size as the null, one strength counts with
 //                        (|g| - k_0 G)^2 / V where that is positive, several with 0 where all stay within

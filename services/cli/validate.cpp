@@ -35,7 +35,7 @@ std::string to_json(const AssetConfig& asset, const ModelValidation& validation)
   Json json = {
       {"schema", "sealwatch.validation/1"}, {"asset_id", asset.asset_id},          {"model", asset.model},
       {"fitted", validation.fitted},        {"valid", validation.reasons.empty()}, {"reasons", validation.reasons},
-      {"parameters", Json::array()},        {"recordings", Json::array()}};
+      {"remarks", validation.remarks},      {"parameters", Json::array()},         {"recordings", Json::array()}};
   for (const EstimatedParameter& parameter : validation.parameters)
     json["parameters"].push_back({{"name", parameter.name},
                                   {"value", number_or_null(parameter.value)},
@@ -54,9 +54,9 @@ std::string to_json(const AssetConfig& asset, const ModelValidation& validation)
 void print_text(const AssetConfig& asset, const ModelValidation& validation, const std::string& directory) {
   std::printf("%s, model %s, %s: %s\n", asset.asset_id.c_str(), asset.model.c_str(),
               validation.fitted ? "parameters fitted to these recordings" : "parameters as in the asset file",
-              validation.reasons.empty() ? "the simulation agrees with the recordings within their noise"
-                                         : "the simulation is not what was recorded");
-  for (const std::string& reason : validation.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
+              verdict_in_words(validation));
+  for (const auto* list : {&validation.reasons, &validation.remarks})
+    for (const std::string& reason : *list) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
   std::printf("  %-34s %-22s %9s %10s %12s %14s\n", "recording", "channel", "NRMSE %", "rms/noise", "whiteness p",
               "independence p");
   for (const RecordingValidation& recording : validation.recordings)

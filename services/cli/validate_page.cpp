@@ -1,5 +1,6 @@
 #include "services/cli/validate_page.hpp"
 
+#include <cctype>
 #include <cmath>
 
 #include "services/common/report/page.hpp"
@@ -89,16 +90,26 @@ std::string parameter_table(const ModelValidation& validation) {
 }
 
 std::string verdict(const ModelValidation& validation) {
-  if (validation.reasons.empty())
-    return "<div class=\"banner good\"><p class=\"verdict\">The simulation agrees with the recordings within their "
-           "noise.</p></div>";
-  std::string html = "<div class=\"banner bad\"><p class=\"verdict\">The simulation is not what was recorded.</p><ul>";
-  for (const std::string& reason : validation.reasons)
-    html.append("<li>").append(report::escaped(reason)).append("</li>");
-  return html + "</ul></div>";
+  std::string html = "<div class=\"banner ";
+  html += !validation.reasons.empty() ? "bad" : validation.remarks.empty() ? "good" : "warn";
+  std::string words = verdict_in_words(validation);
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  html.append("\"><p class=\"verdict\">").append(report::escaped(words)).append(".</p>");
+  if (!validation.reasons.empty() || !validation.remarks.empty()) html += "<ul>";
+  for (const auto* list : {&validation.reasons, &validation.remarks})
+    for (const std::string& reason : *list) html.append("<li>").append(report::escaped(reason)).append("</li>");
+  if (!validation.reasons.empty() || !validation.remarks.empty()) html += "</ul>";
+  return html + "</div>";
 }
 
 }  // namespace
+
+const char* verdict_in_words(const ModelValidation& validation) {
+  if (!validation.reasons.empty()) return "the simulation is not what was recorded";
+  return validation.remarks.empty()
+             ? "the simulation agrees with the recordings within their noise"
+             : "no channel misfits by more than 3 times its noise, but what is left is more than noise";
+}
 
 std::string validation_page(const AssetConfig& asset, const ModelValidation& validation) {
   std::string body = "<h1>Model " + report::escaped(asset.model) + " against recordings of " +

@@ -8,6 +8,9 @@
 
 namespace sealwatch::cli {
 
+/// Whether the model is what was recorded, for the terminal and the page.
+[[nodiscard]] const char* verdict_in_words(const verification::ModelValidation& validation);
+
 [[nodiscard]] std::string validation_page(const AssetConfig& asset, const verification::ModelValidation& validation);
 
 }  // namespace sealwatch::cli

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
@@ -103,16 +104,37 @@ Result<std::vector<TimeSeries>> fit_and_simulate(const AssetConfig& asset, const
   return simulated;
 }
 
+constexpr double kMoreThanNoise = 1.3;  // times it: noise of 1000 samples is known to a few per cent
+constexpr double kSignificance = 0.01;
+
 /// Of one channel over all recordings.
 struct Misfit {
   std::string channel, worst;
   double largest = 0.0;
-  int beyond = 0, recordings = 0;
+  int beyond = 0, coloured = 0, dependent = 0, recordings = 0;
 };
+
+std::string remark_on(const Misfit& misfit) {
+  std::vector<std::string> parts;
+  const auto add = [&](const char* form, auto... values) {
+    char text[160];
+    std::snprintf(text, sizeof text, form, values...);
+    parts.emplace_back(text);
+  };
+  if (misfit.largest > kMoreThanNoise) add("misfits by up to %.3g times its noise", misfit.largest);
+  if (misfit.coloured > 0) add("residuals are coloured in %d of %d recordings", misfit.coloured, misfit.recordings);
+  if (misfit.dependent > 0) add("follow the past input in %d of %d", misfit.dependent, misfit.recordings);
+  std::string remark;
+  for (const std::string& part : parts) remark.append(remark.empty() ? misfit.channel + ": " : ", ").append(part);
+  return remark;
+}
 
 void judge(ModelValidation& validation) {
   const double limit = AdmissibilityOptions{}.largest_noise_normalised_rms;
   std::vector<Misfit> misfits;
+  std::size_t tests = 0;
+  for (const RecordingValidation& recording : validation.recordings) tests += recording.channels.size();
+  const double improbable = kSignificance / std::max(1.0, static_cast<double>(tests));
   for (const RecordingValidation& recording : validation.recordings)
     for (const ChannelValidation& channel : recording.channels) {
       const std::string& name = channel.fit.channel;
@@ -120,12 +142,17 @@ void judge(ModelValidation& validation) {
       if (found == misfits.end()) found = misfits.insert(found, Misfit{.channel = name, .worst = {}});
       ++found->recordings;
       found->beyond += channel.fit.noise_normalised_rms > limit ? 1 : 0;
+      found->coloured += channel.fit.whiteness_p < improbable ? 1 : 0;
+      found->dependent += channel.fit.independence_p < improbable ? 1 : 0;
       if (channel.fit.noise_normalised_rms <= found->largest) continue;
       found->largest = channel.fit.noise_normalised_rms;
       found->worst = recording.recording;
     }
   for (const Misfit& misfit : misfits) {
-    if (misfit.beyond == 0) continue;
+    if (misfit.beyond == 0) {
+      if (std::string remark = remark_on(misfit); !remark.empty()) validation.remarks.push_back(std::move(remark));
+      continue;
+    }
     char text[240];
     std::snprintf(text, sizeof text,
                   "%s misfits by more than %.3g noise standard deviations in %d of %d recordings, most by %.3g in ",

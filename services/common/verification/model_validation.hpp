@@ -40,6 +40,9 @@ struct ModelValidation {
   std::vector<RecordingValidation> recordings;
   /// Why the model is not the one that was recorded, by the limits of admissibility.hpp; empty: it may be.
   std::vector<std::string> reasons;
+  /// What is more than noise although it is within those limits: a misfit above 1.3 times the noise, or residuals that
+  /// are coloured or depend on the past input (1 % over all channels and recordings together).
+  std::vector<std::string> remarks;
 };
 
 /// Estimates the operating point of each recording (load and initial state) and nothing else; with `fit` the asset's

@@ -56,6 +56,19 @@ TEST(ModelValidation, SeesAnotherParameterAndFitsIt) {
   EXPECT_NEAR(leakage->value, 0.7e13, 5.0 * leakage->std_error);
 }
 
+// Within the limits, but no noise: the leak is off by a little, which the position shows.
+TEST(ModelValidation, RemarksOnWhatIsMoreThanNoiseWithinTheLimits) {
+  const AssetConfig asset = testing::actuator();
+  const double R_CL = 0.985 * asset.parameters.at("R_CL").value;
+  const auto validation = validate_model(asset, {recorded(asset, {{"R_CL", R_CL}}, 1)}, {"worn.csv"}, false);
+  ASSERT_TRUE(validation);
+  EXPECT_TRUE(validation->reasons.empty()) << validation->reasons.front();
+  ASSERT_FALSE(validation->remarks.empty());
+  const auto same = validate_model(asset, {recorded(asset, {}, 1)}, {"same.csv"}, false);
+  ASSERT_TRUE(same);
+  EXPECT_TRUE(same->remarks.empty()) << same->remarks.front();
+}
+
 TEST(ModelValidation, RefusesWhatCannotBeSimulated) {
   const AssetConfig asset = testing::actuator();
   EXPECT_FALSE(validate_model(asset, {}, {}, false));

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "sealwatch/forecast/fleet_population.hpp"
+#include "sealwatch/forecast/words.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
@@ -127,6 +128,14 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
     if (cannot_tell && std::ranges::none_of(effect.indistinguishable, listed)) {
       effect.indistinguishable.push_back(law_at(other));
       if (other.element != effect.what.element) effect.same_elements.push_back(other.element);
+    }
+    // A law that was refitted from several starts is one alternative: where it came nearest.
+    const auto same_law = [&](const Alternative& one) {
+      return one.what.id == other.law->id && one.what.form == other.law->form && one.what.element == other.element;
+    };
+    if (const auto twice = std::ranges::find_if(effect.alternatives, same_law); twice != effect.alternatives.end()) {
+      if (twice->misfit_above_best <= std::max(behind, 0.0)) continue;
+      effect.alternatives.erase(twice);
     }
     effect.alternatives.push_back({.what = law_at(other),
                                    .misfit_above_best = std::max(behind, 0.0),
@@ -252,7 +261,7 @@ std::vector<Location> locate_without_law(const Screening& screening) {
 Rejected describe(const Forbidden& forbidden) {
   const LawParameter& strength = forbidden.effect.law->parameters[strengths_of(*forbidden.effect.law).front()];
   std::string why = "The data would want ";
-  why.append(strength.name).append(" = ").append(number(forbidden.strength)).append(" ").append(strength.unit);
+  why.append(strength.name).append(" = ").append(forecast::with_unit(forbidden.strength, strength.unit));
   why.append("; physics demands: ").append(forbidden.effect.law->energy).append(".");
   return {.what = law_at(forbidden.effect), .why = std::move(why)};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <ranges>
 #include <thread>
@@ -40,6 +41,23 @@ struct Refit {
   std::vector<Effect> effects;
   std::shared_ptr<FittedModel> model;
 };
+
+// A law that contains a plainer one (Law::limit) has that one's strength first. Without it, at less than a hundredth of
+// what matters, it is neither: dry friction that is there near standstill alone is no dry friction.
+bool lost_its_core(const Refit& refit) {
+  constexpr double kNothing = 0.01;
+  const AssetConfig& asset = refit.model->asset;
+  const PlantDescription& plant = refit.model->problem.recordings.front().simulation->plant();
+  const std::size_t first = asset.physics.size() - refit.effects.size();
+  for (std::size_t k = 0; k < refit.effects.size(); ++k) {
+    const Law& law = *refit.effects[k].law;
+    if (law.limit.empty()) continue;
+    const LawParameter& core = law.parameters[strengths_of(law).front()];
+    const double value = asset.physics[first + k].parameters.at(std::string(core.name)).value;
+    if (std::abs(value) < kNothing * plant.law_size(core.unit) * core.significant) return true;
+  }
+  return false;
+}
 
 // Only those near the best keep their derivatives: ten recordings' worth of them take as much memory as all else.
 std::vector<Trial> trials_of(std::vector<Refit> refits) {
@@ -132,6 +150,7 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
   const auto count = std::min(static_cast<std::size_t>(far - refits.begin()), kSecondRound);
   std::ranges::move(in_parallel<Refit>(count, threads, [&](std::size_t k) { return further(refits[k], best); }),
                     refits.begin());
+  std::erase_if(refits, lost_its_core);
   return trials_of(std::move(refits));
 }
 

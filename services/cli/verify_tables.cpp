@@ -61,12 +61,14 @@ std::string verification_coverage_table(const Summary& summary) {
 
 std::string verification_overview(const Summary& s) {
   std::string text = std::to_string(s.lives) + " lives, " + std::to_string(s.tests) + " tests. " +
-                     std::to_string(s.censored) + " lives outlast the months of service and are left out below. " +
+                     std::to_string(s.censored) + (s.censored == 1 ? " life outlasts" : " lives outlast") +
+                     " the months of service and " + (s.censored == 1 ? "is" : "are") + " left out below. " +
                      number(100.0 * s.fails_in_8_to_20_years.value(), 3) +
                      " % fail within 8 to 20 years; half of them by " + number(s.lifetime_years.at[2], 3) + " years. ";
   text += "Estimates of the condition: standard error " + number(s.estimate_std.value, 2) +
           " in the mean, mean squared error over its square " + number(s.estimate_chi_square.value, 3) +
-          " (1 when honest), " + number(100.0 * s.estimate_within_95.value(), 3) + " % within their 95 % interval. ";
+          " (1 when honest); of one test of each life " + percent_cell(s.estimate_within_95) +
+          " % within their 95 % interval. ";
   text += "Of the estimate as a feature: monotonicity " + number(s.monotonicity, 3) + ", trendability " +
           number(s.trendability, 3) + ", prognosability " + number(s.prognosability, 3) + ".";
   return report::paragraph(text) +

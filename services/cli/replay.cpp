@@ -101,7 +101,7 @@ class LiveReplay {
     const auto end = steady_clock::now() + (supervisor != nullptr ? kPatienceForStarted : kPatienceForRunning);
     while (!interrupted() && steady_clock::now() < end) {
       for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(100))) {
-        if (const auto* status = std::get_if<ServiceStatus>(&item)) quiescence_.take(*status);
+        if (const auto* status = std::get_if<ServiceStatus>(&item)) take_heartbeat(*status);
         if (const auto* message = std::get_if<Message>(&item)) take_earlier(*message);
       }
       tend(supervisor);
@@ -140,7 +140,7 @@ class LiveReplay {
     while (anything && !interrupted() && steady_clock::now() < end &&
            (awaited() || steady_clock::now() - last < kQuietWhenAllCame)) {
       for (const BusItem& item : session_.bus->receive(std::chrono::milliseconds(50))) {
-        if (const auto* status = std::get_if<ServiceStatus>(&item)) quiescence_.take(*status);
+        if (const auto* status = std::get_if<ServiceStatus>(&item)) take_heartbeat(*status);
         const auto* message = std::get_if<Message>(&item);
         if (message == nullptr) continue;
         take_earlier(*message);
@@ -155,14 +155,19 @@ class LiveReplay {
       for (const Message& next : reader_->accept(*message)) log_.take(next);
       last_progress_ = steady_clock::now();
     } else if (const auto* status = std::get_if<ServiceStatus>(&item)) {
-      feeder_.take(*status);
-      quiescence_.take(*status);
+      take_heartbeat(*status);
       for (const StreamPosition& written : quiescence_.written(ReplayLog::topics()))
         (void)reader_->note_written(written, seconds(steady_clock::now()));
     } else {
       return feeder_.take(std::get<ResendRequest>(item), *session_.bus);
     }
     return {};
+  }
+
+  void take_heartbeat(const ServiceStatus& status) {
+    feeder_.take(status);
+    quiescence_.take(status);
+    for (const std::string& reason : feeder_.take_refusals()) log_.refuse(reason);
   }
 
   /// Everything sent, everything concluded, and all conclusions seen.
@@ -285,7 +290,7 @@ int run_replay(const ReplayOptions& options) {
   const std::string silence = log.without_advice();
   if (result == kOk && !silence.empty() && source->tests() > source->failures())
     std::fprintf(stderr, "sealwatch: %s\n", silence.c_str());
-  return source->failures() > 0 && result == kOk ? kBadInput : result;
+  return (source->failures() > 0 || log.any_refused()) && result == kOk ? kBadInput : result;
 }
 
 }  // namespace sealwatch::cli

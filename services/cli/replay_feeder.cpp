@@ -50,8 +50,21 @@ Status ReplayFeeder::feed(Bus& bus, std::chrono::steady_clock::time_point now) {
   }
 }
 
+// The last error stands in the heartbeat, with its time, until another comes: what stood there before is of other
+// tests.
+void ReplayFeeder::note_refusal(const ServiceStatus& status) {
+  if (last_sequence_ == 0) error_before_ = status.last_error;
+  const std::string mark = " raw_samples refused: ";
+  const std::size_t at = status.last_error.find(mark);
+  if (at == std::string::npos || status.last_error == error_before_) return;
+  const std::string reason = status.last_error.substr(at + mark.size());
+  const std::string test = reason.substr(0, reason.find(": "));  // the rest names the time of refusal, block by block
+  if (refused_.insert(test).second) refusals_.push_back(reason);
+}
+
 void ReplayFeeder::take(const ServiceStatus& status) {
   if (status.service != "data_acquisition") return;
+  note_refusal(status);
   const std::uint64_t journaled = received_up_to(status, "raw_samples", writer_id_);
   while (!waiting_.empty() && waiting_.front().header.stream_sequence <= journaled) waiting_.pop_front();
 }

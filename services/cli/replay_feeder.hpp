@@ -7,8 +7,10 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/message/topics.hpp"
@@ -35,8 +37,11 @@ class ReplayFeeder {
   [[nodiscard]] std::uint64_t last_sequence() const { return last_sequence_; }
   [[nodiscard]] const std::string& writer_id() const { return writer_id_; }
   [[nodiscard]] std::size_t tests_sent() const { return tests_sent_; }
+  /// Why data acquisition refused tests of this replay, by its heartbeats; each reason once.
+  [[nodiscard]] std::vector<std::string> take_refusals() { return std::exchange(refusals_, {}); }
 
  private:
+  void note_refusal(const ServiceStatus& status);
   [[nodiscard]] std::size_t tests_waiting() const;
   /// Whether the first unsent block is due: its last sample has been "recorded" by now.
   [[nodiscard]] bool due(std::chrono::steady_clock::time_point now) const;
@@ -51,6 +56,9 @@ class ReplayFeeder {
   std::uint64_t last_sequence_ = 0;
   std::size_t tests_sent_ = 0;
   bool exhausted_ = false;
+  std::string error_before_;  ///< the service's last error when the first block was sent
+  std::vector<std::string> refusals_;
+  std::set<std::string> refused_;  ///< those already told
 };
 
 /// Whether every service has taken in all that its upstream services wrote, judged by their last heartbeats.

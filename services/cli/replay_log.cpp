@@ -44,6 +44,7 @@ void ReplayLog::take(const Message& message) {
 }
 
 std::string ReplayLog::without_advice() const {
+  if (taken_in_.empty() && concluded_.empty() && any_refused_) return {};  // has been told, with its reason
   if (taken_in_.empty() && concluded_.empty())
     return "these tests were known already (same recording_id and content), nothing new was advised";
   std::size_t silent = 0;
@@ -75,6 +76,11 @@ void ReplayLog::show_advisory(const Advisory& advisory, const Message& message) 
   }
   progress_.show(concluded_.size(),
                  advisory.header.event_time_known ? date(advisory.header.event_time_ns) : advisory.header.pst_id);
+}
+
+void ReplayLog::refuse(const std::string& reason) {
+  any_refused_ = true;
+  remark("sealwatch: refused: " + reason);
 }
 
 void ReplayLog::remark(const std::string& text) {
@@ -121,7 +127,7 @@ Status ReplayLog::finish() {
       std::printf("\n%s", view.screen(services_run).c_str());
   }
   if (assets_.empty()) std::printf("no test has been concluded\n");
-  if (!options_.results_directory.empty() && results_.empty())
+  if (!options_.results_directory.empty() && results_.empty() && !any_refused_)
     std::fprintf(
         stderr,
         "sealwatch: nothing was written to %s: the services had concluded from all these tests before, and say "

@@ -27,6 +27,9 @@ class ReplayLog {
   void take_earlier(const Message& message);
   /// Why there is no new advice from tests that could be read, in words; "" when each gave some.
   [[nodiscard]] std::string without_advice() const;
+  /// A test that data acquisition did not take in, and why.
+  void refuse(const std::string& reason);
+  [[nodiscard]] bool any_refused() const { return any_refused_; }
   /// What was concluded of each asset's tests in this replay.
   [[nodiscard]] const std::map<std::string, ConcludedHistory>& histories() const { return histories_; }
   /// Something that happened besides, like a service that was started again.
@@ -43,6 +46,7 @@ class ReplayLog {
 
   ReplayOptions options_;
   Progress progress_;
+  bool any_refused_ = false;
   std::set<std::string> concluded_;       ///< PST ids that reached the last layer
   std::map<std::string, bool> taken_in_;  ///< by PST id: tests judged in this replay; whether a later one was known
   std::map<std::string, std::int64_t> latest_known_;  ///< by asset: event time of the last test or replacement before

@@ -41,7 +41,11 @@ std::vector<Message> RecordingsFolder::look() {
   std::size_t taken = 0;
   for (const fs::path& path : recordings()) {
     if (taken == kMostFilesPerLook) break;
-    if (files_[path].taken || !is_settled(path)) continue;
+    const bool settled = is_settled(path);
+    File& file = files_[path];
+    // Refused after it was read (its start time lay in the future), and mended since: another recording.
+    if (file.taken && file.unchanged_looks == 0) file.taken = file.stuck = false;
+    if (file.taken || !settled) continue;
     take(path, messages);
     ++taken;
   }

@@ -3,7 +3,8 @@
 // A file is read when it and its sidecar have not changed for ten looks, one a second: a copy in progress is left
 // alone. When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
 // NAME.error.txt; its sidecar, which must be there when the recording is read, moves along. Until then it stays, and a
-// restart reads it again: nothing is lost, and what comes twice is taken once, by its message id.
+// change of file or sidecar or a restart reads it again: nothing is lost, and what comes twice is taken once, by its
+// message id.
 #pragma once
 
 #include <cstdint>

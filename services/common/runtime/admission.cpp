@@ -49,9 +49,11 @@ std::optional<std::string> Admission::refusal_of_test(const Message& message, Ut
   const std::optional<std::int64_t> time_ns = time_of_test(message);
   if (!time_ns || newest == newest_ns_.end()) return std::nullopt;
   if (*time_ns <= now.nanoseconds + kDay_ns || *time_ns <= newest->second + kYear_ns) return std::nullopt;
-  return "its start time, " + format_utc({*time_ns}) + ", lies in the future (it is now " + format_utc(now) +
+  const RawSamples& raw = std::get<RawSamples>(message);
+  return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) + " of " + raw.asset_id +
+         ": its start time, " + format_utc({*time_ns}) + ", lies in the future (it is now " + format_utc(now) +
          ") and more than a year after the asset's newest test, " + format_utc({newest->second}) +
-         "; correct the start time";
+         "; correct the start time, and give it again";
 }
 
 }  // namespace sealwatch

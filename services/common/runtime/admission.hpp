@@ -3,7 +3,8 @@
 // A slip in the year of a replacement would set aside every test until then. A report may lie a day ahead of now, as
 // clocks differ, or of the newest test of its asset: old or simulated lives are played back under a clock of their own.
 // So would a test whose clock was wrong: one in the future is refused where it also lies more than a year after the
-// newest test. A simulated life may go on into the future month by month, or lie there as a whole.
+// newest test; nothing is kept of it, so that it is taken in once its start time is corrected. A simulated life may go
+// on into the future month by month, or lie there as a whole.
 #pragma once
 
 #include <cstdint>

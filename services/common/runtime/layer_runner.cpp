@@ -183,6 +183,8 @@ Status LayerRunner::take(Message message) {
   if (const auto refused = admission_.refusal(message, clock_.now())) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
+    // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
+    if (topic_of(message) == Topic::raw_samples) return {};
     return journal_.add_input(message, clock_.now(), true);
   }
   admission_.note(message);

@@ -65,6 +65,22 @@ TEST_F(Feeder, StaysAFewTestsAheadOfWhatIsJournaled) {
   EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{3, 4}));
 }
 
+TEST_F(Feeder, HearsOnceThatATestWasRefusedAndNotOfWhatWasRefusedBefore) {
+  ReplayFeeder feeder("w", source(1), 1, 0.0);
+  ServiceStatus status = journaled("w", 0);
+  status.last_error = "2026-01-01T00:00:00Z raw_samples refused: recording PST-7 of A: its start time";
+  feeder.take(status);
+  ASSERT_TRUE(feeder.feed(writer_, steady_clock::now()).has_value());
+  feeder.take(status);
+  EXPECT_TRUE(feeder.take_refusals().empty()) << "of another replay";
+  status.last_error = "2026-01-01T00:00:05Z raw_samples refused: recording PST-8 of A: it is now 5 s";
+  feeder.take(status);
+  EXPECT_EQ(feeder.take_refusals(), std::vector<std::string>{"recording PST-8 of A: it is now 5 s"});
+  status.last_error = "2026-01-01T00:00:06Z raw_samples refused: recording PST-8 of A: it is now 6 s";
+  feeder.take(status);
+  EXPECT_TRUE(feeder.take_refusals().empty()) << "its next block";
+}
+
 TEST_F(Feeder, SendsAgainWhatIsMissed) {
   ReplayFeeder feeder("w", source(1), 1, 0.0);
   ASSERT_TRUE(feeder.feed(writer_, steady_clock::now()).has_value());

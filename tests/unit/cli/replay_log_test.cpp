@@ -35,6 +35,14 @@ TEST_F(WithoutAdvice, SaysThatAllWasKnown) {
   EXPECT_THAT(log_.without_advice(), HasSubstr("were known already"));
 }
 
+TEST_F(WithoutAdvice, TakesARefusedTestForNoKnownOne) {
+  log_.take_earlier(of_test<RemainingLife>("2031-04-12"));
+  EXPECT_FALSE(log_.any_refused());
+  log_.refuse("recording PST-8 of A: its start time lies in the future");
+  EXPECT_EQ(log_.without_advice(), "");
+  EXPECT_TRUE(log_.any_refused());
+}
+
 TEST_F(WithoutAdvice, TellsEarlierTestsFromKnownOnes) {
   log_.take_earlier(of_test<RemainingLife>("2031-04-12"));
   log_.take(of_test<RemainingLife>("2031-01-12"));

@@ -387,6 +387,39 @@ TEST_F(RunnerTest, RefusesATestFarInTheFutureOfALifeThatIsNot) {
   EXPECT_THAT(tests, ElementsAre("A test 0", "A test 2", "A test 3", "A test 4", "B test 0"));
 }
 
+TEST_F(RunnerTest, TakesARefusedTestInOnceItsStartTimeIsCorrected) {
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  auto process = cutter();
+  const std::int64_t now_ns = process->clock().now().nanoseconds;
+  const auto recorded = [&](std::int64_t days) {  // the id of a recording does not tell of its start time
+    auto blocks = blocks_of_tests(2, {"A"});
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      blocks[k].header.message_id = "raw_samples/A/" + std::to_string(k);
+      blocks[k].start_time_known = true;
+      blocks[k].start_time_ns = now_ns + (k < 2 ? -40 : days) * kDay_ns;
+    }
+    return blocks;
+  };
+  const auto tests = [&] {
+    std::vector<std::string> ids;
+    for (const Message& output : process->outputs())
+      if (topic_of(output) == Topic::test_features) ids.push_back(header_of(output).pst_id);
+    return ids;
+  };
+  {
+    Feeder slip(network_, recorded(5000));
+    slip.send(100);
+    step(*process, 3);
+    EXPECT_THAT(tests(), ElementsAre("A test 0"));
+  }
+  process.reset();
+  process = cutter();            // nor does a restart remember it
+  InMemoryBus sender(network_);  // another writer, as each replay is
+  for (const RawSamples& block : recorded(-10)) ASSERT_TRUE(sender.publish(Message(block)));
+  step(*process, 3);
+  EXPECT_THAT(tests(), ElementsAre("A test 0", "A test 1"));
+}
+
 TEST_F(RunnerTest, ReceivesWhileItConcludesLaterAndKeepsTheOrderOfReceipt) {
   Process process(
       network_, [] { return std::make_unique<PatientLayer>(milliseconds(50)); }, place_.connection());

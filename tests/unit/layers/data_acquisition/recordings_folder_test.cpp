@@ -64,6 +64,20 @@ TEST_F(RecordingsFolderTest, TakesARecordingAndPutsItAwayWhenItsTestIsConcluded)
   EXPECT_THAT(errors_, testing::IsEmpty());
 }
 
+TEST_F(RecordingsFolderTest, ReadsARecordingAgainThatWasNotConcludedAndIsMended) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  drop("april", "XT03-MV2");
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_EQ(watched.look().size(), 2U) << "and the service refuses it";
+  EXPECT_TRUE(watched.look().empty());
+  std::ofstream(directory_ / "april.yaml", std::ios::app) << "start_time: 2025-04-12T03:00:00Z\n";
+  EXPECT_TRUE(watched.look().empty()) << "it might still be changing";
+  const std::vector<Message> blocks = watched.look();
+  ASSERT_EQ(blocks.size(), 2U);
+  EXPECT_TRUE(std::get<RawSamples>(blocks[0]).start_time_known);
+}
+
 TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {
   DataAcquisition layer(assets_);
   RecordingsFolder watched = folder(layer, 3);

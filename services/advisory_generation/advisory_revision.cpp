@@ -22,8 +22,20 @@ Header answer_to(const Header& cause) {
   return header;
 }
 
-bool comes_earlier(const Advisory& current, const Advisory& next) {
-  return next.latest_by_known && (!current.latest_by_known || next.latest_by_ns < current.latest_by_ns);
+// Whether who has acknowledged `current` must look again: an earlier date, one where there was none, or none any more,
+// which is as soon as may be.
+bool is_more_pressing(const Advisory& current, const Advisory& next) {
+  if (current.latest_by_known != next.latest_by_known) return true;
+  return next.latest_by_known && next.latest_by_ns < current.latest_by_ns;
+}
+
+// What stands is said again because of `cause`: it still rests on what it rested on.
+Advisory said_again(const Advisory& current, Header header) {
+  Advisory advisory = current;
+  advisory.header = std::move(header);
+  advisory.header.source_ids.push_back(current.header.message_id);
+  advisory.revision = current.revision + 1;
+  return advisory;
 }
 
 }  // namespace
@@ -42,7 +54,7 @@ Advisory revision_of(const std::optional<Advisory>& current, const std::string& 
     next.advisory_id = current->advisory_id;
     next.revision = current->revision + 1;
     next.supersedes_id = current->supersedes_id;
-    if (current->state == AdvisoryState::acknowledged && !comes_earlier(*current, next)) {
+    if (current->state == AdvisoryState::acknowledged && !is_more_pressing(*current, next)) {
       next.state = AdvisoryState::acknowledged;
       next.acknowledged_by = current->acknowledged_by;
       next.acknowledged_at_ns = current->acknowledged_at_ns;
@@ -103,9 +115,7 @@ Advisory with_overdue_test(const std::optional<Advisory>& current, const StateRe
     advisory.reasons = {call.text};
     return advisory;
   }
-  Advisory advisory = *current;
-  advisory.header = answer_to(report.header);
-  advisory.revision = current->revision + 1;
+  Advisory advisory = said_again(*current, answer_to(report.header));
   advisory.reasons.insert(advisory.reasons.begin(), "also: " + call.text);
   return advisory;
 }
@@ -127,9 +137,7 @@ Advisory after_replacement(const std::optional<Advisory>& current, const Mainten
 Advisory after_late_replacement(const Advisory& current, const MaintenanceEvent& event) {
   Header cause = event.header;
   cause.pst_id.clear();
-  Advisory advisory = current;
-  advisory.header = answer_to(cause);
-  advisory.revision = current.revision + 1;
+  Advisory advisory = said_again(current, answer_to(cause));
   advisory.reasons.insert(advisory.reasons.begin(), forecast::in_words(event.kind) + " on " +
                                                         format_date({event.header.event_time_ns}) + " reported by " +
                                                         event.reported_by +

@@ -13,8 +13,8 @@
 namespace sealwatch::advisory_generation {
 
 /// The next advisory after `current`: a higher revision when action and priority stay (an acknowledgement stays too,
-/// unless the latest-by date comes earlier), else a new one that names the one it supersedes. Reasons and sources are
-/// not filled.
+/// unless the latest-by date comes earlier or falls away), else a new one that names the one it supersedes. Reasons and
+/// sources are not filled.
 [[nodiscard]] Advisory revision_of(const std::optional<Advisory>& current, const std::string& asset_id,
                                    const Recommendation& recommendation, const Header& cause);
 

@@ -32,17 +32,18 @@ std::optional<ForecastQuestion> ConcludedHistory::question(const AssetConfig& as
   for (const UtcTime time : replacements_) history.add_replacement(time);
   UtcTime now{};
   for (const LeakageEstimate& estimate : estimates_) now = std::max(now, UtcTime{estimate.header.event_time_ns});
+  // A replacement that no test has followed yet ends the history too: the tests before it are of another seal.
+  const std::optional<UtcTime> replaced = history.last_replacement();
+  if (replaced) now = std::max(now, *replaced);
   const std::vector<HistoryEntry> tests = history.until(now);
-  if (!asset.seal || tests.empty()) return std::nullopt;
-  ForecastQuestion question{.request = {.threshold = asset.seal->threshold,
-                                        .now = now,
-                                        .installed = history.replaced_before(now),
-                                        .horizons = {}},
-                            .asset_id = asset.asset_id,
-                            .tests = tests.size(),
-                            .first = tests.front().sample.time,
-                            .last = now,
-                            .forecasters = forecast::configured_forecasters(configuration)};
+  if (!asset.seal || (tests.empty() && !replaced)) return std::nullopt;
+  ForecastQuestion question{
+      .request = {.threshold = asset.seal->threshold, .now = now, .installed = replaced, .horizons = {}},
+      .asset_id = asset.asset_id,
+      .tests = tests.size(),
+      .first = tests.empty() ? now : tests.front().sample.time,
+      .last = now,
+      .forecasters = forecast::configured_forecasters(configuration)};
   for (const HistoryEntry& test : tests) {
     if (test.eligible) {
       question.request.history.push_back(test.sample);

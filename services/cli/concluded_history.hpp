@@ -13,12 +13,16 @@ namespace sealwatch::cli {
 
 class ConcludedHistory {
  public:
-  /// Takes estimates, and the replacements that remaining_life tells; passes over all else.
+  /// Takes estimates, and the replacements that remaining_life tells, be it of a test or of a maintenance_event that no
+  /// test has followed yet; passes over all else.
   void take(const Message& message);
   [[nodiscard]] bool empty() const { return estimates_.empty(); }
+  /// Those that were taken.
+  [[nodiscard]] const std::vector<LeakageEstimate>& estimates() const { return estimates_; }
 
   /// What prognosis asked its forecasters with the latest test: the tests since the last replacement, the campaigns and
-  /// costs of the asset's site. Nothing where the asset has no seal condition or no test with a date.
+  /// costs of the asset's site. Without tests where it was replaced and not tested since. Nothing where the asset has
+  /// no seal condition, or neither a test with a date nor a replacement.
   [[nodiscard]] std::optional<ForecastQuestion> question(const AssetConfig& asset,
                                                          const Configuration& configuration) const;
 

@@ -73,8 +73,12 @@ void print_json(const ForecastQuestion& question, const forecast::ForecastPanel:
 
 void print_text(const ForecastQuestion& question, const forecast::ForecastPanel::Answer& answer,
                 const std::vector<DecisionOption>& decision) {
-  std::printf("%zu %s, %s to %s; the seal fails at %s\n%s%s", question.tests, question.tests == 1 ? "test" : "tests",
-              format_date(question.first).c_str(), format_date(question.last).c_str(),
+  if (question.tests == 0) {
+    std::printf("%s: %s; a forecast needs tests of the seal that is in there now\n", question.asset_id.c_str(),
+                history_words(question).c_str());
+    return;
+  }
+  std::printf("%s; the seal fails at %s\n%s%s", history_words(question).c_str(),
               percent(question.request.threshold, 0).c_str(), forecast_table(answer.forecasts).c_str(),
               decision_chart(decision).c_str());
   if (!question.request.horizons.empty() && !tells_probability(answer.forecasts.front()))
@@ -98,12 +102,7 @@ void print_text(const ForecastQuestion& question, const forecast::ForecastPanel:
 int run_forecast(const ForecastOptions& options) {
   const auto question = forecast_question(options);
   if (!question) return kBadInput;
-  const auto panel = forecast::ForecastPanel::make(question->forecasters);
-  if (!panel) {
-    complain(panel.error());
-    return kInternalFailure;
-  }
-  const auto answered = panel->forecast(question->request);
+  const auto answered = answer_of(*question);
   if (!answered) {
     complain(answered.error());
     return kBadInput;

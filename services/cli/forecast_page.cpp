@@ -199,8 +199,7 @@ std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& 
                        : in_charge.state == ForecastState::past_threshold ? "bad"
                                                                           : "warn";
   std::string html = "<h1>Remaining life of the piston seal" + report::escaped(of) + "</h1>";
-  html.append(report::paragraph(count_of(question.tests, "test") + ", " + format_date(question.first) + " to " +
-                                    format_date(question.last) + "; the seal fails at " +
+  html.append(report::paragraph(history_words(question) + "; the seal fails at " +
                                     report::percent_text(question.request.threshold) + " of its elastic modulus.",
                                 "muted"));
   html.append("<div class=\"banner ").append(colour).append("\"><p class=\"verdict\">");
@@ -211,6 +210,7 @@ std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& 
 
 Result<std::string> forecast_body(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
                                   const std::vector<DecisionOption>& decision) {
+  if (question.tests == 0) return head(question, answer) + forecast_decision_part(question, answer, decision);
   const auto in_charge = forecast::make_forecaster(question.forecasters.front());
   if (!in_charge) return fail(in_charge.error());
   forecast::ForecastRequest request = question.request;
@@ -238,9 +238,7 @@ Status write_forecast_page(const std::string& file, const Result<std::string>& b
 Status write_forecasts(const std::string& file, const std::vector<ForecastQuestion>& questions) {
   std::string bodies;
   for (const ForecastQuestion& question : questions) {
-    const auto panel = ForecastPanel::make(question.forecasters);
-    if (!panel) return fail(panel.error());
-    const auto answer = panel->forecast(question.request);
+    const auto answer = answer_of(question);
     if (!answer) return fail(answer.error());
     const auto body = forecast_body(question, *answer, decision_of(question, *answer));
     if (!body) return fail(body.error());

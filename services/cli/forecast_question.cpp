@@ -205,6 +205,21 @@ void take_site(const Configuration& configuration, const std::string& name, Fore
   question.costs = configuration.decision_of(name).costs;
 }
 
+std::string history_words(const ForecastQuestion& question) {
+  if (question.tests == 0 && question.request.installed)
+    return "replaced on " + format_date(*question.request.installed) + ", no test since";
+  return count_of(question.tests, "test") + ", " + format_date(question.first) + " to " + format_date(question.last);
+}
+
+Result<forecast::ForecastPanel::Answer> answer_of(const ForecastQuestion& question) {
+  const auto panel = forecast::ForecastPanel::make(question.forecasters);
+  if (!panel) return fail(panel.error());
+  auto answer = panel->forecast(question.request);
+  if (answer && question.tests == 0)
+    for (Forecast& forecast : answer->forecasts) forecast.explanation = history_words(question);
+  return answer;
+}
+
 bool tells_probability(const Forecast& forecast) {
   return forecast.state == ForecastState::ok || forecast.state == ForecastState::past_threshold;
 }

@@ -22,7 +22,7 @@ struct TestNotCounted {
 struct ForecastQuestion {
   forecast::ForecastRequest request;
   std::string asset_id;   ///< "" without an asset file
-  std::size_t tests = 0;  ///< of the whole history
+  std::size_t tests = 0;  ///< of the whole history; none: replaced at request.installed and not tested since
   UtcTime first = {}, last = {};
   std::vector<forecast::ConditionSample> vague = {};  ///< left out as the services would leave them out
   std::vector<TestNotCounted> not_counted = {};       ///< of a history that the services judged
@@ -37,6 +37,12 @@ void take_site(const Configuration& configuration, const std::string& site, Fore
 
 /// Of a history in a file, or of what the services keep. None when something is wrong; it is on standard error then.
 [[nodiscard]] std::optional<ForecastQuestion> forecast_question(const ForecastOptions& options);
+
+/// How many tests from when to when, or that there is none since the replacement.
+[[nodiscard]] std::string history_words(const ForecastQuestion& question);
+
+/// What all forecasters say; without a test, that there is none since the replacement.
+[[nodiscard]] Result<forecast::ForecastPanel::Answer> answer_of(const ForecastQuestion& question);
 
 /// Whether the answer gives the probability of failure before a date.
 [[nodiscard]] bool tells_probability(const Forecast& forecast);

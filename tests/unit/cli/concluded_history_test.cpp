@@ -69,6 +69,21 @@ TEST_F(Question, BeginsAnewWithAReplacement) {
   EXPECT_EQ(question->first, parse_utc("2031-02-10").value());
 }
 
+TEST_F(Question, HasNoTestAfterAReplacementThatNoneHasFollowed) {
+  RemainingLife life;  // of a maintenance_event: of no test
+  life.asset_id = "A";
+  life.replacement_known = true;
+  for (const char* day : {"2031-04-01", "2031-01-20"}) {
+    life.replaced_ns = parse_utc(day).value().nanoseconds;
+    history_.take(life);
+  }
+  const auto question = history_.question(asset_, configuration_);
+  ASSERT_TRUE(question);
+  EXPECT_EQ(question->tests, 0U);
+  EXPECT_TRUE(question->request.history.empty());
+  EXPECT_EQ(history_words(*question), "replaced on 2031-04-01, no test since") << "the latest of all counts";
+}
+
 TEST_F(Question, IsNoneWithoutASealOrATest) {
   EXPECT_FALSE(ConcludedHistory().question(asset_, configuration_));
   asset_.seal.reset();

@@ -1,0 +1,160 @@
+// What the commands tell from journals: of a life with a replacement, of other services, of journals that are missing
+// or damaged.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <sstream>
+
+#include "sealwatch/core/time.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/replay_page.hpp"
+#include "services/cli/session.hpp"
+#include "services/common/runtime/configuration_loader.hpp"
+#include "services/common/store/journal.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr const char* kAsset = "XT03-MV2";
+const std::string kConfig = std::string(SEALWATCH_SOURCE_DIR) + "/config";
+
+struct Said {
+  int status = 0;
+  std::string output, errors;
+};
+
+Said said(const std::function<int()>& command) {
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  const int status = command();
+  std::fflush(stdout);
+  std::fflush(stderr);
+  std::string output = ::testing::internal::GetCapturedStdout();
+  return {status, std::move(output), ::testing::internal::GetCapturedStderr()};
+}
+
+std::string content(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+class Kept : public ::testing::Test {
+ protected:
+  Kept() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "sealwatch_kept_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    state_ = folder_ / "state";
+    std::filesystem::create_directory(state_);
+    // Sixty months of a seal that ages steadily.
+    for (int month = 0; month < 60; ++month) conclude("prognostic_assessment", estimate(month));
+    for (const std::string& service : service_names()) conclude(service, {});
+    Advisory advice;
+    advice.header.message_id = "advisory/last";
+    advice.header.source_ids = {"leakage_estimate/life-59"};
+    advice.asset_id = kAsset;
+    conclude("advisory_generation", advice);
+  }
+  ~Kept() override { std::filesystem::remove_all(folder_); }
+
+  static LeakageEstimate estimate(int month, const std::string& life = "life") {
+    LeakageEstimate one;
+    one.asset_id = kAsset;
+    one.header.pst_id = life + "-" + std::to_string(month);
+    one.header.message_id = "leakage_estimate/" + one.header.pst_id;
+    one.header.event_time_known = true;
+    one.header.event_time_ns = add_months(parse_utc("2010-01-10").value(), month).nanoseconds;
+    one.condition = 0.98 - 0.004 * month + 0.0005 * (month % 3 - 1);
+    one.condition_std = 0.001;
+    one.used_for_forecast = true;
+    return one;
+  }
+  /// What prognosis says to a maintenance_event: of no test.
+  static RemainingLife replaced(const std::string& day, const std::string& id) {
+    RemainingLife life;
+    life.asset_id = kAsset;
+    life.header.message_id = "remaining_life/" + id;
+    life.replacement_known = true;
+    life.replaced_ns = parse_utc(day).value().nanoseconds;
+    return life;
+  }
+  [[nodiscard]] std::filesystem::path file_of(const std::string& service) const { return state_ / (service + ".db"); }
+  /// Keeps a message, or the bare journal; the writer id of the journal.
+  std::string conclude(const std::string& service, const std::optional<Message>& message,
+                       const std::filesystem::path& state = {}) const {
+    const auto file = (state.empty() ? state_ : state) / (service + ".db");
+    Result<Journal> journal = Journal::open("sqlite3://" + file.string(), service);
+    EXPECT_TRUE(journal) << journal.error().describe();
+    EXPECT_TRUE(journal->begin());
+    if (message) {
+      EXPECT_TRUE(journal->add_output(*message, UtcTime{1}));
+    }
+    EXPECT_TRUE(journal->commit());
+    return journal->writer_id();
+  }
+  void damage(const std::string& service) const {
+    for (const char* more : {"", "-wal", "-shm"}) std::filesystem::remove(file_of(service).string() + more);
+    std::ofstream(file_of(service)) << std::string(8192, 'x');
+  }
+  [[nodiscard]] Said forecast(bool json = false) const {
+    ForecastOptions options;
+    options.config = kConfig;
+    options.state_directory = state_.string();
+    options.page = json ? "" : (folder_ / "life.html").string();
+    options.json = json;
+    return said([&] { return run_forecast(options); });
+  }
+  [[nodiscard]] Said show(const std::string& id, const std::string& csv = {}) const {
+    ShowOptions options;
+    options.config = kConfig;
+    options.state_directory = state_.string();
+    options.id = id;
+    options.csv = csv;
+    return said([&] { return run_show(options); });
+  }
+  [[nodiscard]] Said page_of_replay(const LeakageEstimate& played) const {
+    ReplayOptions options;
+    options.config = kConfig;
+    options.state_directory = state_.string();
+    options.page = (folder_ / "replay.html").string();
+    Histories histories;
+    histories[kAsset].take(played);
+    const auto configuration = load_or_explain(kConfig);
+    return said([&] { return write_replay_page(options, *configuration, histories); });
+  }
+
+  std::filesystem::path folder_, state_;
+};
+
+TEST_F(Kept, AForecastIsOfTheSealThatIsInThereNow) {
+  EXPECT_EQ(forecast().status, kOk);
+  EXPECT_THAT(content(folder_ / "life.html"), AllOf(HasSubstr("60 tests"), HasSubstr("end of life about")));
+
+  conclude("prognostic_assessment", replaced("2015-06-10", "by hand"));
+  conclude("prognostic_assessment", replaced("2011-06-10", "reported after it"));
+  const Said after = forecast();
+  EXPECT_EQ(after.status, kAnswerIsNo) << after.errors;
+  EXPECT_THAT(after.output, AllOf(HasSubstr("replaced on 2015-06-10, no test since"), Not(HasSubstr("month"))));
+  EXPECT_THAT(content(folder_ / "life.html"),
+              AllOf(HasSubstr("replaced on 2015-06-10, no test since"), Not(HasSubstr("end of life about"))));
+  const Said json = forecast(true);
+  EXPECT_EQ(json.status, kAnswerIsNo);
+  EXPECT_THAT(json.output, AllOf(HasSubstr("insufficient_history"), HasSubstr("\"tests\": 0"),
+                                 HasSubstr("no test since"), Not(HasSubstr("rul_months"))));
+
+  conclude("prognostic_assessment", estimate(70, "new"));
+  EXPECT_THAT(forecast().output, HasSubstr("1 test, 2015-11-10"));
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

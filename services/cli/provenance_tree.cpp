@@ -82,10 +82,15 @@ class Graph {
 
 std::string topic_in(const std::string& message_id) { return message_id.substr(0, message_id.find('/')); }
 
-/// Nodes that are told together: the blocks of one recording, the same conclusion from other tests.
+/// In a journal that cannot be looked into.
+bool is_unread(const SourceNode& node) { return !node.message && !node.place.empty(); }
+
+/// Nodes that are told together: the blocks of one recording, the same conclusion from other tests, what one journal
+/// that cannot be looked into would tell.
 bool belong_together(const SourceNode& a, const SourceNode& b) {
   const std::string topic = topic_in(a.message_id);
-  const bool gathered = !a.followed || topic == "sample_block" || topic == "raw_samples";
+  const bool gathered =
+      !a.followed || (is_unread(a) && is_unread(b)) || topic == "sample_block" || topic == "raw_samples";
   return gathered && topic == topic_in(b.message_id) && a.followed == b.followed;
 }
 
@@ -93,6 +98,7 @@ using Group = std::vector<const SourceNode*>;
 
 std::string says(const SourceNode& node) {
   if (node.message) return one_line(*node.message);
+  if (is_unread(node)) return node.place;
   return topic_in(node.message_id) == "raw_samples" ? "as it was received" : "not kept here, only its id";
 }
 
@@ -116,6 +122,7 @@ std::string dates_of(const Group& group) {
 
 std::string says(const Group& group) {
   const SourceNode& first = *group.front();
+  if (is_unread(first)) return group.size() == 1 ? says(first) : count_of(group.size(), "message") + "; " + first.place;
   if (!first.followed)
     return count_of(group.size(), "message") + " of other tests" + dates_of(group) + "; not followed";
   const auto* block = first.message ? std::get_if<SampleBlock>(first.message.get()) : nullptr;

@@ -19,12 +19,12 @@ namespace sealwatch::cli {
 struct SourceNode {
   std::string message_id;
   std::shared_ptr<const Message> message;  ///< null where only its id is kept
-  std::string place;                       ///< the journal that keeps it
+  std::string place;                       ///< the journal that keeps it; why it is not read where only its id is kept
   bool followed = true;                    ///< false: of another test
   std::vector<SourceNode> sources = {};
 };
 
-/// A message and its journal; no message where it is not kept.
+/// A message and its journal; no message where it is not kept, and then why its journal is not read, if it is not.
 struct Looked {
   std::shared_ptr<const Message> message;
   std::string place;

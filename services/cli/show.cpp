@@ -38,6 +38,7 @@ Result<std::string> advice_for(const std::string& name, StateJournals& journals)
   for (std::size_t index = 0; index < EnumNames<Topic>::kNames.size(); ++index) {
     const auto topic = static_cast<Topic>(index);
     if (topic == Topic::sample_block && !name.starts_with(topic_name(topic))) continue;
+    if (writer_of(topic).empty() || journals.unread(topic_name(topic)) != nullptr) continue;
     const auto ids = journals.ids(topic);
     if (!ids) return fail(ids.error());
     for (const std::string& id : *ids) known.emplace_back(edit_distance(name, id), id);
@@ -47,6 +48,7 @@ Result<std::string> advice_for(const std::string& name, StateJournals& journals)
   for (std::size_t k = 0; k < std::min(kNearest, known.size()); ++k)
     if (known[k].first <= name.size() / 2) advice += (advice.empty() ? "the nearest are " : ", ") + known[k].second;
   if (!advice.empty()) return advice;
+  if (journals.unread(topic_name(Topic::advisory)) != nullptr) return std::string("give the id of a message or a test");
   const auto assets = journals.assets(Topic::advisory);
   if (!assets) return fail(assets.error());
   for (const std::string& asset : *assets) advice += (advice.empty() ? "" : ", ") + asset;
@@ -54,26 +56,43 @@ Result<std::string> advice_for(const std::string& name, StateJournals& journals)
          (advice.empty() ? "none" : advice);
 }
 
-/// The id that is meant; complains where none is.
+/// Nothing of this name was found: it may be in a journal that cannot be looked into.
+Error not_found(const std::string& name, bool received, const std::string& advice, const StateJournals& journals) {
+  if (const Error* unread = journals.unread(name)) return *unread;
+  Error error{.file = journals.place(), .place = {}, .value = name, .rule = {}, .advice = advice};
+  const auto topic = value_of<Topic>(name.substr(0, name.find('/')));
+  if (received && topic && !writer_of(*topic).empty()) {
+    error.rule = "was received here, and the journal of " + writer_of(*topic) + " does not hold it";
+    error.advice = "was that journal begun anew? open what was concluded from it";
+  } else if (received) {
+    error.rule = "came from outside: of such messages the id is kept, not what they said";
+    error.advice = "open what was concluded from it";
+  } else {
+    error.rule = "is no message that was concluded here";
+  }
+  if (!received)
+    for (const auto& [service, unread] : journals.unread())
+      error.rule.append("; not looked into: ").append(unread.file).append(" ").append(unread.rule);
+  return error;
+}
+
+/// The id that is meant; an Error where none is.
 Result<std::string> resolve(const std::string& name, StateJournals& journals) {
   for (const std::string& id : meanings_of(name)) {
     const auto kept = journals.find(id);
     if (!kept) return fail(kept.error());
     if (*kept) return id;
   }
-  const auto of_asset = journals.ids(Topic::advisory, name);
-  if (!of_asset) return fail(of_asset.error());
-  if (!of_asset->empty()) return of_asset->back();
+  if (journals.unread(topic_name(Topic::advisory)) == nullptr) {
+    const auto of_asset = journals.ids(Topic::advisory, name);
+    if (!of_asset) return fail(of_asset.error());
+    if (!of_asset->empty()) return of_asset->back();
+  }
   const auto received = journals.received(name);
   if (!received) return fail(received.error());
   const auto advice = advice_for(name, journals);
   if (!advice) return fail(advice.error());
-  return fail(Error{.file = journals.place(),
-                    .place = {},
-                    .value = name,
-                    .rule = *received ? "came from outside: of such messages the id is kept, not what they said"
-                                      : "is no message that was concluded here",
-                    .advice = *received ? "open what was concluded from it" : *advice});
+  return fail(not_found(name, *received, *advice, journals));
 }
 
 Status write_waveform(const SourceNode& root, const std::string& file) {
@@ -111,7 +130,8 @@ int run_show(const ShowOptions& options) {
   const LookUp look_up = [&](const std::string& message_id) -> Result<Looked> {
     auto kept = journals->find(message_id);
     if (!kept) return fail(kept.error());
-    if (!*kept) return Looked{};
+    const Error* unread = journals->unread(message_id);
+    if (!*kept) return Looked{nullptr, unread == nullptr ? "" : unread->file + ": " + unread->rule};
     return Looked{std::make_shared<const Message>(std::move((*kept)->message)), (*kept)->place};
   };
   const Result<SourceNode> tree = provenance_tree(*id, look_up);

@@ -1,5 +1,6 @@
 #include "services/cli/state_journals.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -16,14 +17,19 @@ namespace fs = std::filesystem;
 std::optional<std::map<std::string, std::string>> connections_of(const std::string& state_directory,
                                                                  const std::string& config) {
   std::map<std::string, std::string> connections;
-  if (!state_directory.empty()) {
-    for (const std::string& service : service_names())
-      connections[service] = "sqlite3://" + (fs::path(state_directory) / (service + ".db")).string();
+  ConfigurationOverrides overrides;
+  if (!state_directory.empty()) overrides.state_directory = state_directory;
+  const auto configuration = load_configuration(config, overrides);
+  if (configuration) {
+    for (const auto& [service, settings] : configuration->services) connections[service] = settings.journal;
     return connections;
   }
-  const std::optional<Configuration> configuration = load_or_explain(config);
-  if (!configuration) return std::nullopt;
-  for (const auto& [service, settings] : configuration->services) connections[service] = settings.journal;
+  // A state directory can be looked into where no configuration is at hand.
+  if (std::error_code none; state_directory.empty() || fs::exists(config, none))
+    for (const Error& error : configuration.error()) complain(error);
+  if (state_directory.empty()) return std::nullopt;
+  for (const std::string& service : service_names())
+    connections[service] = "sqlite3://" + (fs::path(state_directory) / (service + ".db")).string();
   return connections;
 }
 
@@ -32,38 +38,98 @@ bool is_missing(const std::string& connection) {
   return connection.starts_with("sqlite3://") && !fs::exists(Journal::file_of(connection), none);
 }
 
-}  // namespace
+Error missing(const std::string& service, const std::string& connection) {
+  return {.file = Journal::file_of(connection),
+          .place = {},
+          .value = {},
+          .rule = "is not there: what " + service + " concluded cannot be looked into",
+          .advice = "give the state directory where that service keeps it with --state, or restore it from a backup"};
+}
 
-std::optional<StateJournals> StateJournals::open(const std::string& state_directory, const std::string& config) {
-  const auto connections = connections_of(state_directory, config);
-  if (!connections) return std::nullopt;
-  StateJournals found;
-  std::string example;
-  for (const auto& [service, connection] : *connections) {
-    if (is_missing(connection)) {
-      example = fs::absolute(Journal::file_of(connection)).parent_path().lexically_normal().string();
-      continue;
-    }
-    Result<JournalReader> journal = JournalReader::open(connection, service);
-    if (!journal) {
-      complain(journal.error());
-      return std::nullopt;
-    }
-    found.journals_.push_back(std::move(*journal));
-  }
-  found.place_ = state_directory.empty() ? "the journals of " + config : state_directory;
-  if (!found.journals_.empty()) return found;
-  complain(Error{.file = example,
+void complain_of_none(const std::string& directory) {
+  complain(Error{.file = directory,
                  .place = {},
                  .value = {},
                  .rule = "holds no journal of a service",
                  .advice = "give their state directory with --state: demo/state after deploy/demo.sh, "
                            "/var/lib/sealwatch where the package runs them"});
+}
+
+}  // namespace
+
+std::string writer_of(Topic topic) {
+  switch (topic) {
+    case Topic::sample_block:
+      return "data_acquisition";
+    case Topic::test_window:
+    case Topic::test_features:
+      return "data_manipulation";
+    case Topic::state_report:
+      return "state_detection";
+    case Topic::health_report:
+    case Topic::model_discrepancy:
+      return "health_assessment";
+    case Topic::leakage_estimate:
+    case Topic::remaining_life:
+    case Topic::pst_request:
+      return "prognostic_assessment";
+    case Topic::advisory:
+      return "advisory_generation";
+    case Topic::raw_samples:
+    case Topic::acknowledgement:
+    case Topic::maintenance_event:
+    case Topic::model_acceptance:
+      break;
+  }
+  return {};
+}
+
+std::optional<StateJournals> StateJournals::open(const std::string& state_directory, const std::string& config) {
+  const auto connections = connections_of(state_directory, config);
+  if (!connections) return std::nullopt;
+  StateJournals found;
+  std::string example = state_directory;
+  std::vector<Error> damaged;
+  for (const auto& [service, connection] : *connections) {
+    if (is_missing(connection)) {
+      found.unread_.emplace(service, missing(service, connection));
+      example = fs::absolute(Journal::file_of(connection)).parent_path().lexically_normal().string();
+      continue;
+    }
+    Result<JournalReader> journal = JournalReader::open(connection, service);
+    if (journal)
+      found.journals_.emplace(service, std::move(*journal));
+    else
+      damaged.push_back(found.unread_.emplace(service, journal.error()).first->second);
+  }
+  found.place_ = state_directory.empty() ? "the journals of " + config : state_directory;
+  if (!found.journals_.empty()) return found;
+  for (const Error& error : damaged) complain(error);
+  if (damaged.empty()) complain_of_none(example);
   return std::nullopt;
 }
 
+const Error* StateJournals::unread(const std::string& message_id) const {
+  const auto topic = value_of<Topic>(message_id.substr(0, message_id.find('/')));
+  const auto found = topic ? unread_.find(writer_of(*topic)) : unread_.end();
+  return found == unread_.end() ? nullptr : &found->second;
+}
+
+Result<JournalReader*> StateJournals::journal_of(Topic topic) {
+  const std::string service = writer_of(topic);
+  if (const auto found = journals_.find(service); found != journals_.end()) return &found->second;
+  if (const auto known = unread_.find(service); known != unread_.end()) return fail(known->second);
+  return fail(Error{.file = place_,
+                    .place = {},
+                    .value = std::string(name_of(topic)),
+                    .rule = "comes from outside: no service keeps it",
+                    .advice = {}});
+}
+
 Result<std::optional<StateJournals::Kept>> StateJournals::find(const std::string& message_id) {
-  for (JournalReader& journal : journals_) {
+  const auto topic = value_of<Topic>(message_id.substr(0, message_id.find('/')));
+  for (auto& [service, journal] : journals_) {
+    if (topic && writer_of(*topic) != service) continue;  // one service writes a topic
     auto message = journal.output(message_id);
     if (!message) return fail(message.error());
     if (*message) return Kept{std::move(**message), journal.place()};
@@ -72,7 +138,7 @@ Result<std::optional<StateJournals::Kept>> StateJournals::find(const std::string
 }
 
 Result<bool> StateJournals::received(const std::string& message_id) {
-  for (JournalReader& journal : journals_) {
+  for (auto& [service, journal] : journals_) {
     auto known = journal.has_input(message_id);
     if (!known || *known) return known;
   }
@@ -80,27 +146,15 @@ Result<bool> StateJournals::received(const std::string& message_id) {
 }
 
 Result<std::vector<std::string>> StateJournals::ids(Topic topic, const std::string& asset_id) {
-  for (JournalReader& journal : journals_) {
-    auto ids = journal.output_ids(topic, asset_id);
-    if (!ids || !ids->empty()) return ids;  // one service writes a topic
-  }
-  return std::vector<std::string>{};
+  return journal_of(topic).and_then([&](JournalReader* journal) { return journal->output_ids(topic, asset_id); });
 }
 
 Result<std::vector<std::string>> StateJournals::assets(Topic topic) {
-  for (JournalReader& journal : journals_) {
-    auto assets = journal.assets(topic);
-    if (!assets || !assets->empty()) return assets;
-  }
-  return std::vector<std::string>{};
+  return journal_of(topic).and_then([&](JournalReader* journal) { return journal->assets(topic); });
 }
 
 Result<std::vector<Message>> StateJournals::all(Topic topic, const std::string& asset_id) {
-  for (JournalReader& journal : journals_) {
-    auto messages = journal.outputs(topic, asset_id);
-    if (!messages || !messages->empty()) return messages;
-  }
-  return std::vector<Message>{};
+  return journal_of(topic).and_then([&](JournalReader* journal) { return journal->outputs(topic, asset_id); });
 }
 
 }  // namespace sealwatch::cli

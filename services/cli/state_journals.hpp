@@ -13,9 +13,10 @@ namespace sealwatch::cli {
 
 class StateJournals {
  public:
-  /// The journals in `state_directory`, or those of the configuration `config` where that is "". A service whose
-  /// journal is not here runs elsewhere, or not at all; that there is none of any service, or that one cannot be read,
-  /// is said on standard error.
+  /// The journals that the services have with this configuration and, unless it is "", this state directory: those that
+  /// the configuration names win, as with the services; without a configuration the files of the directory. A service
+  /// whose journal is not here runs elsewhere, or not at all; that there is none of any service is said on standard
+  /// error.
   [[nodiscard]] static std::optional<StateJournals> open(const std::string& state_directory, const std::string& config);
 
   struct Kept {
@@ -26,17 +27,32 @@ class StateJournals {
   [[nodiscard]] Result<std::optional<Kept>> find(const std::string& message_id);
   /// Whether a service received a message of this id. What came from outside is kept by its id alone.
   [[nodiscard]] Result<bool> received(const std::string& message_id);
-  /// Ids of all conclusions of this topic, in the order of conclusion; of one asset unless that is "".
+
+  // Of one topic. An Error where the journal of the service that writes it is missing or damaged.
+
+  /// Ids of all conclusions, in the order of conclusion; of one asset unless that is "".
   [[nodiscard]] Result<std::vector<std::string>> ids(Topic topic, const std::string& asset_id = {});
   [[nodiscard]] Result<std::vector<std::string>> assets(Topic topic);
-  /// All conclusions of this topic about this asset.
+  /// All conclusions about this asset.
   [[nodiscard]] Result<std::vector<Message>> all(Topic topic, const std::string& asset_id);
+  /// The journal.
+  [[nodiscard]] Result<JournalReader*> journal_of(Topic topic);
+
+  /// Why the journal of the topic that this id begins with cannot be looked into; null where it can, or where no
+  /// service writes such messages.
+  [[nodiscard]] const Error* unread(const std::string& message_id) const;
+  /// The services' journals that cannot be looked into, and why, by service.
+  [[nodiscard]] const std::map<std::string, Error>& unread() const { return unread_; }
   /// Where was looked.
   [[nodiscard]] const std::string& place() const { return place_; }
 
  private:
   std::string place_;
-  std::vector<JournalReader> journals_;
+  std::map<std::string, JournalReader> journals_;  ///< by service
+  std::map<std::string, Error> unread_;
 };
+
+/// The service that concludes messages of this topic; "" where they come from outside.
+[[nodiscard]] std::string writer_of(Topic topic);
 
 }  // namespace sealwatch::cli

@@ -19,10 +19,19 @@ constexpr std::string_view kFile = "sqlite3://";
 
 std::string topic_name(Topic topic) { return std::string(name_of(topic)); }
 
+/// What SQLite says of a file that is none of its own, or not whole any more; "" where that is not its complaint.
+std::string damage_in(std::string_view complaint) {
+  for (const char* words :
+       {"file is not a database", "database disk image is malformed", "file is encrypted", "no such table"})
+    if (complaint.find(words) != std::string_view::npos) return words;
+  return {};
+}
+
 }  // namespace
 
 struct JournalReader::Session {
   std::string place;
+  std::string writer_id;
   soci::session sql;
 
   /// Runs `work`, turning the library's exceptions into an Error that names the journal.
@@ -33,6 +42,13 @@ struct JournalReader::Session {
     } catch (const Error& error) {
       return fail(error);
     } catch (const std::exception& exception) {
+      if (const std::string damage = damage_in(exception.what()); !damage.empty())
+        return fail(Error{.file = place,
+                          .place = {},
+                          .value = {},
+                          .rule = "the journal is damaged (" + damage + ")",
+                          .advice = "restore it from a backup, or move it aside: its service then starts with an empty "
+                                    "one"});
       return fail(Error{.file = place,
                         .place = "looking into the journal",
                         .value = {},
@@ -67,6 +83,7 @@ struct JournalReader::Session {
                   "look with the sealwatch that wrote this journal, or a newer one"};
     const std::string owner = meta("service");
     if (owner != service) throw Error{place, "table meta, service", owner, "must be '" + service + "'", {}};
+    writer_id = meta("writer_id");
   }
 };
 
@@ -97,6 +114,8 @@ Result<JournalReader> JournalReader::open(const std::string& connection, const s
 }
 
 const std::string& JournalReader::place() const { return session_->place; }
+
+const std::string& JournalReader::writer_id() const { return session_->writer_id; }
 
 Result<std::optional<Message>> JournalReader::output(const std::string& message_id) {
   return session_->guard([&]() -> std::optional<Message> {

@@ -21,6 +21,8 @@ class JournalReader {
 
   /// Where it is, without a password.
   [[nodiscard]] const std::string& place() const;
+  /// The writer id that its service's messages carry: no two journals have the same.
+  [[nodiscard]] const std::string& writer_id() const;
   /// The output of that id, as the layer concluded it; nothing where this service concluded none of that id.
   [[nodiscard]] Result<std::optional<Message>> output(const std::string& message_id);
   /// All outputs of one topic and asset, in the order of conclusion.

@@ -156,5 +156,61 @@ TEST_F(Kept, AForecastIsOfTheSealThatIsInThereNow) {
   EXPECT_THAT(forecast().output, HasSubstr("1 test, 2015-11-10"));
 }
 
+TEST_F(Kept, AMissingJournalIsNamed) {
+  std::filesystem::remove(file_of("prognostic_assessment"));
+  const std::string file = file_of("prognostic_assessment").string();
+  const Said life = forecast();
+  EXPECT_EQ(life.status, kBadInput);
+  EXPECT_THAT(life.errors, AllOf(HasSubstr(file), HasSubstr("is not there"), Not(HasSubstr("no test of any asset"))));
+  const Said estimate = show("leakage_estimate/life-59");
+  EXPECT_EQ(estimate.status, kBadInput);
+  EXPECT_THAT(estimate.errors, AllOf(HasSubstr(file), Not(HasSubstr("came from outside"))));
+  EXPECT_THAT(show("life-59").errors, HasSubstr(file)) << "a test that may be in there";
+  const Said advice = show(kAsset);
+  EXPECT_EQ(advice.status, kOk) << advice.errors;
+  EXPECT_THAT(advice.output, HasSubstr(file)) << "in place of the source";
+}
+
+TEST_F(Kept, ADamagedJournalIsSaidToBeDamagedAndStopsOnlyWhatNeedsIt) {
+  damage("advisory_generation");
+  EXPECT_EQ(forecast().status, kOk);
+  const Said advice = show(kAsset);
+  EXPECT_EQ(advice.status, kBadInput);
+  EXPECT_THAT(advice.errors,
+              AllOf(HasSubstr("advisory_generation.db"), HasSubstr("damaged"), Not(HasSubstr("SELECT"))));
+  EXPECT_EQ(show("leakage_estimate/life-59").status, kOk);
+
+  damage("prognostic_assessment");
+  const Said life = forecast();
+  EXPECT_EQ(life.status, kBadInput);
+  EXPECT_THAT(life.errors, AllOf(HasSubstr("prognostic_assessment.db"), HasSubstr("the journal is damaged"),
+                                 HasSubstr("restore it from a backup"), Not(HasSubstr("SELECT"))));
+}
+
+TEST_F(Kept, JournalsThatTheConfigurationNamesWinOverTheStateDirectory) {
+  const auto elsewhere = folder_ / "elsewhere";
+  const auto config = folder_ / "config";
+  std::filesystem::create_directory(elsewhere);
+  std::filesystem::create_directory(config);
+  Advisory advice;
+  advice.header.message_id = "advisory/configured";
+  advice.asset_id = kAsset;
+  conclude("advisory_generation", advice, elsewhere);
+  std::ofstream(config / "sealwatch.yaml") << "state_directory: none\nassets: []\nservices:\n  advisory_generation:\n"
+                                              "    journal: sqlite3://"
+                                           << (elsewhere / "advisory_generation.db").string() << "\n";
+  ShowOptions options;
+  options.config = config.string();
+  options.state_directory = state_.string();
+  options.id = kAsset;
+  const Said newest = said([&] { return run_show(options); });
+  EXPECT_EQ(newest.status, kOk) << newest.errors;
+  EXPECT_THAT(newest.output, HasSubstr("advisory/configured"));
+  options.id = "leakage_estimate/life-59";
+  EXPECT_EQ(said([&] { return run_show(options); }).status, kOk) << "the others are in the state directory";
+  options.config = (folder_ / "no config").string();
+  EXPECT_EQ(said([&] { return run_show(options); }).status, kOk) << "it can be looked into without a configuration";
+}
+
 }  // namespace
 }  // namespace sealwatch::cli

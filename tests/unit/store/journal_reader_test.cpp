@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "services/common/store/journal.hpp"
 #include "tests/unit/message/fill.hpp"
@@ -77,6 +78,14 @@ TEST_F(JournalReaderTest, MakesNoJournalAndRefusesAnothers) {
   const Result<JournalReader> another = JournalReader::open(connection(), "health_assessment");
   ASSERT_FALSE(another);
   EXPECT_THAT(another.error().describe(), HasSubstr("must be 'health_assessment'"));
+}
+
+TEST_F(JournalReaderTest, SaysThatAFileIsDamagedAndWhatToDo) {
+  std::ofstream(folder_ / "state_detection.db") << std::string(8192, 'x');
+  const Result<JournalReader> damaged = JournalReader::open(connection(), "state_detection");
+  ASSERT_FALSE(damaged);
+  EXPECT_THAT(damaged.error().describe(), ::testing::AllOf(HasSubstr("the journal is damaged"), HasSubstr("backup"),
+                                                           ::testing::Not(HasSubstr("SELECT"))));
 }
 
 }  // namespace

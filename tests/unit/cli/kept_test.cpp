@@ -156,6 +156,25 @@ TEST_F(Kept, AForecastIsOfTheSealThatIsInThereNow) {
   EXPECT_THAT(forecast().output, HasSubstr("1 test, 2015-11-10"));
 }
 
+TEST_F(Kept, APageOfReplayedTestsIsNotMadeOfOtherServicesJournals) {
+  EXPECT_EQ(page_of_replay(estimate(59)).status, kOk);
+  ASSERT_TRUE(std::filesystem::remove(folder_ / "replay.html"));
+  const auto refused = [&](const LeakageEstimate& played) {
+    const Said page = page_of_replay(played);
+    EXPECT_EQ(page.status, kBadInput);
+    EXPECT_THAT(page.errors, AllOf(HasSubstr("--page"), HasSubstr(state_.string()), HasSubstr(played.header.pst_id),
+                                   HasSubstr("--state that the services were started with")));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "replay.html"));
+  };
+  refused(estimate(59, "another"));
+  // The same recordings, played to services with journals of their own.
+  LeakageEstimate same = estimate(59);
+  same.header.writer_id = "prognostic_assessment-of-others";
+  refused(same);
+  same.header.writer_id = conclude("prognostic_assessment", {});
+  EXPECT_EQ(page_of_replay(same).status, kOk) << "these are theirs";
+}
+
 TEST_F(Kept, AMissingJournalIsNamed) {
   std::filesystem::remove(file_of("prognostic_assessment"));
   const std::string file = file_of("prognostic_assessment").string();

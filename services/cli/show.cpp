@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/core/text.hpp"
@@ -14,6 +15,8 @@
 
 namespace sealwatch::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// From the last conclusion of a test to the first: what a PST id alone stands for.
 constexpr std::array kFromTheEnd = {Topic::advisory,      Topic::remaining_life, Topic::leakage_estimate,
@@ -95,6 +98,23 @@ Result<std::string> resolve(const std::string& name, StateJournals& journals) {
   return fail(not_found(name, *received, *advice, journals));
 }
 
+/// A recording is two files, and neither may take the place of one that is there: FILE.yaml may be somebody's asset.
+Status free_for_recording(const std::string& file) {
+  const auto refuse = [](const std::string& name, std::string rule, std::string advice) {
+    return fail(
+        Error{.file = name, .place = "--csv", .value = {}, .rule = std::move(rule), .advice = std::move(advice)});
+  };
+  const fs::path path(file);
+  if (path.extension() != ".csv")
+    return refuse(file, "must end in .csv", "for example --csv " + fs::path(file).replace_extension(".csv").string());
+  std::error_code none;
+  for (const fs::path& one : {path, fs::path(path).replace_extension(".yaml")})
+    if (fs::symlink_status(one, none).type() != fs::file_type::not_found)
+      return refuse(one.string(), "is there already and is left as it is",
+                    "give another name: a recording is a .csv and its sidecar, a .yaml of the same name");
+  return {};
+}
+
 Status write_waveform(const SourceNode& root, const std::string& file) {
   const TestWindow* window = window_of(root);
   if (window == nullptr || window->samples.time_s.empty())
@@ -123,6 +143,8 @@ int complained(const Error& error) {
 }  // namespace
 
 int run_show(const ShowOptions& options) {
+  if (!options.csv.empty())
+    if (const Status is_free = free_for_recording(options.csv); !is_free) return complained(is_free.error());
   std::optional<StateJournals> journals = StateJournals::open(options.state_directory, options.config);
   if (!journals) return kBadInput;
   const Result<std::string> id = resolve(options.id, *journals);

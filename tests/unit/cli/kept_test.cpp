@@ -175,6 +175,38 @@ TEST_F(Kept, APageOfReplayedTestsIsNotMadeOfOtherServicesJournals) {
   EXPECT_EQ(page_of_replay(same).status, kOk) << "these are theirs";
 }
 
+TEST_F(Kept, AWaveformTakesNoFilesPlace) {
+  TestWindow window;
+  window.header.message_id = "test_window/life-59";
+  window.header.pst_id = "life-59";
+  window.asset_id = kAsset;
+  window.samples.time_s = {0.0, 0.01};
+  conclude("data_manipulation", window);
+  const std::string id = window.header.message_id;
+  const auto csv = folder_ / "wave.csv";
+  const auto yaml = folder_ / "wave.yaml";
+  std::ofstream(yaml) << "asset_id: mine\n";
+  const Said sidecar = show(id, csv.string());
+  EXPECT_EQ(sidecar.status, kBadInput);
+  EXPECT_THAT(sidecar.errors, AllOf(HasSubstr(yaml.string()), HasSubstr("another name")));
+  EXPECT_EQ(content(yaml), "asset_id: mine\n");
+  EXPECT_FALSE(std::filesystem::exists(csv));
+  std::filesystem::remove(yaml);
+  std::ofstream(csv) << "mine\n";
+  EXPECT_EQ(show(id, csv.string()).status, kBadInput);
+  EXPECT_EQ(content(csv), "mine\n");
+  std::filesystem::remove(csv);
+  const Said suffix = show(id, yaml.string());
+  EXPECT_EQ(suffix.status, kBadInput);
+  EXPECT_THAT(suffix.errors, HasSubstr("must end in .csv"));
+  EXPECT_FALSE(std::filesystem::exists(yaml));
+
+  const Said written = show(id, csv.string());
+  EXPECT_EQ(written.status, kOk) << written.errors;
+  EXPECT_TRUE(std::filesystem::exists(csv));
+  EXPECT_EQ(show(id, csv.string()).status, kBadInput) << "not twice either";
+}
+
 TEST_F(Kept, AMissingJournalIsNamed) {
   std::filesystem::remove(file_of("prognostic_assessment"));
   const std::string file = file_of("prognostic_assessment").string();

@@ -143,6 +143,13 @@ int complained(const Error& error) {
 }  // namespace
 
 int run_show(const ShowOptions& options) {
+  if (options.id.empty())
+    return complained(
+        Error{.file = {},
+              .place = "id",
+              .value = {},
+              .rule = "must not be empty",
+              .advice = "give the id of a message, of a test (PST id), or an asset for its newest advisory"});
   if (!options.csv.empty())
     if (const Status is_free = free_for_recording(options.csv); !is_free) return complained(is_free.error());
   std::optional<StateJournals> journals = StateJournals::open(options.state_directory, options.config);

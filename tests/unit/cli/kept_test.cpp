@@ -207,6 +207,14 @@ TEST_F(Kept, AWaveformTakesNoFilesPlace) {
   EXPECT_EQ(show(id, csv.string()).status, kBadInput) << "not twice either";
 }
 
+TEST_F(Kept, ShowWantsAnId) {
+  EXPECT_EQ(show(kAsset).status, kOk);
+  const Said nothing = show("");
+  EXPECT_EQ(nothing.status, kBadInput);
+  EXPECT_THAT(nothing.output, IsEmpty());
+  EXPECT_THAT(nothing.errors, HasSubstr("must not be empty"));
+}
+
 TEST_F(Kept, AMissingJournalIsNamed) {
   std::filesystem::remove(file_of("prognostic_assessment"));
   const std::string file = file_of("prognostic_assessment").string();

@@ -271,5 +271,12 @@ TEST_F(Kept, JournalsThatTheConfigurationNamesWinOverTheStateDirectory) {
   EXPECT_EQ(said([&] { return run_show(options); }).status, kOk) << "it can be looked into without a configuration";
 }
 
+TEST_F(Kept, ProbabilitiesOnThePageReadAsOnTheScreen) {
+  ASSERT_EQ(forecast().status, kOk);
+  const std::string page = content(folder_ / "life.html");
+  EXPECT_THAT(page, AllOf(HasSubstr(">under 0.1 %<"), HasSubstr(">over 99.9 %<")));
+  EXPECT_THAT(page, AllOf(Not(HasSubstr(">0 %<")), Not(HasSubstr(">100 %<"))));
+}
+
 }  // namespace
 }  // namespace sealwatch::cli

@@ -69,6 +69,13 @@ std::string cut_reason(const TestWindow& window, double duration_s, const AssetV
   return reason;
 }
 
+/// A stroke test begins at rest. Without it neither the way that the piston went nor where it should come back to is
+/// known.
+bool begins_inside_the_stroke(const TestWindow& window) {
+  const bool stroke_test = window.test_kind == "pst" || window.test_kind == "full_stroke";
+  return stroke_test && !window.phases.empty() && window.phases.front().kind != PhaseKind::rest;
+}
+
 TestFeatures features_of(const TestWindow& window, double duration_s) {
   TestFeatures features;
   features.asset_id = window.asset_id;
@@ -122,6 +129,8 @@ TestConclusion conclude_test(const std::vector<SampleBlock>& blocks, const Asset
     const signal::TestRecord test(window.samples, asset.cylinder());
     window.phases = to_message(test.phases());
     window.filter = test.filter_description();
+    if (has_begin(blocks) && begins_inside_the_stroke(window))
+      note(window.abort_reason, "the recording begins inside the stroke");
     note(window.abort_reason, cut_reason(window, duration_s, asset, options));
     for (signal::Feature& feature : signal::compute_features(test))
       quantities.push_back({feature.name, feature.unit, feature.value, true, feature.std_error});

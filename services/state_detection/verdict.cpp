@@ -97,6 +97,9 @@ std::string why_not_judged(const AssetConfig& asset, const TestFeatures& feature
                            const StrokeMeasure& measure) {
   if (!features.test_kind.empty() && features.test_kind != "pst" && !is_full_stroke(features))
     return "the recording is of kind '" + features.test_kind + "', not a stroke test";
+  // Neither the way that the piston went nor where it should come back to is known.
+  if (!features.phases.empty() && features.phases.front().kind != PhaseKind::rest)
+    return "the recording begins inside the stroke";
   const double expected_s = asset.pst.expected_duration_s();
   if (!moved_as_a_test_does(features) && features.duration_s < kWholeShare * expected_s)
     return text("the recording was cut after %.1f s of about %.0f s", features.duration_s, expected_s);

@@ -88,6 +88,19 @@ std::vector<double>& values(TimeSeries& samples, const std::string& channel) {
   throw std::logic_error("no channel " + channel);
 }
 
+TEST(DataManipulation, ARecordingThatBeginsInsideTheStrokeIsNotComplete) {
+  TimeSeries late = SyntheticPst{}.record();
+  constexpr std::ptrdiff_t kDropped = 800;  // 4 s
+  late.time_s.erase(late.time_s.begin(), late.time_s.begin() + kDropped);
+  for (Series& channel : late.channels) channel.values.erase(channel.values.begin(), channel.values.begin() + kDropped);
+  const Result result = conclude(late);
+  EXPECT_FALSE(result.features.complete);
+  EXPECT_EQ(result.features.abort_reason, "the recording begins inside the stroke");
+  std::vector<SampleBlock> other = blocks_of(late, "ID");
+  for (SampleBlock& block : other) block.test_kind = "other";
+  EXPECT_TRUE(conclude(other).features.complete) << "no stroke test";
+}
+
 TEST(DataManipulation, ConcludesOnceFromAllBlocks) {
   const SyntheticPst pst;
   const TimeSeries recorded = pst.record();

@@ -74,6 +74,22 @@ TEST(Verdict, CutTestIsNotJudged) {
   EXPECT_THAT(verdict.reasons, ElementsAre(HasSubstr("cut after 7.4 s of about 31 s")));
 }
 
+TEST(Verdict, ATestThatBeginsInsideTheStrokeIsNotJudged) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Test test = synthetic::make({}, {});
+  std::erase_if(test.features.phases, [](const Phase& phase) { return phase.begin_s < 4.0; });
+  test.features.phases.insert(test.features.phases.begin(), {PhaseKind::out, 4.0, 13.0});
+  for (Quantity& feature : test.features.features)
+    if (feature.name == "travel") feature.value = 0.01249;
+  std::erase_if(test.features.features, [](const Quantity& f) { return f.name == "return_error"; });
+  for (const bool complete : {true, false}) {
+    test.features.complete = complete;
+    const Verdict verdict = judge_test(asset, test.features, test.window, {});
+    EXPECT_EQ(verdict.verdict, PstVerdict::not_judged);
+    EXPECT_THAT(verdict.reasons, ElementsAre("the recording begins inside the stroke"));
+  }
+}
+
 TEST(Verdict, AbortedTestSaysWhy) {
   synthetic::Circumstances aborted;
   aborted.aborted = true;

@@ -16,7 +16,7 @@ SensorRemarks sensor_remarks(const StateReport& report, const TestFeatures& feat
     remarks["sensor:" + alignment.channel] = {kMisaligned, alignment.remark.empty() ? what : alignment.remark};
   }
   for (const std::string& channel : report.stale_channels)
-    remarks["sensor:" + channel] = {kLost, "the channel was OK in most earlier tests and is lost"};
+    remarks["sensor:" + channel] = {kLost, "the channel was OK in most earlier tests and is not in this one"};
   for (const ChannelStatus& status : features.channel_status)
     if (status.state == ChannelState::FAILED)
       remarks["sensor:" + status.channel] = {kFailed, "the channel is FAILED: " + status.reason};

@@ -50,7 +50,8 @@ Status gather_pressures(const AssetConfig& asset, const TimeSeries& samples, Cyl
     signals.pressure_noise_std = noise_std_of(asset, *difference);
     signals.pressure_lag_s = time_constant_of(asset, "pressure_differential");
   } else {
-    return fail("neither pressure_a and pressure_b nor pressure_differential are recorded");
+    return fail(
+        "no pressure that can be used was recorded: it takes pressure_a and pressure_b, or pressure_differential");
   }
   return {};
 }
@@ -73,7 +74,7 @@ Status gather_motion(const AssetConfig& asset, const TimeSeries& samples, Cylind
     for (double& x : signals.position_m) x += asset.pst.start_m;
     signals.position_lag_s = signals.velocity_lag_s;
   } else {
-    return fail("neither position nor velocity is recorded");
+    return fail("no motion that can be used was recorded: it takes position or velocity");
   }
   return {};
 }

@@ -119,11 +119,27 @@ std::string model_alarm(const Evidence& evidence) {
   return joined(channels);
 }
 
+/// What became of the channel, as state detection says it.
+std::string fate_of(const std::string& channel, const StateReport& state) {
+  for (const std::string& reason : state.verdict_reasons)
+    if (reason.starts_with("channel " + channel + ",")) return reason;
+  return "channel " + channel + " was OK in most earlier tests and is not in this one";
+}
+
 std::string doubt_in_instruments(const Evidence& evidence, const Options& options) {
   const ProposedFault* fault = dominant_fault(evidence.health, options);
   if (fault && fault->kind == FaultKind::sensor) return describe(*fault);
-  if (!evidence.state.stale_channels.empty()) return "no fresh samples of " + joined(evidence.state.stale_channels);
-  return {};
+  std::vector<std::string> fates;
+  for (const std::string& channel : evidence.state.stale_channels) fates.push_back(fate_of(channel, evidence.state));
+  return joined(fates);
+}
+
+std::set<std::string> doubted_channels(const Evidence& evidence, const Options& options) {
+  constexpr std::string_view kSensor = "sensor:";
+  const ProposedFault* fault = dominant_fault(evidence.health, options);
+  if (fault && fault->kind == FaultKind::sensor)
+    return {fault->element.starts_with(kSensor) ? fault->element.substr(kSensor.size()) : fault->element};
+  return {evidence.state.stale_channels.begin(), evidence.state.stale_channels.end()};
 }
 
 std::string reason_to_repeat(const Evidence& evidence) {
@@ -159,6 +175,7 @@ Assessment assess(const Evidence& evidence, const SiteConfig* site, const Option
   assessment.model_alarm = model_alarm(evidence);
   assessment.instruments_reason = doubt_in_instruments(evidence, options);
   assessment.verdict.instruments_doubted = !assessment.instruments_reason.empty();
+  assessment.verdict.doubted_channels = doubted_channels(evidence, options);
   assessment.verdict.failed = evidence.state.verdict == PstVerdict::failed;
   assessment.repeat_reason = reason_to_repeat(evidence);
   assessment.reasons = reasons_of(evidence);

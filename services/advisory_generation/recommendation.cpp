@@ -1,6 +1,7 @@
 #include "services/advisory_generation/recommendation.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "sealwatch/forecast/words.hpp"
 #include "services/advisory_generation/reasons.hpp"
@@ -49,6 +50,15 @@ std::string campaign_at(const SiteConfig* site, UtcTime day) {
     for (const Campaign& campaign : site->campaigns)
       if (start_of_day(campaign.start) == day) return "in campaign " + campaign.label + " (" + format_date(day) + ")";
   return "before " + format_date(day);
+}
+
+/// Of a test that is in order itself, after others that were not.
+std::string earlier_doubt(const InForce& in_force) {
+  std::string text = "doubted in the last tests";
+  std::string join = ": ";
+  for (const std::string& channel : in_force.doubted_channels)
+    text.append(std::exchange(join, ", ")).append(forecast::in_words(channel));
+  return text;
 }
 
 struct Context {
@@ -132,7 +142,7 @@ std::vector<Recommendation> calls(const Context& c) {
     call(c.in_force.failing ? AdvisoryPriority::high : AdvisoryPriority::medium,
          AdvisoryAction::inspect_instrumentation,
          "Inspect the instrumentation: " +
-             (a.instruments_reason.empty() ? "doubted in the last tests" : a.instruments_reason) + ".");
+             (a.instruments_reason.empty() ? earlier_doubt(c.in_force) : a.instruments_reason) + ".");
   if (!a.repeat_reason.empty())
     call(AdvisoryPriority::low, AdvisoryAction::repeat_test,
          "Repeat the partial stroke test: " + a.repeat_reason + ".");

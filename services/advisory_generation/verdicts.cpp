@@ -67,10 +67,36 @@ bool raised(const std::vector<TestVerdict>& last, bool TestVerdict::*flag, bool 
 
 constexpr std::string_view kBy = "the seal replaced by ";
 
-std::string words(const std::string& wear, const std::optional<UtcTime>& replace_by, bool doubted, bool failed) {
+constexpr std::string_view kTrusted = "instruments trusted";
+constexpr std::string_view kDoubted = "instruments doubted";
+constexpr std::string_view kNames = ": ";
+constexpr std::string_view kComma = ", ";
+
+std::string instrument_words(bool doubted, const std::set<std::string>& channels) {
+  std::string text(doubted ? kDoubted : kTrusted);
+  if (!doubted) return text;
+  for (const std::string& channel : channels)
+    text.append(channel == *channels.begin() ? kNames : kComma).append(channel);
+  return text;
+}
+
+/// The channels that instrument_words() wrote.
+std::set<std::string> channels_in(std::string text) {
+  std::set<std::string> channels;
+  text.erase(0, std::min(text.size(), kDoubted.size() + kNames.size()));
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(kComma), text.size());
+    channels.insert(text.substr(0, end));
+    text.erase(0, end + kComma.size());
+  }
+  return channels;
+}
+
+template <class T>
+std::string words(const std::string& wear, const T& of, bool failed) {
   std::string text = wear;
-  if (replace_by) text.append(kSeparator).append(kBy).append(format_date(*replace_by));
-  text.append(kSeparator).append(doubted ? "instruments doubted" : "instruments trusted");
+  if (of.replace_by) text.append(kSeparator).append(kBy).append(format_date(*of.replace_by));
+  text.append(kSeparator).append(instrument_words(of.instruments_doubted, of.doubted_channels));
   return text.append(kSeparator).append(failed ? "stroke failed" : "stroke done");
 }
 
@@ -89,6 +115,7 @@ struct Words {
   std::optional<UtcTime> replace_by;
   bool doubted = false;
   bool failed = false;
+  std::set<std::string> doubted_channels;
 };
 
 /// What words() wrote, from its end: "WEAR; DATE; INSTRUMENTS; STROKE", the date only where there is one.
@@ -117,7 +144,8 @@ std::optional<Words> read(std::string text, std::string_view separator) {
   }
   read.wear = level_of(text);
   if (!read.wear && text != kNotJudged) return std::nullopt;
-  read.doubted = instruments == "instruments doubted";
+  read.doubted = instruments.starts_with(kDoubted);
+  if (read.doubted) read.doubted_channels = channels_in(instruments);
   read.failed = stroke == "stroke failed";
   return read;
 }
@@ -131,6 +159,10 @@ const InForce& VerdictMemory::judge(const TestVerdict& verdict, std::optional<Ut
   if (verdict.replace_by && now) judge_date(verdict, *now, options);
   in_force_.instruments_doubted =
       raised(last_, &TestVerdict::instruments_doubted, in_force_.instruments_doubted, options);
+  in_force_.doubted_channels.clear();
+  if (in_force_.instruments_doubted)
+    for (const TestVerdict& one : newest(last_, std::max(options.confirming_window, options.easing_tests)))
+      in_force_.doubted_channels.insert(one.doubted_channels.begin(), one.doubted_channels.end());
   in_force_.failing = raised(last_, &TestVerdict::failed, in_force_.failing, options);
   return in_force_;
 }
@@ -188,15 +220,12 @@ void VerdictMemory::remember(const TestVerdict& verdict) {
 
 std::string in_words(const TestVerdict& verdict, const InForce& in_force) {
   const auto wear = [](WearLevel level) { return std::string(kWear.at(static_cast<std::size_t>(level))); };
-  const auto of_test = [&](const std::string& level) {
-    return words(level, verdict.replace_by, verdict.instruments_doubted, verdict.failed);
-  };
+  const auto of_test = [&](const std::string& level) { return words(level, verdict, verdict.failed); };
   const std::string level = verdict.wear ? wear(*verdict.wear) : kNotJudged;
   std::string alone = level;
   if (verdict.wear_a_campaign_earlier)
     alone.append(kEarlier).append(wear(*verdict.wear_a_campaign_earlier)).append(kEarlierEnd);
-  const std::string all =
-      words(wear(in_force.wear), in_force.replace_by, in_force.instruments_doubted, in_force.failing);
+  const std::string all = words(wear(in_force.wear), in_force, in_force.failing);
   std::string line(kStart);
   line.append(of_test(alone)).append(kMiddle);
   return of_test(level) == all ? line.append(kTheSame) : line.append(kOther).append(all);
@@ -222,11 +251,13 @@ std::optional<VerdictRecord> from_words(const std::string& line) {
                     .wear_a_campaign_earlier = test->wear_a_campaign_earlier,
                     .replace_by = test->replace_by,
                     .instruments_doubted = test->doubted,
-                    .failed = test->failed};
+                    .failed = test->failed,
+                    .doubted_channels = test->doubted_channels};
   record.in_force = {.wear = force->wear.value_or(WearLevel::none),
                      .replace_by = force->replace_by,
                      .instruments_doubted = force->doubted,
-                     .failing = force->failed};
+                     .failing = force->failed,
+                     .doubted_channels = force->doubted_channels};
   return record;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct TestVerdict {
   std::optional<UtcTime> replace_by = {};  ///< whole days
   bool urgent = false;                     ///< takes force at once, without confirmation
   bool instruments_doubted = false;
-  bool failed = false;  ///< the valve did not do its partial stroke
+  bool failed = false;                          ///< the valve did not do its partial stroke
+  std::set<std::string> doubted_channels = {};  ///< whose instruments are doubted, where they have names
   friend bool operator==(const TestVerdict&, const TestVerdict&) = default;
 };
 
@@ -40,6 +42,7 @@ struct InForce {
   std::optional<UtcTime> replace_by = {};  ///< whole days
   bool instruments_doubted = false;
   bool failing = false;
+  std::set<std::string> doubted_channels = {};  ///< of the tests that still count
   friend bool operator==(const InForce&, const InForce&) = default;
 };
 
@@ -65,8 +68,8 @@ class VerdictMemory {
 
 /// Both in one line that stands as the last reason of every advisory, for people and for restore():
 /// "this test alone says: no work yet (were the work one campaign earlier: plan the work); the seal replaced by
-/// 2017-06-01; instruments trusted; stroke done. The advice goes by all tests so far, which say: ...", or "... which
-/// say the same".
+/// 2017-06-01; instruments doubted: flow, position; stroke done. The advice goes by all tests so far, which say: ...",
+/// or "... which say the same".
 [[nodiscard]] std::string in_words(const TestVerdict& verdict, const InForce& in_force);
 struct VerdictRecord {
   TestVerdict verdict;

@@ -101,6 +101,41 @@ INSTANTIATE_TEST_SUITE_P(
         Line{"warning is no alarm", {.region = AlertRegion::warning, .faults = {kSeal}}, P::information, A::none},
         Line{"booking outranks a sensor fault", {.rul_months = 24, .faults = {kSensor}}, P::high, A::book_vessel}));
 
+TEST(DecisionTable, NamesTheDoubtedSensorInTheTestsAfterItsFaultToo) {
+  const Configuration configuration = test::configuration();
+  TestCase frozen;
+  frozen.faults = {fault(FaultKind::sensor, "sensor:position", 0.9)};
+  const TestCase in_order{.month = 25.0};
+  VerdictMemory memory;
+  const auto play = [&](const TestCase& one) {
+    const Assessment assessment = assess(one.evidence(), &configuration.sites[0], {});
+    (void)memory.judge(assessment.verdict, one.time(), {});
+    return recommend(one.evidence(), assessment, memory.in_force(), &configuration.sites[0]);
+  };
+  for (int repeat = 0; repeat < 3; ++repeat) (void)play(frozen);
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const Recommendation after = play(in_order);
+    EXPECT_EQ(after.action, AdvisoryAction::inspect_instrumentation);
+    EXPECT_EQ(after.text, "Inspect the instrumentation: doubted in the last tests: position.");
+  }
+  EXPECT_EQ(play(in_order).action, AdvisoryAction::none);
+}
+
+TEST(DecisionTable, SaysWhatBecameOfAChannelThatIsMissed) {
+  const auto reason = [](const std::string& fate) {
+    Evidence evidence = TestCase{}.evidence();
+    evidence.state.stale_channels = {"velocity"};
+    if (!fate.empty()) evidence.state.verdict_reasons = {"judged by the position", fate};
+    const Assessment assessment = assess(evidence, nullptr, {});
+    EXPECT_EQ(assessment.verdict.doubted_channels, std::set<std::string>{"velocity"});
+    return assessment.instruments_reason;
+  };
+  const std::string known = "channel velocity, OK in most earlier tests, ";
+  for (const char* fate : {"was not recorded", "is UNKNOWN: gaps", "is FAILED: frozen for 4.0 s"})
+    EXPECT_EQ(reason(known + fate), known + fate);
+  EXPECT_EQ(reason(""), "channel velocity was OK in most earlier tests and is not in this one");
+}
+
 TEST(DecisionTable, SaysWhatBookByWhenAndWhy) {
   const Recommendation r = confirmed({.rul_months = 24});
   EXPECT_EQ(format_date(*r.work_before), "2013-06-01");

@@ -90,6 +90,30 @@ TEST_F(VerdictMemoryTest, DoubtInInstrumentsIsConfirmedAndGivenUpAlike) {
   EXPECT_FALSE(memory_.judge({}, kNow, {}).instruments_doubted);
 }
 
+TEST_F(VerdictMemoryTest, KeepsTheNamesOfDoubtedChannelsWhileTheyCount) {
+  const auto names = [this](const TestVerdict& verdict) { return memory_.judge(verdict, kNow, {}).doubted_channels; };
+  const TestVerdict flow{.instruments_doubted = true, .doubted_channels = {"flow"}};
+  const TestVerdict position{.instruments_doubted = true, .doubted_channels = {"position"}};
+  const std::set<std::string> both = {"flow", "position"};
+  EXPECT_TRUE(names(flow).empty()) << "not confirmed";
+  EXPECT_EQ(names(position), both);
+  EXPECT_EQ(names({}), both);
+  EXPECT_EQ(names({}), both);
+  EXPECT_EQ(names({}), std::set<std::string>{"position"}) << "the doubt in flow is four tests old";
+  EXPECT_TRUE(names({}).empty());
+}
+
+TEST(VerdictWords, NameTheDoubtedChannels) {
+  const TestVerdict verdict{.instruments_doubted = true, .doubted_channels = {"flow", "position"}};
+  const InForce in_force{.instruments_doubted = true, .doubted_channels = {"position"}};
+  const std::string line = in_words(verdict, in_force);
+  EXPECT_NE(line.find("; instruments doubted: flow, position; stroke done."), std::string::npos) << line;
+  const auto record = from_words(line);
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->verdict, verdict);
+  EXPECT_EQ(record->in_force, in_force);
+}
+
 TEST(VerdictWords, RoundTripOfEveryField) {
   for (const bool doubted : {false, true})
     for (const bool failed : {false, true})

@@ -26,6 +26,17 @@ TEST(ForecastScore, CountsBothErrors) {
   EXPECT_LT(with_z(0.0).crps, with_z(1.0).crps);
 }
 
+// CRPS of a normal (Gneiting and Raftery 2007): s (z (2 Phi(z) - 1) + 2 phi(z) - 1/sqrt(pi)), here with s = 0.005:
+//   z = 0: 0.005 (2 0.3989423 - 0.5641896)                   z = 1: 0.005 (0.6826895 + 2 0.2419707 - 0.5641896)
+TEST(ForecastScore, MeanCrpsIsTheMeanOfTheScores) {
+  constexpr double kAtZero = 0.00116847;
+  constexpr double kAtOne = 0.00301221;
+  EXPECT_NEAR(with_z(0.0).crps, kAtZero, 1e-8);
+  EXPECT_NEAR(with_z(1.0).crps, kAtOne, 1e-8);
+  const std::vector<ConditionScore> scores = {with_z(0.0), with_z(1.0), with_z(-1.0)};
+  EXPECT_NEAR(summarise(scores).mean_crps, (kAtZero + 2.0 * kAtOne) / 3.0, 1e-8);
+}
+
 TEST(ForecastScore, ConfidenceRisesSlowlyAndFallsAtOnce) {
   std::vector<ConditionScore> scores;
   EXPECT_EQ(summarise(scores).confidence, kPriorConfidence);

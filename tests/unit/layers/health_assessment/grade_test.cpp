@@ -97,6 +97,19 @@ TEST(Trend, TheLastYearCountsMost) {
   EXPECT_LT(bent->slope_per_year, slope / spread);
 }
 
+// By hand: a test a year, t = -5 .. 0 years, g = 0.9 0.9 0.9 0.8 0.9 0.6, w = e^t.
+//   sum w = 1.578055, t_w = -0.567067, g_w = 0.701317, S = 1.311355, sum w (t - t_w)(g - g_w) = -0.150728
+//   slope = -0.114940, sum r^2 = 0.169394, s^2 = 0.042348, std = 0.099751; with the memory of 3 months: slope -0.2857
+TEST(Trend, ForgetsAndErrsAsComputedByHand) {
+  const std::vector<double> by_year = {0.9, 0.9, 0.9, 0.8, 0.9, 0.6};
+  std::vector<GradeAt> grades;
+  for (const double one : by_year) grades.push_back({synthetic::month(12 * static_cast<int>(grades.size())), one});
+  const auto trend = trend_of(grades);
+  ASSERT_TRUE(trend);
+  EXPECT_NEAR(trend->slope_per_year, -0.114940, 2e-6);
+  EXPECT_NEAR(trend->std_per_year, 0.099751, 2e-6);
+}
+
 TEST(Trend, TooFewTestsHaveNone) {
   EXPECT_FALSE(trend_of(line(-0.06, 0.01, 5)));
   EXPECT_TRUE(trend_of(line(-0.06, 0.01, 6)));

@@ -69,7 +69,9 @@ int write_replay_page(const ReplayOptions& options, const Configuration& configu
     return kBadInput;
   }
   if (questions->empty()) {
-    std::fprintf(stderr, "sealwatch: %s is not written: no test that was replayed tells of a seal\n",
+    std::fprintf(stderr,
+                 "sealwatch: %s is not written: nothing new was concluded of a seal in this replay; `sealwatch "
+                 "forecast --page` draws what the services keep\n",
                  options.page.c_str());
     return kAnswerIsNo;
   }

@@ -21,9 +21,9 @@ struct Course {
 
 }  // namespace
 
-std::optional<std::string> change_between_tests(const AssetConfig& asset, const Data& data) {
+std::optional<std::string> change_between_tests(const AssetConfig& asset, const Data& data, const FittedModel& best) {
   std::map<std::string, Course> courses;
-  double largest_misfit = 0.0;
+  double largest_misfit = 0.0, misfit = 0.0, free = 0.0;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     Data one{.names = {data.names[k]},
              .samples = {data.samples[k]},
@@ -34,6 +34,8 @@ std::optional<std::string> change_between_tests(const AssetConfig& asset, const 
     const Result<FittedModel> model = fit_model(asset, one, nullptr, 1);
     if (!model || model->misfit > kAgrees * model->residuals) return std::nullopt;
     largest_misfit = std::max(largest_misfit, model->misfit / model->residuals);
+    misfit += model->misfit;
+    free += static_cast<double>(model->free_shared);
     for (const ParameterShift& parameter : parameter_shifts(asset, *model, *model)) {
       if (!std::isfinite(parameter.after_std)) continue;
       Course& course = courses[parameter.name];
@@ -43,6 +45,9 @@ std::optional<std::string> change_between_tests(const AssetConfig& asset, const 
       course.unit = parameter.unit;
     }
   }
+  const double phi = std::max(1.0, misfit / best.residuals), penalty = std::log(best.residuals);
+  if (misfit / phi + free * penalty >= best.misfit / phi + static_cast<double>(best.free_shared) * penalty)
+    return std::nullopt;
   const auto changed =
       std::ranges::max_element(courses, {}, [](const auto& entry) { return entry.second.standard_errors(); });
   if (changed == courses.end() || changed->second.standard_errors() < kChanged) return std::nullopt;

@@ -290,6 +290,8 @@ PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<Param
   PrognosisShift shift;
   const auto leakage = std::ranges::find(parameters, "R_CL", &ParameterShift::name);
   if (!asset.seal || leakage == parameters.end()) return shift;
+  if (!std::isfinite(leakage->before_std) || !std::isfinite(leakage->after_std))
+    return shift;  // at a bound, or not told
   shift.known = true;
   shift.R_CL_before = leakage->before;
   shift.R_CL_after = leakage->after;

@@ -48,11 +48,14 @@ class Analysis {
     best_ = naming_.best;
     result_.p_value = naming_.first.p_value;
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
+    if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
+      change_ = change_between_tests(asset_, fit_, *best_.model);
+    if (change_) best_ = {.effects = {}, .model = baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
       if (const Status status = prove(); !status) return fail(status.error());
     }
-    if (!lacks_a_pressure())
+    if (!lacks_a_pressure() && !change_)
       if (const Status status = look_again(); !status) return fail(status.error());
     if (const Status status = finish(); !status) return fail(status.error());
     draw_what_is_missing();
@@ -220,19 +223,29 @@ class Analysis {
           "Record the pressures of both chambers, or the motor's voltage: with the flow and the differential pressure "
           "alone, what chamber B's pressure does cannot be told from missing physics.";
     result_.summary = summary_of(result_);
+    say_that_the_leak_is_in_two_parts();
     say_what_changed_between_tests();
     return {};
   }
 
   // A seal that ages from test to test is no physics that a test lacks.
   void say_what_changed_between_tests() {
-    const bool unexplained = result_.verdict == Verdict::undetermined && result_.statistically_significant;
-    if (!unexplained || windowed() || fit_.samples.size() < 2) return;
-    const auto change = change_between_tests(asset_, fit_);
-    if (!change) return;
-    result_.notes.push_back(*change);
-    result_.summary = *change;
+    if (!change_) return;
+    result_.location.clear();
+    result_.prognosis = {};
+    result_.notes.push_back(*change_);
+    result_.summary = *change_;
     result_.next_test = "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
+  }
+
+  // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
+  void say_that_the_leak_is_in_two_parts() {
+    if (std::ranges::none_of(result_.effects, [](const FoundEffect& one) { return one.what.element == "piston_seal"; }))
+      return;
+    result_.prognosis = {};
+    result_.notes.emplace_back(
+        "The leak past the piston is R_CL and the law found together: R_CL alone no longer tells how the seal is, and "
+        "no condition or remaining life is derived from it.");
   }
 
   // The missing term of each effect, over the recording in which it did most.
@@ -293,6 +306,7 @@ class Analysis {
   Naming naming_;
   Trial best_;
   bool proven_ = false;
+  std::optional<std::string> change_;  ///< between the tests, where that is likelier than the laws found
   double window_s_ = 0.0;
   Explanation result_;
 };

@@ -1,0 +1,61 @@
+// What an analysis says of the seal: one that ages from test to test is no missing physics, and one whose leak a law
+// tells in part is no healthier seal.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+AssetConfig actuator() { return load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value(); }
+
+TEST(Seal, ThatAgedBetweenTestsIsNoMissingPhysics) {
+  const std::filesystem::path life = std::filesystem::path(SEALWATCH_SHARED_DATA) / "pst_life" / "xt03-mv2";
+  if (!std::filesystem::exists(life)) GTEST_SKIP() << "no shared recordings: pst_life";
+  const AssetConfig asset = actuator();
+  const auto read = [&](const char* month) {
+    return read_recording((life / (std::string(month) + ".csv")).string(), **find_plant(asset.model)).value();
+  };
+  const std::vector<Recording> fit{read("2009-04"), read("2009-07"), read("2009-10"), read("2010-01")};
+  const std::vector<Recording> holdout{read("2009-05"), read("2009-08")};
+  const auto explanation = explain(asset, fit, holdout);
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_TRUE(explanation->effects.empty());
+  EXPECT_TRUE(explanation->explained.physics.empty());
+  EXPECT_NE(explanation->summary.find("R_CL runs from"), std::string::npos) << explanation->summary;
+  EXPECT_FALSE(explanation->prognosis.known) << "one condition for tests of different ones";
+}
+
+TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {
+  const AssetConfig asset = actuator();
+  const Law& law = **find_law("turbulent_seal_leakage", {"k"});
+  std::vector<Recording> fit;
+  for (const double load : {0.8, 1.0, 1.2}) {
+    AssetConfig truth = with_law(asset, law, "piston_seal", std::vector{1.5e-10});
+    truth.parameters.at("phi").value *= load;
+    Recording recording;
+    recording.asset_id = asset.asset_id;
+    recording.file = recording.recording_id = recording.content_hash = std::to_string(load);
+    recording.samples = simulated_test(truth, 1.0);
+    fit.push_back(std::move(recording));
+  }
+  const auto explanation = explain(asset, fit, {});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  ASSERT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
+  EXPECT_EQ(explanation->effects.at(0).what.element, "piston_seal");
+  EXPECT_FALSE(explanation->prognosis.known);
+  EXPECT_TRUE(std::ranges::any_of(explanation->notes, [](const std::string& note) {
+    return note.find("R_CL alone no longer tells") != std::string::npos;
+  }));
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

@@ -50,12 +50,13 @@ class Analysis {
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
     if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
       change_ = change_between_tests(asset_, fit_, *best_.model);
-    if (change_) best_ = {.effects = {}, .model = baseline_};
+    at_rest_ = at_rest(*baseline_, prepared(fit_));
+    if (change_ || at_rest_) best_ = {.effects = {}, .model = baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
       if (const Status status = prove(); !status) return fail(status.error());
     }
-    if (!lacks_a_pressure() && !change_)
+    if (!lacks_a_pressure() && !change_ && !at_rest_)
       if (const Status status = look_again(); !status) return fail(status.error());
     if (const Status status = finish(); !status) return fail(status.error());
     draw_what_is_missing();
@@ -225,6 +226,7 @@ class Analysis {
     result_.summary = summary_of(result_);
     say_that_the_leak_is_in_two_parts();
     say_what_changed_between_tests();
+    say_that_nothing_moves();
     return {};
   }
 
@@ -236,6 +238,16 @@ class Analysis {
     result_.notes.push_back(*change_);
     result_.summary = *change_;
     result_.next_test = "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
+  }
+
+  void say_that_nothing_moves() {
+    if (!at_rest_) return;
+    result_.location.clear();
+    result_.prognosis = {};
+    result_.summary = "The actuator does not move in these recordings: there is nothing to see.";
+    result_.notes.push_back(result_.summary);
+    result_.next_test =
+        "Record tests in which the piston moves out, holds and comes back, under several loads and speeds.";
   }
 
   // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
@@ -270,11 +282,8 @@ class Analysis {
   }
 
   void decide() {
-    if (at_rest(*baseline_, prepared(fit_))) {
+    if (at_rest_) {
       result_.verdict = Verdict::undetermined;
-      result_.effects.clear();
-      result_.explained = baseline_->asset;
-      result_.notes.emplace_back("The actuator does not move in these recordings: there is nothing to see.");
       return;
     }
     if (!result_.statistically_significant) {
@@ -306,6 +315,7 @@ class Analysis {
   Naming naming_;
   Trial best_;
   bool proven_ = false;
+  bool at_rest_ = false;
   std::optional<std::string> change_;  ///< between the tests, where that is likelier than the laws found
   double window_s_ = 0.0;
   Explanation result_;

@@ -135,6 +135,19 @@ TEST(Explain, NeverClaimsALawFromOneRecording) {
   EXPECT_TRUE(explanation->effects.empty());
 }
 
+TEST(Explain, SaysThatNothingMoves) {
+  LOAD_OR_SKIP(bench, "consistent");
+  for (auto* recordings : {&bench.fit, &bench.holdout})
+    for (Recording& recording : *recordings) cut(recording.samples, 0.9);  // the rest before the stroke
+  const auto explanation = explain(bench.asset, bench.fit, bench.holdout);
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined);
+  EXPECT_NE(explanation->summary.find("does not move"), std::string::npos) << explanation->summary;
+  EXPECT_NE(explanation->next_test.find("piston moves"), std::string::npos);
+  EXPECT_TRUE(explanation->location.empty());
+  EXPECT_FALSE(explanation->prognosis.known);
+}
+
 TEST(Explain, RefusesAHoldoutThatWasFitted) {
   LOAD_OR_SKIP(bench, "consistent");
   const std::vector<Recording> same = {bench.fit.front()};

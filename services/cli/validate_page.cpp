@@ -74,11 +74,15 @@ std::string channel_table(const RecordingValidation& recording) {
 }
 
 std::string recording_part(const RecordingValidation& recording) {
-  std::string plots = "<div class=\"plots\">";
-  for (const ChannelValidation& channel : recording.channels)
+  std::string plots;
+  for (const ChannelValidation& channel : recording.channels) {
+    plots.append("<h3>").append(report::escaped(report::words_of(channel.fit.channel))).append("</h3>");
+    plots += "<div class=\"plots\">";
     for (const Plot& plot : {course(recording, channel), residual(recording, channel), autocorrelation(channel)})
       plots.append("<div>").append(report::to_svg(plot)).append("</div>");
-  return report::section(recording.recording, channel_table(recording) + plots + "</div>");
+    plots += "</div>";
+  }
+  return report::section(recording.recording, channel_table(recording) + plots);
 }
 
 std::string parameter_table(const ModelValidation& validation) {

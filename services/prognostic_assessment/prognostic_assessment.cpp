@@ -18,7 +18,7 @@ namespace {
 constexpr std::array kInputs{Topic::health_report, Topic::test_window, Topic::maintenance_event,
                              Topic::model_acceptance};
 constexpr std::array kOutputs{Topic::leakage_estimate, Topic::remaining_life, Topic::pst_request};
-constexpr std::size_t kMostSources = 60;  // five years of monthly estimates: more than any window
+constexpr std::size_t kMostSources = 240;  // twenty years of monthly estimates: the longest window of a forecaster
 
 std::string estimate_id(const std::string& pst_id) { return "leakage_estimate/" + pst_id; }
 

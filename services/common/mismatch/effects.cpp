@@ -299,10 +299,15 @@ PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<Param
   shift.theta_after = asset.seal->condition(leakage->after);
   shift.months_before = forecast::mean_remaining_months(shift.theta_before, asset.seal->threshold);
   shift.months_after = forecast::mean_remaining_months(shift.theta_after, asset.seal->threshold);
-  shift.sentence = "The seal's condition is " + number(100.0 * shift.theta_after, 4) + " % instead of " +
-                   number(100.0 * shift.theta_before, 4) + " %: a mean seal then has " +
-                   number(std::round(shift.months_after)) + " months left until " +
-                   number(100.0 * asset.seal->threshold) + " %, not " + number(std::round(shift.months_before)) +
+  const std::string condition = number(100.0 * shift.theta_after, 4) + " %";
+  const double months = std::round(shift.months_after), months_before = std::round(shift.months_before);
+  if (condition == number(100.0 * shift.theta_before, 4) + " %" && months == months_before) {
+    shift.sentence = "The seal's condition is " + condition + " with and without what was found.";
+    return shift;
+  }
+  shift.sentence = "The seal's condition is " + condition + " instead of " + number(100.0 * shift.theta_before, 4) +
+                   " %: a mean seal then has " + number(months) + " months left until " +
+                   number(100.0 * asset.seal->threshold) + " %, not " + number(months_before) +
                    ". This actuator's own remaining life comes from its history (sealwatch forecast).";
   return shift;
 }

@@ -217,7 +217,7 @@ class Analysis {
     result_.explained = best_.model->asset;
     decide();
     for (FoundEffect& effect : result_.effects)
-      effect.evidence = evidence_of(effect, excess_before + 1.0, excess_after + 1.0);
+      effect.evidence = evidence_of(effect, result_.effects.size(), excess_before + 1.0, excess_after + 1.0);
     result_.next_test = next_test_of(result_);
     if (lacks_a_pressure())
       result_.next_test =

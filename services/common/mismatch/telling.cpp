@@ -56,8 +56,8 @@ std::string element_in_words(const std::string& element) {
   return text;
 }
 
-std::string evidence_of(const FoundEffect& effect, double misfit_before, double misfit_after) {
-  std::string text = "Adding ";
+std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before, double misfit_after) {
+  std::string text = effects > 1 ? "With the other laws found, " : "Adding ";
   text.append(effect.what.law).append(" takes the mean squared residual of the fit recordings from ");
   text.append(number(misfit_before)).append(" to ").append(number(misfit_after)).append(" times the noise variance.");
   return text;

@@ -9,7 +9,9 @@ namespace sealwatch::mismatch {
 
 [[nodiscard]] std::string number(double value, int digits = 3);
 [[nodiscard]] std::string element_in_words(const std::string& element);
-[[nodiscard]] std::string evidence_of(const FoundEffect& effect, double misfit_before, double misfit_after);
+/// One sentence; of several `effects` the misfit is what all of them leave together.
+[[nodiscard]] std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before,
+                                      double misfit_after);
 [[nodiscard]] std::string next_test_of(const Explanation& explanation);
 [[nodiscard]] std::string summary_of(const Explanation& explanation);
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/runtime/asset_file.hpp"
@@ -55,6 +57,22 @@ TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {
   EXPECT_TRUE(std::ranges::any_of(explanation->notes, [](const std::string& note) {
     return note.find("R_CL alone no longer tells") != std::string::npos;
   }));
+}
+
+TEST(Seal, IsNotSaidToHaveChangedWhereItHasNot) {
+  const AssetConfig asset = actuator();
+  const auto shift = [&](double after, double after_std) {
+    return prognosis_shift(asset, {{.name = "R_CL",
+                                    .unit = "Pa s/m3",
+                                    .before = 2.0e13,
+                                    .before_std = 1e10,
+                                    .after = after,
+                                    .after_std = after_std,
+                                    .datasheet = 2.6e13}});
+  };
+  EXPECT_NE(shift(2.0e13, 1e10).sentence.find("with and without what was found"), std::string::npos);
+  EXPECT_NE(shift(2.2e13, 1e10).sentence.find("instead of"), std::string::npos);
+  EXPECT_FALSE(shift(2.2e13, std::numeric_limits<double>::infinity()).known) << "at a bound, or not told";
 }
 
 }  // namespace

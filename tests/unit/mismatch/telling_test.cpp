@@ -24,5 +24,12 @@ TEST(Summary, NamesWhichLawCannotBeToldFromWhich) {
       << text;
 }
 
+TEST(Evidence, OfSeveralLawsIsSaidOfAllTogether) {
+  FoundEffect drag;
+  drag.what.law = "k v abs(v)";
+  EXPECT_EQ(evidence_of(drag, 1, 12.0, 1.02).find("Adding k v abs(v) takes"), 0U);
+  EXPECT_EQ(evidence_of(drag, 2, 12.0, 1.02).find("With the other laws found, k v abs(v) takes"), 0U);
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

@@ -35,6 +35,14 @@ class PrognosticAssessmentTest : public testing::Test {
   ScriptedEstimator estimator_;
 };
 
+TEST_F(PrognosticAssessmentTest, NamesEveryEstimateThatAForecastCounts) {
+  const RemainingLife life = of_kind<RemainingLife>(run(inputs_of(straight_life(1, 72)))).back();
+  EXPECT_EQ(life.tests_since_replacement, 72);
+  EXPECT_EQ(std::ranges::count_if(life.header.source_ids,
+                                  [](const std::string& id) { return id.starts_with("leakage_estimate/"); }),
+            72);
+}
+
 TEST_F(PrognosticAssessmentTest, EveryTestGivesEstimateRemainingLifeAndRequest) {
   const auto outputs = run(inputs_of(straight_life(1, 60)));
   ASSERT_EQ(outputs.size(), 180u);

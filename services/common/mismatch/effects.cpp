@@ -226,13 +226,19 @@ std::vector<Location> locate(const std::vector<FoundEffect>& effects) {
                       .indistinguishable_from = effect.same_elements,
                       .evidence = against_elsewhere(effect)});
   }
+  const std::size_t found = places.size();
   for (const FoundEffect& effect : effects)
     for (const Alternative& other : effect.alternatives) {
-      if (std::ranges::find(places, other.what.element, &Location::element) != places.end()) continue;
-      places.push_back({.element = other.what.element,
-                        .probability = std::exp(-0.5 * std::min(other.misfit_above_best, 1400.0)) * effect.probability,
-                        .indistinguishable_from = {},
-                        .evidence = other.what.id + " there: " + other.why_not});
+      const Location place{
+          .element = other.what.element,
+          .probability = std::exp(-0.5 * std::min(other.misfit_above_best, 1400.0)) * effect.probability,
+          .indistinguishable_from = {},
+          .evidence = other.what.id + " there: " + other.why_not};
+      const auto known = std::ranges::find(places, place.element, &Location::element);
+      if (known == places.end())
+        places.push_back(place);
+      else if (static_cast<std::size_t>(known - places.begin()) >= found && known->probability < place.probability)
+        *known = place;  // in the place of another effect it comes nearer
     }
   std::ranges::stable_sort(places, std::greater<>(), &Location::probability);
   return places;

@@ -27,6 +27,15 @@ const ChannelComparison* worst_channel(const PooledFit& fit) {
   return worst == fit.channels.end() ? nullptr : &*worst;
 }
 
+// Where the laws found took most of the misfit.
+const ChannelComparison* most_improved_channel(const PooledFit& fit) {
+  const auto gain = [](const ChannelComparison& channel) {
+    return channel.rms_before * channel.rms_before - channel.rms_after * channel.rms_after;
+  };
+  const auto most = std::ranges::max_element(fit.channels, {}, gain);
+  return most == fit.channels.end() ? nullptr : &*most;
+}
+
 // Which change of the test's conditions tells apart laws of these kinds.
 std::string separating_test(const FoundEffect& effect) {
   if (!effect.same_elements.empty() && effect.what.element.starts_with("sensor:"))
@@ -93,7 +102,7 @@ std::string summary_of(const Explanation& explanation) {
     std::vector<std::string> laws;
     for (const FoundEffect& effect : explanation.effects) laws.push_back(law_in_words(effect.what));
     text = "The simulation lacks " + joined(laws, " and ") + (laws.size() > 1 ? ". With them " : ". With it ");
-    const ChannelComparison* proof = worst_channel(explanation.holdout);
+    const ChannelComparison* proof = most_improved_channel(explanation.holdout);
     if (proof != nullptr) {
       text.append("the misfit of ").append(proof->channel).append(" on recordings that took no part falls from ");
       text.append(number(proof->rms_before))

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "services/common/mismatch/effects.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -22,6 +27,33 @@ TEST(Summary, NamesWhichLawCannotBeToldFromWhich) {
   EXPECT_NE(text.find("cannot tell coulomb friction at the piston from presliding friction at the piston."),
             std::string::npos)
       << text;
+}
+
+TEST(Summary, ShowsTheChannelThatImproved) {
+  Explanation found;
+  found.verdict = Verdict::mismatch;
+  found.effects.resize(1);
+  found.effects[0].what = {"sensor_bias", "", "sensor:position", "b", ""};
+  found.holdout.channels = {{.channel = "motor_current", .rms_before = 1.03, .rms_after = 1.03},
+                            {.channel = "pressure_a", .rms_before = 1.02, .rms_after = 0.98}};
+  EXPECT_NE(summary_of(found).find("the misfit of pressure_a on recordings that took no part falls from 1.02 to 0.98"),
+            std::string::npos)
+      << summary_of(found);
+}
+
+TEST(Location, OfAnElementIsWhereItComesNearest) {
+  FoundEffect overflow, saturation;
+  overflow.what.element = "upper_outlet";
+  overflow.probability = saturation.probability = 0.65;
+  saturation.what.element = "sensor:level_voltage";
+  overflow.alternatives = {
+      {.what = {"tank_overflow", "", "lower_tank", "", ""}, .misfit_above_best = 60.0, .why_not = ""}};
+  saturation.alternatives = {
+      {.what = {"tank_overflow", "", "lower_tank", "", ""}, .misfit_above_best = 1.2, .why_not = ""}};
+  const std::vector<Location> places = locate({overflow, saturation});
+  const auto lower = std::ranges::find(places, "lower_tank", &Location::element);
+  ASSERT_NE(lower, places.end());
+  EXPECT_NEAR(lower->probability, 0.65 * std::exp(-0.6), 1e-9);
 }
 
 TEST(Evidence, OfSeveralLawsIsSaidOfAllTogether) {

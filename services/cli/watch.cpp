@@ -9,6 +9,7 @@
 #include "sealwatch/core/text.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
+#include "services/cli/state_journals.hpp"
 #include "services/cli/summary.hpp"
 #include "services/common/message/json.hpp"
 
@@ -56,34 +57,6 @@ bool is_configured(const std::string& asset_id, const Configuration& configurati
                  .rule = "is not a configured asset",
                  .advice = suggest(asset_id, known)});
   return false;
-}
-
-/// The service that writes a topic; "" where others do: a control system, an operator.
-std::string writer_of(Topic topic) {
-  switch (topic) {
-    case Topic::sample_block:
-      return "data_acquisition";
-    case Topic::test_window:
-    case Topic::test_features:
-      return "data_manipulation";
-    case Topic::state_report:
-      return "state_detection";
-    case Topic::health_report:
-    case Topic::model_discrepancy:
-      return "health_assessment";
-    case Topic::leakage_estimate:
-    case Topic::remaining_life:
-    case Topic::pst_request:
-      return "prognostic_assessment";
-    case Topic::advisory:
-      return "advisory_generation";
-    case Topic::raw_samples:
-    case Topic::acknowledgement:
-    case Topic::maintenance_event:
-    case Topic::model_acceptance:
-      break;
-  }
-  return {};
 }
 
 /// Says once that what is watched has no writer that is heard: silence would look like a quiet day.

@@ -10,6 +10,7 @@ double Resolution::of(const LawParameter& strength) const {
   return strength.unit == "s" ? std::max(least, timing_s) : least;
 }
 
+// An input that is not held may change anywhere between two samples: when, is known to a part of their distance.
 Resolution resolution_of(const Data& data, const PlantDescription& plant) {
   constexpr double kShareOfInterval = 0.05;
   Resolution resolution{.share = data.resolution, .plant = &plant};

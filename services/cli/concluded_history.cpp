@@ -23,6 +23,8 @@ void ConcludedHistory::take(const Message& message) {
     estimates_.push_back(*estimate);
   if (const auto* life = std::get_if<RemainingLife>(&message); life && life->replacement_known)
     replacements_.push_back({life->replaced_ns});
+  if (const auto* advice = std::get_if<Advisory>(&message); advice && advice->state != AdvisoryState::superseded)
+    if (!advice_ || advice->header.event_time_ns >= advice_->header.event_time_ns) advice_ = *advice;
 }
 
 std::optional<ForecastQuestion> ConcludedHistory::question(const AssetConfig& asset,
@@ -53,12 +55,14 @@ std::optional<ForecastQuestion> ConcludedHistory::question(const AssetConfig& as
     question.not_counted.push_back({test.sample.time, reasons.empty() ? "no reason is given" : reasons.front()});
   }
   take_site(configuration, asset.site, question);
+  if (advice_ && UtcTime{advice_->header.event_time_ns} >= now) question.advice = advice_;
   return question;
 }
 
 std::optional<ConcludedHistory> history_in(StateJournals& journals, const std::string& asset_id) {
   ConcludedHistory history;
-  for (const Topic topic : {Topic::leakage_estimate, Topic::remaining_life}) {
+  for (const Topic topic : {Topic::leakage_estimate, Topic::remaining_life, Topic::advisory}) {
+    if (topic == Topic::advisory && !journals.journal_of(topic)) continue;  // that service runs elsewhere
     const auto messages = journals.all(topic, asset_id);
     if (!messages) {
       complain(messages.error());

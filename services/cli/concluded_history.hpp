@@ -13,8 +13,8 @@ namespace sealwatch::cli {
 
 class ConcludedHistory {
  public:
-  /// Takes estimates, and the replacements that remaining_life tells, be it of a test or of a maintenance_event that no
-  /// test has followed yet; passes over all else.
+  /// Takes estimates, advice, and the replacements that remaining_life tells, be it of a test or of a maintenance_event
+  /// that no test has followed yet; passes over all else.
   void take(const Message& message);
   [[nodiscard]] bool empty() const { return estimates_.empty(); }
   /// Those that were taken.
@@ -29,6 +29,7 @@ class ConcludedHistory {
  private:
   std::vector<LeakageEstimate> estimates_;
   std::vector<UtcTime> replacements_;
+  std::optional<Advisory> advice_;  ///< the latest by its event, not superseded
 };
 
 /// The history of one asset in prognosis's journal; a fault is complained of.

@@ -57,7 +57,7 @@ report::Scatter tests_of(const std::vector<ConditionSample>& samples, Ink ink, c
 }
 
 report::Intervals intervals_of(const std::vector<ConditionSample>& samples) {
-  report::Intervals intervals{.x = {}, .y = {}, .low = {}, .high = {}, .ink = Ink::first, .label = "95 % of the test"};
+  report::Intervals intervals{.x = {}, .y = {}, .low = {}, .high = {}, .ink = Ink::first, .label = "test, 95 %"};
   for (const ConditionSample& sample : samples) {
     intervals.x.push_back(calendar_year(sample.time));
     intervals.y.push_back(sample.condition);
@@ -102,7 +102,7 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
             .height = 330};
   if (!conditions.empty()) add_forecast_band(conditions, threshold, plot);
   plot.marks.emplace_back(intervals_of(answer.used));
-  plot.marks.emplace_back(tests_of(answer.used, Ink::first, "test"));
+  plot.marks.emplace_back(tests_of(answer.used, Ink::first, ""));
   if (!answer.left_out.empty()) plot.marks.emplace_back(tests_of(answer.left_out, Ink::bad, "left out"));
   plot.marks.emplace_back(report::Reference{.at = threshold, .ink = Ink::bad, .label = "failed"});
   const Forecast& in_charge = answer.forecasts.front();
@@ -144,6 +144,28 @@ Plot side_by_side(const ForecastPanel::Answer& answer) {
   return plot;
 }
 
+/// What stands behind the methods' names.
+std::string methods_note(const ForecastPanel::Answer& answer) {
+  std::string list;
+  const auto any = [&](std::string_view method) {
+    return std::ranges::any_of(answer.forecasts, [&](const Forecast& forecast) { return forecast.method == method; });
+  };
+  for (const auto& [method, meaning] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
+           {"state_space", "state space: the law by which seals age, followed through all tests"},
+           {"fleet", "fleet: the same, with the seal held for one of a known kind"},
+           {"ols",
+            "ols: a straight line through the tests of the last so many months, whose own interval is too narrow "
+            "for an ageing seal"},
+           {"ols_drift", "ols drift: the same line, whose slope may change"},
+           {"ols_log_time", "ols log time: a straight line over the logarithm of time"},
+           {"average", "average: of methods, weighed by how well they forecast this seal before"}})
+    if (any(method)) list.append("<li>").append(meaning);
+  return report::paragraph(
+             "Months count from the last test. The method in bold is in charge; the others stand beside it.",
+             "small muted") +
+         "<ul class=\"small muted\">" + list + "</ul>";
+}
+
 std::string remaining_life_table(const ForecastPanel::Answer& answer) {
   report::Table table({"method", ">tests", ">months left", ">80 %", ">95 %", "end of life", "~why"});
   for (const Forecast& forecast : answer.forecasts) {
@@ -171,8 +193,11 @@ void list_samples(const std::vector<ConditionSample>& samples, const std::string
 }
 
 std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
-  std::string list = "<ul><li>" + report::escaped(method_label(answer.forecasts.front()) +
-                                                  " is in charge: " + answer.forecasts.front().explanation);
+  std::string list = "<ul>";
+  if (question.advice)
+    for (const std::string& reason : question.advice->reasons) list.append("<li>").append(report::escaped(reason));
+  list += "<li>" + report::escaped(method_label(answer.forecasts.front()) +
+                                   " is in charge: " + answer.forecasts.front().explanation);
   if (answer.windows_disagree) list.append("<li>Windows disagree: ").append(report::escaped(answer.disagreement));
   if (question.without_error > 0)
     list.append("<li>Standard errors are not known of " + std::to_string(question.without_error) + " of " +
@@ -192,18 +217,34 @@ std::string headline(const Forecast& forecast) {
          date(forecast.end_of_life_ns);
 }
 
+/// The colour of what is to be done; of the forecast alone where the services gave no advice.
+const char* colour_of(const std::optional<Advisory>& advice, ForecastState state) {
+  if (!advice) {
+    if (state == ForecastState::past_threshold) return "bad";
+    return state == ForecastState::ok ? "" : "warn";
+  }
+  if (advice->priority >= AdvisoryPriority::high) return "bad";
+  return advice->priority >= AdvisoryPriority::low ? "warn" : "good";
+}
+
+std::string advice_line(const Advisory& advice) {
+  std::string priority(name_of(advice.priority));
+  priority.front() = static_cast<char>(std::toupper(priority.front()));
+  const bool seen = advice.state == AdvisoryState::acknowledged;
+  return priority + ": " + advice.recommendation + (seen ? " (Acknowledged by " + advice.acknowledged_by + ".)" : "");
+}
+
 std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
   const std::string of = question.asset_id.empty() ? "" : " of " + question.asset_id;
   const Forecast& in_charge = answer.forecasts.front();
-  const char* colour = in_charge.state == ForecastState::ok               ? "good"
-                       : in_charge.state == ForecastState::past_threshold ? "bad"
-                                                                          : "warn";
   std::string html = "<h1>Remaining life of the piston seal" + report::escaped(of) + "</h1>";
   html.append(report::paragraph(history_words(question) + "; the seal fails at " +
                                     report::percent_text(question.request.threshold) + " of its elastic modulus.",
                                 "muted"));
-  html.append("<div class=\"banner ").append(colour).append("\"><p class=\"verdict\">");
-  return html.append(report::unbroken(report::escaped(headline(in_charge)))).append("</p></div>");
+  html.append("<div class=\"banner ").append(colour_of(question.advice, in_charge.state));
+  html.append("\"><p class=\"verdict\">").append(report::unbroken(report::escaped(headline(in_charge)))).append("</p>");
+  if (question.advice) html.append("<p>" + report::unbroken(report::escaped(advice_line(*question.advice))) + "</p>");
+  return html.append("</div>");
 }
 
 }  // namespace
@@ -220,7 +261,8 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
     conditions = (*in_charge)->predict_conditions(request, months_ahead(request.now, view_months(answer)));
   std::string body = head(question, answer);
   body += report::to_svg(course(question, answer, conditions));
-  body += report::section("Remaining life", remaining_life_table(answer) + report::to_svg(side_by_side(answer)));
+  body += report::section("Remaining life",
+                          remaining_life_table(answer) + methods_note(answer) + report::to_svg(side_by_side(answer)));
   body += forecast_decision_part(question, answer, decision);
   body += reasons_part(question, answer);
   return body;

@@ -9,6 +9,7 @@
 #include "sealwatch/config/site_decision.hpp"
 #include "sealwatch/forecast/decision.hpp"
 #include "sealwatch/forecast/forecaster.hpp"
+#include "sealwatch/message/advisory_generation.hpp"
 #include "services/cli/commands.hpp"
 
 namespace sealwatch::cli {
@@ -29,7 +30,8 @@ struct ForecastQuestion {
   std::size_t without_error = 0;                      ///< tests whose standard error is not known
   std::vector<forecast::ForecasterSettings> forecasters = {};
   std::optional<SiteCosts> costs = {};
-  double months_to_vessel = 12.0;  ///< from call to arrival
+  double months_to_vessel = 12.0;       ///< from call to arrival
+  std::optional<Advisory> advice = {};  ///< in force after the last test, of a history that the services judged
 };
 
 /// Campaigns, costs and lead time of a site; the site may be unknown.

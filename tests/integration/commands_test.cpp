@@ -355,6 +355,9 @@ TEST_F(Commands, ReplayWritesThePageOfTheForecastThatItShows) {
   EXPECT_THAT(html.str(), ::testing::AllOf(HasSubstr("Remaining life of the piston seal of XT03-MV2"),
                                            HasSubstr("end of life about <span class=\"whole\">" + end_of_life),
                                            HasSubstr("left out by the services: not judged")));
+  std::ifstream advisories(folder_ / "advisory.jsonl");
+  for (std::string line; std::getline(advisories, line);) last = line;
+  EXPECT_THAT(html.str(), HasSubstr(json::parse(last)["recommendation"].get<std::string>().substr(0, 40)));
 }
 
 TEST_F(Commands, WhatIsKeptIsLookedForWithWords) {

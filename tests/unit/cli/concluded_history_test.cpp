@@ -84,6 +84,31 @@ TEST_F(Question, HasNoTestAfterAReplacementThatNoneHasFollowed) {
   EXPECT_EQ(history_words(*question), "replaced on 2031-04-01, no test since") << "the latest of all counts";
 }
 
+Advisory advice(const std::string& day, const std::string& recommendation) {
+  Advisory one;
+  one.asset_id = "A";
+  one.header.event_time_ns = parse_utc(day).value().nanoseconds;
+  one.recommendation = recommendation;
+  return one;
+}
+
+TEST_F(Question, HasTheAdviceThatIsInForce) {
+  history_.take(advice("2031-03-10", "of the last test"));
+  history_.take(advice("2031-02-10", "of a test that came late"));
+  Advisory old = advice("2031-03-11", "superseded");
+  old.state = AdvisoryState::superseded;
+  history_.take(old);
+  ASSERT_TRUE(history_.question(asset_, configuration_)->advice);
+  EXPECT_EQ(history_.question(asset_, configuration_)->advice->recommendation, "of the last test");
+
+  RemainingLife life;  // replaced since: what was advised before is of another seal
+  life.asset_id = "A";
+  life.replacement_known = true;
+  life.replaced_ns = parse_utc("2031-04-01").value().nanoseconds;
+  history_.take(life);
+  EXPECT_FALSE(history_.question(asset_, configuration_)->advice);
+}
+
 TEST_F(Question, IsNoneWithoutASealOrATest) {
   EXPECT_FALSE(ConcludedHistory().question(asset_, configuration_));
   asset_.seal.reset();

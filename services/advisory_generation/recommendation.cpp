@@ -32,7 +32,10 @@ std::string outlook(const Evidence& evidence) {
              ", with 80 % between " + format_date(add_months(now, forecast.rul_p10_months)) + " and " +
              format_date(add_months(now, forecast.rul_p90_months)) + ".";
     case ForecastState::past_threshold:
-      return text + ": the limit is passed.";
+      // The condition of the last test that counts may still have been above: the forecast goes on to this test's date.
+      return text + (life.condition_known && life.condition > life.threshold
+                         ? "; by now the limit is passed, so the forecast: " + forecast.explanation + "."
+                         : ": the limit is passed.");
     case ForecastState::no_significant_trend:
       return join + "it shows no significant fall.";
     case ForecastState::insufficient_history:

@@ -66,7 +66,7 @@ void print_text(const Heard& heard, const std::vector<std::string>& configured) 
   for (const auto& [asset, view] : heard.assets) std::printf("\n%s", view.screen().c_str());
   if (heard.services.none()) return;
   for (const std::string& asset : configured)
-    if (!heard.assets.contains(asset)) std::printf("\n== %s, no test yet\n", asset.c_str());
+    if (!heard.assets.contains(asset)) std::printf("\n== %s: in the configuration, not tested yet\n", asset.c_str());
 }
 
 std::vector<std::string> enabled_services(const Configuration& configuration) {

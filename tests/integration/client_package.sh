@@ -51,7 +51,7 @@ started+=($!)
 "$scratch/advisory_subscriber/advisory_subscriber" >"$scratch/advisories" 2>"$scratch/errors" &
 subscriber=$!
 started+=("$subscriber")
-timeout 20 "$scratch/control_system/control_system" || fail "the control system could not send"
+timeout 20 "$scratch/control_system/control_system" XT03-MV2 || fail "the control system could not send"
 wait_for "$scratch/advisories" 2
 wait_for "$scratch/received" 3
 kill -INT "$subscriber"

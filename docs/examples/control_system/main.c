@@ -1,5 +1,6 @@
 /* A control system of your own sends a test to sealwatch: with sealwatch's IDL files and Cyclone DDS alone, in C.
-   Three blocks of one second at 200 Hz; a real one sends what its sensors say while the valve moves. */
+   Three blocks of one second at 200 Hz; a real one sends what its sensors say while the valve moves.
+   Usage: control_system ASSET_ID. The test enters that asset's history: try it with an asset of your own. */
 #include <stdio.h>
 
 #include "data_acquisition.h"
@@ -20,7 +21,7 @@ static dds_entity_t make_writer(dds_entity_t participant) {
   return writer;
 }
 
-static int send_block(dds_entity_t writer, int number, dds_time_t start) {
+static int send_block(dds_entity_t writer, char* asset_id, int number, dds_time_t start) {
   double time_s[SAMPLES], position_m[SAMPLES];
   for (int k = 0; k < SAMPLES; ++k) {
     time_s[k] = number + k / 200.0; /* counts on over all blocks */
@@ -29,7 +30,7 @@ static int send_block(dds_entity_t writer, int number, dds_time_t start) {
   sealwatch_Series position = {.name = "position", .unit = "m"};
   position.values = (dds_sequence_double){._length = SAMPLES, ._buffer = position_m};
 
-  sealwatch_RawSamples block = {.asset_id = "XT03-MV2", .source_id = "mcs", .recording_id = "2031-04-PST"};
+  sealwatch_RawSamples block = {.asset_id = asset_id, .source_id = "mcs", .recording_id = "2031-04-PST"};
   /* Strings must not be null pointers. */
   block.test_kind = block.content_hash = block.abort_reason = "";
   block.header.message_id = block.header.pst_id = block.header.producer = block.header.writer_id = "";
@@ -44,7 +45,8 @@ static int send_block(dds_entity_t writer, int number, dds_time_t start) {
   return dds_write(writer, &block);
 }
 
-int main(void) {
+int main(int argc, char** argv) {
+  if (argc != 2) return fprintf(stderr, "usage: control_system ASSET_ID\n"), 2;
   const dds_entity_t participant = dds_create_participant(0, NULL, NULL);
   const dds_entity_t writer = make_writer(participant);
   if (writer < 0) return fprintf(stderr, "no writer: %s\n", dds_strretcode(writer)), 1;
@@ -52,7 +54,7 @@ int main(void) {
 
   const dds_time_t start = dds_time();
   for (int number = 0; number < BLOCKS; ++number)
-    if (send_block(writer, number, start) < 0) return fprintf(stderr, "block %d was not sent\n", number), 1;
+    if (send_block(writer, argv[1], number, start) < 0) return fprintf(stderr, "block %d was not sent\n", number), 1;
   dds_wait_for_acks(writer, DDS_SECS(5));
   dds_delete(participant);
 }

@@ -9,6 +9,9 @@
 namespace sealwatch {
 namespace {
 
+/// A recorded channel that spreads less than this share of its size is constant up to rounding.
+constexpr double kRounding = 1e-12;
+
 constexpr std::size_t kFewestSamples = 8;
 constexpr double kCollinearity = 1e-9;  // of the largest column: below it a lagged input says nothing new
 
@@ -30,7 +33,7 @@ double nrmse_percent(std::span<const double> recorded, std::span<const double> s
   if (size == 0) return 0.0;
   const Eigen::Map<const Eigen::VectorXd> y(recorded.data(), size), y_hat(simulated.data(), size);
   const double spread = (y.array() - y.mean()).matrix().norm();
-  return spread > 0.0 ? 100.0 * (1.0 - (y - y_hat).norm() / spread) : 0.0;
+  return spread > kRounding * y.norm() ? 100.0 * (1.0 - (y - y_hat).norm() / spread) : 0.0;
 }
 
 double root_mean_square(std::span<const double> whitened_residual) {

@@ -60,6 +60,9 @@ TEST(ResidualStatistics, NrmseIsHundredForPerfectAndZeroForTheMean) {
   EXPECT_DOUBLE_EQ(nrmse_percent(y, mean), 0.0);
   EXPECT_DOUBLE_EQ(nrmse_percent(y, half), 50.0);
   EXPECT_DOUBLE_EQ(nrmse_percent(mean, y), 0.0);  // a constant recording has no course to reproduce
+  // A frozen sensor: the mean of its values is not the value itself, by rounding.
+  const std::vector<double> frozen(1001, 0.0123456789), moving(1001, 0.02);
+  EXPECT_EQ(nrmse_percent(frozen, moving), 0.0);
 }
 
 // 500 trials at a nominal 5 %: 25 expected, standard deviation 4.9.

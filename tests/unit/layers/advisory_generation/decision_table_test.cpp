@@ -192,6 +192,21 @@ TEST(DecisionTable, NoVesselIsBookedWhileTheLawsOfAgeingDiffer) {
   EXPECT_THAT(recommend(evidence, apart, memory.in_force(), nullptr).text, HasSubstr("too early for a date"));
 }
 
+/// The test of today was left out: the last that counts was still above the limit, the forecast is below by now.
+TEST(DecisionTable, APassedLimitThatTheForecastSawIsNotSaidOfAHealthyCondition) {
+  const TestCase one{.forecast = ForecastState::past_threshold, .rul_months = 0, .used = false};
+  Evidence evidence = one.evidence();
+  evidence.life.condition_known = true;
+  evidence.life.threshold = 0.6;
+  evidence.life.condition = 0.61;
+  const auto text = [&] {
+    return recommend(evidence, assess(evidence, nullptr, {}), {.wear = WearLevel::replace}, nullptr).text;
+  };
+  EXPECT_THAT(text(), HasSubstr("by now the limit is passed, so the forecast"));
+  evidence.life.condition = 0.59;
+  EXPECT_THAT(text(), HasSubstr(": the limit is passed."));
+}
+
 TEST(DecisionTable, ABookingDateThatHasPassedIsUrgentWhateverTheRememberedLevel) {
   const TestCase one{.rul_months = 24};
   const Evidence evidence = one.evidence();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
@@ -21,10 +23,11 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
+constexpr double kSmallestP = 1e-300;      // that is told: the tail's own digits end there
 constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model, or so much left
 
 // -ln p, to the smallest p that a double holds.
-double evidence(double p_value) { return -std::log(std::max(p_value, 1e-300)); }
+double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)); }
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -43,10 +46,10 @@ class Analysis {
     ExplainOptions options = options_;
     if (lacks_a_pressure()) options.maximum_laws = 0;
     Result<Naming> naming = name_effects(baseline_, prepared(fit_), options, progress_);
-    if (!naming) return fail(naming.error());
+    if (!naming) return cannot_look(naming.error());
     naming_ = std::move(*naming);
     best_ = naming_.best;
-    result_.p_value = naming_.first.p_value;
+    result_.p_value = std::max(naming_.first.p_value, kSmallestP);
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
     if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
       change_ = change_between_tests(asset_, fit_, *best_.model);
@@ -54,10 +57,9 @@ class Analysis {
     if (change_ || at_rest_) best_ = {.effects = {}, .model = baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
-      if (const Status status = prove(); !status) return fail(status.error());
+      prove();
     }
-    if (!lacks_a_pressure() && !change_ && !at_rest_)
-      if (const Status status = look_again(); !status) return fail(status.error());
+    if (!lacks_a_pressure() && !change_ && !at_rest_) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
     draw_what_is_missing();
     tell("done", 1.0);
@@ -65,15 +67,34 @@ class Analysis {
   }
 
  private:
+  // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
+  Result<Explanation> cannot_look(const Error& why) {
+    cannot_look_ = reason_in_words(why);
+    naming_ = {.baseline = baseline_, .best = {{}, baseline_}, .trials = {{{}, baseline_}}, .first = {}, .last = {}};
+    best_ = naming_.best;
+    if (const Status status = finish(); !status) return fail(status.error());
+    tell("done", 1.0);
+    return std::move(result_);
+  }
+
   void tell(std::string_view step, double share) const {
     if (progress_) progress_(step, share);
   }
 
   // Where everything found still misses grossly, what is left is a slow course, to which slow laws bend best. Weighed
-  // by its own colour, corners and episodes count for what they are.
-  Status look_again() {
+  // by its own colour, corners and episodes count for what they are. Where that fails, what was found before stays.
+  void look_again() {
     const bool little = best_.model->misfit > kExplainedAtLeast * baseline_->misfit;
-    if (windowed() || !little || excess(*best_.model) <= kGross) return {};
+    if (windowed() || !little || excess(*best_.model) <= kGross) return;
+    const auto before = std::tuple(fit_.colour, holdout_.colour, baseline_, naming_, best_, proven_, result_.notes);
+    const Status status = weigh_by_colour();
+    if (status) return;
+    std::tie(fit_.colour, holdout_.colour, baseline_, naming_, best_, proven_, result_.notes) = before;
+    result_.notes.push_back("A second look, weighed by the colour of what is left, was not possible (" +
+                            reason_in_words(status.error()) + ").");
+  }
+
+  Status weigh_by_colour() {
     const NoiseColour colour = residual_colour(*baseline_);
     fit_.colour.assign(fit_.samples.size(), colour);
     holdout_.colour.assign(holdout_.samples.size(), colour);
@@ -88,7 +109,8 @@ class Analysis {
     proven_ = false;
     result_.notes.emplace_back(
         "All models miss grossly: laws were weighed by the colour of what the fitted model leaves.");
-    return best_.effects.empty() ? Status{} : prove();
+    prove();
+    return {};
   }
 
   // Driven by the flow, the circuit takes chamber B's pressure as the reservoir's where it is not recorded. If that
@@ -129,25 +151,37 @@ class Analysis {
   [[nodiscard]] Data prepared(const Data& data) const { return in_windows(data, window_s_); }
 
   // Effects that do not help on held-out recordings are taken back, the last first.
-  Status prove() {
+  void prove() {
     while (!best_.effects.empty()) {
       Trial fewer = without_last(best_);
-      Result<BlockGains> blocks = held_out().gains(fewer, best_);
-      if (!blocks) return fail(blocks.error());
-      const GainInterval interval = gain_interval(*blocks, dispersion(*best_.model), options_.seed);
-      if (blocks->gain.empty()) {
-        result_.notes.emplace_back("With one recording nothing can be held out: what fits it is not claimed.");
-      } else if (interval.low > 0.0) {
+      const Result<BlockGains> blocks = held_out().gains(fewer, best_);
+      if (blocks && !blocks->gain.empty() &&
+          gain_interval(*blocks, dispersion(*best_.model), options_.seed).low > 0.0) {
         proven_ = true;
-        return {};
-      } else {
-        result_.notes.push_back("A law that fits better (" + law_at(best_.effects.back()).id + " at " +
-                                best_.effects.back().element +
-                                ") does not improve the recordings that took no part: it is not claimed.");
+        note_not_compared(*blocks);
+        return;
       }
+      result_.notes.push_back(why_not_proven(blocks));
       best_ = std::move(fewer);
     }
-    return {};
+  }
+
+  [[nodiscard]] std::string why_not_proven(const Result<BlockGains>& blocks) const {
+    const std::string law = "A law that fits better (" + law_in_words(law_at(best_.effects.back())) + ") ";
+    if (!blocks)
+      return law + "cannot be simulated on the recordings that took no part (" + reason_in_words(blocks.error()) +
+             "): it is not claimed.";
+    if (!blocks->gain.empty()) return law + "does not improve the recordings that took no part: it is not claimed.";
+    if (blocks->not_compared.empty()) return "With one recording nothing can be held out: what fits it is not claimed.";
+    return law + "has nothing to be compared with on the recordings that took no part: it is not claimed.";
+  }
+
+  void note_not_compared(const BlockGains& blocks) {
+    all_compared_ = all_compared_ && blocks.not_compared.empty();
+    for (const std::string& one : blocks.not_compared)
+      if (const std::string note = "Not compared, as a model cannot be simulated there: " + one + ".";
+          std::ranges::find(result_.notes, note) == result_.notes.end())
+        result_.notes.push_back(note);
   }
 
   Trial without_last(const Trial& trial) {
@@ -174,9 +208,10 @@ class Analysis {
       });
       const bool anywhere = found != result_.effects.end() && found->same_elements.size() >= kAnywhere;
       if (best_.effects.size() == 1 || !anywhere || excess(*best_.model) > kGross) return;
-      std::string note = "A remainder beyond the noise could sit at " + last.element;
-      for (const std::string& other : found->same_elements) note.append(" or at ").append(other);
-      result_.notes.push_back(note + " alike: no second law is claimed for it.");
+      std::vector<std::string> places = {element_in_words(last.element)};
+      for (const std::string& other : found->same_elements) places.push_back(element_in_words(other));
+      result_.notes.push_back("A remainder beyond the noise could sit at " + joined(places, " or at ") +
+                              " alike: no second law is claimed for it.");
       best_ = without_last(best_);
     }
   }
@@ -192,12 +227,17 @@ class Analysis {
         continue;
       }
       const auto old_model = free_run(baseline_->asset, fit_, k), new_model = free_run(best_.model->asset, fit_, k);
-      if (!old_model) return fail(old_model.error());
-      if (!new_model) return fail(new_model.error());
+      if (!old_model || !new_model) {
+        const Error& why = old_model ? new_model.error() : old_model.error();
+        note_not_compared({.gain = {}, .not_compared = {fit_.names[k] + " as a whole (" + reason_in_words(why) + ")"}});
+        continue;
+      }
       result_.recordings.push_back(compare(*old_model, *new_model, only(fit_, k), 0));
       add_gain(result_.recordings.back(), block_gains(*old_model, *new_model, 0), *best_.model, options_.seed);
     }
-    if (const auto blocks = held_out().gains(before, best_, &result_.recordings); !blocks) return fail(blocks.error());
+    const auto blocks = held_out().gains(before, best_, &result_.recordings);
+    if (!blocks) return fail(blocks.error());
+    note_not_compared(*blocks);
     result_.fit = pool(result_.recordings, false);
     result_.holdout = pool(result_.recordings, true);
     const double excess_before = baseline_->misfit / baseline_->residuals - 1.0;
@@ -211,6 +251,7 @@ class Analysis {
     } else if (result_.statistically_significant) {
       result_.location = locate_without_law(naming_.first);
     }
+    for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
     for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
     result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model);
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
@@ -227,6 +268,7 @@ class Analysis {
     say_that_the_leak_is_in_two_parts();
     say_what_changed_between_tests();
     say_that_nothing_moves();
+    say_that_nothing_could_be_asked();
     return {};
   }
 
@@ -248,6 +290,15 @@ class Analysis {
     result_.notes.push_back(result_.summary);
     result_.next_test =
         "Record tests in which the piston moves out, holds and comes back, under several loads and speeds.";
+  }
+
+  void say_that_nothing_could_be_asked() {
+    if (!cannot_look_) return;
+    result_.prognosis = {};
+    result_.summary = "The model was fitted, but it could not be asked for what is missing (" + *cannot_look_ +
+                      "): nothing can be said of these recordings.";
+    result_.notes.push_back(result_.summary);
+    result_.next_test = "Check the recorded input around that time, or analyse without this recording.";
   }
 
   // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
@@ -282,17 +333,17 @@ class Analysis {
   }
 
   void decide() {
-    if (at_rest_) {
+    if (at_rest_ || cannot_look_) {
       result_.verdict = Verdict::undetermined;
       return;
     }
     if (!result_.statistically_significant) {
       const std::vector<const Power*> blind = could_not_show(result_.power);
-      result_.verdict = blind.empty() ? Verdict::consistent : Verdict::undetermined;
+      result_.verdict = blind.empty() && all_compared_ ? Verdict::consistent : Verdict::undetermined;
       for (const Power* one : blind)
-        result_.notes.push_back("These recordings would show " + one->what.id + " at " + one->what.element +
-                                " only from " + number(one->minimum_detectable) + " " + one->unit +
-                                "; an engineer would care from " + number(one->significant) + " " + one->unit + ".");
+        result_.notes.push_back("These recordings would show " + law_in_words(one->what) + " only from " +
+                                number(one->minimum_detectable) + " " + one->unit + "; an engineer would care from " +
+                                number(one->significant) + " " + one->unit + ".");
       return;
     }
     // Nothing significant is left, or at least half of the excess or nine tenths of the evidence is gone: the noise's
@@ -316,7 +367,9 @@ class Analysis {
   Trial best_;
   bool proven_ = false;
   bool at_rest_ = false;
-  std::optional<std::string> change_;  ///< between the tests, where that is likelier than the laws found
+  bool all_compared_ = true;                ///< the models can be simulated on every recording
+  std::optional<std::string> change_;       ///< between the tests, where that is likelier than the laws found
+  std::optional<std::string> cannot_look_;  ///< why no law could be asked for
   double window_s_ = 0.0;
   Explanation result_;
 };

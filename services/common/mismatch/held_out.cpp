@@ -2,6 +2,7 @@
 
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
@@ -50,8 +51,12 @@ Result<BlockGains> HeldOut::gains(const Trial& before, const Trial& after,
   if (in_turn && fit.samples.size() < 2) return blocks;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const auto old_model = predict(*this, before, data, k), new_model = predict(*this, after, data, k);
-    if (!old_model) return fail(old_model.error());
-    if (!new_model) return fail(new_model.error());
+    if (!new_model && kept == nullptr) return fail(new_model.error());
+    if (!old_model || !new_model) {
+      blocks.not_compared.push_back(data.names[k] + " (" +
+                                    reason_in_words(old_model ? new_model.error() : old_model.error()) + ")");
+      continue;
+    }
     BlockGains own;
     for (std::size_t window = 0; window < old_model->problem.recordings.size(); ++window) {
       const BlockGains piece = block_gains(*old_model, *new_model, window);
@@ -60,7 +65,10 @@ Result<BlockGains> HeldOut::gains(const Trial& before, const Trial& after,
     blocks.gain.insert(blocks.gain.end(), own.gain.begin(), own.gain.end());
     if (kept == nullptr) continue;
     auto comparison = compare_whole(*old_model, *new_model, data, k, window_s);
-    if (!comparison) return fail(comparison.error());
+    if (!comparison) {
+      blocks.not_compared.push_back(data.names[k] + " as a whole (" + reason_in_words(comparison.error()) + ")");
+      continue;
+    }
     (in_turn ? comparison->left_out : comparison->holdout) = true;
     add_gain(*comparison, own, *after.model, options.seed);
     kept->push_back(std::move(*comparison));

@@ -19,7 +19,9 @@ struct HeldOut {
   const ExplainOptions& options;
 
   /// Blocks of the model `after` against `before`; none with a single recording in all. Each recording's comparison is
-  /// added to `kept`, of whole recordings from one initial state even where predictions are of windows.
+  /// added to `kept`, of whole recordings from one initial state even where predictions are of windows. A recording on
+  /// which the model before cannot be simulated is not compared; where the one after cannot, that is an Error, unless
+  /// comparisons are kept: then it is not compared either.
   [[nodiscard]] Result<BlockGains> gains(const Trial& before, const Trial& after,
                                          std::vector<RecordingComparison>* kept = nullptr) const;
 };

@@ -73,14 +73,13 @@ bool promising(const Screening& screening, const FittedModel& model) {
 }
 
 // Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
-Status try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& options) {
+void try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& options) {
   const ScreeningOptions forms{.seed = options.seed, .threads = options.threads, .closed_forms = true};
   std::vector<Trial> trials;
   for (const Trial& from : {Trial{{}, naming.baseline}, naming.best}) {
     if (static_cast<int>(from.effects.size()) == options.maximum_laws) continue;
     const auto screening = screen(*from.model, data, forms);
-    if (!screening) return fail(screening.error());
-    if (!promising(*screening, *from.model)) continue;
+    if (!screening || !promising(*screening, *from.model)) continue;
     std::vector<std::vector<LawStart>> starts;
     for (LawStart& start : ranked_laws(*screening, kClosedForms)) starts.push_back({std::move(start)});
     for (Trial& trial : refit(from, starts, data, options.threads)) trials.push_back(std::move(trial));
@@ -89,57 +88,53 @@ Status try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& 
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   const double phi = smallest_dispersion(trials, *naming.best.model);
   const Trial* best = best_of(trials, phi);
-  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) return {};
-  naming.best = polished(*best, data, options.threads);
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - kWorthAnother) return;
+  if (!take(naming, *best, data, options)) return;
+  const Trial whole = naming.best;
   drop_what_is_not_needed(naming, data, options.threads);
+  if (naming.best.model == whole.model) return;
   const auto next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});
-  if (!next) return fail(next.error());
-  naming.last = *next;
-  return {};
+  next ? static_cast<void>(naming.last = *next) : static_cast<void>(naming.best = whole);
 }
 
 // A channel that stays at its largest value shows by itself that its sensor has reached the end of its range. In a
 // gross misfit that comes first: what lies beyond the end would otherwise be asked of the plant.
-Status begin_with_what_shows(Naming& naming, const Data& data, const ScreeningOptions& options) {
-  if (excess(*naming.baseline) <= kGross) return {};
+void begin_with_what_shows(Naming& naming, const Data& data, const ExplainOptions& options) {
+  if (excess(*naming.baseline) <= kGross) return;
   std::vector<LawStart> ends;
   for (const Candidate& candidate : naming.first.candidates)
     if (candidate.law->kind == SiteKind::sensor_saturation && ends.empty())
       ends.push_back({{candidate.law, candidate.element}, candidate.grid.front()});
-  if (ends.empty()) return {};
+  if (ends.empty()) return;
   const std::vector<Trial> trials = refit(naming.best, {ends}, data, options.threads);
-  if (trials.empty() || trials.front().model->misfit >= naming.baseline->misfit) return {};
+  if (trials.empty() || trials.front().model->misfit >= naming.baseline->misfit) return;
+  naming.trials.push_back(trials.front());
+  Result<Screening> next = screen(*trials.front().model, data, {.seed = options.seed, .threads = options.threads});
+  if (!next) return;  // the plant's laws are asked without it
   naming.best = trials.front();
-  naming.trials.push_back(naming.best);
-  Result<Screening> next = screen(*naming.best.model, data, options);
-  if (!next) return fail(next.error());
   naming.last = std::move(*next);
-  return {};
 }
 
 // Whether the best of these trials leaves nothing: the noise's own size is known to a tenth, its scores tell the rest.
-Result<bool> leaves_nothing(const std::vector<Trial>& trials, const Naming& naming, const Data& data,
-                            const ExplainOptions& options) {
+bool leaves_nothing(const std::vector<Trial>& trials, const Naming& naming, const Data& data,
+                    const ExplainOptions& options) {
   constexpr double kLeft = 1.1;
   const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
   if (best == nullptr || best->model->misfit > kLeft * best->model->residuals) return false;
   const auto left = screen(*best->model, data, {.seed = options.seed, .threads = options.threads});
-  if (!left) return fail(left.error());
-  return !differs(left->p_value, *best->model, options.false_alarm_rate);
+  return left && !differs(left->p_value, *best->model, options.false_alarm_rate);
 }
 
 // Refits with another law: first the best single laws; where none explains everything, also pairs, and in a gross
 // misfit from second starts.
-Result<std::vector<Trial>> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
+std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
   std::vector<std::vector<LawStart>> singles, more;
   for (LawStart& start : ranked_laws(naming.last, level == 0 || gross ? kSingles : kSingles / 2 + 1))
     singles.push_back({std::move(start)});
   std::vector<Trial> trials = refit(naming.best, singles, data, options.threads);
-  const Result<bool> done = leaves_nothing(trials, naming, data, options);
-  if (!done) return fail(done.error());
-  if (!*done) {
+  if (!leaves_nothing(trials, naming, data, options)) {
     if (gross)
       for (LawStart& start : second_starts(naming.last)) more.push_back({std::move(start)});
     if (static_cast<int>(level) + 2 <= options.maximum_laws)
@@ -160,7 +155,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   Naming naming{
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
   naming.forbidden = forbidden_by_physics(naming.first);
-  if (const Status status = begin_with_what_shows(naming, data, screening); !status) return fail(status.error());
+  begin_with_what_shows(naming, data, options);
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
     if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||
         !promising(naming.last, *naming.best.model))
@@ -168,27 +163,21 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const std::size_t level = naming.best.effects.size();
     const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
-    const Result<std::vector<Trial>> trials = try_laws(naming, data, options);
-    if (!trials) return fail(trials.error());
-    const double phi = smallest_dispersion(*trials, *naming.best.model);
-    const Trial* best = best_of(*trials, phi);
+    const std::vector<Trial> trials = try_laws(naming, data, options);
+    const double phi = smallest_dispersion(trials, *naming.best.model);
+    const Trial* best = best_of(trials, phi);
     // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;
     if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - worth) break;
-    naming.best = polished(*best, data, options.threads);
-    naming.trials.push_back(naming.best);
-    Result<Screening> next = screen(*naming.best.model, data, screening);
-    if (!next) return fail(next.error());
-    const Screening asked = std::exchange(naming.last, std::move(*next));
-    if (const Status status = from_other_shapes(naming, level, asked, data, options); !status)
-      return fail(status.error());
-    if (const Status status = one_law_for_several(naming, data, options); !status) return fail(status.error());
+    const Screening asked = naming.last;
+    if (!take(naming, *best, data, options)) break;
+    from_other_shapes(naming, level, asked, data, options);
+    one_law_for_several(naming, data, options);
   }
   drop_what_is_not_needed(naming, data, options.threads);
   prefer_plain_laws(naming, data, options.threads);
-  if (naming.last.p_value <= options.false_alarm_rate)
-    if (const Status status = try_closed_forms(naming, data, options); !status) return fail(status.error());
+  if (naming.last.p_value <= options.false_alarm_rate) try_closed_forms(naming, data, options);
   return naming;
 }
 

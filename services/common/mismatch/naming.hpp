@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "sealwatch/mismatch/explain.hpp"
@@ -27,8 +28,11 @@ struct Naming {
   Screening first;            ///< of the baseline
   Screening last;             ///< of the best model
   std::vector<Forbidden> forbidden = {};
+  std::vector<std::string> remarks = {};  ///< what was not taken for a reason of computation
 };
 
+/// An Error when nothing can be looked at: the baseline cannot be linearised. A law whose model cannot be is not taken,
+/// `remarks` says so, and the search ends with what it had.
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                                           const ExplainOptions& options, const Progress& progress);
 

@@ -4,8 +4,10 @@
 #include <set>
 
 #include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -47,16 +49,6 @@ std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Phys
   return starts;
 }
 
-// The trial becomes the best, and what it leaves is looked at.
-Status take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options) {
-  naming.best = polished(trial, data, options.threads);
-  naming.trials.push_back(naming.best);
-  Result<Screening> next = screen(*naming.best.model, data, {.seed = options.seed, .threads = options.threads});
-  if (!next) return fail(next.error());
-  naming.last = std::move(*next);
-  return {};
-}
-
 // The laws of an element, best first, at their usual size: at the best point of their grid, those that contain another
 // law at several, as they can be taken for that one.
 std::vector<std::vector<LawStart>> laws_of(const std::string& element, const Screening& asked) {
@@ -72,7 +64,28 @@ std::vector<std::vector<LawStart>> laws_of(const std::string& element, const Scr
   return starts;
 }
 
+std::string laws_in_words(const std::vector<Effect>& effects) {
+  std::vector<std::string> laws;
+  for (const Effect& effect : effects) laws.push_back(law_in_words(law_at(effect)));
+  return joined(laws, " and ");
+}
+
 }  // namespace
+
+bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options) {
+  Trial taken = polished(trial, data, options.threads);
+  naming.trials.push_back(taken);
+  Result<Screening> next = screen(*taken.model, data, {.seed = options.seed, .threads = options.threads});
+  if (!next) {
+    naming.remarks.push_back("A model with " + laws_in_words(taken.effects) +
+                             " fits better, but what it leaves cannot be looked at (" + reason_in_words(next.error()) +
+                             "): it is not claimed, and the search ended there.");
+    return false;
+  }
+  naming.best = std::move(taken);
+  naming.last = std::move(*next);
+  return true;
+}
 
 double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model) {
   double phi = dispersion(model);
@@ -80,12 +93,12 @@ double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& 
   return phi;
 }
 
-Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
-                         const ExplainOptions& options) {
+void from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
+                       const ExplainOptions& options) {
   // What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
   constexpr double kLeft = 1.1;
   const bool at_the_noise = naming.best.model->misfit < kLeft * naming.best.model->residuals;
-  if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return {};
+  if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return;
   // Where everything misses by far, another form of one law says nothing.
   std::vector<Candidate> forms;
   if (excess(*naming.best.model) < kFar)
@@ -101,12 +114,12 @@ Status from_other_shapes(Naming& naming, std::size_t before, const Screening& as
   const double phi = smallest_dispersion(trials, *naming.best.model);
   const Trial* best = best_of(trials, phi);
   // In a gross misfit the criterion hardly rises: any gain counts, as no law comes in.
-  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return {};
-  return take(naming, *best, data, options);
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return;
+  static_cast<void>(take(naming, *best, data, options));  // else the form that was found first stays
 }
 
-Status one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options) {
-  if (excess(*naming.best.model) > kGross) return {};
+void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options) {
+  if (excess(*naming.best.model) > kGross) return;
   std::set<std::string> elements;
   for (const Effect& effect : naming.best.effects) elements.insert(effect.element);
   std::vector<Trial> trials;
@@ -119,11 +132,11 @@ Status one_law_for_several(Naming& naming, const Data& data, const ExplainOption
       trials.push_back(std::move(trial));
   }
   const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
-  if (best == nullptr) return {};
+  if (best == nullptr) return;
   const Trial one = polished(*best, data, options.threads);
   const double phi = smallest_dispersion({one}, *naming.best.model);
-  if (criterion(*one.model, phi) > criterion(*naming.best.model, phi) + kWorthAnother) return {};
-  return take(naming, one, data, options);
+  if (criterion(*one.model, phi) > criterion(*naming.best.model, phi) + kWorthAnother) return;
+  static_cast<void>(take(naming, one, data, options));  // else the several stay
 }
 
 }  // namespace sealwatch::mismatch

@@ -11,12 +11,16 @@ namespace sealwatch::mismatch {
 /// Each law that was just added (from effect `before` on) starts again in its place: where something is left beyond the
 /// noise, its refit from the linear step may have ended in a hollow, or the law has another form than the catalogue's,
 /// and another law was or would be asked to fill that. `asked`: the screening that proposed them.
-[[nodiscard]] Status from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
-                                       const ExplainOptions& options);
+void from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
+                       const ExplainOptions& options);
 
 /// Several laws at one element may be parts of one (dry friction, drag and friction by pressure: a Stribeck curve):
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
-[[nodiscard]] Status one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
+void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
+
+/// Goes on with the search for the trial's values; the trial becomes the best, with a new last screening. False, and a
+/// remark, where what it leaves cannot be looked at: then the best stays what it was.
+[[nodiscard]] bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options);
 
 /// phi of the best of all these models.
 [[nodiscard]] double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& model);

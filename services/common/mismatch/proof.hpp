@@ -16,6 +16,8 @@ namespace sealwatch::mismatch {
 /// Misfit of each block of time of all recordings, before and after.
 struct BlockGains {
   std::vector<double> gain;  ///< (r_before^2 - r_after^2) / 2 of each block
+  /// Recordings that could not be compared, each with the reason: one of the models cannot be simulated on it.
+  std::vector<std::string> not_compared = {};
 };
 
 struct GainInterval {

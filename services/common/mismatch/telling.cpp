@@ -3,24 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 namespace sealwatch::mismatch {
 namespace {
-
-std::string joined(const std::vector<std::string>& words, const char* last) {
-  std::string text;
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    if (k > 0) text += k + 1 == words.size() ? last : ", ";
-    text += words[k];
-  }
-  return text;
-}
-
-std::string law_in_words(const LawAt& law) {
-  std::string text = law.id;
-  std::ranges::replace(text, '_', ' ');
-  return text.append(" at ").append(element_in_words(law.element));
-}
 
 const ChannelComparison* worst_channel(const PooledFit& fit) {
   const auto worst = std::ranges::max_element(fit.channels, {}, &ChannelComparison::rms_before);
@@ -46,12 +33,39 @@ std::string separating_test(const FoundEffect& effect) {
          "with a clearly lower and one with a clearly higher load, and one over another part of the stroke.";
 }
 
+std::string in_words(std::string id) {
+  std::ranges::replace(id, '_', ' ');
+  return id;
+}
+
 }  // namespace
 
+// An engineer reads 64400, not 6.44e+04.
 std::string number(double value, int digits) {
+  constexpr double kLargest = 1e7;
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
+  if (std::abs(value) < kLargest && std::string_view(text).find('e') != std::string_view::npos &&
+      std::abs(value) >= 1.0)
+    std::snprintf(text, sizeof text, "%.0f", std::atof(text));
   return text;
+}
+
+std::string joined(const std::vector<std::string>& words, const char* last) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (k > 0) text += k + 1 == words.size() ? last : ", ";
+    text += words[k];
+  }
+  return text;
+}
+
+std::string law_in_words(const LawAt& law) {
+  return in_words(law.id).append(" at ").append(element_in_words(law.element));
+}
+
+std::string reason_in_words(const Error& error) {
+  return error.place.empty() ? error.rule : error.place + ": " + error.rule;
 }
 
 std::string element_in_words(const std::string& element) {
@@ -67,7 +81,7 @@ std::string element_in_words(const std::string& element) {
 
 std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before, double misfit_after) {
   std::string text = effects > 1 ? "With the other laws found, " : "Adding ";
-  text.append(effect.what.law).append(" takes the mean squared residual of the fit recordings from ");
+  text.append(law_in_words(effect.what)).append(" takes the mean squared residual of the fit recordings from ");
   text.append(number(misfit_before)).append(" to ").append(number(misfit_after)).append(" times the noise variance.");
   return text;
 }
@@ -104,7 +118,9 @@ std::string summary_of(const Explanation& explanation) {
     text = "The simulation lacks " + joined(laws, " and ") + (laws.size() > 1 ? ". With them " : ". With it ");
     const ChannelComparison* proof = most_improved_channel(explanation.holdout);
     if (proof != nullptr) {
-      text.append("the misfit of ").append(proof->channel).append(" on recordings that took no part falls from ");
+      text.append("the misfit of ")
+          .append(in_words(proof->channel))
+          .append(" on recordings that took no part falls from ");
       text.append(number(proof->rms_before))
           .append(" to ")
           .append(number(proof->rms_after))
@@ -126,7 +142,11 @@ std::string summary_of(const Explanation& explanation) {
            "matters.";
   text = "Simulation and recordings differ beyond the noise";
   if (worst != nullptr)
-    text.append(" (").append(worst->channel).append(": ").append(number(worst->rms_before)).append(" times the noise)");
+    text.append(" (")
+        .append(in_words(worst->channel))
+        .append(": ")
+        .append(number(worst->rms_before))
+        .append(" times the noise)");
   text += ", and no law was found that explains it and holds on recordings that took no part.";
   return text;
 }

@@ -9,6 +9,12 @@ namespace sealwatch::mismatch {
 
 [[nodiscard]] std::string number(double value, int digits = 3);
 [[nodiscard]] std::string element_in_words(const std::string& element);
+/// "coulomb friction at the piston"
+[[nodiscard]] std::string law_in_words(const LawAt& law);
+/// "a, b and c", with `last` before the last one
+[[nodiscard]] std::string joined(const std::vector<std::string>& words, const char* last);
+/// What broke which rule where, without file and advice: for a remark within a sentence.
+[[nodiscard]] std::string reason_in_words(const Error& error);
 /// One sentence; of several `effects` the misfit is what all of them leave together.
 [[nodiscard]] std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before,
                                       double misfit_after);

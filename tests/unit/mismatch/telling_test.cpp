@@ -36,9 +36,16 @@ TEST(Summary, ShowsTheChannelThatImproved) {
   found.effects[0].what = {"sensor_bias", "", "sensor:position", "b", ""};
   found.holdout.channels = {{.channel = "motor_current", .rms_before = 1.03, .rms_after = 1.03},
                             {.channel = "pressure_a", .rms_before = 1.02, .rms_after = 0.98}};
-  EXPECT_NE(summary_of(found).find("the misfit of pressure_a on recordings that took no part falls from 1.02 to 0.98"),
+  EXPECT_NE(summary_of(found).find("the misfit of pressure a on recordings that took no part falls from 1.02 to 0.98"),
             std::string::npos)
       << summary_of(found);
+}
+
+TEST(Number, IsPlainWhereAnEngineerReadsIt) {
+  EXPECT_EQ(number(64447.0), "64400");
+  EXPECT_EQ(number(1.02), "1.02");
+  EXPECT_EQ(number(7.98e12), "7.98e+12");
+  EXPECT_EQ(number(-2.05e-12), "-2.05e-12");
 }
 
 TEST(Location, OfAnElementIsWhereItComesNearest) {
@@ -58,9 +65,9 @@ TEST(Location, OfAnElementIsWhereItComesNearest) {
 
 TEST(Evidence, OfSeveralLawsIsSaidOfAllTogether) {
   FoundEffect drag;
-  drag.what.law = "k v abs(v)";
-  EXPECT_EQ(evidence_of(drag, 1, 12.0, 1.02).find("Adding k v abs(v) takes"), 0U);
-  EXPECT_EQ(evidence_of(drag, 2, 12.0, 1.02).find("With the other laws found, k v abs(v) takes"), 0U);
+  drag.what = {"quadratic_drag", "", "piston", "k v abs(v)", ""};
+  EXPECT_EQ(evidence_of(drag, 1, 12.0, 1.02).find("Adding quadratic drag at the piston takes"), 0U);
+  EXPECT_EQ(evidence_of(drag, 2, 12.0, 1.02).find("With the other laws found, quadratic drag at the piston takes"), 0U);
 }
 
 }  // namespace

@@ -134,15 +134,33 @@ std::string AssetView::model_lines() const {
     const ModelDiscrepancy& found = *discrepancy_;
     text += "  model            ";
     text += wrapped(found.analysed ? found.summary : "residuals persist, not analysed: " + found.failure, 100, 19);
-    text += "\n                   (version " + std::to_string(found.version) +
-            (state_ && state_->accepted_discrepancy == found.header.message_id
-                 ? ", accepted: tests are simulated with it)\n"
-                 : ": sealwatch accept --asset-id " + asset_id_ + " --discrepancy " + found.header.message_id +
-                       " --by NAME)\n");
+    const bool spoken_of = acceptance_ && acceptance_->discrepancy_id == found.header.message_id;
+    const bool accepted =
+        spoken_of ? !acceptance_->revoked : state_ && state_->accepted_discrepancy == found.header.message_id;
+    text += "\n                   (version " + std::to_string(found.version);
+    const bool can_be = found.analysed && found.verdict == DiscrepancyVerdict::mismatch && !found.physics.empty();
+    if (can_be && !accepted)
+      text += ": sealwatch accept --asset-id " + asset_id_ + " --discrepancy " + found.header.message_id + " --by NAME";
+    text += ")\n";
   }
-  if (acceptance_ && (!discrepancy_ || is_of_now(discrepancy_->header)))
-    text += "                   " + acceptance_words(*acceptance_) + "\n";
-  return text;
+  return text + acceptance_line();
+}
+
+std::string AssetView::acceptance_line() const {
+  constexpr const char* kIndent = "                   ";
+  const std::string in_force = state_ && is_of_now(state_->header) ? state_->accepted_discrepancy : "";
+  const bool of_now = acceptance_ && (!discrepancy_ || is_of_now(discrepancy_->header)) &&
+                      (acceptance_->revoked || !replaced_ns_ || acceptance_->discrepancy_time_ns >= *replaced_ns_);
+  if (!of_now) return in_force.empty() ? "" : kIndent + in_force + " is accepted: tests are simulated with it\n";
+  const bool simulated_with_it = in_force == acceptance_->discrepancy_id;
+  std::string text = kIndent;
+  if (!acceptance_->revoked) text += "version " + std::to_string(acceptance_->version) + ": ";
+  text += acceptance_words(*acceptance_);
+  if (text.ends_with(' ')) text.pop_back();
+  if (acceptance_->revoked)
+    return text + (simulated_with_it ? ": from the next test on its file's model again\n"
+                                     : ": tests are simulated with its file's model\n");
+  return text + (simulated_with_it ? ": tests are simulated with it\n" : ": takes effect from the next test on\n");
 }
 
 std::string AssetView::left_out_lines() const {

@@ -33,6 +33,8 @@ class AssetView {
   [[nodiscard]] std::string forecast_lines() const;
   [[nodiscard]] std::string advisory_lines(bool services_run) const;
   [[nodiscard]] std::string model_lines() const;
+  /// Which version is accepted, and from which test on; "" where none was since the last replacement.
+  [[nodiscard]] std::string acceptance_line() const;
   [[nodiscard]] std::string left_out_lines() const;
   /// Whether this is about the actuator or seal that is there now.
   [[nodiscard]] bool is_of_now(const Header& header) const;

@@ -212,6 +212,46 @@ TEST(AssetView, KeepsADatedWordBeforeAnUndatedOne) {
   EXPECT_THAT(view.screen(), HasSubstr("last test 2031-04-12"));
 }
 
+TEST(AssetView, SaysWhichModelVersionIsAcceptedAndFromWhen) {
+  AssetView view;
+  ModelDiscrepancy found;
+  found.asset_id = "A";
+  found.header = header_of_test("2031-04-12");
+  found.header.message_id = "model_discrepancy/A-2031-04-12";
+  found.version = 2;
+  found.analysed = true;
+  found.verdict = DiscrepancyVerdict::mismatch;
+  found.physics.resize(1);
+  view.take(Message(found));
+  EXPECT_THAT(view.screen(), HasSubstr("(version 2: sealwatch accept --asset-id A --discrepancy " +
+                                       found.header.message_id + " --by NAME)"));
+
+  ModelAcceptance acceptance;
+  acceptance.asset_id = "A";
+  acceptance.header = header_of_test("2031-04-13");
+  acceptance.discrepancy_id = found.header.message_id;
+  acceptance.discrepancy_time_ns = found.header.event_time_ns;
+  acceptance.version = 2;
+  acceptance.accepted_by = "Ada";
+  view.take(Message(acceptance));
+  EXPECT_THAT(view.screen(), HasSubstr("version 2: model_discrepancy/A-2031-04-12 accepted by Ada: takes effect from "
+                                       "the next test on\n"));
+  EXPECT_THAT(view.screen(), Not(HasSubstr("sealwatch accept")));
+
+  StateReport state;
+  state.asset_id = "A";
+  state.header = header_of_test("2031-05-12");
+  state.accepted_discrepancy = found.header.message_id;
+  view.take(Message(state));
+  EXPECT_THAT(view.screen(), HasSubstr("accepted by Ada: tests are simulated with it\n"));
+
+  acceptance.header = header_of_test("2031-05-13");
+  acceptance.revoked = true;
+  view.take(Message(acceptance));
+  EXPECT_THAT(view.screen(), HasSubstr("revoked by Ada: from the next test on its file's model again\n"));
+  EXPECT_THAT(view.screen(), HasSubstr("sealwatch accept")) << "what was revoked can be accepted again";
+}
+
 TEST(OneLine, NamesTheSensorAndCountsInTheSingular) {
   HealthReport health;
   health.asset_id = "A";

@@ -52,7 +52,7 @@ struct FoundEffect {
   std::vector<LawAt> indistinguishable;    ///< other laws that this data cannot tell from it
   std::vector<std::string> same_elements;  ///< other elements that this data cannot tell from its element
   double delta_bic = 0.0;                  ///< of the model with it against without it; negative favours it
-  double engineering_share = 0.0;          ///< its size over the size that an engineer would care about
+  double engineering_share = 0.0;          ///< its size over the size that an engineer would care about; NaN: unknown
   std::string regime;                      ///< where it acts: "moving, both directions, above 0.5 mm/s"
   std::string evidence;                    ///< one sentence
   std::vector<Alternative> alternatives;   ///< most likely first
@@ -72,6 +72,7 @@ struct MissingTerm {
   std::string recording;
   std::string state;       ///< what it depends on: "piston velocity"
   std::string state_unit;  ///< "m/s"
+  LawAt what = {};         ///< the law that is drawn; id "" without one
   std::vector<double> time_s, state_value, demanded, band, law;
 };
 
@@ -107,12 +108,16 @@ struct ParameterShift {
   std::string unit;
   double before = 0.0, before_std = 0.0, after = 0.0, after_std = 0.0;
   double datasheet = 0.0;
+  bool before_at_bound = false, after_at_bound = false;  ///< the search ended at an end of its range
 };
 
-/// An improvement that physics forbids: it fits better and is not claimed.
+/// An improvement that physics forbids: it fits better and is not claimed. Shares are of the misfit beyond the noise,
+/// on the linearised model before any law was added, one law at a time.
 struct Rejected {
   LawAt what;
   std::string why;
+  double share = 0.0;          ///< that it would have taken
+  double allowed_share = 0.0;  ///< that the best law within physics would have taken
 };
 
 /// What the effect does to prognosis. Empty when the plant has no seal.

@@ -96,12 +96,20 @@ std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedMode
   return parameters;
 }
 
-double engineering_share(const FoundEffect& effect, const Law& law, const PlantDescription& plant) {
+// A sensor's bias goes by its channel's range, which its candidate knows.
+double engineering_share(const FoundEffect& effect, const Effect& chosen, const std::vector<Candidate>& candidates,
+                         const PlantDescription& plant) {
+  const Law& law = *chosen.law;
   for (std::size_t k = 0; k < law.parameters.size(); ++k)
     if (law.parameters[k].strength && law.parameters[k].significant > 0.0)
       return std::abs(effect.parameters[k].value) /
              (plant.law_size(law.parameters[k].unit) * law.parameters[k].significant);
-  return 0.0;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.law != chosen.law || candidate.element != chosen.element) continue;
+    const double size = significant_size(candidate, plant);
+    if (size > 0.0) return std::abs(effect.parameters[strengths_of(law).front()].value) / size;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 // Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place.
@@ -187,7 +195,7 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     FoundEffect effect;
     effect.what = law_at(best.effects[slot]);
     effect.parameters = parameters_of(best.effects[slot], *best.model, errors, resolution);
-    effect.engineering_share = engineering_share(effect, *best.effects[slot].law, plant);
+    effect.engineering_share = engineering_share(effect, best.effects[slot], naming.first.candidates, plant);
     weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), best.model->misfit, phi);
     const FittedModel* fewer = naming.baseline.get();
     for (const Trial& trial : naming.trials) {
@@ -211,7 +219,7 @@ std::string against_elsewhere(const FoundEffect& effect) {
         (best == nullptr || other.misfit_above_best < best->misfit_above_best))
       best = &other;
   if (best == nullptr) return "No law that sits elsewhere came near it.";
-  return "The best law that sits elsewhere (" + best->what.id + " at " + best->what.element + ") leaves " +
+  return "The best law that sits elsewhere (" + law_in_words(best->what) + ") leaves " +
          number(best->misfit_above_best) + " more (misfit with penalty; 12 counts as decisive).";
 }
 
@@ -233,7 +241,7 @@ std::vector<Location> locate(const std::vector<FoundEffect>& effects) {
           .element = other.what.element,
           .probability = std::exp(-0.5 * std::min(other.misfit_above_best, 1400.0)) * effect.probability,
           .indistinguishable_from = {},
-          .evidence = other.what.id + " there: " + other.why_not};
+          .evidence = law_in_words(other.what) + ": " + other.why_not};
       const auto known = std::ranges::find(places, place.element, &Location::element);
       if (known == places.end())
         places.push_back(place);
@@ -269,7 +277,10 @@ Rejected describe(const Forbidden& forbidden) {
   std::string why = "The data would want ";
   why.append(strength.name).append(" = ").append(forecast::with_unit(forbidden.strength, strength.unit));
   why.append("; physics demands: ").append(forbidden.effect.law->energy).append(".");
-  return {.what = law_at(forbidden.effect), .why = std::move(why)};
+  return {.what = law_at(forbidden.effect),
+          .why = std::move(why),
+          .share = forbidden.share,
+          .allowed_share = forbidden.allowed_share};
 }
 
 std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const FittedModel& before,
@@ -287,7 +298,9 @@ std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const
                           .before_std = old_errors[j],
                           .after = *estimate_of(after, unknown.name),
                           .after_std = new_errors[k],
-                          .datasheet = sheet->second.value});
+                          .datasheet = sheet->second.value,
+                          .before_at_bound = at_bound(unknown, before.optimum.point.shared[j]),
+                          .after_at_bound = at_bound(after.problem.shared[k], after.optimum.point.shared[k])});
   }
   return shifts;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <tuple>
 
@@ -28,6 +29,12 @@ constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model,
 
 // -ln p, to the smallest p that a double holds.
 double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)); }
+
+double mean_square(const TermPath& path) {
+  double sum = 0.0;
+  for (const double value : path.contribution) sum += value * value;
+  return path.contribution.empty() ? 0.0 : sum / static_cast<double>(path.contribution.size());
+}
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -311,10 +318,11 @@ class Analysis {
         "no condition or remaining life is derived from it.");
   }
 
-  // The missing term of each effect, over the recording in which it did most.
+  // The missing term of each effect with its regime.
   void draw_what_is_missing() {
     if (best_.effects.empty() || result_.effects.empty()) return;
     const Data data = prepared(fit_);
+    const PlantSimulation& simulation = *best_.model->problem.recordings.front().simulation;
     for (const Effect& effect : best_.effects) {
       const auto term = std::ranges::find_if(best_.model->asset.physics, [&](const PhysicsTerm& one) {
         return one.id == effect.law->id && one.element == effect.element;
@@ -323,13 +331,37 @@ class Analysis {
       std::vector<double> parameters;
       for (const LawParameter& parameter : effect.law->parameters)
         parameters.push_back(term->parameters.at(std::string(parameter.name)).value);
-      const auto drawn = missing_term(*baseline_, best_.model.get(), data, 0, effect.element, effect.law->kind,
-                                      effect.law, parameters);
-      if (drawn) result_.missing.push_back(*drawn);
+      const SiteKind kind = effect.law->kind;
+      const std::vector<TermPath> paths = term_paths(*best_.model, effect.element, *effect.law, parameters);
+      draw(effect, parameters, data, paths);
       for (FoundEffect& found : result_.effects)
         if (found.what.id == effect.law->id && found.what.element == effect.element)
-          found.regime = regime_of(*best_.model, effect.element, *effect.law, parameters);
+          found.regime = regime_of(paths, kind, signals_of(simulation, effect.element, kind), !windowed());
     }
+  }
+
+  // Over the recording in which it does most, of whose windows each is drawn.
+  void draw(const Effect& effect, const std::vector<double>& parameters, const Data& data,
+            const std::vector<TermPath>& paths) {
+    const auto group_of = [&](std::size_t k) { return data.groups.empty() ? static_cast<int>(k) : data.groups[k]; };
+    std::map<int, double> energy;
+    for (std::size_t k = 0; k < paths.size(); ++k) energy[group_of(k)] += mean_square(paths[k]);
+    const auto most = std::ranges::max_element(energy, {}, [](const auto& entry) { return entry.second; });
+    const std::size_t signal = deciding_signal(paths, effect.law->kind);
+    std::optional<MissingTerm> drawn;
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      if (group_of(k) != most->first) continue;
+      Result<MissingTerm> piece = missing_term(*baseline_, best_.model.get(), data, k, effect.element, effect.law->kind,
+                                               effect.law, parameters, signal);
+      if (!piece) continue;
+      if (drawn)
+        append(*drawn, std::move(*piece));
+      else
+        drawn = std::move(*piece);
+    }
+    if (!drawn) return;
+    drawn->what = law_at(effect);
+    result_.missing.push_back(std::move(*drawn));
   }
 
   void decide() {

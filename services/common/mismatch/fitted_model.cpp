@@ -19,11 +19,6 @@ ActuatorFitOptions search_options(int threads, int iterations) {
   return options;
 }
 
-bool at_bound(const Unknown& unknown, double at) {
-  constexpr double kNear = 1e-6;
-  return at - unknown.to_unknown(unknown.min) < kNear || unknown.to_unknown(unknown.max) - at < kNear;
-}
-
 void set_value(AssetConfig& asset, const std::string& name, double value) {
   if (const auto parameter = asset.parameters.find(name); parameter != asset.parameters.end())
     parameter->second.value = value;
@@ -73,6 +68,11 @@ FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum op
 }
 
 }  // namespace
+
+bool at_bound(const Unknown& unknown, double at) {
+  constexpr double kNear = 1e-6;
+  return at - unknown.to_unknown(unknown.min) < kNear || unknown.to_unknown(unknown.max) - at < kNear;
+}
 
 Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
                               int iterations) {

@@ -45,6 +45,9 @@ struct FittedModel {
 [[nodiscard]] AssetConfig with_law(AssetConfig asset, const Law& law, const std::string& element,
                                    std::span<const double> parameters);
 
+/// Whether an unknown, at that point of the search, is at an end of its range.
+[[nodiscard]] bool at_bound(const Unknown& unknown, double at);
+
 /// Value of a shared unknown by its name, in its own unit; nothing when it is not among them.
 [[nodiscard]] std::optional<double> estimate_of(const FittedModel& model, const std::string& name);
 

@@ -238,7 +238,9 @@ class GrossMismatch {
                                     .before_std = parameter.before_std,
                                     .after = parameter.after,
                                     .after_std = parameter.after_std,
-                                    .datasheet = asset_.parameters.at(parameter.name).value});
+                                    .datasheet = asset_.parameters.at(parameter.name).value,
+                                    .before_at_bound = !std::isfinite(parameter.before_std),
+                                    .after_at_bound = !std::isfinite(parameter.after_std)});
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = found_.model.asset;
     add_notes();

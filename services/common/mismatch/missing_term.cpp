@@ -14,13 +14,6 @@ namespace {
 
 constexpr double kBand = 1.96;         // standard errors: 95 %
 constexpr double kStepsPerKnot = 8.0;  // of the integrator: hats have corners that it does not know of
-constexpr std::string_view kSensor = "sensor:";
-
-std::size_t channel_of(const PlantSimulation& simulation, const std::string& element) {
-  const auto channels = simulation.channels();
-  const std::string name = element.starts_with(kSensor) ? element.substr(kSensor.size()) : element;
-  return static_cast<std::size_t>(std::ranges::find(channels, name) - channels.begin());
-}
 
 tl::unexpected<Error> no_such_place(const std::string& element, const PlantSimulation& simulation) {
   return fail(Error{.file = {},
@@ -90,51 +83,33 @@ Result<Columns> columns_of(const SimulatedPoint& at, const Knots& knots, const s
                  .residual = std::move(all.residual)};
 }
 
-Result<std::vector<double>> simulated_channel(const SimulatedPoint& at, const ModelValues& values,
-                                              std::size_t channel) {
-  const auto run = at.problem->recordings[at.recording].simulation->run(values, {}, at.problem->simulation_options);
-  if (!run) return fail(run.error());
-  const Eigen::VectorXd column = run->values.col(static_cast<Eigen::Index>(channel));
-  return std::vector<double>(column.begin(), column.end());
-}
-
-// The law of a sensor is what the channel loses when it is absent, all else equal.
 Status describe_sensor(const SimulatedPoint& at, std::size_t channel, const Law* law, const Knots& knots,
                        MissingTerm& term) {
   const PemRecording& part = at.problem->recordings[at.recording];
-  const ModelValues values = values_of(at);
-  auto reading = simulated_channel(at, values, channel);
-  if (!reading) return fail(reading.error());
-  term.state_value = hat_means(knots, part.time_s, *reading);
+  const auto path = sensor_path(at, term.element, law);
+  if (!path) return fail(path.error());
+  std::vector<double> measured;
+  for (const auto& signals : path->signals) measured.push_back(signals.front());
+  term.state_value = hat_means(knots, path->time_s, measured);
+  if (law != nullptr) term.law = hat_means(knots, path->time_s, path->contribution);
   if (const auto* description = part.simulation->plant().find_channel(part.simulation->channels()[channel])) {
     term.unit = term.state_unit = description->unit;
     term.state = description->meaning;
   }
-  if (law == nullptr) return {};
-  ModelValues absent = values;
-  for (const std::size_t k : strengths_of(*law)) {
-    const auto strength = part.simulation->find(physics_parameter_name(term.element, law->id, law->parameters[k].name));
-    if (!strength) return fail(strength.error());
-    strength->in(absent) = 0.0;
-  }
-  const auto without = simulated_channel(at, absent, channel);
-  if (!without) return fail(without.error());
-  for (std::size_t k = 0; k < reading->size(); ++k) (*reading)[k] -= (*without)[k];
-  term.law = hat_means(knots, part.time_s, *reading);
   return {};
 }
 
 Status describe_site(const SimulatedPoint& at, SiteKind kind, const Law* law, std::span<const double> parameters,
-                     const Knots& knots, MissingTerm& term) {
+                     std::size_t signal, const Knots& knots, MissingTerm& term) {
   const auto path = term_path(at, term.element, kind, law, parameters, knots.spacing_s / kStepsPerKnot);
   if (!path) return fail(path.error());
   std::vector<double> state;
-  for (const auto& signals : path->signals) state.push_back(signals.front());
+  for (const auto& signals : path->signals) state.push_back(signals[signal]);
   term.state_value = hat_means(knots, path->time_s, state);
   if (law != nullptr) term.law = hat_means(knots, path->time_s, path->contribution);
   term.unit = words_of(kind).unit;
-  term.state = words_of(kind).signals.front().name;
-  term.state_unit = words_of(kind).signals.front().unit;
+  term.state = words_of(kind).signals[signal].name;
+  term.state_unit = words_of(kind).signals[signal].unit;
   return {};
 }
 
@@ -142,7 +117,7 @@ Status describe_site(const SimulatedPoint& at, SiteKind kind, const Law* law, st
 
 Result<MissingTerm> missing_term(const FittedModel& without, const FittedModel* with, const Data& data,
                                  std::size_t recording, const std::string& element, SiteKind kind, const Law* law,
-                                 std::span<const double> parameters) {
+                                 std::span<const double> parameters, std::size_t signal) {
   if (with == nullptr) law = nullptr;
   const SimulatedPoint at = point_of(law == nullptr ? without : *with, recording);
   const PemRecording& part = at.problem->recordings[recording];
@@ -156,8 +131,8 @@ Result<MissingTerm> missing_term(const FittedModel& without, const FittedModel* 
   term.element = element;
   term.recording = data.names[recording];
   const Knots knots = make_knots(part.time_s);
-  const Status described =
-      sensor ? describe_sensor(at, channel, law, knots, term) : describe_site(at, kind, law, parameters, knots, term);
+  const Status described = sensor ? describe_sensor(at, channel, law, knots, term)
+                                  : describe_site(at, kind, law, parameters, signal, knots, term);
   if (!described) return fail(described.error());
   Result<Columns> columns = columns_of(at, knots, sites, channel);
   if (!columns) return fail(columns.error());
@@ -177,6 +152,12 @@ Result<MissingTerm> missing_term(const FittedModel& without, const FittedModel* 
     term.band.push_back(kBand * input->standard_error(static_cast<Eigen::Index>(k)));
   }
   return term;
+}
+
+void append(MissingTerm& term, MissingTerm&& next) {
+  for (std::vector<double> MissingTerm::*values :
+       {&MissingTerm::time_s, &MissingTerm::state_value, &MissingTerm::demanded, &MissingTerm::band, &MissingTerm::law})
+    (term.*values).insert((term.*values).end(), (next.*values).begin(), (next.*values).end());
 }
 
 }  // namespace sealwatch::mismatch

@@ -26,10 +26,14 @@
 namespace sealwatch::mismatch {
 
 /// `element`: for a sensor "sensor:flow". `with`, `law`: null where no law was found; `parameters` of the law in its
-/// order, as estimated in `with`. An Error when the plant has no such site, the recording does not depend on it, or
-/// nothing can be simulated.
+/// order, as estimated in `with`. `signal`: which of the site's signals it is to be shown against. An Error when the
+/// plant has no such site, the recording does not depend on it, or nothing can be simulated.
 [[nodiscard]] Result<MissingTerm> missing_term(const FittedModel& without, const FittedModel* with, const Data& data,
                                                std::size_t recording, const std::string& element, SiteKind kind,
-                                               const Law* law, std::span<const double> parameters);
+                                               const Law* law, std::span<const double> parameters,
+                                               std::size_t signal = 0);
+
+/// The same of the window that follows in time.
+void append(MissingTerm& term, MissingTerm&& next);
 
 }  // namespace sealwatch::mismatch

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "services/common/mismatch/candidates.hpp"
@@ -18,19 +19,32 @@ constexpr std::size_t kClosedForms = 5;  // refits of closed forms
 
 bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
 
-std::vector<Forbidden> forbidden_by_physics(const Screening& screening) {
+// Largest gain first.
+std::vector<Forbidden> forbidden_by_physics(const Screening& screening, const FittedModel& model) {
   std::vector<Forbidden> found;
   const double best_gain = by_gain(screening).empty() ? 0.0 : by_gain(screening).front()->gain;
+  const double beyond_noise = std::max(model.misfit - model.residuals, 1.0);
+  const auto share = [&](double gain) { return std::clamp(gain / beyond_noise, 0.0, 1.0); };
   for (const Variant& variant : screening.variants) {
     const Candidate& candidate = screening.candidates[variant.candidate];
     if (variant.physical || variant.columns.size() != 1) continue;
     const Eigen::Index column = variant.columns.front();
     const double gradient = screening.gradient(column), gram = screening.gram(column, column);
-    if (gradient * gradient / gram < std::max(0.5 * best_gain, 27.0)) continue;
+    const double gain = gradient * gradient / gram;
+    if (gain < std::max(0.5 * best_gain, 27.0)) continue;
     const Effect effect{candidate.law, candidate.element};
-    if (std::ranges::any_of(found, [&](const Forbidden& other) { return same(other.effect, effect); })) continue;
-    found.push_back({effect, gradient / gram * screening.unit[static_cast<std::size_t>(column)], variant.score});
+    const Forbidden forbidden{.effect = effect,
+                              .strength = gradient / gram * screening.unit[static_cast<std::size_t>(column)],
+                              .score = variant.score,
+                              .share = share(gain),
+                              .allowed_share = share(best_gain)};
+    const auto known = std::ranges::find_if(found, [&](const Forbidden& other) { return same(other.effect, effect); });
+    if (known == found.end())
+      found.push_back(forbidden);
+    else if (known->share < forbidden.share)
+      *known = forbidden;  // the point of its shape's grid that fits best
   }
+  std::ranges::stable_sort(found, std::greater<>(), &Forbidden::share);
   return found;
 }
 
@@ -154,7 +168,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   if (!first) return fail(first.error());
   Naming naming{
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
-  naming.forbidden = forbidden_by_physics(naming.first);
+  naming.forbidden = forbidden_by_physics(naming.first, *baseline);
   begin_with_what_shows(naming, data, options);
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
     if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||

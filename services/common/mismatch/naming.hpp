@@ -19,6 +19,7 @@ struct Forbidden {
   Effect effect;
   double strength = 0.0;  ///< what the data would want
   double score = 0.0;
+  double share = 0.0, allowed_share = 0.0;  ///< Rejected
 };
 
 struct Naming {

@@ -13,45 +13,20 @@ constexpr double kEnergy = 0.9, kTime = 0.65;  // least and most share of a regi
 constexpr double kRestNamed = 0.05;            // share of time from which it is worth saying that rest has none
 constexpr double kAtRest = 0.05;               // of the largest speed
 constexpr double kSpread = 0.1;                // of a signal's size, in its range, from which it splits
-constexpr double kLongestStep_s = 0.05;
+constexpr double kAlike = 0.2;                 // of eta2, within which signals decide alike
+constexpr double kActive = 0.1;                // of the term's 99 % quantile
+constexpr double kThroughout = 0.95;           // share of the time
+constexpr std::size_t kBins = 24;              // of a signal's range
 constexpr std::size_t kMostWords = 3;
 
 /// One step of a simulation: how long it stands for, what acts in it.
 struct Step {
   double weight_s = 0.0;
+  double term = 0.0;
   double energy = 0.0;
   double phase = 0.0;  ///< of the recording, 0 to 1
   std::array<double, kSiteSignals> signals{};
 };
-
-/// The signal that says whether and which way something moves, with its words; none: a kind at which nothing does.
-struct Motion {
-  std::size_t signal = kSiteSignals;
-  const char *rest = "", *forward = "", *backward = "", *both = "";
-};
-
-Motion motion_of(SiteKind kind) {
-  constexpr const char *kStill = "shaft at rest", *kForward = "turning forwards", *kBackward = "turning backwards",
-                       *kTurning = "turning, both directions";
-  switch (kind) {
-    case SiteKind::piston_force:
-      return {0, "at rest", "moving towards +x", "moving towards -x", "moving, both directions"};
-    case SiteKind::seal_leakage:
-      return {1, "at rest", "moving towards +x", "moving towards -x", "moving, both directions"};
-    case SiteKind::shaft_torque:
-      return {0, kStill, kForward, kBackward, kTurning};
-    case SiteKind::pump_slip:
-    case SiteKind::winding_voltage:
-      return {1, kStill, kForward, kBackward, kTurning};
-    case SiteKind::voltage_command:
-      return {1, "without command", "positive command", "negative command", "commanded, both directions"};
-    case SiteKind::line_drop:
-      return {0, "without flow", "oil flowing into the chamber", "oil flowing out of the chamber",
-              "oil flowing, both directions"};
-    default:
-      return {};
-  }
-}
 
 std::string number_with_unit(double value, std::string_view unit) {
   double factor = 1.0;
@@ -72,6 +47,7 @@ std::vector<Step> steps_of(std::span<const TermPath> recordings) {
       const double weight = 0.5 * (t[std::min(k + 1, t.size() - 1)] - t[k == 0 ? 0 : k - 1]);
       const double duration = std::max(t.back() - t.front(), 1e-12);
       steps.push_back({.weight_s = weight,
+                       .term = path.contribution[k],
                        .energy = weight * path.contribution[k] * path.contribution[k],
                        .phase = (t[k] - t.front()) / duration,
                        .signals = path.signals[k]});
@@ -107,7 +83,7 @@ double quantile(const std::vector<Step>& steps, double share, const Of& of) {
 }
 
 // Names the motion and leaves only the steps in which it acts.
-void split_motion(const Motion& motion, std::vector<Step>& steps, std::vector<std::string>& words) {
+void split_motion(const MotionWords& motion, std::vector<Step>& steps, std::vector<std::string>& words) {
   if (motion.signal == kSiteSignals) return;
   const auto speed = [&](const Step& step) { return step.signals[motion.signal]; };
   const double rest = kAtRest * quantile(steps, 0.98, [&](const Step& step) { return std::abs(speed(step)); });
@@ -150,6 +126,45 @@ Range narrowest_range(std::vector<std::pair<double, const Step*>> by_value) {
   return best;
 }
 
+// The values between which nearly none of the energy falls, in the most time: a term that acts at both ends.
+Range widest_gap(std::vector<std::pair<double, const Step*>> by_value) {
+  std::ranges::sort(by_value, {}, [](const auto& one) { return one.first; });
+  Shares all, inside;
+  for (const auto& [value, step] : by_value) all.energy += step->energy, all.time += step->weight_s;
+  Range best;
+  std::size_t first = 0;
+  for (const auto& [value, step] : by_value) {
+    inside.energy += step->energy, inside.time += step->weight_s;
+    for (; inside.energy > (1.0 - kEnergy) * all.energy; ++first)
+      inside.energy -= by_value[first].second->energy, inside.time -= by_value[first].second->weight_s;
+    if (inside.time > best.shares.time * all.time)
+      best = {by_value[first].first, value, {inside.energy / all.energy, inside.time / all.time}};
+  }
+  return best;
+}
+
+// Share of the variance of `of` between the values of a signal, in bins of its range.
+template <class Of>
+double correlation_ratio(const std::vector<Step>& steps, std::size_t signal, const Of& of) {
+  const auto value = [&](const Step& step) { return step.signals[signal]; };
+  const double low = quantile(steps, 0.01, value), high = quantile(steps, 0.99, value);
+  if (!(high > low)) return 0.0;
+  std::array<double, kBins> time{}, sum{};
+  double all_time = 0.0, mean = 0.0, square = 0.0, between = 0.0;
+  for (const Step& step : steps) {
+    const double place = static_cast<double>(kBins) * (value(step) - low) / (high - low);
+    const auto bin = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(kBins) - 1.0));
+    time[bin] += step.weight_s, sum[bin] += step.weight_s * of(step);
+    all_time += step.weight_s, mean += step.weight_s * of(step), square += step.weight_s * of(step) * of(step);
+  }
+  mean /= all_time;
+  const double variance = square / all_time - mean * mean;
+  if (variance <= 1e-9 * square / all_time) return 0.0;  // a constant goes by nothing
+  for (std::size_t bin = 0; bin < kBins; ++bin)
+    if (time[bin] > 0.0) between += time[bin] * std::pow(sum[bin] / time[bin] - mean, 2);
+  return between / all_time / variance;
+}
+
 void split_signal(const SignalWords& signal, std::size_t index, bool by_size, const std::vector<Step>& steps,
                   std::vector<std::string>& words) {
   const auto of = [&](const Step& step) { return by_size ? std::abs(step.signals[index]) : step.signals[index]; };
@@ -157,9 +172,18 @@ void split_signal(const SignalWords& signal, std::size_t index, bool by_size, co
   if (highest - lowest < kSpread * std::max(std::abs(lowest), std::abs(highest))) return;
   std::vector<std::pair<double, const Step*>> by_value;
   for (const Step& step : steps) by_value.emplace_back(of(step), &step);
-  const Range range = narrowest_range(std::move(by_value));
+  const Range range = narrowest_range(by_value);
   const bool from_lowest = range.low <= lowest, to_highest = range.high >= highest;
-  if (!range.shares.named() || (from_lowest && to_highest)) return;
+  if (!range.shares.named() || (from_lowest && to_highest)) {
+    const Range gap = widest_gap(std::move(by_value));
+    if (gap.shares.time < 1.0 - kTime || gap.low <= lowest || gap.high >= highest) return;
+    words.push_back(std::string(signal.name)
+                        .append(" below ")
+                        .append(number_with_unit(gap.low, signal.unit))
+                        .append(" or above ")
+                        .append(number_with_unit(gap.high, signal.unit)));
+    return;
+  }
   const std::string low = number_with_unit(range.low, signal.unit), high = number_with_unit(range.high, signal.unit);
   std::string text(signal.name);
   if (from_lowest)
@@ -171,39 +195,88 @@ void split_signal(const SignalWords& signal, std::size_t index, bool by_size, co
   words.push_back(std::move(text));
 }
 
+// Share of the time in which the term is there.
+double active_share(const std::vector<Step>& steps) {
+  const auto size = [](const Step& step) { return std::abs(step.term); };
+  const double least = kActive * quantile(steps, 0.99, size);
+  double largest = 0.0;
+  for (const Step& step : steps) largest = std::max(largest, size(step));
+  // A term that is there for less than a hundredth of the time: against its largest value.
+  const double limit = least > 0.0 ? least : kActive * largest;
+  return shares(steps, [&](const Step& step) { return size(step) > limit; }).time;
+}
+
+std::string percent(double share) {
+  if (share < 0.01) return "less than 1 %";
+  return std::to_string(std::lround(100.0 * share)).append(" %");
+}
+
+// Of the signals that the term's size goes by.
+void split_signals(SiteKind kind, const std::array<SignalWords, kSiteSignals>& signals, const std::vector<Step>& steps,
+                   std::vector<std::string>& words) {
+  if (steps.empty()) return;
+  std::array<double, kSiteSignals> ratio{};
+  for (std::size_t k = 0; k < kSiteSignals; ++k)
+    if (!signals[k].name.empty())
+      ratio[k] = correlation_ratio(steps, k, [](const Step& step) { return std::abs(step.term); });
+  const double largest = *std::ranges::max_element(ratio);
+  for (std::size_t k = 0; k < kSiteSignals; ++k) {
+    if (signals[k].name.empty() || ratio[k] < largest - kAlike) continue;
+    const bool by_size = k == motion_of(kind).signal || signals[k].unit == "A" || signals[k].unit == "m3/s";
+    split_signal(signals[k], k, by_size && !is_sensor(kind), steps, words);
+  }
+}
+
 }  // namespace
 
-std::string regime_of(std::span<const TermPath> recordings, SiteKind kind) {
+std::string regime_of(std::span<const TermPath> recordings, SiteKind kind,
+                      const std::array<SignalWords, kSiteSignals>& signals, bool whole) {
   std::vector<Step> steps = steps_of(recordings);
+  if (steps.empty()) return {};
+  if (!(shares(steps, [](const Step&) { return true; }).energy > 0.0)) return "nowhere in these recordings";
+  const double active = active_share(steps);
   std::vector<std::string> words;
-  if (shares(steps, [](const Step&) { return true; }).energy > 0.0) {
-    const Motion motion = motion_of(kind);
-    split_motion(motion, steps, words);
-    const auto& signals = words_of(kind).signals;
-    for (std::size_t k = 0; k < kSiteSignals; ++k)
-      if (!signals[k].name.empty()) {
-        const bool by_size = k == motion.signal || signals[k].unit == "A" || signals[k].unit == "m3/s";
-        split_signal(signals[k], k, by_size, steps, words);
-      }
-    if (shares(steps, [](const Step& step) { return step.phase < 1.0 / 3.0; }).named())
-      words.emplace_back("in the first third of the recording");
-    if (shares(steps, [](const Step& step) { return step.phase > 2.0 / 3.0; }).named())
-      words.emplace_back("in the last third of the recording");
+  split_motion(motion_of(kind), steps, words);
+  split_signals(kind, signals, steps, words);
+  if (whole && shares(steps, [](const Step& step) { return step.phase < 1.0 / 3.0; }).named())
+    words.emplace_back("in the first third of the recording");
+  if (whole && shares(steps, [](const Step& step) { return step.phase > 2.0 / 3.0; }).named())
+    words.emplace_back("in the last third of the recording");
+  if (words.empty()) {
+    if (active >= kThroughout) return "throughout";
+    return std::string(active > kTime ? "most of the time (" : "at times (").append(percent(active)).append(")");
   }
-  if (words.empty()) return "throughout";
   if (words.size() > kMostWords) words.resize(kMostWords);
   std::string text = words.front();
   for (std::size_t k = 1; k < words.size(); ++k) text.append("; ").append(words[k]);
-  return text;
+  return text.append(", ").append(percent(active)).append(" of the time");
 }
 
-std::string regime_of(const FittedModel& with, const std::string& element, const Law& law,
-                      std::span<const double> parameters) {
-  std::vector<TermPath> paths;
-  for (std::size_t k = 0; !is_sensor(law.kind) && k < with.problem.recordings.size(); ++k)
-    if (Result<TermPath> path = term_path(point_of(with, k), element, law.kind, &law, parameters, kLongestStep_s))
-      paths.push_back(std::move(*path));
-  return regime_of(paths, law.kind);
+std::string regime_of(std::span<const TermPath> recordings, SiteKind kind) {
+  return regime_of(recordings, kind, words_of(kind).signals);
+}
+
+std::array<SignalWords, kSiteSignals> signals_of(const PlantSimulation& simulation, const std::string& element,
+                                                 SiteKind kind) {
+  std::array<SignalWords, kSiteSignals> signals = words_of(kind).signals;
+  const std::size_t channel = is_sensor(kind) ? channel_of(simulation, element) : simulation.channels().size();
+  if (channel == simulation.channels().size()) return signals;
+  if (const auto* description = simulation.plant().find_channel(simulation.channels()[channel]))
+    signals.front() = {"measured value", description->unit};
+  return signals;
+}
+
+std::size_t deciding_signal(std::span<const TermPath> recordings, SiteKind kind) {
+  constexpr double kNearlyEqual = 0.05;
+  const std::vector<Step> steps = steps_of(recordings);
+  std::size_t best = 0;
+  double largest = 0.0;
+  for (std::size_t k = 0; k < kSiteSignals && !steps.empty(); ++k) {
+    if (words_of(kind).signals[k].name.empty()) continue;
+    const double ratio = correlation_ratio(steps, k, [](const Step& step) { return step.term; });
+    if (ratio > largest + kNearlyEqual) best = k, largest = ratio;
+  }
+  return best;
 }
 
 }  // namespace sealwatch::mismatch

@@ -75,4 +75,27 @@ const SiteWords& words_of(SiteKind kind) {
   return kSensor;
 }
 
+MotionWords motion_of(SiteKind kind) {
+  constexpr const char *kStill = "shaft at rest", *kForward = "turning forwards", *kBackward = "turning backwards",
+                       *kTurning = "turning, both directions";
+  switch (kind) {
+    case SiteKind::piston_force:
+      return {0, "at rest", "moving towards +x", "moving towards -x", "moving, both directions"};
+    case SiteKind::seal_leakage:
+      return {1, "at rest", "moving towards +x", "moving towards -x", "moving, both directions"};
+    case SiteKind::shaft_torque:
+      return {0, kStill, kForward, kBackward, kTurning};
+    case SiteKind::pump_slip:
+    case SiteKind::winding_voltage:
+      return {1, kStill, kForward, kBackward, kTurning};
+    case SiteKind::voltage_command:
+      return {1, "without command", "positive command", "negative command", "commanded, both directions"};
+    case SiteKind::line_drop:
+      return {0, "without flow", "oil flowing into the chamber", "oil flowing out of the chamber",
+              "oil flowing, both directions"};
+    default:
+      return {};
+  }
+}
+
 }  // namespace sealwatch::mismatch

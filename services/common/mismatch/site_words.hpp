@@ -21,4 +21,12 @@ struct SiteWords {
 
 [[nodiscard]] const SiteWords& words_of(SiteKind kind);
 
+/// The signal that says whether and which way something moves, with its words; none: a kind at which nothing does.
+struct MotionWords {
+  std::size_t signal = kSiteSignals;
+  const char *rest = "", *forward = "", *backward = "", *both = "";
+};
+
+[[nodiscard]] MotionWords motion_of(SiteKind kind);
+
 }  // namespace sealwatch::mismatch

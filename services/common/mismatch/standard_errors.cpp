@@ -37,10 +37,6 @@ void add_recording(const Linearisation& at, const std::vector<double>& time_s, N
   }
 }
 
-bool at_bound(const Unknown& unknown, double at) {
-  return at - unknown.to_unknown(unknown.min) < 1e-6 || unknown.to_unknown(unknown.max) - at < 1e-6;
-}
-
 // What the data tell of: scaled to a unit diagonal, as the unknowns differ by twenty orders of magnitude.
 std::vector<Eigen::Index> told_by_data(const FittedModel& model, const Eigen::MatrixXd& information) {
   std::vector<Eigen::Index> told;

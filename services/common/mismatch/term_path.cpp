@@ -8,6 +8,8 @@
 namespace sealwatch::mismatch {
 namespace {
 
+constexpr std::string_view kSensor = "sensor:";
+
 // Watches a simulation: a column that adds nothing.
 class PathRecorder final : public InjectedColumns {
  public:
@@ -45,6 +47,21 @@ double hidden_start(const SimulatedPoint& at, const Law& law, const std::string&
   for (std::size_t k = 0; k < own.size(); ++k)
     if (own[k].name == name) return own[k].to_value(at.own[k]);
   return 0.0;
+}
+
+Result<std::vector<double>> simulated_channel(const SimulatedPoint& at, const ModelValues& values,
+                                              std::size_t channel) {
+  const auto run = at.problem->recordings[at.recording].simulation->run(values, {}, at.problem->simulation_options);
+  if (!run) return fail(run.error());
+  const Eigen::VectorXd column = run->values.col(static_cast<Eigen::Index>(channel));
+  return std::vector<double>(column.begin(), column.end());
+}
+
+// Signals between samples that are far apart change little more: a long record is not followed in finer steps than
+// this.
+double path_step_s(const PemRecording& part) {
+  constexpr double kLongestStep_s = 0.05, kSteps = 4000.0;
+  return std::max(kLongestStep_s, (part.time_s.back() - part.time_s.front()) / kSteps);
 }
 
 }  // namespace
@@ -86,6 +103,47 @@ Result<TermPath> term_path(const SimulatedPoint& at, const std::string& element,
   const auto run = simulation.run(values_at(*at.problem, at.recording, shared, own), {}, options, &recorder);
   if (!run) return fail(run.error());
   return std::move(recorder.path);
+}
+
+std::size_t channel_of(const PlantSimulation& simulation, const std::string& element) {
+  const auto channels = simulation.channels();
+  const std::string name = element.starts_with(kSensor) ? element.substr(kSensor.size()) : element;
+  return static_cast<std::size_t>(std::ranges::find(channels, name) - channels.begin());
+}
+
+Result<TermPath> sensor_path(const SimulatedPoint& at, const std::string& element, const Law* law) {
+  const PemRecording& part = at.problem->recordings[at.recording];
+  const std::size_t channel = channel_of(*part.simulation, element);
+  const std::vector<double> shared(at.shared.begin(), at.shared.end()), own(at.own.begin(), at.own.end());
+  const ModelValues values = values_at(*at.problem, at.recording, shared, own);
+  ModelValues absent = values;
+  for (const std::size_t k : law == nullptr ? std::vector<std::size_t>{} : strengths_of(*law)) {
+    const auto strength = part.simulation->find(physics_parameter_name(element, law->id, law->parameters[k].name));
+    if (!strength) return fail(strength.error());
+    strength->in(absent) = 0.0;
+  }
+  const auto reading = simulated_channel(at, values, channel), without = simulated_channel(at, absent, channel);
+  if (!reading) return fail(reading.error());
+  if (!without) return fail(without.error());
+  TermPath path{.time_s = part.time_s, .signals = {}, .contribution = {}};
+  for (std::size_t k = 0; k < reading->size(); ++k) {
+    path.signals.push_back({(*without)[k]});
+    path.contribution.push_back((*reading)[k] - (*without)[k]);
+  }
+  return path;
+}
+
+std::vector<TermPath> term_paths(const FittedModel& with, const std::string& element, const Law& law,
+                                 std::span<const double> parameters) {
+  std::vector<TermPath> paths;
+  for (std::size_t k = 0; k < with.problem.recordings.size(); ++k) {
+    const SimulatedPoint at = point_of(with, k);
+    Result<TermPath> path = is_sensor(law.kind) ? sensor_path(at, element, &law)
+                                                : term_path(at, element, law.kind, &law, parameters,
+                                                            path_step_s(with.problem.recordings[k]));
+    paths.push_back(path ? std::move(*path) : TermPath{});
+  }
+  return paths;
 }
 
 }  // namespace sealwatch::mismatch

@@ -1,4 +1,5 @@
-// What a law contributes along a simulated recording, with the signals that it sees: for drawings and for regimes.
+// What a law contributes along a simulated recording, with the signals that it sees: for drawings and for regimes. Of a
+// sensor's law: what its reading loses when the law is absent, all else equal, against what the sensor measures.
 #pragma once
 
 #include "services/common/mismatch/fitted_model.hpp"
@@ -28,5 +29,15 @@ struct SimulatedPoint {
 /// Error when the plant has no such site or cannot be simulated.
 [[nodiscard]] Result<TermPath> term_path(const SimulatedPoint& at, const std::string& element, SiteKind kind,
                                          const Law* law, std::span<const double> parameters, double longest_step_s);
+
+/// Of the sensor `element` ("sensor:flow") at the recorded samples: its first signal is the reading without the law.
+[[nodiscard]] Result<TermPath> sensor_path(const SimulatedPoint& at, const std::string& element, const Law* law);
+
+/// Index of the channel of "sensor:flow" or "flow" among the recorded ones, or their number.
+[[nodiscard]] std::size_t channel_of(const PlantSimulation& simulation, const std::string& element);
+
+/// Of every recording (window) that can be simulated at the model's estimates; empty paths of the others.
+[[nodiscard]] std::vector<TermPath> term_paths(const FittedModel& with, const std::string& element, const Law& law,
+                                               std::span<const double> parameters);
 
 }  // namespace sealwatch::mismatch

@@ -104,7 +104,11 @@ Json recording_json(const RecordingComparison& recording) {
 }
 
 Json missing_json(const MissingTerm& term) {
-  return {{"element", term.element},
+  return {{"id", term.what.id},
+          {"form", term.what.form},
+          {"element", term.element},
+          {"equation", term.what.law},
+          {"meaning", term.what.meaning},
           {"quantity", term.quantity},
           {"unit", term.unit},
           {"recording", term.recording},
@@ -156,7 +160,9 @@ void add_parameters(const Explanation& explanation, Json& json) {
                        {"before_std", number(shift.before_std)},
                        {"after", number(shift.after)},
                        {"after_std", number(shift.after_std)},
-                       {"datasheet", number(shift.datasheet)}});
+                       {"datasheet", number(shift.datasheet)},
+                       {"before_at_bound", shift.before_at_bound},
+                       {"after_at_bound", shift.after_at_bound}});
   }
   json["parameters"] = {{"before", std::move(before)}, {"after", std::move(after)}};
   json["parameter_details"] = std::move(details);
@@ -183,6 +189,8 @@ void add_details(const Explanation& explanation, Json& json) {
   json["rejected"] = list(explanation.rejected, [](const mismatch::Rejected& rejected) {
     Json one = law_at(rejected.what);
     one["why"] = rejected.why;
+    one["share"] = number(rejected.share);
+    one["allowed_share"] = number(rejected.allowed_share);
     return one;
   });
   json["prognosis"] = prognosis_json(explanation.prognosis);

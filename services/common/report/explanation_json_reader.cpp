@@ -146,6 +146,11 @@ MissingTerm read_missing(const Json& json) {
           .recording = text(json, "recording"),
           .state = text(json, "state"),
           .state_unit = text(json, "state_unit"),
+          .what = {.id = text(json, "id"),
+                   .form = text(json, "form"),
+                   .element = text(json, "element"),
+                   .law = text(json, "equation"),
+                   .meaning = text(json, "meaning")},
           .time_s = numbers(json, "time_s"),
           .state_value = numbers(json, "state_value"),
           .demanded = numbers(json, "demanded"),
@@ -175,7 +180,9 @@ ParameterShift read_shift(const Json& json) {
           .before_std = number(json, "before_std"),
           .after = number(json, "after"),
           .after_std = number(json, "after_std"),
-          .datasheet = number(json, "datasheet")};
+          .datasheet = number(json, "datasheet"),
+          .before_at_bound = truth(json, "before_at_bound"),
+          .after_at_bound = truth(json, "after_at_bound")};
 }
 
 PrognosisShift read_prognosis(const Json& json) {
@@ -211,8 +218,12 @@ Explanation read(const Json& json) {
   explanation.holdout.channels = read_fit(member(member(json, "fit"), "holdout"));
   explanation.parameters = list(json, "parameter_details", read_shift);
   explanation.power = list(json, "power", read_power);
-  explanation.rejected =
-      list(json, "rejected", [](const Json& one) { return Rejected{.what = read_law(one), .why = text(one, "why")}; });
+  explanation.rejected = list(json, "rejected", [](const Json& one) {
+    return Rejected{.what = read_law(one),
+                    .why = text(one, "why"),
+                    .share = number(one, "share"),
+                    .allowed_share = number(one, "allowed_share")};
+  });
   explanation.prognosis = read_prognosis(member(json, "prognosis"));
   explanation.next_test = text(json, "next_test");
   explanation.summary = text(json, "summary");

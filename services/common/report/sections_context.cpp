@@ -1,6 +1,8 @@
 // What had absorbed the effect, what it does to the prognosis, what could have been seen.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/report/explanation_sections.hpp"
@@ -30,6 +32,26 @@ double largest_of(const ParameterShift& shift) {
 /// "10.68 ± 0.41", as many decimals as the error's second digit; the error is left out where the data cannot tell it.
 std::string with_error(double value, double error) {
   return error > 0.0 && std::isfinite(error) ? readable_with_error(value, error, "") : number_text(value, 4);
+}
+
+/// The value with its error, or that it ended at a bound, or that the recordings do not tell it.
+std::string told(double value, double error, bool at_bound) {
+  std::string text = with_error(value, error);
+  if (at_bound) return text.append(", at its bound");
+  return std::isfinite(error) ? text : text.append(", not told");
+}
+
+/// What a reader has to see first: those at a bound, then those that moved most over their error.
+std::vector<const ParameterShift*> by_weight(const std::vector<ParameterShift>& shifts) {
+  std::vector<const ParameterShift*> order;
+  for (const ParameterShift& shift : shifts) order.push_back(&shift);
+  const auto weight = [](const ParameterShift* shift) {
+    if (shift->before_at_bound || shift->after_at_bound) return std::numeric_limits<double>::infinity();
+    const double errors = std::abs(shift_in_errors(*shift));
+    return std::isfinite(errors) ? errors : 0.0;
+  };
+  std::ranges::stable_sort(order, std::greater<>(), weight);
+  return order;
 }
 
 std::string change_text(double from, double to) {
@@ -65,26 +87,35 @@ std::string parameters_section(const Explanation& explanation) {
   Table table(changed ? std::vector<std::string>{"parameter", "unit", ">datasheet", ">before", ">after", ">change",
                                                  ">over its error", "~meaning"}
                       : std::vector<std::string>{"parameter", "unit", ">datasheet", ">fitted", "~meaning"});
-  for (const ParameterShift& shift : explanation.parameters) {
+  for (const ParameterShift* one : by_weight(explanation.parameters)) {
+    const ParameterShift& shift = *one;
+    const bool at_bound = shift.before_at_bound || shift.after_at_bound;
     const DisplayUnit unit = display_unit(shift.unit, largest_of(shift));
-    std::vector<std::string> cells = {shift.name, unit.text, number_text(shift.datasheet * unit.factor, 4),
-                                      with_error(shift.before * unit.factor, shift.before_std * unit.factor)};
+    std::vector<std::string> cells = {
+        shift.name, unit.text, number_text(shift.datasheet * unit.factor, 4),
+        told(shift.before * unit.factor, shift.before_std * unit.factor, shift.before_at_bound)};
     const double errors = std::abs(shift_in_errors(shift));
     if (changed) {
-      cells.push_back(with_error(shift.after * unit.factor, shift.after_std * unit.factor));
+      cells.push_back(told(shift.after * unit.factor, shift.after_std * unit.factor, shift.after_at_bound));
       cells.push_back(change_text(shift.before, shift.after));
       cells.push_back(number_text(errors, 2));
     }
     const ParameterDescription* known = plant ? (*plant)->find_parameter(shift.name) : nullptr;
     cells.push_back(known == nullptr ? "" : known->meaning);
     for (std::string& cell : cells) cell = escaped(cell);
-    table.row_of_html(cells, changed && errors > kClearShift ? "strong" : "");
+    table.row_of_html(cells, at_bound || (changed && errors > kClearShift) ? "strong" : "");
   }
   const char* words = changed ? "A parameter that moves when the missing physics is added had been standing in for it. "
-                                "In bold: moved by more than three standard errors."
+                                "In bold: at a bound, or moved by more than three standard errors."
                               : "The parameters as fitted to the recordings.";
+  const char* bound =
+      " One at its bound wants to go further than its range allows: something else is asked of it, or its range is "
+      "wrong.";
+  const bool any_at_bound = std::ranges::any_of(explanation.parameters, [](const ParameterShift& shift) {
+    return shift.before_at_bound || shift.after_at_bound;
+  });
   return section(changed ? "What had absorbed the effect" : "Fitted parameters",
-                 paragraph(words, "small muted").append(table.html()));
+                 paragraph(std::string(words).append(any_at_bound ? bound : ""), "small muted").append(table.html()));
 }
 
 std::string prognosis_section(const Explanation& explanation) {

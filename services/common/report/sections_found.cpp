@@ -130,6 +130,28 @@ std::string alternatives_to(const FoundEffect& effect) {
   return html;
 }
 
+/// In the order of what they would have taken.
+std::string rejected_html(const std::vector<mismatch::Rejected>& list) {
+  std::string words =
+      "Each law looked at by itself on the model as it was, before anything was added: these would have fitted with a "
+      "value that physics rules out, and are not claimed. Mostly they mimic what was really missing.";
+  if (list.front().allowed_share > 0.0)
+    words.append(" The best law with a possible value would have taken ")
+        .append(percent_text(list.front().allowed_share))
+        .append(" of the misfit beyond the noise.");
+  Table table({"law", "element", ">share of the misfit it would have taken", "~why it is rejected"});
+  for (const mismatch::Rejected& rejected : list)
+    table.row_of_html({std::string(escaped(law_name(rejected.what)))
+                           .append("<br/><code class=\"small muted\">")
+                           .append(escaped(rejected.what.law))
+                           .append("</code>"),
+                       escaped(words_of(rejected.what.element)),
+                       escaped(rejected.share > 0.0 ? percent_text(rejected.share) : "–"), escaped(rejected.why)});
+  return std::string("<h3>Better fits that physics forbids</h3>\n")
+      .append(paragraph(words, "small muted"))
+      .append(table.html());
+}
+
 }  // namespace
 
 std::string where_section(const Explanation& explanation) {
@@ -158,11 +180,7 @@ std::string alternatives_section(const Explanation& explanation) {
   std::string html;
   for (const FoundEffect& effect : explanation.effects) html += alternatives_to(effect);
   if (!explanation.rejected.empty()) {
-    html += "<h3>Better fits that physics forbids</h3>\n";
-    Table table({"law", "element", "~why it is rejected"});
-    for (const mismatch::Rejected& rejected : explanation.rejected)
-      table.row({law_name(rejected.what), words_of(rejected.what.element), rejected.why});
-    html += table.html();
+    html += rejected_html(explanation.rejected);
   }
   return html.empty() ? std::string() : section("The alternatives, and why not", html);
 }

@@ -1,5 +1,6 @@
 // The missing force, flow, torque or voltage: over time, and against the state that it depends on.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -15,11 +16,19 @@ using mismatch::MissingTerm;
 
 constexpr std::size_t kShownOpen = 2;   ///< terms that are shown open, the others folded
 constexpr std::size_t kMostDots = 900;  ///< of a scatter
-constexpr std::size_t kBins = 60;       ///< of the state's range
+constexpr std::size_t kBins = 60;       ///< of the state's range, for the law
+constexpr std::size_t kBandBins = 15;   ///< of the state's range, for what the data demand
+constexpr double kMostlyOutside = 0.5;  ///< share of the points inside the band below which it is said
 constexpr double kOneValued = 0.1;      ///< of the law's range: the two ways through a state differ by less
 
+/// "Coulomb friction of the piston: missing force against +x, N"
 std::string title_of(const MissingTerm& term) {
-  return std::string(words_of(term.element)).append(": missing ").append(term.quantity);
+  std::string title = words_of(term.element);
+  if (!term.what.id.empty()) title = law_name(term.what).append(" of the ").append(title);
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  title.append(": missing ").append(term.quantity);
+  if (!term.unit.empty() && term.unit != "1") title.append(", ").append(unit_text(term.unit));
+  return title;
 }
 
 bool has_law(const MissingTerm& term) { return term.law.size() == term.time_s.size() && !term.law.empty(); }
@@ -97,6 +106,25 @@ void add_law(const MissingTerm& term, const Bins& bins, Plot& plot) {
   plot.marks.emplace_back(std::move(down));
 }
 
+/// What the data demand over the state: means of bins with the mean of their band.
+Band demanded_band(const MissingTerm& term, double low, double high) {
+  std::vector<double> count(kBandBins, 0.0), state(kBandBins, 0.0), mean(kBandBins, 0.0), width(kBandBins, 0.0);
+  for (std::size_t k = 0; k < std::min({term.state_value.size(), term.demanded.size(), term.band.size()}); ++k) {
+    if (!std::isfinite(term.state_value[k] + term.demanded[k] + term.band[k])) continue;
+    const double place = static_cast<double>(kBandBins) * (term.state_value[k] - low) / (high - low);
+    const auto bin = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(kBandBins) - 1.0));
+    ++count[bin], state[bin] += term.state_value[k], mean[bin] += term.demanded[k], width[bin] += term.band[k];
+  }
+  Band band{.ink = Ink::first, .label = "band"};
+  for (std::size_t bin = 0; bin < kBandBins; ++bin) {
+    if (count[bin] == 0.0) continue;
+    band.x.push_back(state[bin] / count[bin]);
+    band.low.push_back((mean[bin] - width[bin]) / count[bin]);
+    band.high.push_back((mean[bin] + width[bin]) / count[bin]);
+  }
+  return band;
+}
+
 Plot over_state(const MissingTerm& term) {
   Plot plot{.title = std::string("missing ").append(term.quantity),
             .x = {.label = term.state, .unit = term.state_unit},
@@ -110,18 +138,41 @@ Plot over_state(const MissingTerm& term) {
     dots.y.push_back(term.demanded[k]);
   }
   plot.marks.emplace_back(Reference{.at = 0.0});
-  plot.marks.emplace_back(std::move(dots));
   const auto [low, high] = std::minmax_element(term.state_value.begin(), term.state_value.end());
+  if (size == term.band.size() && *high > *low) plot.marks.emplace_back(demanded_band(term, *low, *high));
+  plot.marks.emplace_back(std::move(dots));
   if (has_law(term) && size == term.law.size() && *high > *low)
     add_law(term, {.low = *low, .step = (*high - *low) / static_cast<double>(kBins)}, plot);
   return plot;
+}
+
+/// Share of the points at which the law runs inside the band.
+double share_inside(const MissingTerm& term) {
+  std::size_t inside = 0, known = 0;
+  for (std::size_t k = 0; k < std::min({term.law.size(), term.demanded.size(), term.band.size()}); ++k) {
+    if (!std::isfinite(term.law[k] + term.demanded[k] + term.band[k])) continue;
+    ++known;
+    if (std::abs(term.law[k] - term.demanded[k]) <= term.band[k]) ++inside;
+  }
+  return known == 0 ? 1.0 : static_cast<double>(inside) / static_cast<double>(known);
+}
+
+std::string agreement_of(const MissingTerm& term) {
+  if (!has_law(term)) return {};
+  const double inside = share_inside(term);
+  std::string words = "The law runs inside the band at " + percent_text(inside) + " of the points.";
+  if (inside < kMostlyOutside)
+    words +=
+        " Elsewhere the data ask for another course, or the band is too narrow where the law itself reacts to the "
+        "missing term (an overflow, a stop, dry friction) and hides it.";
+  return paragraph(words, "small muted");
 }
 
 std::string plots_of(const MissingTerm& term) {
   std::string html = "<div class=\"plots\">\n<div>";
   html.append(to_svg(over_time(term))).append("</div>\n");
   if (!term.state_value.empty()) html.append("<div>").append(to_svg(over_state(term))).append("</div>\n");
-  return html.append("</div>\n");
+  return html.append("</div>\n").append(agreement_of(term));
 }
 
 }  // namespace
@@ -130,8 +181,9 @@ std::string missing_section(const mismatch::Explanation& explanation) {
   if (explanation.missing.empty()) return {};
   std::string html = paragraph(
       "What the data demand is estimated without any law, from the recording and the balance of the element, as means "
-      "over a quarter of a second; its band is the 95 % interval. Where the law runs inside the band it says what the "
-      "data say.",
+      "over a quarter of a second or more, over the recording in which the law does most; its band is the 95 % "
+      "interval. "
+      "Where the law runs inside the band it says what the data say.",
       "small muted");
   for (std::size_t k = 0; k < explanation.missing.size(); ++k) {
     const MissingTerm& term = explanation.missing[k];

@@ -16,6 +16,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 /// One recording.
 Data data_of(TimeSeries samples) {
@@ -108,7 +109,8 @@ TEST(MissingTerm, OfCoulombFrictionIsItsForceOverTime) {
   EXPECT_EQ(term->unit, "N");
   EXPECT_EQ(term->state, "piston velocity");
   EXPECT_NEAR(*std::ranges::max_element(term->state_value), 1.33e-3, 1e-4);
-  EXPECT_EQ(regime_of(coulomb.with, "piston", *coulomb.law, coulomb.parameters), "moving, both directions");
+  EXPECT_THAT(regime_of(term_paths(coulomb.with, "piston", *coulomb.law, coulomb.parameters), SiteKind::piston_force),
+              StartsWith("moving, both directions, "));
   RecordProperty("within", std::to_string(demanded.within));
   RecordProperty("relative_rms", std::to_string(demanded.relative_rms));
 }
@@ -158,7 +160,7 @@ TEST(MissingTerm, OfAScoredBoreIsItsLeakageOverTime) {
   EXPECT_LT(compare(*term, term->law, truth).relative_rms, 0.05);
   EXPECT_EQ(term->quantity, "flow from chamber A to B");
   EXPECT_EQ(term->state, "pressure difference across the piston");
-  EXPECT_THAT(regime_of(score.with, "piston_seal", *score.law, score.parameters),
+  EXPECT_THAT(regime_of(term_paths(score.with, "piston_seal", *score.law, score.parameters), SiteKind::seal_leakage),
               HasSubstr("; piston position between "));
   RecordProperty("within", std::to_string(demanded.within));
   RecordProperty("relative_rms", std::to_string(demanded.relative_rms));
@@ -257,13 +259,38 @@ TEST(Regime, IsNamedByWhereTheEnergyIs) {
     return regime_of(paths, SiteKind::piston_force);
   };
   EXPECT_EQ(regime([](double, double, double) { return 100.0; }), "throughout");
-  EXPECT_EQ(regime([](double, double, double) { return 0.0; }), "throughout");
-  EXPECT_EQ(regime([](double, double v, double) { return 1e5 * v; }), "moving, both directions");
+  EXPECT_EQ(regime([](double, double, double) { return 0.0; }), "nowhere in these recordings");
+  EXPECT_EQ(regime([](double, double v, double) { return 1e5 * v; }), "moving, both directions, 67 % of the time");
   EXPECT_THAT(regime([](double, double v, double) { return v > 0.0 ? 100.0 : 0.0; }), HasSubstr("moving towards +x"));
   EXPECT_THAT(regime([](double, double v, double) { return v < 0.0 ? 100.0 : 0.0; }), HasSubstr("moving towards -x"));
   EXPECT_THAT(regime([](double, double v, double) { return v == 0.0 ? 100.0 : 0.0; }), HasSubstr("at rest"));
   EXPECT_EQ(regime([](double, double v, double x) { return x > 0.057 ? 1e5 * v : 0.0; }),
-            "moving, both directions; piston position above 57 mm");
+            "moving, both directions; piston position above 57 mm, 20 % of the time");
+  EXPECT_EQ(regime([](double, double v, double x) { return v != 0.0 && std::abs(x - 0.055) > 0.003 ? 100.0 : 0.0; }),
+            "moving, both directions; piston position below 52 mm or above 58 mm, 27 % of the time");
+  EXPECT_EQ(regime_of({}, SiteKind::piston_force), "");
+}
+
+TEST(Regime, OfASensorGoesByWhatItMeasures) {
+  TermPath path;
+  for (int k = 0; k <= 1000; ++k) {
+    path.time_s.push_back(4.0 * k);
+    path.signals.push_back({0.012 * k});
+    path.contribution.push_back(-0.9 * std::max(0.012 * k - 10.8, 0.0));
+  }
+  const std::array paths{path};
+  const std::array<SignalWords, kSiteSignals> signals{SignalWords{"measured value", "V"}};
+  EXPECT_THAT(regime_of(paths, SiteKind::sensor_saturation, signals), StartsWith("measured value above 11 V"));
+}
+
+TEST(Regime, IsShownAgainstTheSignalThatTheTermGoesBy) {
+  const auto signal = [](const auto& force) {
+    const std::array paths{path_of(force)};
+    return deciding_signal(paths, SiteKind::piston_force);
+  };
+  EXPECT_EQ(signal([](double, double v, double) { return 100.0 * std::tanh(v / 1e-4); }), 0U);
+  EXPECT_EQ(signal([](double, double, double x) { return 1e4 * (x - 0.054) * (x - 0.054); }), 1U);
+  EXPECT_EQ(signal([](double, double, double) { return 4.0; }), 0U);
 }
 
 }  // namespace

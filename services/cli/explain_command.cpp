@@ -13,6 +13,7 @@
 #include "services/cli/terminal.hpp"
 #include "services/common/report/explanation_html.hpp"
 #include "services/common/report/explanation_json.hpp"
+#include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/readable.hpp"
 #include "services/common/runtime/asset_file.hpp"
 
@@ -86,15 +87,16 @@ std::string parameter_text(const FoundParameter& parameter) {
 }
 
 void print_effect(const FoundEffect& effect) {
-  std::printf("\n  %s of %s (%s)\n", report::words_of(effect.what.id).c_str(),
-              report::words_of(effect.what.element).c_str(), report::percent_text(effect.probability).c_str());
+  std::printf("\n  %s of the %s (%s)\n", report::words_of(effect.what.id).c_str(),
+              report::element_name(effect.what.element).c_str(), report::percent_text(effect.probability).c_str());
   std::printf("    %s\n", wrapped(effect.what.law, kWidth, 4).c_str());
   for (const FoundParameter& parameter : effect.parameters) std::printf("    %s\n", parameter_text(parameter).c_str());
+  if (!effect.regime.empty()) std::printf("    acts: %s\n", wrapped(effect.regime, kWidth, 4).c_str());
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    others += (others.empty() ? "" : ", ") +
-              (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
-                                             : report::words_of(other.id) + " of " + report::words_of(other.element));
+    others += (others.empty() ? "" : ", ") + (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
+                                                                            : report::words_of(other.id) + " of the " +
+                                                                                  report::element_name(other.element));
   if (!others.empty()) std::printf("    %s\n", wrapped("cannot be told from: " + others, kWidth, 4).c_str());
 }
 
@@ -117,12 +119,27 @@ void print_prognosis(const Explanation& explanation) {
               number(leakage->after_std, 2).c_str(), wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
 }
 
+/// A parameter that wants to go further than its range allows stands in for something: it is said before all figures.
+void print_bounds(const Explanation& explanation) {
+  const auto when = [&explanation](const mismatch::ParameterShift& shift) {
+    if (explanation.effects.empty()) return "";
+    if (shift.before_at_bound) return shift.after_at_bound ? ", before and after" : ", before anything was added";
+    return ", with what was found";
+  };
+  for (const mismatch::ParameterShift& shift : explanation.parameters)
+    if (shift.before_at_bound || shift.after_at_bound)
+      std::printf("\n  %s ends at a bound%s: %s, datasheet %s %s\n", shift.name.c_str(), when(shift),
+                  number(shift.after_at_bound ? shift.after : shift.before).c_str(), number(shift.datasheet).c_str(),
+                  shift.unit.c_str());
+}
+
 void print_text(const Explanation& explanation, const Files& files) {
   std::printf("%s: %s\n  %s\n", explanation.asset_id.c_str(), std::string(name_of(explanation.verdict)).c_str(),
               wrapped(explanation.summary, kWidth, 2).c_str());
   for (const FoundEffect& effect : explanation.effects) print_effect(effect);
   const bool changed = !explanation.effects.empty();
   if (changed) print_prognosis(explanation);
+  print_bounds(explanation);
   print_channels("kept aside", explanation.holdout, changed);
   print_channels("fitted", explanation.fit, changed);
   if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());

@@ -81,7 +81,7 @@ std::string finding_in_words(const BalanceFinding& finding) {
   if (is_datasheet(finding))
     text.append(", not ").append(number(finding.datasheet)).append(" as in the asset");
   else
-    text.append(" (").append(finding.what.law->id).append(")");
+    text.append(" (").append(in_words(std::string(finding.what.law->id))).append(")");
   return text;
 }
 

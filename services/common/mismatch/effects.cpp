@@ -324,9 +324,10 @@ PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<Param
     shift.sentence = "The seal's condition is " + condition + " with and without what was found.";
     return shift;
   }
+  const std::string not_before = months == months_before ? ", as before" : ", not " + number(months_before);
   shift.sentence = "The seal's condition is " + condition + " instead of " + number(100.0 * shift.theta_before, 4) +
                    " %: a mean seal then has " + number(months) + " months left until " +
-                   number(100.0 * asset.seal->threshold) + " %, not " + number(months_before) +
+                   number(100.0 * asset.seal->threshold) + " %" + not_before +
                    ". This actuator's own remaining life comes from its history (sealwatch forecast).";
   return shift;
 }

@@ -108,8 +108,13 @@ class GrossMismatch {
     for (BalanceFinding& finding : found_.findings) {
       const double value = value_of(found_.model, finding.what);
       if (finding.what.law != nullptr && value == 0.0) {
-        result_.notes.push_back("Once the simulation is fitted, " + finding.what.element + " does without its " +
-                                std::string(finding.what.law->id) + ": it is not claimed.");
+        result_.notes.push_back("Once the simulation is fitted, it does without " +
+                                law_in_words({.id = std::string(finding.what.law->id),
+                                              .form = {},
+                                              .element = finding.what.element,
+                                              .law = {},
+                                              .meaning = {}}) +
+                                ": it is not claimed.");
         put_back(found_.model, asset_, finding.what);
         continue;
       }

@@ -149,10 +149,12 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
         if (series.name == channels[c] && series.noise_std <= 0.0)
           series.noise_std = growth * estimate_noise_floor(series.values).standard_deviation;
     }
+    std::string channel = channels[c];
+    std::ranges::replace(channel, '_', ' ');
     char sentence[160];
     std::snprintf(sentence, sizeof sentence,
                   "The noise of %s is correlated from sample to sample (%.2f); it was whitened by an autoregression.",
-                  channels[c].c_str(), correlation);
+                  channel.c_str(), correlation);
     sentences.emplace_back(sentence);
   }
   return sentences;

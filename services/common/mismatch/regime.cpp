@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include "services/common/mismatch/site_words.hpp"
 
@@ -34,7 +35,7 @@ std::string number_with_unit(double value, std::string_view unit) {
   if (unit == "Pa") factor = 1e-5, unit = "bar";
   if (unit == "m3/s") factor = 6e4, unit = "L/min";
   std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "%.2g", value * factor);
+  std::snprintf(text.data(), text.size(), std::abs(value * factor) < 10.0 ? "%.2g" : "%.3g", value * factor);
   if (std::abs(value * factor) >= 100.0) std::snprintf(text.data(), text.size(), "%.0f", value * factor);
   return std::string(text.data()).append(" ").append(unit);
 }
@@ -105,6 +106,16 @@ void split_motion(const MotionWords& motion, std::vector<Step>& steps, std::vect
   words.emplace_back(motion.both);
 }
 
+// Size from which the term is there; of one that is there for less than a hundredth of the time, by its largest value.
+double least_active(const std::vector<Step>& steps) {
+  const auto size = [](const Step& step) { return std::abs(step.term); };
+  const double least = kActive * quantile(steps, 0.99, size);
+  if (least > 0.0) return least;
+  double largest = 0.0;
+  for (const Step& step : steps) largest = std::max(largest, size(step));
+  return kActive * largest;
+}
+
 // The values between which most of the energy falls, in the least time.
 struct Range {
   double low = 0.0, high = 0.0;
@@ -165,6 +176,24 @@ double correlation_ratio(const std::vector<Step>& steps, std::size_t signal, con
   return between / all_time / variance;
 }
 
+// A range with one end is told from where the term sets in, not from where most of its energy is: a valve opens at a
+// pressure, and does most far above.
+template <class Of>
+Range from_where_it_acts(Range range, double lowest, double highest, const std::vector<Step>& steps, const Of& of) {
+  const bool from_lowest = range.low <= lowest, to_highest = range.high >= highest;
+  if (!range.shares.named() || from_lowest == to_highest) return range;
+  const double least = least_active(steps);
+  std::vector<Step> active;
+  std::ranges::copy_if(steps, std::back_inserter(active),
+                       [&](const Step& step) { return std::abs(step.term) > least; });
+  Range wider = range;
+  if (from_lowest) wider.high = std::max(range.high, quantile(active, 0.99, of));
+  if (to_highest) wider.low = std::min(range.low, quantile(active, 0.01, of));
+  wider.shares = shares(steps, [&](const Step& step) { return of(step) >= wider.low && of(step) <= wider.high; });
+  return wider.shares.named() && (wider.low <= lowest) == from_lowest && (wider.high >= highest) == to_highest ? wider
+                                                                                                               : range;
+}
+
 void split_signal(const SignalWords& signal, std::size_t index, bool by_size, const std::vector<Step>& steps,
                   std::vector<std::string>& words) {
   const auto of = [&](const Step& step) { return by_size ? std::abs(step.signals[index]) : step.signals[index]; };
@@ -172,7 +201,7 @@ void split_signal(const SignalWords& signal, std::size_t index, bool by_size, co
   if (highest - lowest < kSpread * std::max(std::abs(lowest), std::abs(highest))) return;
   std::vector<std::pair<double, const Step*>> by_value;
   for (const Step& step : steps) by_value.emplace_back(of(step), &step);
-  const Range range = narrowest_range(by_value);
+  const Range range = from_where_it_acts(narrowest_range(by_value), lowest, highest, steps, of);
   const bool from_lowest = range.low <= lowest, to_highest = range.high >= highest;
   if (!range.shares.named() || (from_lowest && to_highest)) {
     const Range gap = widest_gap(std::move(by_value));
@@ -193,17 +222,6 @@ void split_signal(const SignalWords& signal, std::size_t index, bool by_size, co
   else
     text.append(" between ").append(low).append(" and ").append(high);
   words.push_back(std::move(text));
-}
-
-// Share of the time in which the term is there.
-double active_share(const std::vector<Step>& steps) {
-  const auto size = [](const Step& step) { return std::abs(step.term); };
-  const double least = kActive * quantile(steps, 0.99, size);
-  double largest = 0.0;
-  for (const Step& step : steps) largest = std::max(largest, size(step));
-  // A term that is there for less than a hundredth of the time: against its largest value.
-  const double limit = least > 0.0 ? least : kActive * largest;
-  return shares(steps, [&](const Step& step) { return size(step) > limit; }).time;
 }
 
 std::string percent(double share) {
@@ -234,7 +252,8 @@ std::string regime_of(std::span<const TermPath> recordings, SiteKind kind,
   std::vector<Step> steps = steps_of(recordings);
   if (steps.empty()) return {};
   if (!(shares(steps, [](const Step&) { return true; }).energy > 0.0)) return "nowhere in these recordings";
-  const double active = active_share(steps);
+  const double least = least_active(steps);
+  const double active = shares(steps, [&](const Step& step) { return std::abs(step.term) > least; }).time;
   std::vector<std::string> words;
   split_motion(motion_of(kind), steps, words);
   split_signals(kind, signals, steps, words);

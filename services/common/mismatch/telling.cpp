@@ -33,12 +33,12 @@ std::string separating_test(const FoundEffect& effect) {
          "with a clearly lower and one with a clearly higher load, and one over another part of the stroke.";
 }
 
+}  // namespace
+
 std::string in_words(std::string id) {
   std::ranges::replace(id, '_', ' ');
   return id;
 }
-
-}  // namespace
 
 // An engineer reads 64400, not 6.44e+04.
 std::string number(double value, int digits) {

@@ -9,6 +9,8 @@ namespace sealwatch::mismatch {
 
 [[nodiscard]] std::string number(double value, int digits = 3);
 [[nodiscard]] std::string element_in_words(const std::string& element);
+/// "coulomb friction" of "coulomb_friction"
+[[nodiscard]] std::string in_words(std::string id);
 /// "coulomb friction at the piston"
 [[nodiscard]] std::string law_in_words(const LawAt& law);
 /// "a, b and c", with `last` before the last one

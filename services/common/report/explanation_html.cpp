@@ -1,6 +1,7 @@
 #include "services/common/report/explanation_html.hpp"
 
 #include <cmath>
+#include <string_view>
 
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
@@ -86,6 +87,11 @@ std::string law_name(const mismatch::LawAt& what) {
   std::string name = words_of(what.id);
   if (!what.form.empty()) name.append(" (").append(words_of(what.form)).append(")");
   return name;
+}
+
+std::string element_name(const std::string& element) {
+  constexpr std::string_view kSensor = "sensor:";
+  return element.starts_with(kSensor) ? "sensor of " + words_of(element.substr(kSensor.size())) : words_of(element);
 }
 
 std::string banner(const Explanation& explanation) {

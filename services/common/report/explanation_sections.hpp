@@ -11,6 +11,9 @@ namespace sealwatch::report {
 /// "piston, stribeck friction", with the form where the law has several.
 [[nodiscard]] std::string law_name(const mismatch::LawAt& what);
 
+/// "piston", "sensor of level voltage"
+[[nodiscard]] std::string element_name(const std::string& element);
+
 /// Root mean square over channels of the noise-normalised rms.
 struct Misfit {
   double before = 0.0, after = 0.0;

@@ -60,7 +60,7 @@ std::string same_laws(const FoundEffect& effect) {
     html.append("<li>")
         .append(escaped(law_name(other)))
         .append(" of the ")
-        .append(escaped(words_of(other.element)))
+        .append(escaped(element_name(other.element)))
         .append(": <code>")
         .append(escaped(other.law))
         .append("</code></li>\n");
@@ -69,6 +69,7 @@ std::string same_laws(const FoundEffect& effect) {
 
 /// How large the effect is to an engineer, apart from how sure it is.
 std::string size_words(double share) {
+  if (std::isnan(share)) return "From which size on an engineer would care is not known of this law.";
   if (!(share > 0.0)) return {};
   if (share < 1.0)
     return std::string("Its size is ")
@@ -82,7 +83,7 @@ std::string size_words(double share) {
 std::string effect_html(const FoundEffect& effect) {
   std::string title = law_name(effect.what);
   if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  title.append(" of the ").append(words_of(effect.what.element));
+  title.append(" of the ").append(element_name(effect.what.element));
   std::string html = std::string("<h3>").append(escaped(title)).append("</h3>\n");
   if (!effect.what.meaning.empty()) html += paragraph(effect.what.meaning);
   html += law_line(effect.what.law);

@@ -18,12 +18,15 @@ constexpr std::size_t kShownOpen = 2;   ///< terms that are shown open, the othe
 constexpr std::size_t kMostDots = 900;  ///< of a scatter
 constexpr std::size_t kBins = 60;       ///< of the state's range, for the law
 constexpr std::size_t kBandBins = 15;   ///< of the state's range, for what the data demand
+constexpr double kBand = 1.96;          ///< standard deviations: 95 %
+constexpr double kRounding = 1e-9;      ///< of a constant law's means
+constexpr double kActs = 0.1;           ///< of its largest size, from which a law acts
 constexpr double kMostlyOutside = 0.5;  ///< share of the points inside the band below which it is said
 constexpr double kOneValued = 0.1;      ///< of the law's range: the two ways through a state differ by less
 
 /// "Coulomb friction of the piston: missing force against +x, N"
 std::string title_of(const MissingTerm& term) {
-  std::string title = words_of(term.element);
+  std::string title = element_name(term.element);
   if (!term.what.id.empty()) title = law_name(term.what).append(" of the ").append(title);
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   title.append(": missing ").append(term.quantity);
@@ -96,7 +99,7 @@ void add_law(const MissingTerm& term, const Bins& bins, Plot& plot) {
     if (rising.count[bin] > 0.0 && falling.count[bin] > 0.0)
       apart = std::max(apart, std::abs(rising.mean(bin) - falling.mean(bin)));
   }
-  if (apart <= kOneValued * (*most - *least)) {
+  if (apart <= kOneValued * (*most - *least) + kRounding * std::max(std::abs(*most), std::abs(*least))) {
     plot.marks.emplace_back(std::move(both));
     return;
   }
@@ -106,21 +109,28 @@ void add_law(const MissingTerm& term, const Bins& bins, Plot& plot) {
   plot.marks.emplace_back(std::move(down));
 }
 
-/// What the data demand over the state: means of bins with the mean of their band.
+/// What the data demand over the state: means of bins; 95 % of their points with their own bands.
 Band demanded_band(const MissingTerm& term, double low, double high) {
-  std::vector<double> count(kBandBins, 0.0), state(kBandBins, 0.0), mean(kBandBins, 0.0), width(kBandBins, 0.0);
+  struct Bin {
+    double count = 0.0, state = 0.0, sum = 0.0, squares = 0.0, errors = 0.0;
+  };
+  std::vector<Bin> bins(kBandBins);
   for (std::size_t k = 0; k < std::min({term.state_value.size(), term.demanded.size(), term.band.size()}); ++k) {
     if (!std::isfinite(term.state_value[k] + term.demanded[k] + term.band[k])) continue;
     const double place = static_cast<double>(kBandBins) * (term.state_value[k] - low) / (high - low);
-    const auto bin = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(kBandBins) - 1.0));
-    ++count[bin], state[bin] += term.state_value[k], mean[bin] += term.demanded[k], width[bin] += term.band[k];
+    Bin& bin = bins[static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(kBandBins) - 1.0))];
+    ++bin.count, bin.state += term.state_value[k], bin.sum += term.demanded[k];
+    bin.squares += term.demanded[k] * term.demanded[k], bin.errors += term.band[k] * term.band[k];
   }
   Band band{.ink = Ink::first, .label = "band"};
-  for (std::size_t bin = 0; bin < kBandBins; ++bin) {
-    if (count[bin] == 0.0) continue;
-    band.x.push_back(state[bin] / count[bin]);
-    band.low.push_back((mean[bin] - width[bin]) / count[bin]);
-    band.high.push_back((mean[bin] + width[bin]) / count[bin]);
+  for (const Bin& bin : bins) {
+    if (bin.count == 0.0) continue;
+    const double mean = bin.sum / bin.count;
+    const double spread = std::max(bin.squares / bin.count - mean * mean, 0.0);
+    const double half = std::sqrt(bin.errors / bin.count + kBand * kBand * spread);
+    band.x.push_back(bin.state / bin.count);
+    band.low.push_back(mean - half);
+    band.high.push_back(mean + half);
   }
   return band;
 }
@@ -146,11 +156,14 @@ Plot over_state(const MissingTerm& term) {
   return plot;
 }
 
-/// Share of the points at which the law runs inside the band.
+/// Share of the points at which the law acts and runs inside the band.
 double share_inside(const MissingTerm& term) {
+  double largest = 0.0;
+  for (const double value : term.law) largest = std::max(largest, std::abs(value));
   std::size_t inside = 0, known = 0;
   for (std::size_t k = 0; k < std::min({term.law.size(), term.demanded.size(), term.band.size()}); ++k) {
-    if (!std::isfinite(term.law[k] + term.demanded[k] + term.band[k])) continue;
+    if (!std::isfinite(term.law[k] + term.demanded[k] + term.band[k]) || std::abs(term.law[k]) < kActs * largest)
+      continue;
     ++known;
     if (std::abs(term.law[k] - term.demanded[k]) <= term.band[k]) ++inside;
   }
@@ -160,11 +173,11 @@ double share_inside(const MissingTerm& term) {
 std::string agreement_of(const MissingTerm& term) {
   if (!has_law(term)) return {};
   const double inside = share_inside(term);
-  std::string words = "The law runs inside the band at " + percent_text(inside) + " of the points.";
+  std::string words = "Where the law acts it runs inside the band at " + percent_text(inside) + " of the points.";
   if (inside < kMostlyOutside)
     words +=
-        " Elsewhere the data ask for another course, or the band is too narrow where the law itself reacts to the "
-        "missing term (an overflow, a stop, dry friction) and hides it.";
+        " Elsewhere the data ask for another course as well; or the law answers to the missing term itself (an "
+        "overflow, a stop, dry friction) and hides it, and the band is too narrow.";
   return paragraph(words, "small muted");
 }
 

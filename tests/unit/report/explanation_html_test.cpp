@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 
 #include "services/common/report/actuator_drawing.hpp"
 #include "tests/unit/report/example.hpp"
@@ -56,6 +57,49 @@ TEST(ReportHtml, TellsWhatWasFound) {
                            "fits better only with oil flowing", "had been standing in for it", "13 % more worn",
                            "these recordings cannot show it", "Record a stroke at 0.2 mm/s", "117 laws were tried"})
     EXPECT_THAT(html, HasSubstr(part));
+}
+
+TEST(ReportHtml, ShowsParametersAtABoundBeforeTheOthers) {
+  mismatch::Explanation explanation = example_explanation();
+  explanation.parameters.push_back({.name = "R_M",
+                                    .unit = "ohm",
+                                    .before = 0.05,
+                                    .before_std = std::numeric_limits<double>::infinity(),
+                                    .after = 0.48,
+                                    .after_std = 0.01,
+                                    .datasheet = 0.5,
+                                    .before_at_bound = true});
+  const std::string html = explanation_to_html(explanation);
+  EXPECT_THAT(html, HasSubstr(", at its bound"));
+  EXPECT_THAT(html, HasSubstr("its range is wrong"));
+  const std::size_t table = html.find("What had absorbed the effect");
+  const auto at = [&](const char* name) { return html.find(std::string(">").append(name).append("<"), table); };
+  EXPECT_LT(at("R_M"), at("f_C"));
+  EXPECT_LT(at("f_C"), at("R_CL")) << "moved by more of its error";
+  EXPECT_THAT(explanation_to_html(example_explanation()), Not(HasSubstr("at its bound")));
+}
+
+TEST(ReportHtml, SaysHowMuchAForbiddenFitWouldHaveTaken) {
+  mismatch::Explanation explanation = example_explanation();
+  explanation.rejected.front().share = 0.43;
+  explanation.rejected.front().allowed_share = 0.61;
+  const std::string html = explanation_to_html(explanation);
+  EXPECT_THAT(html, HasSubstr("43 %"));
+  EXPECT_THAT(html, HasSubstr("with a possible value would have taken 61 % of the misfit"));
+}
+
+TEST(ReportHtml, NamesTheLawOfAMissingTermAndSaysWhereItLeavesTheBand) {
+  mismatch::Explanation explanation = example_explanation();
+  mismatch::MissingTerm& term = explanation.missing.front();
+  term.what = {"sensor_bias", "", "sensor:level_voltage", "channel + b", ""};
+  term.element = "sensor:level_voltage";
+  std::string html = explanation_to_html(explanation);
+  EXPECT_THAT(html, HasSubstr("Sensor bias of the sensor of level voltage: missing force against +x, N"));
+  EXPECT_THAT(html, Not(HasSubstr("the band is too narrow")));
+  for (double& value : term.law) value += 5000.0;
+  html = explanation_to_html(explanation);
+  EXPECT_THAT(html, HasSubstr("runs inside the band at 0 % of the points"));
+  EXPECT_THAT(html, HasSubstr("the band is too narrow"));
 }
 
 TEST(ReportHtml, ConsistentClaimsNothing) {

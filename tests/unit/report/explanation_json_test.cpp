@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/report/example.hpp"
@@ -99,6 +100,16 @@ TEST(ReportJson, ReadsBackWhatItWrote) {
   ASSERT_TRUE(read);
   EXPECT_TRUE(std::isnan(read->effects[0].parameters[2].std_error));
   EXPECT_EQ(read->rejected[0].why, "fits better only with oil flowing from low to high pressure");
+}
+
+TEST(ReportJson, ASizeThatIsNotKnownIsNull) {
+  mismatch::Explanation explanation = example_explanation();
+  explanation.effects[0].engineering_share = std::numeric_limits<double>::quiet_NaN();
+  explanation.parameters[0].after_at_bound = true;
+  const Json json = written(explanation);
+  EXPECT_TRUE(json["physics"][0]["engineering_share"].is_null());
+  EXPECT_EQ(json["parameter_details"][0]["after_at_bound"], true);
+  EXPECT_EQ(json["parameter_details"][1]["after_at_bound"], false);
 }
 
 TEST(ReportJson, AnErrorNamesTheKey) {

@@ -1,6 +1,7 @@
 #include "services/common/mismatch/effects.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -212,6 +213,11 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
 
 namespace {
 
+std::string uncapitalised(std::string sentence) {
+  if (!sentence.empty()) sentence[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(sentence[0])));
+  return sentence;
+}
+
 std::string against_elsewhere(const FoundEffect& effect) {
   const Alternative* best = nullptr;
   for (const Alternative& other : effect.alternatives)
@@ -241,7 +247,7 @@ std::vector<Location> locate(const std::vector<FoundEffect>& effects) {
           .element = other.what.element,
           .probability = std::exp(-0.5 * std::min(other.misfit_above_best, 1400.0)) * effect.probability,
           .indistinguishable_from = {},
-          .evidence = law_in_words(other.what) + ": " + other.why_not};
+          .evidence = law_in_words(other.what) + ": " + uncapitalised(other.why_not)};
       const auto known = std::ranges::find(places, place.element, &Location::element);
       if (known == places.end())
         places.push_back(place);

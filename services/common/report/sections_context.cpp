@@ -145,7 +145,7 @@ std::string power_section(const Explanation& explanation) {
     const bool unseen = could_hide(power);
     if (unseen) ++blind_count;
     (unseen ? blind : seen)
-        .row({law_name(power.what), words_of(power.what.element), detectable(power),
+        .row({law_name(power.what), element_name(power.what.element), detectable(power),
               power.significant > 0.0 ? readable(power.significant, power.unit, 2) : "–",
               percent_text(power.absorbed_share), power_words(power)});
   }

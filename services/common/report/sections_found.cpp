@@ -17,7 +17,7 @@ using mismatch::FoundEffect;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(words_of(name));
+  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(element_name(name));
   return text;
 }
 
@@ -112,8 +112,8 @@ void add_alternative(const mismatch::Alternative& alternative, Table& table) {
                          .append("<br/><code class=\"small muted\">")
                          .append(escaped(alternative.what.law))
                          .append("</code>"),
-                     escaped(words_of(alternative.what.element)), escaped(number_text(alternative.misfit_above_best)),
-                     escaped(alternative.why_not)});
+                     escaped(element_name(alternative.what.element)),
+                     escaped(number_text(alternative.misfit_above_best)), escaped(alternative.why_not)});
 }
 
 /// The nearest ones open, the rest folded.
@@ -146,7 +146,7 @@ std::string rejected_html(const std::vector<mismatch::Rejected>& list) {
                            .append("<br/><code class=\"small muted\">")
                            .append(escaped(rejected.what.law))
                            .append("</code>"),
-                       escaped(words_of(rejected.what.element)),
+                       escaped(element_name(rejected.what.element)),
                        escaped(rejected.share > 0.0 ? percent_text(rejected.share) : "–"), escaped(rejected.why)});
   return std::string("<h3>Better fits that physics forbids</h3>\n")
       .append(paragraph(words, "small muted"))
@@ -164,7 +164,7 @@ std::string where_section(const Explanation& explanation) {
     return section("The plant", html.append(paragraph("No element stands out.", "muted")));
   Table table({"element", ">probability", "cannot be told from", "~evidence"});
   for (const mismatch::Location& place : explanation.location) {
-    const std::string element = words_of(place.element);
+    const std::string element = element_name(place.element);
     table.row({element, percent_text(place.probability), joined(place.indistinguishable_from), place.evidence});
   }
   return section("Where it sits", html.append(table.html()));

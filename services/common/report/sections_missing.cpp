@@ -24,14 +24,12 @@ constexpr double kActs = 0.1;           ///< of its largest size, from which a l
 constexpr double kMostlyOutside = 0.5;  ///< share of the points inside the band below which it is said
 constexpr double kOneValued = 0.1;      ///< of the law's range: the two ways through a state differ by less
 
-/// "Coulomb friction of the piston: missing force against +x, N"
+/// "Coulomb friction of the piston: missing force against +x"; the axes say in which unit.
 std::string title_of(const MissingTerm& term) {
   std::string title = element_name(term.element);
   if (!term.what.id.empty()) title = law_name(term.what).append(" of the ").append(title);
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  title.append(": missing ").append(term.quantity);
-  if (!term.unit.empty() && term.unit != "1") title.append(", ").append(unit_text(term.unit));
-  return title;
+  return title.append(": missing ").append(term.quantity);
 }
 
 bool has_law(const MissingTerm& term) { return term.law.size() == term.time_s.size() && !term.law.empty(); }

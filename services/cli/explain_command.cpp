@@ -119,18 +119,21 @@ void print_prognosis(const Explanation& explanation) {
               number(leakage->after_std, 2).c_str(), wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
 }
 
-/// A parameter that wants to go further than its range allows stands in for something: it is said before all figures.
+/// A parameter that wants to go further than its range allows stands in for something: said before all figures.
 void print_bounds(const Explanation& explanation) {
-  const auto when = [&explanation](const mismatch::ParameterShift& shift) {
-    if (explanation.effects.empty()) return "";
-    if (shift.before_at_bound) return shift.after_at_bound ? ", before and after" : ", before anything was added";
-    return ", with what was found";
-  };
-  for (const mismatch::ParameterShift& shift : explanation.parameters)
-    if (shift.before_at_bound || shift.after_at_bound)
-      std::printf("\n  %s ends at a bound%s: %s, datasheet %s %s\n", shift.name.c_str(), when(shift),
-                  number(shift.after_at_bound ? shift.after : shift.before).c_str(), number(shift.datasheet).c_str(),
-                  shift.unit.c_str());
+  const bool changed = !explanation.effects.empty();
+  std::string text;
+  for (const mismatch::ParameterShift& shift : explanation.parameters) {
+    if (!shift.before_at_bound && !shift.after_at_bound) continue;
+    const double value = shift.after_at_bound ? shift.after : shift.before;
+    text.append(text.empty() ? "" : "; ").append(shift.name).append(" ");
+    text.append(report::readable(value, shift.unit)).append(" (datasheet ");
+    text.append(report::readable(shift.datasheet, shift.unit));
+    if (changed && !shift.after_at_bound) text.append("; before anything was added");
+    if (changed && !shift.before_at_bound) text.append("; with what was found");
+    text.append(")");
+  }
+  if (!text.empty()) std::printf("\n  %s\n", wrapped("at a bound of their range: " + text, kWidth, 4).c_str());
 }
 
 void print_text(const Explanation& explanation, const Files& files) {

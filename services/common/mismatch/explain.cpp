@@ -59,7 +59,7 @@ class Analysis {
     result_.p_value = std::max(naming_.first.p_value, kSmallestP);
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
     if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
-      change_ = change_between_tests(asset_, fit_, *best_.model);
+      change_ = change_between_tests(asset_, fit_, holdout_, *best_.model);
     at_rest_ = at_rest(*baseline_, prepared(fit_));
     if (change_ || at_rest_) best_ = {.effects = {}, .model = baseline_};
     if (!best_.effects.empty()) {
@@ -283,6 +283,7 @@ class Analysis {
   void say_what_changed_between_tests() {
     if (!change_) return;
     result_.location.clear();
+    result_.rejected.clear();
     result_.prognosis = {};
     result_.notes.push_back(*change_);
     result_.summary = *change_;
@@ -292,6 +293,7 @@ class Analysis {
   void say_that_nothing_moves() {
     if (!at_rest_) return;
     result_.location.clear();
+    result_.rejected.clear();
     result_.prognosis = {};
     result_.summary = "The actuator does not move in these recordings: there is nothing to see.";
     result_.notes.push_back(result_.summary);

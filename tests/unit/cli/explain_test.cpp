@@ -117,7 +117,11 @@ TEST_F(ExplainCommand, JsonIsTheReport) {
 TEST_F(ExplainCommand, UndeterminedIsTheAnswerNo) {
   found_.verdict = mismatch::Verdict::undetermined;
   found_.next_test = "Record a faster stroke.";
+  found_.parameters = {{.name = "R_M", .unit = "ohm", .before = 0.05, .after = 0.05, .datasheet = 0.5},
+                       {.name = "f_C", .unit = "N s/m", .before = 6e6, .after = 6e6, .datasheet = 2e6}};
+  found_.parameters[0].before_at_bound = found_.parameters[0].after_at_bound = true;
   EXPECT_EQ(run(), kAnswerIsNo);
+  EXPECT_THAT(out_, HasSubstr("at a bound of their range: R_M 0.0500 ohm (datasheet 0.500 ohm)\n"));
   EXPECT_THAT(out_, HasSubstr("next: Record a faster stroke."));
 }
 

@@ -32,8 +32,8 @@ struct PemOptimum {
 [[nodiscard]] SimulationOptions simulation_options(std::span<const TimeSeries> recordings,
                                                    const ActuatorFitOptions& options);
 
-/// From the asset's values, leakage and bulk modulus from the cylinder circuit where that can be fitted; from other
-/// values where that does not converge.
+/// From the asset's values, leakage and bulk modulus from the cylinder circuit where that can be fitted, else leakage
+/// from the best of several values; from other values where that does not converge.
 [[nodiscard]] Result<PemOptimum> search_from_asset(PemProblem& problem, const AssetConfig& asset,
                                                    std::span<const TimeSeries> recordings,
                                                    const ActuatorFitOptions& options);

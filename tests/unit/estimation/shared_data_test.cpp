@@ -65,6 +65,12 @@ TEST(SharedData, WholeActuatorAndCylinderCircuitAgreeOnWornAndNewSeals) {
     const FitReport circuit = fit_cylinder_circuit(asset, samples, {});
     const EstimatedParameter &a = parameter(whole, "R_CL"), &b = parameter(circuit, "R_CL");
     EXPECT_NEAR(a.value, b.value, kSigmas * std::hypot(a.std_error, b.std_error)) << files[k];
+    TimeSeries without_flow = samples;
+    std::erase_if(without_flow.channels, [](const Series& channel) { return channel.name == "flow"; });
+    const FitReport blind = fit_actuator(asset, {&without_flow, 1}).report;
+    ASSERT_TRUE(blind.admissible) << files[k] << testing::PrintToString(blind.reasons);
+    const EstimatedParameter& c = parameter(blind, "R_CL");
+    EXPECT_NEAR(c.value, b.value, kSigmas * std::hypot(c.std_error, b.std_error)) << files[k] << " without flow";
   }
 }
 

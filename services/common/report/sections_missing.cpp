@@ -14,15 +14,16 @@ namespace {
 
 using mismatch::MissingTerm;
 
-constexpr std::size_t kShownOpen = 2;   ///< terms that are shown open, the others folded
-constexpr std::size_t kMostDots = 900;  ///< of a scatter
-constexpr std::size_t kBins = 60;       ///< of the state's range, for the law
-constexpr std::size_t kBandBins = 15;   ///< of the state's range, for what the data demand
-constexpr double kBand = 1.96;          ///< standard deviations: 95 %
-constexpr double kRounding = 1e-9;      ///< of a constant law's means
-constexpr double kActs = 0.1;           ///< of its largest size, from which a law acts
-constexpr double kMostlyOutside = 0.5;  ///< share of the points inside the band below which it is said
-constexpr double kOneValued = 0.1;      ///< of the law's range: the two ways through a state differ by less
+constexpr std::size_t kShownOpen = 2;    ///< terms that are shown open, the others folded
+constexpr std::size_t kMostDots = 900;   ///< of a scatter
+constexpr std::size_t kBins = 60;        ///< of the state's range, for the law
+constexpr std::size_t kBandGroups = 15;  ///< of what the data demand over the state,
+constexpr std::size_t kLeastPoints = 6;  ///< of at least so many points
+constexpr double kBand = 1.96;           ///< standard deviations: 95 %
+constexpr double kRounding = 1e-9;       ///< of a constant law's means
+constexpr double kActs = 0.1;            ///< of its largest size, from which a law acts
+constexpr double kMostlyOutside = 0.5;   ///< share of the points inside the band below which it is said
+constexpr double kOneValued = 0.1;       ///< of the law's range: the two ways through a state differ by less
 
 /// "Coulomb friction of the piston: missing force against +x"; the axes say in which unit.
 std::string title_of(const MissingTerm& term) {
@@ -107,26 +108,27 @@ void add_law(const MissingTerm& term, const Bins& bins, Plot& plot) {
   plot.marks.emplace_back(std::move(down));
 }
 
-/// What the data demand over the state: means of bins; 95 % of their points with their own bands.
-Band demanded_band(const MissingTerm& term, double low, double high) {
-  struct Bin {
-    double count = 0.0, state = 0.0, sum = 0.0, squares = 0.0, errors = 0.0;
-  };
-  std::vector<Bin> bins(kBandBins);
-  for (std::size_t k = 0; k < std::min({term.state_value.size(), term.demanded.size(), term.band.size()}); ++k) {
-    if (!std::isfinite(term.state_value[k] + term.demanded[k] + term.band[k])) continue;
-    const double place = static_cast<double>(kBandBins) * (term.state_value[k] - low) / (high - low);
-    Bin& bin = bins[static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(kBandBins) - 1.0))];
-    ++bin.count, bin.state += term.state_value[k], bin.sum += term.demanded[k];
-    bin.squares += term.demanded[k] * term.demanded[k], bin.errors += term.band[k] * term.band[k];
-  }
+/// What the data demand over the state: 95 % of the points, with their own bands, of neighbours in the state.
+Band demanded_band(const MissingTerm& term) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < std::min({term.state_value.size(), term.demanded.size(), term.band.size()}); ++k)
+    if (std::isfinite(term.state_value[k] + term.demanded[k] + term.band[k])) order.push_back(k);
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return term.state_value[k]; });
+  const std::size_t groups = std::clamp<std::size_t>(order.size() / kLeastPoints, 1, kBandGroups);
   Band band{.ink = Ink::first, .label = "band"};
-  for (const Bin& bin : bins) {
-    if (bin.count == 0.0) continue;
-    const double mean = bin.sum / bin.count;
-    const double spread = std::max(bin.squares / bin.count - mean * mean, 0.0);
-    const double half = std::sqrt(bin.errors / bin.count + kBand * kBand * spread);
-    band.x.push_back(bin.state / bin.count);
+  for (std::size_t group = 0; group < groups; ++group) {
+    const std::size_t begin = group * order.size() / groups, end = (group + 1) * order.size() / groups;
+    double state = 0.0, sum = 0.0, squares = 0.0, errors = 0.0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t at = order[k];
+      state += term.state_value[at], sum += term.demanded[at];
+      squares += term.demanded[at] * term.demanded[at], errors += term.band[at] * term.band[at];
+    }
+    if (begin == end) continue;
+    const auto count = static_cast<double>(end - begin);
+    const double mean = sum / count, spread = std::max(squares / count - mean * mean, 0.0);
+    const double half = std::sqrt(errors / count + kBand * kBand * spread);
+    band.x.push_back(state / count);
     band.low.push_back(mean - half);
     band.high.push_back(mean + half);
   }
@@ -147,7 +149,7 @@ Plot over_state(const MissingTerm& term) {
   }
   plot.marks.emplace_back(Reference{.at = 0.0});
   const auto [low, high] = std::minmax_element(term.state_value.begin(), term.state_value.end());
-  if (size == term.band.size() && *high > *low) plot.marks.emplace_back(demanded_band(term, *low, *high));
+  if (size == term.band.size() && *high > *low) plot.marks.emplace_back(demanded_band(term));
   plot.marks.emplace_back(std::move(dots));
   if (has_law(term) && size == term.law.size() && *high > *low)
     add_law(term, {.low = *low, .step = (*high - *low) / static_cast<double>(kBins)}, plot);
@@ -174,7 +176,8 @@ std::string agreement_of(const MissingTerm& term) {
   std::string words = "Where the law acts it runs inside the band at " + percent_text(inside) + " of the points.";
   if (inside < kMostlyOutside)
     words +=
-        " Elsewhere the data ask for another course as well; or the law answers to the missing term itself (an "
+        " Where it does not, the data ask for another course as well, or the law answers to the missing term itself "
+        "(an "
         "overflow, a stop, dry friction) and hides it, and the band is too narrow.";
   return paragraph(words, "small muted");
 }

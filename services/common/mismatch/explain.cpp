@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <tuple>
 
 #include "services/common/mismatch/between_tests.hpp"
+#include "services/common/mismatch/drawn_terms.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/gross_mismatch.hpp"
 #include "services/common/mismatch/held_out.hpp"
-#include "services/common/mismatch/missing_term.hpp"
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
-#include "services/common/mismatch/regime.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/windows.hpp"
 
@@ -29,12 +27,6 @@ constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model,
 
 // -ln p, to the smallest p that a double holds.
 double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)); }
-
-double mean_square(const TermPath& path) {
-  double sum = 0.0;
-  for (const double value : path.contribution) sum += value * value;
-  return path.contribution.empty() ? 0.0 : sum / static_cast<double>(path.contribution.size());
-}
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -68,7 +60,7 @@ class Analysis {
     }
     if (!lacks_a_pressure() && !change_ && !at_rest_) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
-    draw_what_is_missing();
+    draw_missing_terms(*baseline_, best_, prepared(fit_), !windowed(), result_);
     tell("done", 1.0);
     return std::move(result_);
   }
@@ -318,52 +310,6 @@ class Analysis {
     result_.notes.emplace_back(
         "The leak past the piston is R_CL and the law found together: R_CL alone no longer tells how the seal is, and "
         "no condition or remaining life is derived from it.");
-  }
-
-  // The missing term of each effect with its regime.
-  void draw_what_is_missing() {
-    if (best_.effects.empty() || result_.effects.empty()) return;
-    const Data data = prepared(fit_);
-    const PlantSimulation& simulation = *best_.model->problem.recordings.front().simulation;
-    for (const Effect& effect : best_.effects) {
-      const auto term = std::ranges::find_if(best_.model->asset.physics, [&](const PhysicsTerm& one) {
-        return one.id == effect.law->id && one.element == effect.element;
-      });
-      if (term == best_.model->asset.physics.end()) continue;
-      std::vector<double> parameters;
-      for (const LawParameter& parameter : effect.law->parameters)
-        parameters.push_back(term->parameters.at(std::string(parameter.name)).value);
-      const SiteKind kind = effect.law->kind;
-      const std::vector<TermPath> paths = term_paths(*best_.model, effect.element, *effect.law, parameters);
-      draw(effect, parameters, data, paths);
-      for (FoundEffect& found : result_.effects)
-        if (found.what.id == effect.law->id && found.what.element == effect.element)
-          found.regime = regime_of(paths, kind, signals_of(simulation, effect.element, kind), !windowed());
-    }
-  }
-
-  // Over the recording in which it does most, of whose windows each is drawn.
-  void draw(const Effect& effect, const std::vector<double>& parameters, const Data& data,
-            const std::vector<TermPath>& paths) {
-    const auto group_of = [&](std::size_t k) { return data.groups.empty() ? static_cast<int>(k) : data.groups[k]; };
-    std::map<int, double> energy;
-    for (std::size_t k = 0; k < paths.size(); ++k) energy[group_of(k)] += mean_square(paths[k]);
-    const auto most = std::ranges::max_element(energy, {}, [](const auto& entry) { return entry.second; });
-    const std::size_t signal = deciding_signal(paths, effect.law->kind);
-    std::optional<MissingTerm> drawn;
-    for (std::size_t k = 0; k < paths.size(); ++k) {
-      if (group_of(k) != most->first) continue;
-      Result<MissingTerm> piece = missing_term(*baseline_, best_.model.get(), data, k, effect.element, effect.law->kind,
-                                               effect.law, parameters, signal);
-      if (!piece) continue;
-      if (drawn)
-        append(*drawn, std::move(*piece));
-      else
-        drawn = std::move(*piece);
-    }
-    if (!drawn) return;
-    drawn->what = law_at(effect);
-    result_.missing.push_back(std::move(*drawn));
   }
 
   void decide() {

@@ -1,0 +1,74 @@
+#include "services/common/mismatch/drawn_terms.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/missing_term.hpp"
+#include "services/common/mismatch/regime.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+double mean_square(const TermPath& path) {
+  double sum = 0.0;
+  for (const double value : path.contribution) sum += value * value;
+  return path.contribution.empty() ? 0.0 : sum / static_cast<double>(path.contribution.size());
+}
+
+// Windows of the recording in which the law does most, in the order of time.
+std::vector<std::size_t> windows_of_most(const std::vector<TermPath>& paths, const Data& data) {
+  const auto recording_of = [&](std::size_t k) { return data.groups.empty() ? static_cast<int>(k) : data.groups[k]; };
+  std::map<int, double> energy;
+  for (std::size_t k = 0; k < paths.size(); ++k) energy[recording_of(k)] += mean_square(paths[k]);
+  const auto most = std::ranges::max_element(energy, {}, [](const auto& entry) { return entry.second; });
+  std::vector<std::size_t> windows;
+  for (std::size_t k = 0; k < paths.size(); ++k)
+    if (recording_of(k) == most->first) windows.push_back(k);
+  return windows;
+}
+
+// The law's parameters in its order, as the model ended with them; none where it does not hold the law.
+std::vector<double> parameters_of(const Effect& effect, const AssetConfig& asset) {
+  std::vector<double> parameters;
+  for (const PhysicsTerm& term : asset.physics)
+    if (term.id == effect.law->id && term.element == effect.element && parameters.empty())
+      for (const LawParameter& parameter : effect.law->parameters)
+        parameters.push_back(term.parameters.at(std::string(parameter.name)).value);
+  return parameters;
+}
+
+}  // namespace
+
+void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Data& data, bool whole,
+                        Explanation& result) {
+  if (result.effects.empty()) return;
+  const PlantSimulation& simulation = *best.model->problem.recordings.front().simulation;
+  for (const Effect& effect : best.effects) {
+    const SiteKind kind = effect.law->kind;
+    const std::vector<double> parameters = parameters_of(effect, best.model->asset);
+    if (parameters.empty()) continue;
+    const std::vector<TermPath> paths = term_paths(*best.model, effect.element, *effect.law, parameters);
+    const std::size_t signal = deciding_signal(paths, kind);
+    std::optional<MissingTerm> drawn;
+    for (const std::size_t k : windows_of_most(paths, data)) {
+      Result<MissingTerm> piece =
+          missing_term(baseline, best.model.get(), data, k, effect.element, kind, effect.law, parameters, signal);
+      if (!piece) continue;
+      if (drawn)
+        append(*drawn, std::move(*piece));
+      else
+        drawn = std::move(*piece);
+    }
+    if (drawn) {
+      drawn->what = law_at(effect);
+      result.missing.push_back(std::move(*drawn));
+    }
+    for (FoundEffect& found : result.effects)
+      if (found.what.id == effect.law->id && found.what.element == effect.element)
+        found.regime = regime_of(paths, kind, signals_of(simulation, effect.element, kind), whole);
+  }
+}
+
+}  // namespace sealwatch::mismatch

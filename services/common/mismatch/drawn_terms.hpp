@@ -1,0 +1,14 @@
+// What is drawn and said of where each law acts.
+#pragma once
+
+#include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/refits.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Into `result`: the missing term of each effect of `best`, over the recording in which its law's mean square is
+/// largest (all its windows), and the regime of each found effect. `whole`: `data` are recordings, not windows of them.
+void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Data& data, bool whole,
+                        Explanation& result);
+
+}  // namespace sealwatch::mismatch

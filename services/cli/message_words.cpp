@@ -89,7 +89,7 @@ std::string content(const StateReport& m) {
   return text;
 }
 std::string content(const HealthReport& m) {
-  std::string text = "grade " + number(m.health_grade, 2);
+  std::string text = m.health_grade_known ? "grade " + number(m.health_grade, 2) : "no grade yet";
   if (m.trend_known) text += " (" + number(m.health_trend_per_year, 2) + " a year)";
   if (!m.ambiguity_group.empty()) text += ", " + fault_words(m.ambiguity_group);
   if (!m.admissible_for_prognosis) text += ", not for prognosis: " + join(m.inadmissible_reasons);

@@ -62,7 +62,9 @@ std::string AssetView::seal_lines() const {
             number(latest->resistance_std_Pa_s_m3, 2) + " Pa s/m3 by sensor noise alone, from the " +
             latest->chosen_model + " model\n";
   if (health_ && is_of_now(health_->header)) {
-    text += "  health           grade " + number(health_->health_grade, 2) + " (1 as new, 0 failed)";
+    text += "  health           ";
+    text += health_->health_grade_known ? "grade " + number(health_->health_grade, 2) + " (1 as new, 0 failed)"
+                                        : "no grade: no test has measured the seal's leakage";
     if (health_->trend_known) text += ", " + number(health_->health_trend_per_year, 2) + " a year";
     if (!health_->ambiguity_group.empty()) text += "; " + fault_words(health_->ambiguity_group);
     text += "\n";

@@ -14,7 +14,8 @@ constexpr std::array<std::string_view, 7> kFunctional = {"friction_pressure", "b
 constexpr double kAlarmWidths = 3.0;
 constexpr double kGradePerRegion = 0.25;
 
-double seal_grade(const AssetConfig& asset, const std::vector<Deviation>& deviations, double last_grade) {
+std::optional<double> seal_grade(const AssetConfig& asset, const std::vector<Deviation>& deviations,
+                                 std::optional<double> last_grade) {
   const Deviation* leakage = find_deviation(deviations, "leakage_resistance");
   if (leakage != nullptr && asset.seal) {
     const double theta = asset.seal->condition(leakage->judgement.value);
@@ -37,10 +38,11 @@ double functional_grade(const StateReport& report) {
 
 }  // namespace
 
-double health_grade(const AssetConfig& asset, const StateReport& report, const std::vector<Deviation>& deviations,
-                    double last_grade) {
+std::optional<double> health_grade(const AssetConfig& asset, const StateReport& report,
+                                   const std::vector<Deviation>& deviations, std::optional<double> last_grade) {
   if (report.verdict == PstVerdict::failed) return 0.0;
-  return std::min(seal_grade(asset, deviations, last_grade), functional_grade(report));
+  const std::optional<double> seal = seal_grade(asset, deviations, last_grade);
+  return seal ? std::optional(std::min(*seal, functional_grade(report))) : std::nullopt;
 }
 
 }  // namespace sealwatch

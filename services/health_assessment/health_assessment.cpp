@@ -42,9 +42,15 @@ HealthReport begin_report(const StateReport& state_report, const TestFeatures& f
   return report;
 }
 
+void take_grade(std::optional<double> grade, HealthReport& report) {
+  report.health_grade_known = grade.has_value();
+  report.health_grade = grade.value_or(0.0);
+}
+
 /// Grade, trend and proposals of the last test that had any.
 void carry_over(const std::optional<HealthReport>& last, HealthReport& report) {
   if (!last) return;
+  report.health_grade_known = last->health_grade_known;
   report.health_grade = last->health_grade;
   report.no_fault_likelihood = last->no_fault_likelihood;
   report.ambiguity_group = last->ambiguity_group;
@@ -147,11 +153,12 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
   const auto asset = assets_.find(state_report.asset_id);
   if (state_report.judgements.empty() || is_poor_recording(state_report) || asset == assets_.end()) {
     carry_over(state.last, report);
-    if (state_report.verdict == PstVerdict::failed) report.health_grade = 0.0;
+    if (state_report.verdict == PstVerdict::failed) take_grade(0.0, report);
   } else {
     const std::vector<Deviation> deviations = deviations_of(state_report);
-    const double last_grade = state.last ? state.last->health_grade : 1.0;
-    report.health_grade = health_grade(asset->second, state_report, deviations, last_grade);
+    const bool graded = state.last && state.last->health_grade_known;
+    const std::optional<double> last_grade = graded ? std::optional(state.last->health_grade) : std::nullopt;
+    take_grade(health_grade(asset->second, state_report, deviations, last_grade), report);
     const bool failed = state_report.verdict == PstVerdict::failed && !state_report.verdict_reasons.empty();
     const SensorRemarks remarks = sensor_remarks(state_report, features);
     const std::vector<Signature> signatures =
@@ -178,7 +185,7 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
 void HealthAssessment::learn(AssetState& state, const HealthReport& report) const {
   if (is_first_after_replacement(report.header)) state.grades.clear();
   state.last = report;
-  if (!report.admissible_for_prognosis || !report.header.event_time_known) return;
+  if (!report.admissible_for_prognosis || !report.health_grade_known || !report.header.event_time_known) return;
   state.grades.push_back({UtcTime{report.header.event_time_ns}, report.health_grade});
   if (state.grades.size() > static_cast<std::size_t>(options_.trend_tests)) state.grades.erase(state.grades.begin());
 }

@@ -23,7 +23,7 @@ struct ProposedFault {
 struct HealthReport {
   std::string asset_id;       // key
   Header header;              ///< message_id "health_report/<pst_id>"
-  double health_grade = 1.0;  ///< 0 (failed) .. 1 (as new)
+  double health_grade = 0.0;  ///< 0 (failed) .. 1 (as new), where it is known
   bool trend_known = false;
   double health_trend_per_year = 0.0;  ///< slope of the grade over the last tests
   double health_trend_std_per_year = 0.0;
@@ -31,9 +31,10 @@ struct HealthReport {
   std::vector<ProposedFault> ambiguity_group;  ///< most likely first
   bool admissible_for_prognosis = true;
   std::vector<std::string> inadmissible_reasons;  ///< "cut after 7.4 s of about 31 s", empty when admissible
+  bool health_grade_known = false;                ///< false until a test has measured the seal
   SEALWATCH_FIELDS(HealthReport, asset_id, header, health_grade, trend_known, health_trend_per_year,
                    health_trend_std_per_year, no_fault_likelihood, ambiguity_group, admissible_for_prognosis,
-                   inadmissible_reasons)
+                   inadmissible_reasons, health_grade_known)
   friend bool operator==(const HealthReport&, const HealthReport&) = default;
 };
 

@@ -77,7 +77,7 @@ TEST(Json, PassesOverUnknownFieldsAndKeepsDefaultsOfAbsentOnes) {
   const Message message =
       message_from_json(Topic::health_report, R"({"asset_id": "A", "a_later_field": [1, 2]})").value();
   EXPECT_EQ(std::get<HealthReport>(message).asset_id, "A");
-  EXPECT_EQ(std::get<HealthReport>(message).health_grade, 1.0);
+  EXPECT_EQ(std::get<HealthReport>(message).no_fault_likelihood, HealthReport{}.no_fault_likelihood);
 }
 
 TEST(Json, NamesTheFieldThatIsWrong) {

@@ -86,6 +86,7 @@ struct TestCase {
     report.asset_id = kAsset;
     report.header = header("health_report");
     report.health_grade = 0.7;
+    report.health_grade_known = true;
     report.ambiguity_group = faults;
     return report;
   }

@@ -17,7 +17,9 @@ StateReport with_seal_at(double theta) {
   return report;
 }
 
-double grade(const StateReport& report) { return health_grade(synthetic::asset(), report, deviations_of(report), 1.0); }
+double grade(const StateReport& report) {
+  return health_grade(synthetic::asset(), report, deviations_of(report), 1.0).value();
+}
 
 TEST(Grade, FollowsTheSealFromAsNewToTheThreshold) {
   EXPECT_NEAR(grade(with_seal_at(1.0)), 1.0, 1e-12);
@@ -45,6 +47,7 @@ TEST(Grade, WhereTheLeakageIsNotMeasuredTheLastGradeStays) {
   StateReport report;
   report.verdict = PstVerdict::passed;
   EXPECT_EQ(health_grade(synthetic::asset(), report, {}, 0.4), 0.4);
+  EXPECT_FALSE(health_grade(synthetic::asset(), report, {}, std::nullopt)) << "never measured is not as new";
 }
 
 TEST(Grade, AFailedTestIsZero) {
@@ -60,7 +63,8 @@ TEST(Grade, WithoutSealResistancesTheDeviationCounts) {
   report.verdict = PstVerdict::passed;
   report.judgements = {{"leakage_resistance", Reference::own_baseline, "Pa s/m3", 5.5e12, 7e12, 4e12, 1e12,
                         AlertRegion::advisory, AlertRegion::normal, 1}};
-  EXPECT_NEAR(health_grade(asset, report, deviations_of(report), 1.0), 0.5, 1e-12);  // one and a half of three widths
+  EXPECT_NEAR(health_grade(asset, report, deviations_of(report), 1.0).value(), 0.5,
+              1e-12);  // one and a half of three widths
 }
 
 std::vector<GradeAt> line(double slope_per_year, double wiggle, int count) {

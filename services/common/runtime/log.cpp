@@ -1,9 +1,11 @@
 #include "services/common/runtime/log.hpp"
 
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
@@ -49,14 +51,40 @@ spdlog::sink_ptr file_sink(const LoggingConfig& config, const std::string& servi
       static_cast<std::size_t>(config.rotate_at_MB * 1e6), static_cast<std::size_t>(config.rotated_files));
 }
 
+/// "<4>" before a line: its priority for systemd's journal (sd-daemon(3)), which takes a line without for information.
+class JournalPriority final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {
+    constexpr std::string_view kDebug = "<7>", kInformation = "<6>", kWarning = "<4>", kError = "<3>";
+    const std::string_view priority = message.level >= spdlog::level::err    ? kError
+                                      : message.level == spdlog::level::warn ? kWarning
+                                      : message.level == spdlog::level::info ? kInformation
+                                                                             : kDebug;
+    line.append(priority.data(), priority.data() + priority.size());
+  }
+  [[nodiscard]] std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<JournalPriority>();
+  }
+};
+
+/// systemd sets JOURNAL_STREAM where standard error goes to its journal.
+std::unique_ptr<spdlog::formatter> format(bool for_journal) {
+  auto formatter = std::make_unique<spdlog::pattern_formatter>(spdlog::pattern_time_type::utc);
+  if (for_journal) formatter->add_flag<JournalPriority>('*');
+  formatter->set_pattern(std::string(for_journal ? "%*" : "") + "%Y-%m-%dT%H:%M:%S.%eZ %l %n %v");
+  return formatter;
+}
+
 }  // namespace
 
 Status start_logging(const LoggingConfig& config, const std::string& service) {
   try {
     std::vector<spdlog::sink_ptr> sinks = {std::make_shared<spdlog::sinks::stderr_sink_mt>()};
+    sinks.front()->set_formatter(format(std::getenv("JOURNAL_STREAM") != nullptr));
     if (!config.directory.empty()) {
       sinks.front()->set_level(spdlog::level::warn);
       sinks.push_back(file_sink(config, service));
+      sinks.back()->set_formatter(format(false));
     }
     logger() = std::make_shared<spdlog::logger>(service, sinks.begin(), sinks.end());
   } catch (const std::exception& exception) {
@@ -66,7 +94,6 @@ Status start_logging(const LoggingConfig& config, const std::string& service) {
                       .rule = exception.what(),
                       .advice = "name a directory that this user may write to"});
   }
-  logger()->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %n %v", spdlog::pattern_time_type::utc);
   logger()->set_level(spdlog_level(value_of<LogLevel>(config.level).value_or(LogLevel::info)));
   logger()->flush_on(spdlog::level::info);
   return {};

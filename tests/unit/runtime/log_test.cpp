@@ -82,6 +82,19 @@ TEST_F(LogTest, AFullFileIsRenamedAndTheOldestGoes) {
     EXPECT_LE(std::filesystem::file_size(place_.directory() + "/log/" + name), 1000U) << name;
 }
 
+TEST_F(LogTest, SystemdsJournalIsToldThePriority) {
+  ::setenv("JOURNAL_STREAM", "8:1", 1);
+  start();
+  ::unsetenv("JOURNAL_STREAM");
+  ::testing::internal::CaptureStderr();
+  log_event(LogLevel::info, "to the file alone");
+  log_event(LogLevel::warn, "disk");
+  log_event(LogLevel::error, "lost");
+  const std::string told = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(told, MatchesRegex("<4>20[^\n]*Z warning state_detection disk\n<3>20[^\n]*Z error [^\n]*lost\n"));
+  EXPECT_THAT(lines().at(1), MatchesRegex("20.*Z warning state_detection disk")) << "not in the file";
+}
+
 TEST_F(LogTest, ADirectoryThatCannotBeMadeIsNamed) {
   LoggingConfig config;
   config.directory = place_.write("file", "x") + "/log";

@@ -17,7 +17,7 @@ test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev       # tests and benchmarks
   libsundials-dev python3-scipy                    # independent solvers to compare with
   clang clang-format clang-tidy libclang-rt-14-dev # fuzzing, formatting, linting
-  sqlite3 man-db dpkg-dev
+  sqlite3 man-db dpkg-dev file                     # what tests look with, and what cpack packs with
 )
 
 case "${1:-}" in

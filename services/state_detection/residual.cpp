@@ -1,7 +1,9 @@
 #include "services/state_detection/residual.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace sealwatch {
@@ -29,6 +31,29 @@ AssetConfig with_leakage(AssetConfig asset, double resistance) {
     setting.value = setting.max > setting.min ? std::clamp(resistance, setting.min, setting.max) : resistance;
   }
   return asset;
+}
+
+/// The seal's resistance with which the simulation comes nearest to the recording; nothing for an asset whose seal is
+/// not described.
+std::optional<double> nearest_leakage(const AssetConfig& asset, const TimeSeries& recorded,
+                                      const Simulator& simulator) {
+  if (!asset.seal || !asset.parameters.contains("R_CL")) return std::nullopt;
+  const auto misfit = [&](double log_resistance) {
+    const AssetConfig aged = with_leakage(asset, std::exp(log_resistance));
+    const Result<TimeSeries> simulated = simulator.simulate(aged, recorded);
+    if (!simulated) return std::numeric_limits<double>::max();
+    double sum = 0.0;
+    for (const ResidualSummary& one : summarise_residuals(asset, recorded, *simulated, Reference::own_baseline))
+      sum += one.noise_normalised_rms * one.noise_normalised_rms;
+    return sum;
+  };
+  constexpr int kBits = 16;  // of ln R: 0.05 %, less than the position's noise shows
+  constexpr double kWorse = 0.5, kBetter = 1.5;
+  std::uintmax_t evaluations = 40;
+  const auto [log_resistance, least] =
+      boost::math::tools::brent_find_minima(misfit, std::log(kWorse * asset.seal->resistance_60_Pa_s_m3),
+                                            std::log(kBetter * asset.seal->resistance_100_Pa_s_m3), kBits, evaluations);
+  return std::exp(log_resistance);
 }
 
 }  // namespace
@@ -62,6 +87,7 @@ Result<std::vector<ResidualSummary>> residuals_of(const AssetConfig& asset, cons
   const Result<TimeSeries> nominal = simulator.simulate(asset, recorded);
   if (!nominal) return tl::unexpected(nominal.error());
   std::vector<ResidualSummary> all = summarise_residuals(asset, recorded, *nominal, Reference::nominal_model);
+  if (!leakage_resistance) leakage_resistance = nearest_leakage(asset, recorded, simulator);
   const AssetConfig aged = leakage_resistance ? with_leakage(asset, *leakage_resistance) : asset;
   const Result<TimeSeries> own = leakage_resistance ? simulator.simulate(aged, recorded) : nominal;
   if (!own) return tl::unexpected(own.error());
@@ -74,6 +100,7 @@ Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& ac
                                                            std::optional<double> leakage_resistance,
                                                            const Simulator& simulator) {
   const TimeSeries recorded = usable_channels(window);
+  if (!leakage_resistance) leakage_resistance = nearest_leakage(accepted, recorded, simulator);
   const AssetConfig aged = leakage_resistance ? with_leakage(accepted, *leakage_resistance) : accepted;
   const Result<TimeSeries> simulated = simulator.simulate(aged, recorded);
   if (!simulated) return tl::unexpected(simulated.error());

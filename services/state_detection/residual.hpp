@@ -4,8 +4,9 @@
 //   nrmse_percent        = 100 (1 - |y - y_hat| / |y - mean(y)|)
 //
 // Two references. nominal_model: the asset as its file has it. own_baseline: the same with the piston seal's resistance
-// as this test's standstills show it, so that known ageing is not seen again in every channel; state detection compares
-// its rms with the asset's own first tests.
+// as this test's standstills show it, so that known ageing is not seen again in every channel (where they do not, as no
+// flow is recorded, that with which the simulation comes nearest); state detection compares its rms with the asset's
+// own first tests.
 #pragma once
 
 #include <optional>

@@ -39,6 +39,22 @@ TEST(Residual, AgeingOfTheSealIsTakenOutOfTheOwnBaseline) {
   }
 }
 
+TEST(Residual, AgeingIsTakenOutWhereNoFlowTellsIt) {
+  const AssetConfig asset = synthetic::asset();
+  synthetic::Circumstances circumstances;
+  circumstances.absent_channel = "flow";
+  const synthetic::Test test = synthetic::make({}, circumstances);
+  for (const double theta : {0.97, 0.8, 0.61}) {
+    const FakeSimulator simulator(1.0, 50.0, asset.seal->resistance_Pa_s_m3(theta));
+    const auto summaries = residuals_of(asset, test.window, std::nullopt, simulator);
+    ASSERT_TRUE(summaries);
+    for (const ResidualSummary& summary : *summaries) {
+      if (summary.reference != Reference::own_baseline) continue;
+      EXPECT_NEAR(summary.noise_normalised_rms, 1.0, 0.1) << summary.channel << theta;
+    }
+  }
+}
+
 TEST(Residual, FailedChannelsStayOut) {
   synthetic::Circumstances circumstances;
   circumstances.failed_channel = "flow";

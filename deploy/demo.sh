@@ -2,23 +2,27 @@
 # From a fresh Debian 12 machine to a forecast: installs packages, builds, starts the six services, plays nine years of monthly
 # partial stroke tests of one actuator through them over DDS, and shows the forecast with its reasons.
 #   deploy/demo.sh               with a life recorded by sealwatch's own virtual bench
-#   deploy/demo.sh --data DIR    with the recordings (*.csv) in DIR
+#   deploy/demo.sh --data DIR    with the recordings (*.csv, *.mat) in DIR
 # Needs root or sudo for the packages, nothing else. Everything it makes is in build/ and demo/ of this checkout. Run it again as
 # often as you like.
 set -euo pipefail
+started_in=$PWD
 cd "$(dirname "$0")/.."
 
 usage() { sed -n '2,7s/^# \{0,1\}//p' "$0"; exit "$1"; }
 data=
 while [ $# -gt 0 ]; do
   case "$1" in
-    --data) [ $# -ge 2 ] || usage 2; data=$2; shift 2 ;;
+    --data) [ $# -ge 2 ] || usage 2; data=$(cd "$started_in" && realpath -m -- "$2"); shift 2 ;;
     -h | --help) usage 0 ;;
     *) usage 2 >&2 ;;
   esac
 done
-if [ -n "$data" ] && ! compgen -G "$data/*.csv" >/dev/null; then
-  echo "$0: no *.csv in '$data'; give the folder that holds the recordings" >&2
+recordings_in() { find "$1" -maxdepth 1 \( -name '*.csv' -o -name '*.mat' \) | sort; }
+asset=XT03-MV2
+[ -z "$data" ] || asset=ASSET_ID
+if [ -n "$data" ] && [ -z "$(recordings_in "$data" 2>/dev/null)" ]; then
+  echo "$0: no *.csv or *.mat in '$data'; give the folder that holds the recordings" >&2
   exit 2
 fi
 
@@ -42,15 +46,16 @@ if [ -z "$data" ]; then
   fi
 fi
 
-echo "== replay: $(ls "$data"/*.csv | wc -l) tests through six services over DDS, as fast as they go"
-"$sealwatch" replay --config config --with-services --state demo/state --results demo/results "$data"/*.csv
+mapfile -t recordings < <(recordings_in "$data")
+echo "== replay: ${#recordings[@]} tests through six services over DDS, as fast as they go"
+"$sealwatch" replay --config config --with-services --state demo/state --results demo/results "${recordings[@]}"
 
-cat <<'TXT'
+cat <<TXT
 
 Look further:
   build/release/bin/sealwatch forecast --config config --state demo/state --page demo/forecast.html
                                                                        the forecast as a page for a browser
-  build/release/bin/sealwatch show XT03-MV2 --state demo/state         what the advice was concluded from, down to the recording
+  build/release/bin/sealwatch show $asset --state demo/state         what the advice was concluded from, down to the recording
   build/release/bin/sealwatch up --config config --state demo/state    the services again (they ended with the demo), with what they remember
   build/release/bin/sealwatch status                                   then, in another terminal: the last word on every actuator, and the
                                                                        command that acknowledges its advice

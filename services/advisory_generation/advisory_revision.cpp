@@ -86,9 +86,10 @@ std::optional<Advisory> with_acknowledgement(const Advisory& current, const Ackn
   answer.header.source_ids = {current.header.message_id, acknowledgement.header.message_id};
   if (acknowledgement.advisory_id != current.advisory_id) {
     answer.header.message_id = current.header.message_id + "/noted/" + who_and_when;
-    answer.acknowledgement_remark = "acknowledgement of '" + acknowledgement.advisory_id + "' by " +
-                                    acknowledgement.acknowledged_by + " not applied: this advisory is '" +
-                                    current.advisory_id + "'";
+    if (!answer.acknowledgement_remark.empty()) answer.acknowledgement_remark += "; ";  // what somebody said stays
+    answer.acknowledgement_remark += "acknowledgement of '" + acknowledgement.advisory_id + "' by " +
+                                     acknowledgement.acknowledged_by + " not applied: this advisory is '" +
+                                     current.advisory_id + "'";
     return answer;
   }
   if (current.state == AdvisoryState::acknowledged) return std::nullopt;

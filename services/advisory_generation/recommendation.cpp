@@ -101,8 +101,10 @@ Recommendation by_wear(const Context& c) {
     case WearLevel::book_at_once:
       r.priority = AdvisoryPriority::urgent;
       r.action = AdvisoryAction::book_vessel;
-      r.text = "Book a vessel at once to replace the piston seal " + when + "; the regular booking date " + booked_by +
-               " has passed." + view;
+      r.text = "Book a vessel at once to replace the piston seal " + when +
+               (c.book_by ? "; the regular booking date " + booked_by + " has passed."
+                          : "; less time is left than booking usually takes.") +
+               view;
       return r;
     case WearLevel::replace:
       r.priority = AdvisoryPriority::urgent;

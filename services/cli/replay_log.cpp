@@ -128,11 +128,10 @@ Status ReplayLog::finish() {
   }
   if (assets_.empty()) std::printf("no test has been concluded\n");
   if (!options_.results_directory.empty() && results_.empty() && !any_refused_)
-    std::fprintf(
-        stderr,
-        "sealwatch: nothing was written to %s: the services had concluded from all these tests before, and say "
-        "nothing twice; replay --offline, or with another --state, writes everything\n",
-        options_.results_directory.c_str());
+    std::fprintf(stderr, "sealwatch: nothing was written to %s: %s\n", options_.results_directory.c_str(),
+                 options_.offline ? "none of these recordings could be concluded"
+                                  : "the services had concluded from all these tests before, and say nothing twice; "
+                                    "replay --offline, or with another --state, writes everything");
   return written();
 }
 

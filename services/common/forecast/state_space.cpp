@@ -104,7 +104,10 @@ std::string describe_ok(const Forecast& forecast, const SealOpinion& opinion, co
   text += " tests up to " + format_date(request.history.back().time) + ", condition now ";
   const ConditionForecast now = condition_of(opinion, request.now);
   text += condition_with_std(now.condition, now.condition_std);
-  text += request.history.back().time < request.now ? " (carried on from then)" : " (by sensor noise alone)";
+  const ConditionSample& last = request.history.back();
+  text += last.time < request.now     ? " (carried on from then)"
+          : last.condition_std == 0.0 ? " (by how the tests scatter)"
+                                      : " (by sensor noise alone)";
   double stranger = 0.0;
   for (const SealHypothesis& hypothesis : opinion.hypotheses)
     stranger += (hypothesis.kin == Kinship::stranger) * hypothesis.weight;

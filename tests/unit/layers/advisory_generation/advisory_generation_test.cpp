@@ -238,6 +238,14 @@ TEST_F(AdvisoryGenerationTest, UnknownAdvisoryIsNotedNotAcknowledged) {
   EXPECT_TRUE(run({acknowledgement("anything", 1.0)}).empty());  // nothing known of the asset
 }
 
+TEST_F(AdvisoryGenerationTest, WhatWasRemarkedStaysBesideAnAcknowledgementOfSomethingElse) {
+  const auto before = inputs_of(life_until(60, 85, 100.0));
+  const auto seen = acknowledgement(advisories(before).back().advisory_id, 85.2);
+  const Advisory answer = advisories(joined(before, {seen, acknowledgement("recommendation/other", 85.3)})).back();
+  EXPECT_EQ(answer.state, AdvisoryState::acknowledged);
+  EXPECT_THAT(answer.acknowledgement_remark, testing::AllOf(HasSubstr("work order 4711; "), HasSubstr("not applied")));
+}
+
 TEST_F(AdvisoryGenerationTest, ReplacementClosesTheWorkAndStartsAnew) {
   const auto before = inputs_of(life_until(60, 100, 100.0));
   const auto all = advisories(joined(joined(before, {replacement(100.5)}),

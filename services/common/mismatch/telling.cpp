@@ -1,6 +1,7 @@
 #include "services/common/mismatch/telling.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -35,7 +36,9 @@ std::string separating_test(const FoundEffect& effect) {
 
 }  // namespace
 
+// "pressure A", "chamber B": a chamber's letter is a capital.
 std::string in_words(std::string id) {
+  if (id.ends_with("_a") || id.ends_with("_b")) id.back() = static_cast<char>(std::toupper(id.back()));
   std::ranges::replace(id, '_', ' ');
   return id;
 }
@@ -70,13 +73,9 @@ std::string reason_in_words(const Error& error) {
 
 std::string element_in_words(const std::string& element) {
   constexpr std::string_view kSensor = "sensor:";
-  std::string text = element;
-  if (element.starts_with(kSensor))
-    text = "the sensor of " + element.substr(kSensor.size());
-  else
-    text.insert(0, "the ");
-  std::ranges::replace(text, '_', ' ');
-  return text;
+  if (element.starts_with(kSensor)) return "the sensor of " + in_words(element.substr(kSensor.size()));
+  const bool numbered = element.size() > 2 && element[element.size() - 2] == '_';  // "chamber A", "valve 1"
+  return (numbered ? "" : "the ") + in_words(element);
 }
 
 std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before, double misfit_after) {

@@ -142,6 +142,8 @@ std::string words_of(std::string_view identifier) {
     else
       text += letter;
   }
+  if (identifier.ends_with("_a") || identifier.ends_with("_b"))  // "pressure A", "chamber B"
+    text.back() = static_cast<char>(std::toupper(text.back()));
   return text;
 }
 

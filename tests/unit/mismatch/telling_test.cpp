@@ -36,7 +36,7 @@ TEST(Summary, ShowsTheChannelThatImproved) {
   found.effects[0].what = {"sensor_bias", "", "sensor:position", "b", ""};
   found.holdout.channels = {{.channel = "motor_current", .rms_before = 1.03, .rms_after = 1.03},
                             {.channel = "pressure_a", .rms_before = 1.02, .rms_after = 0.98}};
-  EXPECT_NE(summary_of(found).find("the misfit of pressure a on recordings that took no part falls from 1.02 to 0.98"),
+  EXPECT_NE(summary_of(found).find("the misfit of pressure A on recordings that took no part falls from 1.02 to 0.98"),
             std::string::npos)
       << summary_of(found);
 }

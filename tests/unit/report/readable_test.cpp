@@ -55,7 +55,7 @@ TEST(Readable, PValues) {
 
 TEST(Readable, Identifiers) {
   EXPECT_EQ(words_of("line_resistance"), "line resistance");
-  EXPECT_EQ(words_of("sensor:pressure_a"), "sensor: pressure a");
+  EXPECT_EQ(words_of("sensor:pressure_a"), "sensor: pressure A");
   EXPECT_EQ(unit_text("Pa s/m3"), "Pa·s/m³");
   EXPECT_EQ(unit_text("1"), "");
 }

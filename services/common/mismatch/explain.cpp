@@ -239,6 +239,7 @@ class Analysis {
     note_not_compared(*blocks);
     result_.fit = pool(result_.recordings, false);
     result_.holdout = pool(result_.recordings, true);
+    if (takes_back_what_comes_nowhere_near()) return finish();
     const double excess_before = baseline_->misfit / baseline_->residuals - 1.0;
     const double excess_after = best_.model->misfit / best_.model->residuals - 1.0;
     result_.explained_share =
@@ -268,7 +269,35 @@ class Analysis {
     say_what_changed_between_tests();
     say_that_nothing_moves();
     say_that_nothing_could_be_asked();
+    say_that_nothing_comes_near();
     return {};
+  }
+
+  // Laws that leave less than half of a channel's course reproduced, far above its noise, bend to something else: a
+  // wrong unit, a sign, a channel of another sensor.
+  bool takes_back_what_comes_nowhere_near() {
+    if (windowed() || best_.effects.empty()) return false;
+    const ChannelComparison* far = farthest_off(result_.fit);
+    if (far == nullptr) return false;
+    far_off_ = "The simulation comes nowhere near these recordings, whatever law is added: of " +
+               in_words(far->channel) + " it misses " + number(far->rms_after) +
+               " times the noise, more than half of the course. No physics is named for that.";
+    best_ = {.effects = {}, .model = baseline_};
+    proven_ = false;
+    result_.effects.clear();
+    result_.recordings.clear();
+    return true;
+  }
+
+  void say_that_nothing_comes_near() {
+    if (!far_off_) return;
+    result_.location.clear();
+    result_.rejected.clear();
+    result_.prognosis = {};
+    result_.notes.push_back(*far_off_);
+    result_.summary = *far_off_;
+    result_.next_test =
+        "Check the units, signs and wiring of the recorded channels first, then the parameters in the asset file.";
   }
 
   // A seal that ages from test to test is no physics that a test lacks.
@@ -313,7 +342,7 @@ class Analysis {
   }
 
   void decide() {
-    if (at_rest_ || cannot_look_) {
+    if (at_rest_ || cannot_look_ || far_off_) {
       result_.verdict = Verdict::undetermined;
       return;
     }
@@ -350,6 +379,7 @@ class Analysis {
   bool all_compared_ = true;                ///< the models can be simulated on every recording
   std::optional<std::string> change_;       ///< between the tests, where that is likelier than the laws found
   std::optional<std::string> cannot_look_;  ///< why no law could be asked for
+  std::optional<std::string> far_off_;      ///< laws were found, and the simulation comes nowhere near with them
   double window_s_ = 0.0;
   Explanation result_;
 };

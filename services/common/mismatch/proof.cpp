@@ -168,4 +168,15 @@ PooledFit pool(const std::vector<RecordingComparison>& recordings, bool holdout)
   return pooled;
 }
 
+const ChannelComparison* farthest_off(const PooledFit& fit) {
+  constexpr double kHalf_percent = 50.0;
+  constexpr double kFarAboveNoise = 10.0;
+  const ChannelComparison* farthest = nullptr;
+  for (const ChannelComparison& channel : fit.channels) {
+    const bool far = channel.nrmse_after < kHalf_percent && channel.rms_after > kFarAboveNoise;
+    if (far && (farthest == nullptr || channel.rms_after > farthest->rms_after)) farthest = &channel;
+  }
+  return farthest;
+}
+
 }  // namespace sealwatch::mismatch

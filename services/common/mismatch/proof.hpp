@@ -36,4 +36,8 @@ struct GainInterval {
 /// All recordings' channels as one: mean squares.
 [[nodiscard]] PooledFit pool(const std::vector<RecordingComparison>& recordings, bool holdout);
 
+/// The channel that the model after misses most, where it misses more than half of its course by far more than the
+/// noise; null where it comes near all.
+[[nodiscard]] const ChannelComparison* farthest_off(const PooledFit& fit);
+
 }  // namespace sealwatch::mismatch

@@ -1,4 +1,5 @@
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/proof.hpp"
 
 #include <gtest/gtest.h>
 
@@ -68,6 +69,23 @@ TEST(Evidence, OfSeveralLawsIsSaidOfAllTogether) {
   drag.what = {"quadratic_drag", "", "piston", "k v abs(v)", ""};
   EXPECT_EQ(evidence_of(drag, 1, 12.0, 1.02).find("Adding quadratic drag at the piston takes"), 0U);
   EXPECT_EQ(evidence_of(drag, 2, 12.0, 1.02).find("With the other laws found, quadratic drag at the piston takes"), 0U);
+}
+
+TEST(FarthestOff, IsAChannelOfWhichLessThanHalfIsReproducedFarAboveTheNoise) {
+  const auto channel = [](const char* name, double rms, double nrmse) {
+    ChannelComparison one;
+    one.channel = name;
+    one.rms_after = rms;
+    one.nrmse_after = nrmse;
+    return one;
+  };
+  PooledFit fit;
+  fit.channels = {channel("flow", 200.0, 60.0), channel("velocity", 2.0, 10.0)};
+  EXPECT_EQ(farthest_off(fit), nullptr) << "a course that is there, and one that drowns in its noise";
+  fit.channels.push_back(channel("pressure_a", 30.0, 40.0));
+  fit.channels.push_back(channel("position", 7000.0, -550.0));
+  ASSERT_NE(farthest_off(fit), nullptr);
+  EXPECT_EQ(farthest_off(fit)->channel, "position");
 }
 
 }  // namespace

@@ -20,18 +20,17 @@ bool better(const PemOptimum& a, const PemOptimum& b) {
 
 // Seal leakage and bulk modulus from the cylinder circuit, where it can be fitted: one linear regression instead of a
 // step from the asset's value, which overshoots where the seal is worn.
-bool start_from_cylinder_circuit(PemProblem& problem, const AssetConfig& asset,
+void start_from_cylinder_circuit(PemProblem& problem, const AssetConfig& asset,
                                  std::span<const TimeSeries> recordings) {
-  if (!asset.parameters.contains("A_C")) return false;
+  if (!asset.parameters.contains("A_C")) return;
   for (const TimeSeries& recorded : recordings) {
     const FitReport circuit = fit_cylinder_circuit(asset, recorded, {});
     if (!circuit.admissible) continue;
     for (const EstimatedParameter& parameter : circuit.parameters)
       for (Unknown& unknown : problem.shared)
         if (unknown.name == parameter.name) unknown.start = parameter.value;
-    return true;
+    return;
   }
-  return false;
 }
 
 // Half the sum of squares at the starting values; infinite where they cannot be simulated.
@@ -100,7 +99,9 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
 
 Result<PemOptimum> search_from_asset(PemProblem& problem, const AssetConfig& asset,
                                      std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
-  if (!start_from_cylinder_circuit(problem, asset, recordings)) start_from_best_leakage(problem);
+  start_from_cylinder_circuit(problem, asset, recordings);
+  if (std::ranges::none_of(recordings, [](const TimeSeries& one) { return one.has("flow"); }))
+    start_from_best_leakage(problem);
   return search_from_several_starts(problem, options);
 }
 

@@ -81,7 +81,7 @@ std::optional<std::string> change_between_tests(const AssetConfig& asset, const 
   text.append(" runs from ").append(number(changed->second.least)).append(" to ").append(number(changed->second.most));
   text.append(" ").append(changed->second.unit).append(" from test to test, ");
   text.append(number(changed->second.standard_errors()));
-  text.append(" standard errors. The asset changed between these tests; no physics is missing within one.");
+  text.append(" standard errors. The asset changed between these tests; missing physics cannot be seen within one.");
   return text;
 }
 

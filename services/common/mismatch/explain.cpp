@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
 constexpr double kSmallestP = 1e-300;      // that is told: the tail's own digits end there
+constexpr double kHeldOutAgrees = 1.5;     // noise-normalised rms of a channel: the noise's own estimate is off by less
 constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model, or so much left
 
 // -ln p, to the smallest p that a double holds.
@@ -270,6 +271,7 @@ class Analysis {
     say_that_nothing_moves();
     say_that_nothing_could_be_asked();
     say_that_nothing_comes_near();
+    say_that_what_was_kept_aside_differs();
     return {};
   }
 
@@ -298,6 +300,23 @@ class Analysis {
     result_.summary = *far_off_;
     result_.next_test =
         "Check the units, signs and wiring of the recorded channels first, then the parameters in the asset file.";
+  }
+
+  // The fitted recordings agree, and those kept aside do not: what came in between, or acts under their conditions
+  // alone, has no part in the fit that could tell it.
+  void say_that_what_was_kept_aside_differs() {
+    if (windowed() || result_.statistically_significant || at_rest_ || cannot_look_) return;
+    const auto worst = std::ranges::max_element(result_.holdout.channels, {}, &ChannelComparison::rms_after);
+    if (worst == result_.holdout.channels.end() || worst->rms_after < kHeldOutAgrees) return;
+    result_.verdict = Verdict::undetermined;
+    result_.prognosis = {};
+    result_.summary =
+        "The fitted recordings agree with the model, those that were kept aside do not: " + in_words(worst->channel) +
+        " misses by " + number(worst->rms_after) +
+        " times the noise. The asset changed between them, or what is missing acts in these alone.";
+    result_.notes.push_back(result_.summary);
+    result_.next_test =
+        "Fit some of the recordings that were kept aside together with the others, and keep others of each kind aside.";
   }
 
   // A seal that ages from test to test is no physics that a test lacks.

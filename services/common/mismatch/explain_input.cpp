@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "sealwatch/estimation/noise_floor.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -35,6 +37,27 @@ bool same_samples(const TimeSeries& a, const TimeSeries& b) {
     if (static_cast<double>(equal) < kMost * static_cast<double>(rows.size())) return false;
   }
   return shared;
+}
+
+double span_of(const Series& channel) {
+  const auto [least, most] = std::ranges::minmax(channel.values);
+  return most - least;
+}
+
+// An output that is one number from beginning to end while another moves far beyond its noise: a dead sensor, which
+// gains of healthy ones would be bent to explain. At rest every output may be.
+const Series* stuck_channel(const PlantSimulation& simulation, const TimeSeries& samples) {
+  constexpr double kMoves = 50.0;
+  const Series* stuck = nullptr;
+  bool moves = false;
+  for (const std::string_view name : simulation.channels()) {
+    const Series* channel = samples.find(std::string(name));
+    if (channel == nullptr || channel->values.empty()) continue;
+    if (span_of(*channel) == 0.0) stuck = channel;
+    const double noise = estimate_noise_floor(channel->values).standard_deviation;
+    moves = moves || (noise > 0.0 && span_of(*channel) > kMoves * noise);
+  }
+  return moves ? stuck : nullptr;
 }
 
 }  // namespace
@@ -83,6 +106,12 @@ Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span
         if (error.file.empty()) error.file = recording.file;
         return fail(std::move(error));
       }
+      if (const Series* stuck = stuck_channel(**simulation, recording.samples))
+        return fail(Error{.file = recording.file,
+                          .place = "column " + stuck->name,
+                          .value = "never changes",
+                          .rule = "while other channels of the recording do: the sensor is stuck",
+                          .advice = "leave the column out of the recordings, or those with it"});
     }
   for (const Recording& one : holdout)
     for (const Recording& other : fit)

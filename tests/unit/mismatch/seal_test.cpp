@@ -9,6 +9,7 @@
 #include "sealwatch/mismatch/explain.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
+#include "services/common/mismatch/telling.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
@@ -36,19 +37,46 @@ TEST(Seal, ThatAgedBetweenTestsIsNoMissingPhysics) {
   EXPECT_FALSE(explanation->prognosis.known) << "one condition for tests of different ones";
 }
 
+Recording recording_of(const AssetConfig& truth, double load) {
+  AssetConfig loaded = truth;
+  loaded.parameters.at("phi").value *= load;
+  Recording recording;
+  recording.asset_id = truth.asset_id;
+  recording.file = recording.recording_id = recording.content_hash = number(load);
+  recording.samples = simulated_test(loaded, 1.0);
+  return recording;
+}
+
+TEST(KeptAside, RecordingsThatDifferFromTheFittedOnesAreNotConsistent) {
+  const AssetConfig asset = actuator();
+  const AssetConfig leaking = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4.0e-14});
+  const std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  const auto same = explain(asset, fit, std::vector{recording_of(asset, 1.0)});
+  ASSERT_TRUE(same) << same.error().describe();
+  EXPECT_EQ(same->verdict, Verdict::consistent) << same->summary;
+  const auto other = explain(asset, fit, std::vector{recording_of(leaking, 1.0)});
+  ASSERT_TRUE(other) << other.error().describe();
+  EXPECT_EQ(other->verdict, Verdict::undetermined);
+  EXPECT_NE(other->summary.find("those that were kept aside do not"), std::string::npos) << other->summary;
+}
+
+TEST(Recorded, AChannelThatNeverChangesWhileThePistonMovesIsRefused) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  for (Series& channel : fit[1].samples.channels)
+    if (channel.name == "pressure_b") std::ranges::fill(channel.values, 1.8e6);
+  const auto refused = explain(asset, fit, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().place, "column pressure_b");
+  EXPECT_EQ(refused.error().file, fit[1].file);
+}
+
 TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {
   const AssetConfig asset = actuator();
   const Law& law = **find_law("turbulent_seal_leakage", {"k"});
   std::vector<Recording> fit;
-  for (const double load : {0.8, 1.0, 1.2}) {
-    AssetConfig truth = with_law(asset, law, "piston_seal", std::vector{1.5e-10});
-    truth.parameters.at("phi").value *= load;
-    Recording recording;
-    recording.asset_id = asset.asset_id;
-    recording.file = recording.recording_id = recording.content_hash = std::to_string(load);
-    recording.samples = simulated_test(truth, 1.0);
-    fit.push_back(std::move(recording));
-  }
+  for (const double load : {0.8, 1.0, 1.2})
+    fit.push_back(recording_of(with_law(asset, law, "piston_seal", std::vector{1.5e-10}), load));
   const auto explanation = explain(asset, fit, {});
   ASSERT_TRUE(explanation) << explanation.error().describe();
   ASSERT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;

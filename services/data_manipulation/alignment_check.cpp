@@ -45,6 +45,7 @@ class AlignmentCheck {
   void judge_signs();
   void judge_offsets();
   void compare_pressures();
+  void compare_with_leakage(const Series& differential);
   [[nodiscard]] std::optional<signal::OffsetEstimate> compare(const std::vector<double>& reference,
                                                               double reference_lag_s, const Series& channel) const;
   [[nodiscard]] bool offset_noticed(double offset_s, double std_s) const;
@@ -186,12 +187,45 @@ void AlignmentCheck::judge_offsets() {
                      : "against position, and which of the channels is wrong cannot be told");
 }
 
+/// Without the chambers' pressures: while the piston stands, oil leaks from the higher pressure to the lower, and the
+/// flow that holds it has the sign of the pressure difference.
+void AlignmentCheck::compare_with_leakage(const Series& differential) {
+  constexpr double kStands = 0.02;     // of the largest speed
+  constexpr double kLeast_s = 2.0;     // of standstill
+  constexpr double kStdErrors = 10.0;  // of the mean; coloured noise and what is left of the motion are in it
+  const Series* position = samples_.find("position");
+  const Series* flow = samples_.find("flow");
+  if (!position || !flow) return;
+  const std::vector<double> speed = signal::derivative(filter_.apply_zero_phase(position->values), interval_s_);
+  double largest = 0.0;
+  for (const double one : speed) largest = std::max(largest, std::abs(one));
+  std::vector<double> flow_at_rest, difference_at_rest;
+  for (std::size_t i = 0; i < speed.size(); ++i) {
+    if (std::abs(speed[i]) > kStands * largest) continue;
+    flow_at_rest.push_back(flow->values[i]);
+    difference_at_rest.push_back(differential.values[i]);
+  }
+  if (static_cast<double>(flow_at_rest.size()) * interval_s_ < kLeast_s) return;
+  const signal::Estimate leak = signal::mean(flow_at_rest), difference = signal::mean(difference_at_rest);
+  const bool clear = std::abs(leak.value) > kStdErrors * leak.std_error &&
+                     std::abs(difference.value) > kStdErrors * difference.std_error;
+  const auto correction = alignment_.corrections.find("flow");
+  const double sign = correction != alignment_.corrections.end() && correction->second.swap_sign ? -1.0 : 1.0;
+  if (clear && sign * leak.value * difference.value < 0.0)
+    note_sign("pressure_differential", false,
+              "against the flow that leaks while the piston stands; it, or the zero of the flow, is wrong");
+}
+
 /// Absolute pressures have no sign to swap, so that pressure_differential is the one that is wrong.
 void AlignmentCheck::compare_pressures() {
   const Series* pressure_a = samples_.find("pressure_a");
   const Series* pressure_b = samples_.find("pressure_b");
   const Series* differential = samples_.find("pressure_differential");
-  if (!pressure_a || !pressure_b || !differential) return;
+  if (!differential) return;
+  if (!pressure_a || !pressure_b) {
+    compare_with_leakage(*differential);
+    return;
+  }
   std::vector<double> difference = pressure_a->values;
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= pressure_b->values[i];
   const auto estimate =

@@ -296,6 +296,29 @@ TEST(Alignment, TheDifferentialPressureIsHeldAgainstBothPressures) {
   EXPECT_GT(result.window.samples.find("pressure_differential")->values[100], 1e7);
 }
 
+// The source's own channels: the leakage flow while the piston stands tells the difference's sign, or that its own zero
+// is off, so that nothing is corrected.
+TEST(Alignment, APressureDifferenceAgainstTheLeakageFlowIsNoticed) {
+  TimeSeries recorded = SyntheticPst{}.record();
+  for (const double sign : {1.0, -1.0}) {
+    TimeSeries few = only(recorded, {"flow", "position", "velocity"});
+    Series differential{"pressure_differential", "Pa", 0.0, values(recorded, "pressure_a")};
+    for (std::size_t i = 0; i < differential.values.size(); ++i)
+      differential.values[i] = sign * (differential.values[i] - values(recorded, "pressure_b")[i]);
+    few.channels.push_back(differential);
+    const Result result = conclude(few);
+    const AlignmentRemark* remark = remark_on(result, "pressure_differential");
+    if (sign > 0.0) {
+      EXPECT_TRUE(remark == nullptr || !remark->sign_swapped);
+      continue;
+    }
+    ASSERT_NE(remark, nullptr);
+    EXPECT_TRUE(remark->sign_swapped);
+    EXPECT_FALSE(remark->corrected);
+    EXPECT_THAT(remark->remark, HasSubstr("leaks while the piston stands"));
+  }
+}
+
 TEST(Alignment, SensorLagsThatTheAssetKnowsAreNoOffsets) {
   TimeSeries recorded = SyntheticPst{.noise = 0.0}.record();
   std::vector<double>& flow = values(recorded, "flow");

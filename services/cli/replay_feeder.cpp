@@ -30,7 +30,23 @@ bool ReplayFeeder::due(std::chrono::steady_clock::time_point now) const {
   return std::chrono::duration<double>(now - test_started_).count() >= unsent_.front().samples.time_s.back() / speed_;
 }
 
+Status ReplayFeeder::repeat_unanswered(Bus& bus, std::chrono::steady_clock::time_point now) {
+  constexpr std::chrono::seconds kUnanswered{3};  // several heartbeats
+  if (waiting_.empty()) return {};
+  const std::pair<std::uint64_t, std::uint64_t> progress{waiting_.front().header.stream_sequence, last_sequence_};
+  if (progress != progress_ || now - progressed_ < kUnanswered) {
+    if (progress != progress_) progressed_ = now;
+    progress_ = progress;
+    return {};
+  }
+  progressed_ = now;
+  for (const RawSamples& block : waiting_)
+    if (const Status published = bus.publish(Message(block)); !published) return published;
+  return {};
+}
+
 Status ReplayFeeder::feed(Bus& bus, std::chrono::steady_clock::time_point now) {
+  if (const Status repeated = repeat_unanswered(bus, now); !repeated) return repeated;
   while (true) {
     if (unsent_.empty()) {
       if (exhausted_ || tests_waiting() >= tests_ahead_) return {};

@@ -25,7 +25,8 @@ class ReplayFeeder {
   ReplayFeeder(std::string writer_id, std::function<std::vector<RawSamples>()> next_test, std::size_t tests_ahead,
                double speed);
 
-  /// Publishes what may be published at `now`.
+  /// Publishes what may be published at `now`; again what data acquisition has not journaled for some seconds. It asks
+  /// for what is missing before a block that it has, but of the last one, lost as it died, nothing tells it.
   [[nodiscard]] Status feed(Bus& bus, std::chrono::steady_clock::time_point now);
   /// Learns from data acquisition's heartbeat how far it has come.
   void take(const ServiceStatus& status);
@@ -43,6 +44,7 @@ class ReplayFeeder {
  private:
   void note_refusal(const ServiceStatus& status);
   [[nodiscard]] std::size_t tests_waiting() const;
+  [[nodiscard]] Status repeat_unanswered(Bus& bus, std::chrono::steady_clock::time_point now);
   /// Whether the first unsent block is due: its last sample has been "recorded" by now.
   [[nodiscard]] bool due(std::chrono::steady_clock::time_point now) const;
 
@@ -54,6 +56,8 @@ class ReplayFeeder {
   std::chrono::steady_clock::time_point test_started_;
   std::deque<RawSamples> waiting_;  ///< sent, not yet known to be journaled; first has the lowest sequence
   std::uint64_t last_sequence_ = 0;
+  std::pair<std::uint64_t, std::uint64_t> progress_;  ///< first block that waits and last one sent, at the last change
+  std::chrono::steady_clock::time_point progressed_;
   std::size_t tests_sent_ = 0;
   bool exhausted_ = false;
   std::string error_before_;  ///< the service's last error when the first block was sent

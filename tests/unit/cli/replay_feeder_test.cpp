@@ -65,6 +65,27 @@ TEST_F(Feeder, StaysAFewTestsAheadOfWhatIsJournaled) {
   EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{3, 4}));
 }
 
+TEST_F(Feeder, SendsAgainWhatIsNotJournaledForSomeSeconds) {
+  ReplayFeeder feeder("w", source(1), 1, 0.0);
+  const auto start = steady_clock::now();
+  const auto feed_at = [&](int ms) { ASSERT_TRUE(feeder.feed(writer_, start + milliseconds(ms)).has_value()); };
+  feed_at(0);
+  feed_at(20);
+  EXPECT_EQ(arrived(), (std::vector<std::uint64_t>{1, 2}));
+  feeder.take(journaled("w", 1));  // the last block was lost with the service that had received it
+  feed_at(2900);
+  feed_at(5800);
+  EXPECT_TRUE(arrived().empty()) << "it has just journaled something";
+  feed_at(6000);
+  EXPECT_EQ(arrived(), std::vector<std::uint64_t>{2});
+  feed_at(6100);
+  EXPECT_TRUE(arrived().empty()) << "not at once again";
+  feeder.take(journaled("w", 2));
+  feed_at(60000);
+  EXPECT_TRUE(arrived().empty());
+  EXPECT_TRUE(feeder.done());
+}
+
 TEST_F(Feeder, HearsOnceThatATestWasRefusedAndNotOfWhatWasRefusedBefore) {
   ReplayFeeder feeder("w", source(1), 1, 0.0);
   ServiceStatus status = journaled("w", 0);

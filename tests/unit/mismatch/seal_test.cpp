@@ -35,6 +35,12 @@ TEST(Seal, ThatAgedBetweenTestsIsNoMissingPhysics) {
   EXPECT_TRUE(explanation->explained.physics.empty());
   EXPECT_NE(explanation->summary.find("R_CL runs from"), std::string::npos) << explanation->summary;
   EXPECT_FALSE(explanation->prognosis.known) << "one condition for tests of different ones";
+
+  // Of two tests laws in common take the difference; a third, held out, shows that it was not theirs.
+  const auto of_two = explain(asset, std::vector{read("2016-10"), read("2016-11")}, std::vector{read("2016-12")});
+  ASSERT_TRUE(of_two) << of_two.error().describe();
+  EXPECT_EQ(of_two->verdict, Verdict::undetermined) << of_two->summary;
+  EXPECT_TRUE(of_two->effects.empty());
 }
 
 Recording recording_of(const AssetConfig& truth, double load) {

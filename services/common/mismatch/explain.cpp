@@ -29,6 +29,11 @@ constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model,
 // -ln p, to the smallest p that a double holds.
 double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)); }
 
+// What is said in place of a law.
+struct WhyNone {
+  std::string summary, next_test;
+};
+
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
  public:
@@ -51,15 +56,13 @@ class Analysis {
     best_ = naming_.best;
     result_.p_value = std::max(naming_.first.p_value, kSmallestP);
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
-    if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
-      change_ = change_between_tests(asset_, fit_, holdout_, *best_.model);
-    at_rest_ = at_rest(*baseline_, prepared(fit_));
-    if (change_ || at_rest_) best_ = {.effects = {}, .model = baseline_};
+    look_for_another_reason();
+    if (why_none_) best_ = {.effects = {}, .model = baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
       prove();
     }
-    if (!lacks_a_pressure() && !change_ && !at_rest_) look_again();
+    if (!lacks_a_pressure() && !why_none_) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
     draw_missing_terms(*baseline_, best_, prepared(fit_), !windowed(), result_);
     tell("done", 1.0);
@@ -69,12 +72,29 @@ class Analysis {
  private:
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
   Result<Explanation> cannot_look(const Error& why) {
-    cannot_look_ = reason_in_words(why);
+    why_none_ = {.summary = "The model was fitted, but it could not be asked for what is missing (" +
+                            reason_in_words(why) + "): nothing can be said of these recordings.",
+                 .next_test = "Check the recorded input around that time, or analyse without this recording."};
     naming_ = {.baseline = baseline_, .best = {{}, baseline_}, .trials = {{{}, baseline_}}, .first = {}, .last = {}};
     best_ = naming_.best;
     if (const Status status = finish(); !status) return fail(status.error());
     tell("done", 1.0);
     return std::move(result_);
+  }
+
+  // Why the recordings differ though no physics is missing, or why nothing can be seen in them.
+  void look_for_another_reason() {
+    // A seal that ages from test to test is no physics that a test lacks.
+    if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
+      if (auto change = change_between_tests(asset_, fit_, holdout_, *best_.model))
+        why_none_ = {
+            .summary = std::move(*change),
+            .next_test = "Analyse tests of one time together: several loads, speeds and strokes within a few days."};
+    if (at_rest(*baseline_, prepared(fit_)))
+      why_none_ = {.summary = "The actuator does not move in these recordings: there is nothing to see.",
+                   .next_test =
+                       "Record tests in which the piston moves out, holds and comes back, under several loads "
+                       "and speeds."};
   }
 
   void tell(std::string_view step, double share) const {
@@ -257,6 +277,7 @@ class Analysis {
     result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model);
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = best_.model->asset;
+    compare_with_what_was_kept_aside();
     decide();
     for (FoundEffect& effect : result_.effects)
       effect.evidence = evidence_of(effect, result_.effects.size(), excess_before + 1.0, excess_after + 1.0);
@@ -267,11 +288,7 @@ class Analysis {
           "alone, what chamber B's pressure does cannot be told from missing physics.";
     result_.summary = summary_of(result_);
     say_that_the_leak_is_in_two_parts();
-    say_what_changed_between_tests();
-    say_that_nothing_moves();
-    say_that_nothing_could_be_asked();
-    say_that_nothing_comes_near();
-    say_that_what_was_kept_aside_differs();
+    say_why_none();
     return {};
   }
 
@@ -281,9 +298,12 @@ class Analysis {
     if (windowed() || best_.effects.empty()) return false;
     const ChannelComparison* far = farthest_off(result_.fit);
     if (far == nullptr) return false;
-    far_off_ = "The simulation comes nowhere near these recordings, whatever law is added: of " +
-               in_words(far->channel) + " it misses " + number(far->rms_after) +
-               " times the noise, more than half of the course. No physics is named for that.";
+    why_none_ = {.summary = "The simulation comes nowhere near these recordings, whatever law is added: it misses " +
+                            in_words(far->channel) + " by " + number(far->rms_after) +
+                            " times the noise, more than half of the course. No physics is named for that.",
+                 .next_test =
+                     "Check the units, signs and wiring of the recorded channels first, then the parameters "
+                     "in the asset file."};
     best_ = {.effects = {}, .model = baseline_};
     proven_ = false;
     result_.effects.clear();
@@ -291,63 +311,28 @@ class Analysis {
     return true;
   }
 
-  void say_that_nothing_comes_near() {
-    if (!far_off_) return;
-    result_.location.clear();
-    result_.rejected.clear();
-    result_.prognosis = {};
-    result_.notes.push_back(*far_off_);
-    result_.summary = *far_off_;
-    result_.next_test =
-        "Check the units, signs and wiring of the recorded channels first, then the parameters in the asset file.";
-  }
-
   // The fitted recordings agree, and those kept aside do not: what came in between, or acts under their conditions
   // alone, has no part in the fit that could tell it.
-  void say_that_what_was_kept_aside_differs() {
-    if (windowed() || result_.statistically_significant || at_rest_ || cannot_look_) return;
+  void compare_with_what_was_kept_aside() {
+    if (windowed() || why_none_ || result_.statistically_significant) return;
     const auto worst = std::ranges::max_element(result_.holdout.channels, {}, &ChannelComparison::rms_after);
     if (worst == result_.holdout.channels.end() || worst->rms_after < kHeldOutAgrees) return;
-    result_.verdict = Verdict::undetermined;
-    result_.prognosis = {};
-    result_.summary =
-        "The fitted recordings agree with the model, those that were kept aside do not: " + in_words(worst->channel) +
-        " misses by " + number(worst->rms_after) +
-        " times the noise. The asset changed between them, or what is missing acts in these alone.";
-    result_.notes.push_back(result_.summary);
-    result_.next_test =
-        "Fit some of the recordings that were kept aside together with the others, and keep others of each kind aside.";
+    why_none_ = {.summary = "The fitted recordings agree with the model, those that were kept aside do not: " +
+                            in_words(worst->channel) + " misses by " + number(worst->rms_after) +
+                            " times the noise. The asset changed between them, or what is missing acts in these alone.",
+                 .next_test =
+                     "Fit some of the recordings that were kept aside together with the others, and keep "
+                     "others of each kind aside."};
   }
 
-  // A seal that ages from test to test is no physics that a test lacks.
-  void say_what_changed_between_tests() {
-    if (!change_) return;
+  void say_why_none() {
+    if (!why_none_) return;
     result_.location.clear();
     result_.rejected.clear();
     result_.prognosis = {};
-    result_.notes.push_back(*change_);
-    result_.summary = *change_;
-    result_.next_test = "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
-  }
-
-  void say_that_nothing_moves() {
-    if (!at_rest_) return;
-    result_.location.clear();
-    result_.rejected.clear();
-    result_.prognosis = {};
-    result_.summary = "The actuator does not move in these recordings: there is nothing to see.";
-    result_.notes.push_back(result_.summary);
-    result_.next_test =
-        "Record tests in which the piston moves out, holds and comes back, under several loads and speeds.";
-  }
-
-  void say_that_nothing_could_be_asked() {
-    if (!cannot_look_) return;
-    result_.prognosis = {};
-    result_.summary = "The model was fitted, but it could not be asked for what is missing (" + *cannot_look_ +
-                      "): nothing can be said of these recordings.";
-    result_.notes.push_back(result_.summary);
-    result_.next_test = "Check the recorded input around that time, or analyse without this recording.";
+    result_.notes.push_back(why_none_->summary);
+    result_.summary = why_none_->summary;
+    result_.next_test = why_none_->next_test;
   }
 
   // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
@@ -361,7 +346,7 @@ class Analysis {
   }
 
   void decide() {
-    if (at_rest_ || cannot_look_ || far_off_) {
+    if (why_none_) {
       result_.verdict = Verdict::undetermined;
       return;
     }
@@ -394,11 +379,8 @@ class Analysis {
   Naming naming_;
   Trial best_;
   bool proven_ = false;
-  bool at_rest_ = false;
-  bool all_compared_ = true;                ///< the models can be simulated on every recording
-  std::optional<std::string> change_;       ///< between the tests, where that is likelier than the laws found
-  std::optional<std::string> cannot_look_;  ///< why no law could be asked for
-  std::optional<std::string> far_off_;      ///< laws were found, and the simulation comes nowhere near with them
+  bool all_compared_ = true;         ///< the models can be simulated on every recording
+  std::optional<WhyNone> why_none_;  ///< set: no law is named
   double window_s_ = 0.0;
   Explanation result_;
 };

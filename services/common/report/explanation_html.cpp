@@ -39,6 +39,22 @@ void add_figure(const std::string& value, const std::string& meaning, std::strin
       .append("</span></div>\n");
 }
 
+// Once the physics is known: look there, calculate with it, settle what is open.
+std::string steps_after(const Explanation& explanation) {
+  std::string html = "<ol>\n";
+  const auto add = [&html](const std::string& step) { html.append("<li>").append(escaped(step)).append("</li>\n"); };
+  for (const mismatch::FoundEffect& effect : explanation.effects) {
+    std::string step = "Inspect the " + element_name(effect.what.element) + " for " + law_name(effect.what);
+    for (const std::string& other : effect.same_elements) step += ", and the " + element_name(other);
+    add(step + ". If it belongs there, the model is to have it; if not, it is a fault.");
+  }
+  add("Calculate with it: asset.explained.yaml of this analysis, in place of the asset's file, for fit, forecast, "
+      "simulate and the next explain; in the services, accept this discrepancy (sealwatch accept), which can be "
+      "revoked.");
+  add(explanation.next_test.empty() ? "Nothing more has to be recorded to settle this." : explanation.next_test);
+  return html.append("</ol>\n");
+}
+
 std::string arrow(double before, double after) {
   return number_text(before, 3).append(" → ").append(number_text(after, 3));
 }
@@ -111,6 +127,7 @@ std::string banner(const Explanation& explanation) {
 }
 
 std::string next_section(const Explanation& explanation) {
+  if (explanation.verdict == Verdict::mismatch) return section("What to do next", steps_after(explanation));
   if (explanation.next_test.empty()) return {};
   return section("What to record next", paragraph(explanation.next_test));
 }

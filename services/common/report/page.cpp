@@ -39,7 +39,7 @@ font:15px/1.5 system-ui,"Segoe UI","DejaVu Sans",sans-serif}
 h1{font-size:1.5rem;line-height:1.25;margin:.2rem 0 .1rem}h2{font-size:1.15rem;margin:2.2rem 0 .5rem;padding-bottom:.25rem;
 border-bottom:1px solid var(--line)}h3{font-size:1rem;margin:1.3rem 0 .3rem}
 p{margin:.4rem 0 .7rem;max-width:78ch}.muted{color:var(--muted)}.small{font-size:.86rem}
-ul{margin:.3rem 0 .8rem;padding-left:1.2rem;max-width:80ch}li{margin:.2rem 0}
+ul,ol{margin:.3rem 0 .8rem;padding-left:1.2rem;max-width:80ch}li{margin:.2rem 0}
 code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
 .law{display:inline-block;background:var(--soft);padding:.3rem .6rem;border-radius:.3rem}
 .banner{border-left:.45rem solid var(--muted);background:var(--soft);padding:.8rem 1.1rem;margin:.9rem 0 1.1rem;border-radius:.2rem}

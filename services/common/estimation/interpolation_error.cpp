@@ -29,30 +29,33 @@ TimeSeries every_second_sample(const TimeSeries& samples) {
   return result;
 }
 
-// Per channel; zero where it cannot be told.
-Eigen::VectorXd interpolation_error(const PemProblem& problem, std::size_t recording, const PemOptimum& optimum,
-                                    const AssetConfig& asset, const TimeSeries& recorded) {
-  Eigen::VectorXd error = Eigen::VectorXd::Zero(problem.recordings[recording].noise_std.size());
-  if (all_inputs_held(problem.recordings[recording].simulation->plant(), recorded)) return error;
-  const auto thinned = PlantSimulation::create(asset, every_second_sample(recorded));
-  if (!thinned) return error;
-  const ModelValues values = values_at(problem, recording, optimum.point.shared, optimum.point.own[recording]);
-  const auto outputs = (*thinned)->run(values, {}, problem.simulation_options);
-  if (!outputs) return error;
-  const RowMatrix& simulated = optimum.at_optimum[recording].simulated;
-  for (Eigen::Index k = 0; k < outputs->values.rows(); ++k)
-    error += (outputs->values.row(k) - simulated.row(2 * k)).cwiseAbs2().transpose();
-  return (error / static_cast<double>(outputs->values.rows())).cwiseSqrt() / 3.0;
-}
-
 }  // namespace
+
+RowMatrix change_without_every_second_sample(const PemProblem& problem, std::size_t recording,
+                                             const PemOptimum& optimum, const AssetConfig& asset,
+                                             const TimeSeries& recorded) {
+  const PemRecording& part = problem.recordings[recording];
+  RowMatrix none(0, part.noise_std.size());
+  if (all_inputs_held(part.simulation->plant(), recorded)) return none;
+  const auto thinned = PlantSimulation::create(asset, every_second_sample(recorded));
+  if (!thinned) return none;
+  const ModelValues values = values_at(problem, recording, optimum.point.shared, optimum.point.own[recording]);
+  auto outputs = (*thinned)->run(values, {}, problem.simulation_options);
+  if (!outputs) return none;
+  const RowMatrix& simulated = optimum.at_optimum[recording].simulated;
+  for (Eigen::Index k = 0; k < outputs->values.rows(); ++k) outputs->values.row(k) -= simulated.row(2 * k);
+  return std::move(outputs->values);
+}
 
 bool add_interpolation_error(PemProblem& problem, const PemOptimum& optimum, const AssetConfig& asset,
                              std::span<const TimeSeries> recordings) {
   bool matters = false;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     Eigen::VectorXd& noise_std = problem.recordings[k].noise_std;
-    const Eigen::VectorXd error = interpolation_error(problem, k, optimum, asset, recordings[k]);
+    const RowMatrix change = change_without_every_second_sample(problem, k, optimum, asset, recordings[k]);
+    if (change.rows() == 0) continue;
+    const Eigen::VectorXd error =
+        (change.colwise().squaredNorm() / static_cast<double>(change.rows())).cwiseSqrt() / 3.0;
     for (Eigen::Index c = 0; c < noise_std.size(); ++c) {
       if (error(c) <= kMatters * noise_std(c)) continue;
       noise_std(c) = std::hypot(noise_std(c), error(c));

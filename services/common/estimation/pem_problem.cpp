@@ -49,11 +49,14 @@ Unknown law_unknown(const PhysicsParameter& parameter, FreeQuantity quantity) {
           .max = setting.max};
 }
 
-Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const PlantSimulation& simulation) {
+Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const PlantSimulation& simulation,
+                                             std::string_view own_parameter) {
   std::vector<Unknown> unknowns;
   for (const ParameterDescription& parameter : simulation.plant().parameters) {
     const auto setting = asset.parameters.find(parameter.name);
-    if (setting == asset.parameters.end() || !setting->second.estimate || parameter.name == "phi") continue;
+    if (setting == asset.parameters.end() || !setting->second.estimate || parameter.name == "phi" ||
+        parameter.name == own_parameter)
+      continue;
     const Result<FreeQuantity> quantity = simulation.find(parameter.name);
     if (!quantity) return fail(quantity.error());
     unknowns.push_back(shared_unknown(parameter, setting->second, *quantity));
@@ -65,6 +68,24 @@ Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const Pla
     unknowns.push_back(law_unknown(parameter, *quantity));
   }
   return unknowns;
+}
+
+// One unknown of the parameter for each recording.
+Status add_own_parameter(const AssetConfig& asset, std::string_view name, PemProblem& problem) {
+  for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
+    const PlantSimulation& simulation = *problem.recordings[k].simulation;
+    const ParameterDescription* parameter = simulation.plant().find_parameter(name);
+    const auto setting = asset.parameters.find(std::string(name));
+    if (parameter == nullptr || setting == asset.parameters.end())
+      return fail("the asset has no parameter " + std::string(name));
+    const Result<FreeQuantity> quantity = simulation.find(std::string(name));
+    if (!quantity) return fail(quantity.error());
+    Unknown unknown = shared_unknown(*parameter, setting->second, *quantity);
+    unknown.name = name_in_recording(name, k);
+    unknown.group = problem.recordings[k].group = static_cast<int>(k);
+    problem.shared.push_back(std::move(unknown));
+  }
+  return {};
 }
 
 Unknown own_unknown(std::string name, std::string unit, FreeQuantity quantity, double start) {
@@ -129,12 +150,18 @@ Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& 
 
 }  // namespace
 
+std::string name_in_recording(std::string_view parameter, std::size_t recording) {
+  return std::string(parameter) + "@" + std::to_string(recording);
+}
+
+std::string parameter_of(const Unknown& unknown) { return unknown.name.substr(0, unknown.name.find('@')); }
+
 double Unknown::to_unknown(double value) const { return logarithmic ? std::log(value / scale) : value / scale; }
 double Unknown::to_value(double unknown) const { return logarithmic ? scale * std::exp(unknown) : scale * unknown; }
 double Unknown::slope(double unknown) const { return logarithmic ? to_value(unknown) : scale; }
 
 Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
-                                    std::span<const int> groups) {
+                                    std::span<const int> groups, std::string_view own_parameter) {
   PemProblem problem;
   for (const TimeSeries& recorded : recordings) {
     Result<PemRecording> recording = make_recording(asset, recorded, !groups.empty());
@@ -142,9 +169,11 @@ Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const Ti
     problem.recordings.push_back(std::move(*recording));
   }
   if (problem.recordings.empty()) return fail("there is no recording");
-  Result<std::vector<Unknown>> shared = shared_unknowns(asset, *problem.recordings.front().simulation);
+  Result<std::vector<Unknown>> shared = shared_unknowns(asset, *problem.recordings.front().simulation, own_parameter);
   if (!shared) return fail(shared.error());
   problem.shared = std::move(*shared);
+  if (!own_parameter.empty() && groups.empty())
+    if (const Status added = add_own_parameter(asset, own_parameter, problem); !added) return fail(added.error());
   if (groups.empty() || !problem.recordings.front().simulation->plant().has_load()) return problem;
   int last = -1;
   for (std::size_t k = 0; k < groups.size(); ++k) {
@@ -210,12 +239,10 @@ void whiten(const NoiseColour& colour, Linearisation& at) {
   }
 }
 
-void leave_out(const std::vector<Eigen::Index>& samples, Linearisation& at) {
-  const Eigen::Index channels = at.simulated.cols();
-  for (const Eigen::Index sample : samples) {
-    at.residual.segment(sample * channels, channels).setZero();
-    at.jacobian.middleRows(sample * channels, channels).setZero();
-  }
+void weigh(const Eigen::VectorXd& weight, Linearisation& at) {
+  if (weight.size() == 0) return;
+  at.residual.array() *= weight.array();
+  at.jacobian.array().colwise() *= weight.array();
 }
 
 Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
@@ -244,7 +271,7 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
     result.jacobian = std::move(wide);
   }
   whiten(part.colour, result);
-  leave_out(part.left_out, result);
+  weigh(part.weight, result);
   if (!result.residual.allFinite() || !result.jacobian.allFinite()) return fail("the simulation overflows");
   return result;
 }

@@ -39,10 +39,10 @@ struct PemRecording {
   std::unique_ptr<PlantSimulation> simulation;
   Eigen::VectorXd noise_std;  ///< per channel; infinite: the channel is left out
   std::vector<double> time_s;
-  int group = 0;                            ///< windows of one recording share its load
-  NoiseColour colour = {};                  ///< by which residuals are whitened beside their standard deviation
-  std::vector<Eigen::Index> left_out = {};  ///< samples that do not count
-  std::vector<Unknown> own;                 ///< load, slow initial states
+  int group = 0;                ///< windows of one recording share its load
+  NoiseColour colour = {};      ///< by which residuals are whitened beside their standard deviation
+  Eigen::VectorXd weight = {};  ///< of each residual, beside its noise; empty: all 1
+  std::vector<Unknown> own;     ///< load, slow initial states
 };
 
 struct PemProblem {
@@ -59,9 +59,15 @@ struct Linearisation {
 };
 
 /// `groups`: for windows cut from longer recordings, which recording each comes from; its load is then one unknown for
-/// all of them. Empty: each is a recording by itself.
+/// all of them. Empty: each is a recording by itself. `own_parameter`: a parameter of the asset that differs from
+/// recording to recording ("" for none): an unknown for each of them, whether the asset has it estimated or not.
 [[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
-                                                  std::span<const int> groups = {});
+                                                  std::span<const int> groups = {},
+                                                  std::string_view own_parameter = {});
+
+/// Name of the unknown of `parameter` in one recording, and the parameter that an unknown is of: "R_CL@2", "R_CL".
+[[nodiscard]] std::string name_in_recording(std::string_view parameter, std::size_t recording);
+[[nodiscard]] std::string parameter_of(const Unknown& unknown);
 
 /// Quantities that one recording's outputs are differentiated by, with the slope of each to its unknown and its place
 /// among all unknowns (shared first, then the recording's own).
@@ -79,8 +85,8 @@ struct FreeOfRecording {
 /// Whitens residual and Jacobian of coloured noise, in place.
 void whiten(const NoiseColour& colour, Linearisation& at);
 
-/// Residuals and derivatives of these samples become 0.
-void leave_out(const std::vector<Eigen::Index>& samples, Linearisation& at);
+/// Residuals and derivatives times their weights, in place.
+void weigh(const Eigen::VectorXd& weight, Linearisation& at);
 
 /// An Error when the simulation fails there.
 [[nodiscard]] Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording,

@@ -8,8 +8,7 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kCannotTell = 6.0;  // of the criterion, as for laws
-constexpr double kNeverCertain = 0.999;
+constexpr double kCannotTell = 6.0;         // of the criterion, as for laws
 constexpr double kDatasheetMatters = 0.05;  // of a datasheet value: what an engineer would care about
 
 bool is_datasheet(const BalanceFinding& finding) { return finding.what.law == nullptr; }

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <map>
 
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -12,77 +15,150 @@ namespace {
 
 constexpr double kAgrees = 1.5;    // mean square over the noise's, of one recording by itself
 constexpr double kChanged = 10.0;  // standard errors between the smallest and the largest value
+constexpr double kFalls = 3.0;     // standard errors by which a value may lie above the one before it
+constexpr const char* kSealLeakage = "R_CL";
 
+struct Value {
+  std::string when;  ///< the test's date, or its name
+  double value = 0.0, std_error = 0.0;
+};
+
+// One parameter from recording to recording.
 struct Course {
-  double least = INFINITY, most = -INFINITY, largest_std = 0.0;
   std::string unit;
-  [[nodiscard]] double standard_errors() const { return largest_std > 0.0 ? (most - least) / largest_std : 0.0; }
+  std::vector<Value> values;
+
+  [[nodiscard]] double standard_errors() const {
+    const auto [least, most] = std::ranges::minmax(values, {}, &Value::value);
+    const double largest = std::ranges::max(values, {}, &Value::std_error).std_error;
+    return largest > 0.0 ? (most.value - least.value) / largest : 0.0;
+  }
+
+  // Each value with its test; of many the first, the last and how many lie between.
+  [[nodiscard]] std::string in_words() const {
+    constexpr std::size_t kMost = 6;
+    std::vector<std::string> texts;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (values.size() <= kMost || k == 0 || k + 1 == values.size())
+        texts.push_back(number(values[k].value, 4) + " (" + values[k].when + ")");
+      else if (k == 1)
+        texts.push_back("... (" + std::to_string(values.size() - 2) + " tests)");
+    return joined(texts, ", ") + " " + unit;
+  }
 };
 
+// Of one model on some recordings: sum of squares, residuals, free parameters.
 struct Misfit {
-  double sum = 0.0, residuals = 0.0;
+  double sum = 0.0, residuals = 0.0, free = 0.0;
+  [[nodiscard]] double criterion(double phi) const { return sum / phi + free * std::log(residuals); }
 };
 
-/// Of the model with its laws on all recordings; nothing where it cannot be simulated on a held-out one.
+// Of the model with its laws on all recordings; nothing where it cannot be simulated on a held-out one.
 std::optional<Misfit> misfit_in_common(const FittedModel& best, const Data& holdout) {
-  Misfit all{best.misfit, best.residuals};
+  Misfit all{best.misfit, best.residuals, static_cast<double>(best.free_shared)};
   if (holdout.samples.empty()) return all;
   const Result<FittedModel> held_out = fit_model(with_fixed_parameters(best.asset), holdout, nullptr, 1);
   if (!held_out) return std::nullopt;
-  return Misfit{all.sum + held_out->misfit, all.residuals + held_out->residuals};
+  return Misfit{all.sum + held_out->misfit, all.residuals + held_out->residuals,
+                all.free + static_cast<double>(held_out->free_shared)};
+}
+
+std::string when(const Data& data, std::size_t k) {
+  return data.start_time[k] ? format_date(*data.start_time[k]) : data.names[k];
 }
 
 std::vector<Data> one_by_one(const Data& data) {
   std::vector<Data> ones;
-  for (std::size_t k = 0; k < data.samples.size(); ++k) {
-    ones.push_back({.names = {data.names[k]},
-                    .samples = {data.samples[k]},
-                    .colour = {},
-                    .groups = {},
-                    .resolution = data.resolution});
-    if (!data.colour.empty()) ones.back().colour = {data.colour[k]};
-  }
+  for (std::size_t k = 0; k < data.samples.size(); ++k) ones.push_back(only(data, k));
   return ones;
+}
+
+Course seal_course(const FittedModel& model, const Data& fit) {
+  const std::vector<double> errors = standard_errors(model);
+  Course course;
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const Unknown& unknown = model.problem.shared[k];
+    if (unknown.group < 0 || parameter_of(unknown) != kSealLeakage) continue;
+    course.unit = unknown.unit;
+    course.values.push_back({.when = when(fit, static_cast<std::size_t>(unknown.group)),
+                             .value = unknown.to_value(model.optimum.point.shared[k]),
+                             .std_error = errors[k]});
+  }
+  return course;
 }
 
 }  // namespace
 
-std::optional<std::string> change_between_tests(const AssetConfig& asset, const Data& fit, const Data& holdout,
-                                                const FittedModel& best) {
+std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit, const Data& holdout,
+                                                       const FittedModel& best) {
   std::map<std::string, Course> courses;
-  double largest_misfit = 0.0, misfit = 0.0, free = 0.0;
+  double largest_misfit = 0.0;
+  Misfit alone;
   std::vector<Data> ones = one_by_one(fit);
   for (Data& one : one_by_one(holdout)) ones.push_back(std::move(one));
+  if (std::ranges::all_of(ones, [](const Data& one) { return one.start_time.front().has_value(); }))
+    std::ranges::stable_sort(ones, {}, [](const Data& one) { return *one.start_time.front(); });
   for (const Data& one : ones) {
     const Result<FittedModel> model = fit_model(asset, one, nullptr, 1);
     if (!model || model->misfit > kAgrees * model->residuals) return std::nullopt;
     largest_misfit = std::max(largest_misfit, model->misfit / model->residuals);
-    misfit += model->misfit;
-    free += static_cast<double>(model->free_shared);
+    alone.sum += model->misfit;
+    alone.free += static_cast<double>(model->free_shared);
     for (const ParameterShift& parameter : parameter_shifts(asset, *model, *model)) {
       if (!std::isfinite(parameter.after_std)) continue;
       Course& course = courses[parameter.name];
-      course.least = std::min(course.least, parameter.after);
-      course.most = std::max(course.most, parameter.after);
-      course.largest_std = std::max(course.largest_std, parameter.after_std);
       course.unit = parameter.unit;
+      course.values.push_back({when(one, 0), parameter.after, parameter.after_std});
     }
   }
   const std::optional<Misfit> common = misfit_in_common(best, holdout);
   if (!common) return std::nullopt;
-  const double phi = std::max(1.0, misfit / common->residuals), penalty = std::log(common->residuals);
-  if (misfit / phi + free * penalty >= common->sum / phi + static_cast<double>(best.free_shared) * penalty)
-    return std::nullopt;
+  alone.residuals = common->residuals;
+  const double phi = std::max(1.0, alone.sum / alone.residuals);
+  if (alone.criterion(phi) >= common->criterion(phi)) return std::nullopt;
   const auto changed =
       std::ranges::max_element(courses, {}, [](const auto& entry) { return entry.second.standard_errors(); });
   if (changed == courses.end() || changed->second.standard_errors() < kChanged) return std::nullopt;
   std::string text = "Each recording alone agrees with the model (mean squared residual at most ";
-  text.append(number(largest_misfit)).append(" times the noise's), all together do not: ").append(changed->first);
-  text.append(" runs from ").append(number(changed->second.least)).append(" to ").append(number(changed->second.most));
-  text.append(" ").append(changed->second.unit).append(" from test to test, ");
-  text.append(number(changed->second.standard_errors()));
-  text.append(" standard errors. The asset changed between these tests; missing physics cannot be seen within one.");
-  return text;
+  text.append(number(largest_misfit)).append(" times the noise's), all together do not: from test to test ");
+  text.append(changed->first).append(" is ").append(changed->second.in_words());
+  text.append(", a change of ").append(number(changed->second.standard_errors())).append(" standard errors. ");
+  const bool seal = changed->first == kSealLeakage;
+  text.append(seal ? "The piston seal" : "The asset");
+  text.append(" changed between these tests; missing physics cannot be seen within one.");
+  return ChangeBetweenTests{.sentence = std::move(text), .element = seal ? "piston_seal" : ""};
+}
+
+bool seal_may_age(const AssetConfig& asset, const Data& fit) {
+  const auto leakage = asset.parameters.find(kSealLeakage);
+  if (leakage == asset.parameters.end() || !leakage->second.estimate || fit.start_time.size() < 2) return false;
+  if (!std::ranges::all_of(fit.start_time, [](const auto& time) { return time.has_value(); })) return false;
+  return seconds_between(*fit.start_time.front(), *fit.start_time.back()) > kSecondsPerDay;
+}
+
+bool seal_ages(const FittedModel& model, const Data& fit) {
+  const Course course = seal_course(model, fit);
+  if (course.values.size() < 2) return false;
+  for (std::size_t k = 0; k < course.values.size(); ++k) {
+    if (!std::isfinite(course.values[k].std_error)) return false;
+    if (k > 0 && course.values[k].value - course.values[k - 1].value >
+                     kFalls * std::hypot(course.values[k].std_error, course.values[k - 1].std_error))
+      return false;
+  }
+  return course.values.front().value > course.values.back().value && course.standard_errors() >= kChanged;
+}
+
+bool ageing_is_likelier(const FittedModel& ageing, const Data& ageing_holdout, const FittedModel& common,
+                        const Data& common_holdout) {
+  const std::optional<Misfit> own = misfit_in_common(ageing, ageing_holdout);
+  const std::optional<Misfit> shared = misfit_in_common(common, common_holdout);
+  if (!own || !shared) return own.has_value();
+  const double phi = std::max(1.0, std::min(own->sum, shared->sum) / own->residuals);
+  return own->criterion(phi) < shared->criterion(phi) - kWorthAnother;
+}
+
+std::string ageing_in_words(const FittedModel& model, const Data& fit) {
+  return "The piston seal aged between these tests: R_CL is " + seal_course(model, fit).in_words() + ".";
 }
 
 }  // namespace sealwatch::mismatch

@@ -43,7 +43,7 @@ std::vector<double> parameters_of(const Effect& effect, const AssetConfig& asset
 
 void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Data& data, bool whole,
                         Explanation& result) {
-  if (result.effects.empty()) return;
+  const bool named = !result.effects.empty();
   const PlantSimulation& simulation = *best.model->problem.recordings.front().simulation;
   for (const Effect& effect : best.effects) {
     const SiteKind kind = effect.law->kind;
@@ -62,7 +62,10 @@ void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Da
         drawn = std::move(*piece);
     }
     if (drawn) {
-      drawn->what = law_at(effect);
+      if (named)
+        drawn->what = law_at(effect);
+      else
+        drawn->law.clear();  // what the data demand there alone
       result.missing.push_back(std::move(*drawn));
     }
     for (FoundEffect& found : result.effects)

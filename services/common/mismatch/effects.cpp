@@ -158,7 +158,6 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
     all += share;
     if (key.second == effect.what.element) element += share;
   }
-  constexpr double kNeverCertain = 0.999;
   effect.probability = std::min(1.0 / all, kNeverCertain);
   effect.element_probability = std::min(element / all, kNeverCertain);
   std::ranges::stable_sort(effect.alternatives, {}, &Alternative::misfit_above_best);
@@ -295,10 +294,12 @@ std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const
   std::vector<ParameterShift> shifts;
   for (std::size_t j = 0; j < before.problem.shared.size(); ++j) {
     const Unknown& unknown = before.problem.shared[j];
-    const auto sheet = datasheet.parameters.find(unknown.name);
+    const std::string name = parameter_of(unknown);
+    const auto sheet = datasheet.parameters.find(name);
+    std::erase_if(shifts, [&](const ParameterShift& one) { return one.name == name; });  // of an earlier recording
     for (std::size_t k = 0; k < after.problem.shared.size() && sheet != datasheet.parameters.end(); ++k)
       if (after.problem.shared[k].name == unknown.name)
-        shifts.push_back({.name = unknown.name,
+        shifts.push_back({.name = name,
                           .unit = unknown.unit,
                           .before = *estimate_of(before, unknown.name),
                           .before_std = old_errors[j],

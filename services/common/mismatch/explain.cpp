@@ -16,6 +16,7 @@
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/unrecorded_input.hpp"
 #include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
@@ -32,7 +33,11 @@ double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)
 // What is said in place of a law.
 struct WhyNone {
   std::string summary, next_test;
+  std::string element = {};  ///< where it is, if that is known
 };
+
+constexpr const char* kTestsOfOneTime =
+    "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -57,6 +62,7 @@ class Analysis {
     result_.p_value = std::max(naming_.first.p_value, kSmallestP);
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
     look_for_another_reason();
+    if (!why_none_) let_the_seal_age();
     if (why_none_) best_ = {.effects = {}, .model = baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
@@ -64,7 +70,7 @@ class Analysis {
     }
     if (!lacks_a_pressure() && !why_none_) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
-    draw_missing_terms(*baseline_, best_, prepared(fit_), !windowed(), result_);
+    draw_missing_terms(*baseline_, tried_.effects.empty() ? best_ : tried_, prepared(fit_), !windowed(), result_);
     tell("done", 1.0);
     return std::move(result_);
   }
@@ -87,14 +93,42 @@ class Analysis {
     // A seal that ages from test to test is no physics that a test lacks.
     if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
       if (auto change = change_between_tests(asset_, fit_, holdout_, *best_.model))
-        why_none_ = {
-            .summary = std::move(*change),
-            .next_test = "Analyse tests of one time together: several loads, speeds and strokes within a few days."};
+        why_none_ = {.summary = std::move(change->sentence),
+                     .next_test = kTestsOfOneTime,
+                     .element = std::move(change->element)};
     if (at_rest(*baseline_, prepared(fit_)))
       why_none_ = {.summary = "The actuator does not move in these recordings: there is nothing to see.",
                    .next_test =
                        "Record tests in which the piston moves out, holds and comes back, under several loads "
                        "and speeds."};
+  }
+
+  // A seal that ages from test to test, and physics missing beside it: laws in common would bend to the ageing.
+  void let_the_seal_age() {
+    if (!result_.statistically_significant || windowed() || !seal_may_age(asset_, fit_)) return;
+    Data fit = fit_, holdout = holdout_;
+    fit.own_parameter = holdout.own_parameter = "R_CL";
+    Result<FittedModel> with_laws = fit_model(best_.model->asset, fit, best_.model.get(), options_.threads);
+    if (!with_laws || !ageing_is_likelier(*with_laws, holdout, *best_.model, holdout_)) return;
+    Result<FittedModel> without = fit_model(baseline_->asset, fit, baseline_.get(), options_.threads);
+    if (!without) return;
+    tell("asking again, with a seal that ages between the tests", 0.5);
+    const auto shared = [](FittedModel&& model) { return std::make_shared<const FittedModel>(std::move(model)); };
+    auto baseline = shared(std::move(*without));
+    Result<Naming> naming =
+        name_effects(baseline, fit, options_, progress_, {best_.effects, shared(std::move(*with_laws))});
+    if (!naming || !seal_ages(*naming->best.model, fit) ||
+        !ageing_is_likelier(*naming->best.model, holdout, *best_.model, holdout_))
+      return;
+    fit_ = std::move(fit);
+    holdout_ = std::move(holdout);
+    baseline_ = std::move(baseline);
+    naming_ = std::move(*naming);
+    best_ = naming_.best;
+    if (best_.effects.empty() && !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate))
+      why_none_ = {.summary = ageing_in_words(*best_.model, fit_) + " Nothing else was found to be missing.",
+                   .next_test = kTestsOfOneTime,
+                   .element = "piston_seal"};
   }
 
   void tell(std::string_view step, double share) const {
@@ -162,8 +196,23 @@ class Analysis {
           "the model cannot be simulated at the start values: check the asset's parameters against the recording";
       return fail(std::move(error));
     }
+    if (!windowed()) model = weighed_by_what_is_recorded(std::move(*model));
+    if (!model) return fail(model.error());
     baseline_ = std::make_shared<const FittedModel>(std::move(*model));
     return {};
+  }
+
+  // Fitted again with less weight where the input's course between its samples decides.
+  Result<FittedModel> weighed_by_what_is_recorded(FittedModel model) {
+    if (!holdout_.samples.empty())
+      if (const auto held_out = fit_model(with_fixed_parameters(model.asset), holdout_, nullptr, options_.threads))
+        holdout_.weight = unrecorded_input_weights(*held_out, holdout_);
+    fit_.weight = unrecorded_input_weights(model, fit_);
+    if (fit_.weight.empty()) return model;
+    Result<FittedModel> again = fit_model(model.asset, fit_, &model, options_.threads);
+    if (again)
+      if (std::string note = unrecorded_input_in_words(*again); !note.empty()) result_.notes.push_back(std::move(note));
+    return again;
   }
 
   [[nodiscard]] bool windowed() const { return window_s_ > 0.0; }
@@ -260,17 +309,14 @@ class Analysis {
     note_not_compared(*blocks);
     result_.fit = pool(result_.recordings, false);
     result_.holdout = pool(result_.recordings, true);
-    if (takes_back_what_comes_nowhere_near()) return finish();
-    const double excess_before = baseline_->misfit / baseline_->residuals - 1.0;
-    const double excess_after = best_.model->misfit / best_.model->residuals - 1.0;
-    result_.explained_share =
-        excess_before > 0.0 ? std::clamp(1.0 - std::max(excess_after, 0.0) / excess_before, 0.0, 1.0) : 0.0;
+    if (takes_back_what_comes_nowhere_near() || takes_back_what_does_not_explain()) return finish();
+    result_.explained_share = explained_share();
     result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last,
                              baseline_->problem.recordings.front().simulation->plant());
     if (!best_.effects.empty()) {
       result_.location = locate(result_.effects);
     } else if (result_.statistically_significant) {
-      result_.location = locate_without_law(naming_.first);
+      result_.location = tried_.effects.empty() ? locate_without_law(naming_.first) : places_;
     }
     for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
     for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
@@ -280,13 +326,15 @@ class Analysis {
     compare_with_what_was_kept_aside();
     decide();
     for (FoundEffect& effect : result_.effects)
-      effect.evidence = evidence_of(effect, result_.effects.size(), excess_before + 1.0, excess_after + 1.0);
+      effect.evidence = evidence_of(effect, result_.effects.size(), baseline_->misfit / baseline_->residuals,
+                                    best_.model->misfit / best_.model->residuals);
     result_.next_test = next_test_of(result_);
     if (lacks_a_pressure())
       result_.next_test =
           "Record the pressures of both chambers, or the motor's voltage: with the flow and the differential pressure "
           "alone, what chamber B's pressure does cannot be told from missing physics.";
     result_.summary = summary_of(result_);
+    say_that_the_seal_aged();
     say_that_the_leak_is_in_two_parts();
     say_why_none();
     return {};
@@ -311,6 +359,41 @@ class Analysis {
     return true;
   }
 
+  // Of the misfit above the noise.
+  [[nodiscard]] double explained_share() const {
+    const double before = baseline_->misfit / baseline_->residuals - 1.0;
+    const double after = best_.model->misfit / best_.model->residuals - 1.0;
+    return before > 0.0 ? std::clamp(1.0 - std::max(after, 0.0) / before, 0.0, 1.0) : 0.0;
+  }
+
+  // Nothing significant is left, or at least half of the excess or nine tenths of the evidence is gone: the noise's own
+  // estimate is not exact enough for the first two alone where the effect is small.
+  [[nodiscard]] bool explains() const {
+    const bool nothing_left = !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
+    const bool most_gone = explained_share() >= kExplainedAtLeast ||
+                           (naming_.best.effects.size() == best_.effects.size() &&
+                            evidence(naming_.last.p_value) <= kEvidenceLeft * evidence(result_.p_value));
+    return proven_ && !best_.effects.empty() && (nothing_left || most_gone);
+  }
+
+  // Laws that fit better and explain too little say where to look; a name for it they are not.
+  bool takes_back_what_does_not_explain() {
+    if (best_.effects.empty() || explains()) return false;
+    std::vector<std::string> laws;
+    for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
+    result_.notes.push_back("Not enough to be named: with " + joined(laws, " and ") +
+                            " the mean squared residual of the fit recordings falls from " +
+                            number(baseline_->misfit / baseline_->residuals) + " to " +
+                            number(best_.model->misfit / best_.model->residuals) + " times the noise variance.");
+    places_ = locate(result_.effects);
+    tried_ = best_;
+    best_ = {.effects = {}, .model = baseline_};
+    proven_ = false;
+    result_.effects.clear();
+    result_.recordings.clear();
+    return true;
+  }
+
   // The fitted recordings agree, and those kept aside do not: what came in between, or acts under their conditions
   // alone, has no part in the fit that could tell it.
   void compare_with_what_was_kept_aside() {
@@ -328,11 +411,22 @@ class Analysis {
   void say_why_none() {
     if (!why_none_) return;
     result_.location.clear();
+    if (!why_none_->element.empty())
+      result_.location.push_back({.element = why_none_->element,
+                                  .probability = kNeverCertain,
+                                  .indistinguishable_from = {},
+                                  .evidence = why_none_->summary});
     result_.rejected.clear();
     result_.prognosis = {};
     result_.notes.push_back(why_none_->summary);
     result_.summary = why_none_->summary;
     result_.next_test = why_none_->next_test;
+  }
+
+  void say_that_the_seal_aged() {
+    if (fit_.own_parameter.empty() || why_none_) return;
+    result_.notes.push_back(ageing_in_words(*best_.model, fit_));
+    result_.summary += " " + result_.notes.back();
   }
 
   // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
@@ -359,13 +453,7 @@ class Analysis {
                                 number(one->significant) + " " + one->unit + ".");
       return;
     }
-    // Nothing significant is left, or at least half of the excess or nine tenths of the evidence is gone: the noise's
-    // own estimate is not exact enough for the first two alone where the effect is small.
-    const bool nothing_left = !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
-    const bool most_gone = result_.explained_share >= kExplainedAtLeast ||
-                           (naming_.best.effects.size() == best_.effects.size() &&
-                            evidence(naming_.last.p_value) <= kEvidenceLeft * evidence(result_.p_value));
-    const bool explained = proven_ && !result_.effects.empty() && (nothing_left || most_gone);
+    const bool explained = explains();
     result_.verdict = explained ? Verdict::mismatch : Verdict::undetermined;
     if (explained && naming_.last.p_value <= options_.false_alarm_rate)
       result_.notes.emplace_back("A remainder beyond the noise stays unexplained.");
@@ -378,6 +466,8 @@ class Analysis {
   std::shared_ptr<const FittedModel> baseline_;
   Naming naming_;
   Trial best_;
+  Trial tried_;                   ///< what was taken back, as it explains too little,
+  std::vector<Location> places_;  ///< and where it sits
   bool proven_ = false;
   bool all_compared_ = true;         ///< the models can be simulated on every recording
   std::optional<WhyNone> why_none_;  ///< set: no law is named

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "sealwatch/estimation/noise_floor.hpp"
+#include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -39,34 +41,71 @@ bool same_samples(const TimeSeries& a, const TimeSeries& b) {
   return shared;
 }
 
-double span_of(const Series& channel) {
-  const auto [least, most] = std::ranges::minmax(channel.values);
-  return most - least;
+// Samples from `begin` on that a channel shows the same value.
+struct Frozen {
+  std::string channel;
+  std::size_t begin = 0, samples = 0;
+};
+
+Frozen longest_run(const Series& channel) {
+  Frozen longest{.channel = channel.name}, run = longest;
+  for (std::size_t k = 0; k < channel.values.size(); ++k) {
+    if (k > 0 && channel.values[k] != channel.values[k - 1]) run.begin = k;
+    run.samples = k + 1 - run.begin;
+    if (run.samples > longest.samples) longest = run;
+  }
+  return longest;
 }
 
-// An output that is one number from beginning to end while another moves far beyond its noise: a dead sensor, which
-// gains of healthy ones would be bent to explain. At rest every output may be.
-const Series* stuck_channel(const PlantSimulation& simulation, const TimeSeries& samples) {
+// A sensor that rounds shows the same value again and again without having stopped.
+bool rounds(const Series& channel, const Frozen& longest) {
+  constexpr double kOften = 0.05;  // of the samples outside the longest run
+  std::size_t again = 0;
+  for (std::size_t k = 1; k < channel.values.size(); ++k)
+    if ((k < longest.begin || k >= longest.begin + longest.samples) && channel.values[k] == channel.values[k - 1])
+      ++again;
+  return static_cast<double>(again) > kOften * static_cast<double>(channel.values.size() - longest.samples);
+}
+
+// Whether a channel moves far beyond its noise in these samples.
+bool moves(const Series& channel, const Frozen& during) {
   constexpr double kMoves = 50.0;
-  const Series* stuck = nullptr;
-  bool moves = false;
-  for (const std::string_view name : simulation.channels()) {
-    const Series* channel = samples.find(std::string(name));
-    if (channel == nullptr || channel->values.empty()) continue;
-    if (span_of(*channel) == 0.0) stuck = channel;
-    const double noise = estimate_noise_floor(channel->values).standard_deviation;
-    moves = moves || (noise > 0.0 && span_of(*channel) > kMoves * noise);
+  const auto begin = channel.values.begin() + static_cast<std::ptrdiff_t>(during.begin);
+  const auto [least, most] = std::minmax_element(begin, begin + static_cast<std::ptrdiff_t>(during.samples));
+  const double noise = estimate_noise_floor(channel.values).standard_deviation;
+  return noise > 0.0 && *most - *least > kMoves * noise;
+}
+
+// An output that is one number for a tenth of the recording or more while another moves far beyond its noise: a dead
+// sensor, which gains and offsets of healthy ones would be bent to explain. At rest every output may be.
+std::optional<Frozen> frozen_channel(const PlantSimulation& simulation, const TimeSeries& samples) {
+  constexpr double kLong = 0.1;
+  for (const std::string& name : simulation.channels()) {
+    const Series& channel = *samples.find(name);
+    const Frozen run = longest_run(channel);
+    const bool all = run.samples == channel.values.size();
+    if (static_cast<double>(run.samples) < kLong * static_cast<double>(channel.values.size())) continue;
+    if (!all && rounds(channel, run)) continue;
+    if (std::ranges::any_of(simulation.channels(), [&](const std::string& other) {
+          return other != name && moves(*samples.find(other), run);
+        }))
+      return run;
   }
-  return moves ? stuck : nullptr;
+  return std::nullopt;
 }
 
 }  // namespace
 
 Data data_of(std::span<const Recording> recordings) {
+  std::vector<const Recording*> in_turn;
+  for (const Recording& recording : recordings) in_turn.push_back(&recording);
+  if (std::ranges::all_of(recordings, [](const Recording& one) { return one.start_time.has_value(); }))
+    std::ranges::stable_sort(in_turn, {}, [](const Recording* one) { return *one->start_time; });
   Data data;
-  for (const Recording& recording : recordings) {
-    data.names.push_back(recording.recording_id.empty() ? recording.file : recording.recording_id);
-    data.samples.push_back(recording.samples);
+  for (const Recording* recording : in_turn) {
+    data.names.push_back(recording->recording_id.empty() ? recording->file : recording->recording_id);
+    data.samples.push_back(recording->samples);
+    data.start_time.push_back(recording->start_time);
   }
   return data;
 }
@@ -76,7 +115,9 @@ Data without(const Data& data, std::size_t left_out) {
   const auto at = static_cast<std::ptrdiff_t>(left_out);
   rest.names.erase(rest.names.begin() + at);
   rest.samples.erase(rest.samples.begin() + at);
+  if (!rest.start_time.empty()) rest.start_time.erase(rest.start_time.begin() + at);
   if (!rest.colour.empty()) rest.colour.erase(rest.colour.begin() + at);
+  if (!rest.weight.empty()) rest.weight.erase(rest.weight.begin() + at);
   return rest;
 }
 
@@ -85,8 +126,11 @@ Data only(const Data& data, std::size_t one) {
               .samples = {data.samples[one]},
               .colour = {},
               .groups = {},
-              .resolution = data.resolution};
+              .resolution = data.resolution,
+              .own_parameter = data.own_parameter};
+  if (!data.start_time.empty()) single.start_time = {data.start_time[one]};
   if (!data.colour.empty()) single.colour = {data.colour[one]};
+  if (!data.weight.empty()) single.weight = {data.weight[one]};
   return single;
 }
 
@@ -106,12 +150,17 @@ Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span
         if (error.file.empty()) error.file = recording.file;
         return fail(std::move(error));
       }
-      if (const Series* stuck = stuck_channel(**simulation, recording.samples))
+      if (const auto frozen = frozen_channel(**simulation, recording.samples)) {
+        const std::vector<double>& time_s = recording.samples.time_s;
+        const bool all = frozen->samples == time_s.size();
         return fail(Error{.file = recording.file,
-                          .place = "column " + stuck->name,
-                          .value = "never changes",
+                          .place = "column " + frozen->channel,
+                          .value = all ? "never changes"
+                                       : "does not change from " + number(time_s[frozen->begin], 4) + " s to " +
+                                             number(time_s[frozen->begin + frozen->samples - 1], 4) + " s",
                           .rule = "while other channels of the recording do: the sensor is stuck",
                           .advice = "leave the column out of the recordings, or those with it"});
+      }
     }
   for (const Recording& one : holdout)
     for (const Recording& other : fit)

@@ -8,6 +8,7 @@
 
 namespace sealwatch::mismatch {
 
+/// In the order of their times, where all have one.
 [[nodiscard]] Data data_of(std::span<const Recording> recordings);
 [[nodiscard]] Data without(const Data& data, std::size_t left_out);
 [[nodiscard]] Data only(const Data& data, std::size_t one);

@@ -41,12 +41,23 @@ void continue_from(const FittedModel& start, const PemProblem& problem, PemPoint
       }
 }
 
+void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording) {
+  const Eigen::Index channels = recording.noise_std.size(),
+                     rows = static_cast<Eigen::Index>(recording.time_s.size()) * channels;
+  if (samples.empty()) return;
+  if (recording.weight.size() == 0) recording.weight = Eigen::VectorXd::Ones(rows);
+  for (const Eigen::Index sample : samples) recording.weight.segment(sample * channels, channels).setZero();
+}
+
 Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const ActuatorFitOptions& options) {
-  Result<PemProblem> problem = make_pem_problem(asset, data.samples, data.groups);
+  Result<PemProblem> problem = make_pem_problem(asset, data.samples, data.groups, data.own_parameter);
   if (!problem) return problem;
   for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
-  for (std::size_t k = 0; k < data.samples.size(); ++k)
-    problem->recordings[k].left_out = samples_after_jumps(data.samples[k]);
+  for (std::size_t k = 0; k < data.samples.size(); ++k) {
+    PemRecording& recording = problem->recordings[k];
+    if (!data.weight.empty()) recording.weight = data.weight[k];
+    leave_out(samples_after_jumps(data.samples[k]), recording);
+  }
   problem->simulation_options = simulation_options(data.samples, options);
   return problem;
 }
@@ -55,7 +66,7 @@ FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum op
   FittedModel model{.asset = asset, .problem = std::move(problem), .optimum = std::move(optimum)};
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
     const Unknown& unknown = model.problem.shared[k];
-    set_value(model.asset, unknown.name, unknown.to_value(model.optimum.point.shared[k]));
+    set_value(model.asset, parameter_of(unknown), unknown.to_value(model.optimum.point.shared[k]));
     if (!at_bound(unknown, model.optimum.point.shared[k])) ++model.free_shared;
   }
   for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k) {

@@ -1,11 +1,13 @@
 // A model fitted to recordings, and what changes when its asset does: the working unit of the mismatch analysis.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/time.hpp"
 #include "services/common/estimation/pem_search.hpp"
 
 namespace sealwatch::mismatch {
@@ -19,10 +21,14 @@ struct Data {
   /// Share of a significant strength (model/physics.hpp) that the simulation's own errors (input between samples,
   /// integration, rounding) can feign, or those of a measured input: a law must want more than that to count.
   double resolution = 0.01;
+  /// Per recording, of each residual (sample * channels + channel): what the input's unrecorded course leaves of it.
+  std::vector<Eigen::VectorXd> weight = {};
+  std::vector<std::optional<UtcTime>> start_time = {};  ///< per recording; empty in windows
+  std::string own_parameter = {};                       ///< that each recording has for itself ("R_CL"); "": none
 };
 
 struct FittedModel {
-  AssetConfig asset;  ///< parameters and laws at their estimates
+  AssetConfig asset;  ///< parameters and laws at their estimates; a recording's own parameter at that of the last one
   PemProblem problem;
   PemOptimum optimum;
   double misfit = 0.0;          ///< sum of the squares of all whitened residuals

@@ -162,14 +162,22 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
 }  // namespace
 
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
-                            const ExplainOptions& options, const Progress& progress) {
+                            const ExplainOptions& options, const Progress& progress, const Trial& from) {
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
   Result<Screening> first = screen(*baseline, data, screening);
   if (!first) return fail(first.error());
   Naming naming{
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
   naming.forbidden = forbidden_by_physics(naming.first, *baseline);
-  begin_with_what_shows(naming, data, options);
+  if (from.effects.empty()) {
+    begin_with_what_shows(naming, data, options);
+  } else {
+    naming.trials.push_back(naming.best = from);
+    drop_what_is_not_needed(naming, data, options.threads);
+    Result<Screening> last = screen(*naming.best.model, data, screening);
+    if (!last) return fail(last.error());
+    naming.last = std::move(*last);
+  }
   while (static_cast<int>(naming.best.effects.size()) < options.maximum_laws) {
     if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||
         !promising(naming.last, *naming.best.model))

@@ -33,8 +33,10 @@ struct Naming {
 };
 
 /// An Error when nothing can be looked at: the baseline cannot be linearised. A law whose model cannot be is not taken,
-/// `remarks` says so, and the search ends with what it had.
+/// `remarks` says so, and the search ends with what it had. `from`: laws to begin with, refitted to the same data;
+/// those that are not needed there are taken out first.
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
-                                          const ExplainOptions& options, const Progress& progress);
+                                          const ExplainOptions& options, const Progress& progress,
+                                          const Trial& from = {});
 
 }  // namespace sealwatch::mismatch

@@ -29,8 +29,11 @@ double start_value(const LawParameter& parameter, const Law& rich, const Physics
                    const PlantDescription& plant) {
   if (const auto known = term.parameters.find(std::string(parameter.name)); known != term.parameters.end())
     return known->second.value;
-  if (parameter.strength)
-    return term.parameters.at(std::string(rich.parameters[strengths_of(rich).front()].name)).value;
+  const LawParameter& strength = rich.parameters[strengths_of(rich).front()];
+  const double rich_value = term.parameters.at(std::string(strength.name)).value;
+  if (parameter.strength && parameter.unit == strength.unit) return rich_value;
+  if (parameter.strength && parameter.significant > 0.0 && strength.significant > 0.0)
+    return rich_value * parameter.significant / strength.significant;  // as large to an engineer
   return plant.law_size(parameter.unit) * std::ranges::min(parameter.start);
 }
 
@@ -67,11 +70,14 @@ bool put_in_place(Naming& naming, std::size_t slot, const Law& plain, const Data
 }
 
 // First the plain law as it is, then its closed forms: dry friction that changes direction gently is no Stribeck curve.
+// Of a closed form that bears a law's id, that law: a power of 1.0002 is a laminar leak.
 bool put_plain_law(Naming& naming, std::size_t slot, const Data& data, int threads) {
-  const std::string_view limit = naming.best.effects[slot].law->limit;
-  return !limit.empty() && std::ranges::any_of(all_laws(), [&](const Law& plain) {
-    const bool asked = !plain.closed_form || excess(*naming.best.model) <= kGross;
-    return plain.id == limit && asked && put_in_place(naming, slot, plain, data, threads);
+  const Law& rich = *naming.best.effects[slot].law;
+  return std::ranges::any_of(all_laws(), [&](const Law& plain) {
+    const bool limit =
+        !rich.limit.empty() && plain.id == rich.limit && (!plain.closed_form || excess(*naming.best.model) <= kGross);
+    const bool listed = rich.closed_form && plain.id == rich.id && !plain.closed_form;
+    return (limit || listed) && put_in_place(naming, slot, plain, data, threads);
   });
 }
 

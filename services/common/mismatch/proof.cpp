@@ -31,10 +31,18 @@ struct ChannelFigures {
   double rms = 0.0, nrmse = 0.0, whiteness = 1.0, independence = 1.0;
 };
 
+// Weights of one channel's residuals.
+std::vector<double> weights_of(const PemRecording& part, Eigen::Index channel) {
+  std::vector<double> weights(part.time_s.size(), 1.0);
+  for (std::size_t k = 0; part.weight.size() > 0 && k < weights.size(); ++k)
+    weights[k] = part.weight(static_cast<Eigen::Index>(k) * part.noise_std.size() + channel);
+  return weights;
+}
+
 ChannelFigures figures(const std::vector<double>& recorded, const std::vector<double>& simulated, double noise_std,
-                       const PastInput& past) {
+                       const std::vector<double>& weights, const PastInput& past) {
   std::vector<double> residual(recorded.size());
-  for (std::size_t k = 0; k < residual.size(); ++k) residual[k] = (recorded[k] - simulated[k]) / noise_std;
+  for (std::size_t k = 0; k < residual.size(); ++k) residual[k] = weights[k] * (recorded[k] - simulated[k]) / noise_std;
   return {.rms = root_mean_square(residual),
           .nrmse = nrmse_percent(recorded, simulated),
           .whiteness = whiteness_p(residual),
@@ -105,8 +113,9 @@ RecordingComparison compare(const FittedModel& before, const FittedModel& after,
     const Series& measured = *recorded.find(channels[c]);
     const std::vector<double> old_curve = column(before.optimum.at_optimum[recording].simulated, index);
     const std::vector<double> new_curve = column(after.optimum.at_optimum[recording].simulated, index);
-    const ChannelFigures a = figures(measured.values, old_curve, noise_std, past);
-    const ChannelFigures b = figures(measured.values, new_curve, noise_std, past);
+    const std::vector<double> weights = weights_of(part, index);
+    const ChannelFigures a = figures(measured.values, old_curve, noise_std, weights, past);
+    const ChannelFigures b = figures(measured.values, new_curve, noise_std, weights, past);
     comparison.channels.push_back({.channel = channels[c],
                                    .rms_before = a.rms,
                                    .rms_after = b.rms,

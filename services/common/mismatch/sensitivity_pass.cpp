@@ -114,7 +114,7 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
     }
   }
   whiten(part.colour, all);
-  leave_out(part.left_out, all);
+  weigh(part.weight, all);
   return Pass{.free = all.jacobian.leftCols(unknowns),
               .laws = all.jacobian.rightCols(laws),
               .residual = std::move(all.residual),

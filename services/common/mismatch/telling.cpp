@@ -147,6 +147,10 @@ std::string summary_of(const Explanation& explanation) {
         .append(number(worst->rms_before))
         .append(" times the noise)");
   text += ", and no law was found that explains it and holds on recordings that took no part.";
+  if (!explanation.location.empty())
+    text.append(" The first place to look is ")
+        .append(element_in_words(explanation.location.front().element))
+        .append(".");
   return text;
 }
 

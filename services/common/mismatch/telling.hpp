@@ -7,6 +7,9 @@
 
 namespace sealwatch::mismatch {
 
+/// As probable as anything is said to be.
+inline constexpr double kNeverCertain = 0.999;
+
 [[nodiscard]] std::string number(double value, int digits = 3);
 [[nodiscard]] std::string element_in_words(const std::string& element);
 /// "coulomb friction" of "coulomb_friction"

@@ -33,7 +33,9 @@ TEST(Seal, ThatAgedBetweenTestsIsNoMissingPhysics) {
   EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
   EXPECT_TRUE(explanation->effects.empty());
   EXPECT_TRUE(explanation->explained.physics.empty());
-  EXPECT_NE(explanation->summary.find("R_CL runs from"), std::string::npos) << explanation->summary;
+  EXPECT_NE(explanation->summary.find("R_CL is 2.286e+13 (2009-04-18)"), std::string::npos) << explanation->summary;
+  ASSERT_FALSE(explanation->location.empty());
+  EXPECT_EQ(explanation->location.front().element, "piston_seal");
   EXPECT_FALSE(explanation->prognosis.known) << "one condition for tests of different ones";
 
   // Of two tests laws in common take the difference; a third, held out, shows that it was not theirs.
@@ -51,6 +53,34 @@ Recording recording_of(const AssetConfig& truth, double load) {
   recording.file = recording.recording_id = recording.content_hash = number(load);
   recording.samples = simulated_test(loaded, 1.0);
   return recording;
+}
+
+// Months apart, with a seal that wears from one to the next.
+Recording monthly_test(AssetConfig truth, int month, double leakage) {
+  truth.parameters.at("R_CL").value = leakage;
+  Recording recording = recording_of(truth, 1.0 + 0.1 * month);
+  recording.start_time = add_months(UtcTime{}, month);
+  return recording;
+}
+
+TEST(Seal, ThatAgesBesideMissingPhysicsIsToldApartFromIt) {
+  const AssetConfig asset = actuator();
+  const AssetConfig truth = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4.0e-13});
+  const std::vector<Recording> fit{monthly_test(truth, 4, 1.8e13), monthly_test(truth, 1, 2.2e13)};
+  const std::vector<Recording> holdout{monthly_test(truth, 6, 1.5e13)};
+  const auto explanation = explain(asset, fit, holdout);
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  ASSERT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
+  ASSERT_EQ(explanation->effects.size(), 1U) << explanation->summary;
+  EXPECT_EQ(explanation->effects[0].what.id, "external_leakage");
+  EXPECT_EQ(explanation->effects[0].what.element, "chamber_a");
+  EXPECT_EQ(explanation->effects[0].what.form, "laminar");
+  EXPECT_NEAR(explanation->effects[0].parameters[0].value, 4.0e-13, 0.01 * 4.0e-13);
+  EXPECT_NE(explanation->summary.find("The piston seal aged between these tests: R_CL is 2.2"), std::string::npos)
+      << explanation->summary;
+  EXPECT_EQ(explanation->fit_recordings.front(), fit[1].recording_id) << "in the order of time";
+  EXPECT_NEAR(explanation->prognosis.R_CL_after, 1.8e13, 0.01 * 1.8e13) << "of the latest test that was fitted";
+  EXPECT_NEAR(explanation->explained.parameters.at("R_CL").value, 1.8e13, 0.01 * 1.8e13);
 }
 
 TEST(KeptAside, RecordingsThatDifferFromTheFittedOnesAreNotConsistent) {
@@ -75,6 +105,23 @@ TEST(Recorded, AChannelThatNeverChangesWhileThePistonMovesIsRefused) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().place, "column pressure_b");
   EXPECT_EQ(refused.error().file, fit[1].file);
+}
+
+TEST(Recorded, AChannelThatStopsHalfWayIsRefusedUnlessItsSensorRounds) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  std::vector<double>& values = std::ranges::find(fit[1].samples.channels, "velocity", &Series::name)->values;
+  const std::vector<double> good = values;
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(values.size()) / 2, values.end(), values[values.size() / 2]);
+  const auto refused = explain(asset, fit, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().place, "column velocity");
+  EXPECT_NE(refused.error().value.find("does not change from 15.5 s"), std::string::npos) << refused.error().value;
+
+  values = good;
+  for (double& value : values) value = 1e-3 * std::round(value / 1e-3);
+  const auto rounded = explain(asset, fit, {});
+  EXPECT_TRUE(rounded) << rounded.error().describe();
 }
 
 TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {

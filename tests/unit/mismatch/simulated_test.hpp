@@ -8,10 +8,11 @@
 
 namespace sealwatch::mismatch {
 
-/// `noise_share`: of the noise of each channel's sensor. `clean`: where to leave the recording without noise, or null.
-inline TimeSeries simulated_test(const AssetConfig& truth, double noise_share, TimeSeries* clean = nullptr) {
+/// Outputs of `samples`, whose input is given, simulated. `noise_share`: of the noise of each channel's sensor.
+/// `clean`: where to leave the recording without noise, or null.
+inline TimeSeries simulated(const AssetConfig& truth, TimeSeries samples, double noise_share,
+                            TimeSeries* clean = nullptr) {
   constexpr SimulationOptions tight = {.relative_tolerance = 1e-7, .maximum_step_s = 0.02};
-  TimeSeries samples = standard_pst(truth, 100.0);
   const auto simulation = PlantSimulation::create(truth, samples).value();
   const auto outputs = simulation->run(simulation->start(), {}, tight).value();
   std::mt19937 random(20310412);
@@ -29,6 +30,10 @@ inline TimeSeries simulated_test(const AssetConfig& truth, double noise_share, T
       }
     }
   return samples;
+}
+
+inline TimeSeries simulated_test(const AssetConfig& truth, double noise_share, TimeSeries* clean = nullptr) {
+  return simulated(truth, standard_pst(truth, 100.0), noise_share, clean);
 }
 
 }  // namespace sealwatch::mismatch

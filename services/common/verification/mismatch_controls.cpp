@@ -7,6 +7,7 @@
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/unrecorded_input.hpp"
 #include "services/common/verification/sparse_regression.hpp"
 
 namespace sealwatch::verification {
@@ -126,7 +127,8 @@ class Controls {
     }
   }
 
-  /// The true laws' best forms, refitted; for two laws every form of the one with the first of the other. For physics
+  /// The true laws' best forms, refitted with the residuals weighed as the analysis weighs them, so that both misfits are
+  /// of one kind; for two laws every form of the one with the first of the other. For physics
   /// without a name the best closed form at its element.
   void fit_oracle(const Screening& screening) {
     const std::vector<bench::TrialTruth> truths = plan_.truths();
@@ -140,10 +142,15 @@ class Controls {
         for (auto& laws : tried) laws.push_back(starts.front());
       }
     }
-    const FittedModel* best = baseline_.get();
+    Data weighed = fit_;
+    weighed.weight = mismatch::unrecorded_input_weights(*baseline_, fit_);
+    Result<FittedModel> model = mismatch::fit_model(asset_, weighed, baseline_.get(), threads_);
+    if (!model) return;
+    const auto baseline = std::make_shared<const FittedModel>(std::move(*model));
+    const FittedModel* best = baseline.get();
     std::vector<Trial> trials;
     if (!tried.empty()) {
-      trials = mismatch::refit({{}, baseline_}, tried, fit_, threads_);
+      trials = mismatch::refit({{}, baseline}, tried, weighed, threads_);
       if (trials.empty()) return;
       const auto least = std::ranges::min_element(trials, {}, [](const Trial& trial) { return trial.model->misfit; });
       best = least->model.get();
@@ -173,8 +180,12 @@ class Controls {
     std::vector<mismatch::RecordingComparison> parts;
     const AssetConfig fixed = mismatch::with_fixed_parameters(model.asset);
     for (std::size_t k = 0; k < holdout_.samples.size(); ++k) {
-      const Data one{.names = {holdout_.names[k]}, .samples = {holdout_.samples[k]}, .colour = {holdout_.colour[k]}};
-      const auto predicted = mismatch::fit_model(fixed, one, nullptr, 1);
+      Data one{.names = {holdout_.names[k]}, .samples = {holdout_.samples[k]}, .colour = {holdout_.colour[k]}};
+      auto predicted = mismatch::fit_model(fixed, one, nullptr, 1);
+      if (predicted) {
+        one.weight = mismatch::unrecorded_input_weights(*predicted, one);
+        predicted = mismatch::fit_model(fixed, one, nullptr, 1);
+      }
       if (!predicted) return 0.0;
       parts.push_back(mismatch::compare(*predicted, *predicted, one, 0));
       parts.back().holdout = true;

@@ -4,56 +4,46 @@
 #include <cmath>
 #include <map>
 
-#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
-#include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kAgrees = 1.5;    // mean square over the noise's, of one recording by itself
-constexpr double kChanged = 10.0;  // standard errors between the smallest and the largest value
-constexpr double kFalls = 3.0;     // standard errors by which a value may lie above the one before it
-constexpr const char* kSealLeakage = "R_CL";
+constexpr double kAgrees = 1.5;  // mean square over the noise's, of one recording by itself
 
-struct Value {
-  std::string when;  ///< the test's date, or its name
-  double value = 0.0, std_error = 0.0;
-};
+std::vector<Data> one_by_one(const Data& data) {
+  std::vector<Data> ones;
+  for (std::size_t k = 0; k < data.samples.size(); ++k) ones.push_back(only(data, k));
+  return ones;
+}
 
-// One parameter from recording to recording.
-struct Course {
-  std::string unit;
-  std::vector<Value> values;
+}  // namespace
 
-  [[nodiscard]] double standard_errors() const {
-    const auto [least, most] = std::ranges::minmax(values, {}, &Value::value);
-    const double largest = std::ranges::max(values, {}, &Value::std_error).std_error;
-    return largest > 0.0 ? (most.value - least.value) / largest : 0.0;
-  }
+double Course::standard_errors() const {
+  const auto [least, most] = std::ranges::minmax(values, {}, &Value::value);
+  const double largest = std::ranges::max(values, {}, &Value::std_error).std_error;
+  return largest > 0.0 ? (most.value - least.value) / largest : 0.0;
+}
 
-  // Each value with its test; of many the first, the last and how many lie between.
-  [[nodiscard]] std::string in_words() const {
-    constexpr std::size_t kMost = 6;
-    std::vector<std::string> texts;
-    for (std::size_t k = 0; k < values.size(); ++k)
-      if (values.size() <= kMost || k == 0 || k + 1 == values.size())
-        texts.push_back(number(values[k].value, 4) + " (" + values[k].when + ")");
-      else if (k == 1)
-        texts.push_back("... (" + std::to_string(values.size() - 2) + " tests)");
-    return joined(texts, ", ") + " " + unit;
-  }
-};
+std::string Course::in_words() const {
+  constexpr std::size_t kMost = 6;
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (values.size() <= kMost || k == 0 || k + 1 == values.size())
+      texts.push_back(number(values[k].value, 4) + " (" + values[k].when + ")");
+    else if (k == 1)
+      texts.push_back("... (" + std::to_string(values.size() - 2) + " tests)");
+  return joined(texts, ", ") + " " + unit;
+}
 
-// Of one model on some recordings: sum of squares, residuals, free parameters.
-struct Misfit {
-  double sum = 0.0, residuals = 0.0, free = 0.0;
-  [[nodiscard]] double criterion(double phi) const { return sum / phi + free * std::log(residuals); }
-};
+double Misfit::criterion(double phi) const { return sum / phi + free * std::log(residuals); }
 
-// Of the model with its laws on all recordings; nothing where it cannot be simulated on a held-out one.
+std::string date_or_name(const Data& data, std::size_t recording) {
+  return data.start_time[recording] ? format_date(*data.start_time[recording]) : data.names[recording];
+}
+
 std::optional<Misfit> misfit_in_common(const FittedModel& best, const Data& holdout) {
   Misfit all{best.misfit, best.residuals, static_cast<double>(best.free_shared)};
   if (holdout.samples.empty()) return all;
@@ -62,32 +52,6 @@ std::optional<Misfit> misfit_in_common(const FittedModel& best, const Data& hold
   return Misfit{all.sum + held_out->misfit, all.residuals + held_out->residuals,
                 all.free + static_cast<double>(held_out->free_shared)};
 }
-
-std::string when(const Data& data, std::size_t k) {
-  return data.start_time[k] ? format_date(*data.start_time[k]) : data.names[k];
-}
-
-std::vector<Data> one_by_one(const Data& data) {
-  std::vector<Data> ones;
-  for (std::size_t k = 0; k < data.samples.size(); ++k) ones.push_back(only(data, k));
-  return ones;
-}
-
-Course seal_course(const FittedModel& model, const Data& fit) {
-  const std::vector<double> errors = standard_errors(model);
-  Course course;
-  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
-    const Unknown& unknown = model.problem.shared[k];
-    if (unknown.group < 0 || parameter_of(unknown) != kSealLeakage) continue;
-    course.unit = unknown.unit;
-    course.values.push_back({.when = when(fit, static_cast<std::size_t>(unknown.group)),
-                             .value = unknown.to_value(model.optimum.point.shared[k]),
-                             .std_error = errors[k]});
-  }
-  return course;
-}
-
-}  // namespace
 
 std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit, const Data& holdout,
                                                        const FittedModel& best) {
@@ -108,7 +72,7 @@ std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset,
       if (!std::isfinite(parameter.after_std)) continue;
       Course& course = courses[parameter.name];
       course.unit = parameter.unit;
-      course.values.push_back({when(one, 0), parameter.after, parameter.after_std});
+      course.values.push_back({date_or_name(one, 0), parameter.after, parameter.after_std});
     }
   }
   const std::optional<Misfit> common = misfit_in_common(best, holdout);
@@ -123,42 +87,10 @@ std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset,
   text.append(number(largest_misfit)).append(" times the noise's), all together do not: from test to test ");
   text.append(changed->first).append(" is ").append(changed->second.in_words());
   text.append(", a change of ").append(number(changed->second.standard_errors())).append(" standard errors. ");
-  const bool seal = changed->first == kSealLeakage;
+  const bool seal = changed->first == "R_CL";
   text.append(seal ? "The piston seal" : "The asset");
   text.append(" changed between these tests; missing physics cannot be seen within one.");
   return ChangeBetweenTests{.sentence = std::move(text), .element = seal ? "piston_seal" : ""};
-}
-
-bool seal_may_age(const AssetConfig& asset, const Data& fit) {
-  const auto leakage = asset.parameters.find(kSealLeakage);
-  if (leakage == asset.parameters.end() || !leakage->second.estimate || fit.start_time.size() < 2) return false;
-  if (!std::ranges::all_of(fit.start_time, [](const auto& time) { return time.has_value(); })) return false;
-  return seconds_between(*fit.start_time.front(), *fit.start_time.back()) > kSecondsPerDay;
-}
-
-bool seal_ages(const FittedModel& model, const Data& fit) {
-  const Course course = seal_course(model, fit);
-  if (course.values.size() < 2) return false;
-  for (std::size_t k = 0; k < course.values.size(); ++k) {
-    if (!std::isfinite(course.values[k].std_error)) return false;
-    if (k > 0 && course.values[k].value - course.values[k - 1].value >
-                     kFalls * std::hypot(course.values[k].std_error, course.values[k - 1].std_error))
-      return false;
-  }
-  return course.values.front().value > course.values.back().value && course.standard_errors() >= kChanged;
-}
-
-bool ageing_is_likelier(const FittedModel& ageing, const Data& ageing_holdout, const FittedModel& common,
-                        const Data& common_holdout) {
-  const std::optional<Misfit> own = misfit_in_common(ageing, ageing_holdout);
-  const std::optional<Misfit> shared = misfit_in_common(common, common_holdout);
-  if (!own || !shared) return own.has_value();
-  const double phi = std::max(1.0, std::min(own->sum, shared->sum) / own->residuals);
-  return own->criterion(phi) < shared->criterion(phi) - kWorthAnother;
-}
-
-std::string ageing_in_words(const FittedModel& model, const Data& fit) {
-  return "The piston seal aged between these tests: R_CL is " + seal_course(model, fit).in_words() + ".";
 }
 
 }  // namespace sealwatch::mismatch

@@ -1,6 +1,5 @@
-// What changed from test to test, which laws in common would be bent to explain.
-//
-// Each recording alone agrees with the model, all together do not, because a parameter changed between the tests:
+// Whether the recordings differ from one another rather than from the model: laws in common would be bent to explain
+// it. Each recording alone agrees with the model, all together do not, because a parameter changed between the tests:
 //
 //   sum_i misfit_i / phi + sum_i k_i ln N  <  misfit / phi + k ln N,   phi = max(1, sum_i misfit_i / N)
 //
@@ -9,10 +8,6 @@
 // held-out ones. Parameters of its own for each test must be likelier than laws in common: where the laws are right,
 // they cost less. The held-out recordings can so take a claim back, never make one: of two tests of an ageing seal laws
 // in common can still take the difference, a third shows that it was not theirs.
-//
-// A seal that ages while physics is missing: each recording keeps a leakage resistance R_CL of its own, and laws are
-// asked for beside it. That model must be likelier by the same rule (a parameter more for each recording), and R_CL
-// fall from test to test: wear does not heal. Only tests of different days are asked: within one a seal does not age.
 #pragma once
 
 #include <optional>
@@ -21,6 +16,37 @@
 #include "services/common/mismatch/fitted_model.hpp"
 
 namespace sealwatch::mismatch {
+
+/// One parameter from recording to recording.
+struct Course {
+  struct Value {
+    std::string when;  ///< the test's date, or its name
+    double value = 0.0, std_error = 0.0;
+  };
+  std::string unit;
+  std::vector<Value> values;
+
+  /// Between the smallest and the largest value, in the largest of their standard errors.
+  [[nodiscard]] double standard_errors() const;
+  /// Each value with its test; of many the first, the last and how many lie between.
+  [[nodiscard]] std::string in_words() const;
+};
+
+/// The date of a recording, or its name where it has none.
+[[nodiscard]] std::string date_or_name(const Data& data, std::size_t recording);
+
+/// Standard errors by which a parameter must have changed.
+inline constexpr double kChanged = 10.0;
+
+/// Of one model on some recordings: sum of squares, residuals, free parameters.
+struct Misfit {
+  double sum = 0.0, residuals = 0.0, free = 0.0;
+  [[nodiscard]] double criterion(double phi) const;
+};
+
+/// Of the model with its laws on the recordings that it was fitted to and on held-out ones; nothing where it cannot be
+/// simulated on one of these.
+[[nodiscard]] std::optional<Misfit> misfit_in_common(const FittedModel& best, const Data& holdout);
 
 /// What is said of a parameter that changed, and the element that it belongs to ("" where it belongs to several).
 struct ChangeBetweenTests {
@@ -32,19 +58,5 @@ struct ChangeBetweenTests {
 /// is likelier.
 [[nodiscard]] std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit,
                                                                      const Data& holdout, const FittedModel& best);
-
-/// Whether `asset` estimates a seal's leakage, and these recordings are of several days.
-[[nodiscard]] bool seal_may_age(const AssetConfig& asset, const Data& fit);
-
-/// Whether R_CL falls from recording to recording, by far more than its standard errors.
-[[nodiscard]] bool seal_ages(const FittedModel& model, const Data& fit);
-
-/// Whether `ageing` (its data say which parameter each recording has for itself) is likelier than `common` on all
-/// recordings, those that were held out with it.
-[[nodiscard]] bool ageing_is_likelier(const FittedModel& ageing, const Data& ageing_holdout, const FittedModel& common,
-                                      const Data& common_holdout);
-
-/// "R_CL fell from 2.1e+13 (2031-04-12) to ... Pa s/m3", value by value.
-[[nodiscard]] std::string ageing_in_words(const FittedModel& model, const Data& fit);
 
 }  // namespace sealwatch::mismatch

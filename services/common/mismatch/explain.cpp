@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/drawn_terms.hpp"
 #include "services/common/mismatch/effects.hpp"
@@ -105,25 +106,13 @@ class Analysis {
 
   // A seal that ages from test to test, and physics missing beside it: laws in common would bend to the ageing.
   void let_the_seal_age() {
-    if (!result_.statistically_significant || windowed() || !seal_may_age(asset_, fit_)) return;
-    Data fit = fit_, holdout = holdout_;
-    fit.own_parameter = holdout.own_parameter = "R_CL";
-    Result<FittedModel> with_laws = fit_model(best_.model->asset, fit, best_.model.get(), options_.threads);
-    if (!with_laws || !ageing_is_likelier(*with_laws, holdout, *best_.model, holdout_)) return;
-    Result<FittedModel> without = fit_model(baseline_->asset, fit, baseline_.get(), options_.threads);
-    if (!without) return;
-    tell("asking again, with a seal that ages between the tests", 0.5);
-    const auto shared = [](FittedModel&& model) { return std::make_shared<const FittedModel>(std::move(model)); };
-    auto baseline = shared(std::move(*without));
-    Result<Naming> naming =
-        name_effects(baseline, fit, options_, progress_, {best_.effects, shared(std::move(*with_laws))});
-    if (!naming || !seal_ages(*naming->best.model, fit) ||
-        !ageing_is_likelier(*naming->best.model, holdout, *best_.model, holdout_))
-      return;
-    fit_ = std::move(fit);
-    holdout_ = std::move(holdout);
-    baseline_ = std::move(baseline);
-    naming_ = std::move(*naming);
+    if (!result_.statistically_significant || windowed()) return;
+    std::optional<AgeingSeal> seal = with_ageing_seal(fit_, holdout_, *baseline_, best_, options_, progress_);
+    if (!seal) return;
+    fit_ = std::move(seal->fit);
+    holdout_ = std::move(seal->holdout);
+    baseline_ = std::move(seal->baseline);
+    naming_ = std::move(seal->naming);
     best_ = naming_.best;
     if (best_.effects.empty() && !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate))
       why_none_ = {.summary = ageing_in_words(*best_.model, fit_) + " Nothing else was found to be missing.",

@@ -146,8 +146,8 @@ void print_text(const Explanation& explanation, const Files& files) {
   print_channels("kept aside", explanation.holdout, changed);
   print_channels("fitted", explanation.fit, changed);
   if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());
-  std::printf("\n  look at %s\n  scripts read %s\n  the asset with what was found: %s\n", files.html.c_str(),
-              files.json.c_str(), files.asset.c_str());
+  std::printf("\n  look at %s\n  scripts read %s\n  the asset with %s: %s\n", files.html.c_str(), files.json.c_str(),
+              changed ? "what was found" : "the fitted parameters", files.asset.c_str());
 }
 
 Result<Explanation> analyse(const ExplainEngine& engine, const ExplainOptions& options, const AssetConfig& asset,

@@ -34,53 +34,57 @@ Course seal_course(const FittedModel& model, const Data& fit) {
   return course;
 }
 
-// Whether R_CL falls from recording to recording, by far more than its standard errors.
-bool ages(const FittedModel& model, const Data& fit) {
-  const Course course = seal_course(model, fit);
-  if (course.values.size() < 2) return false;
-  for (std::size_t k = 0; k < course.values.size(); ++k) {
-    if (!std::isfinite(course.values[k].std_error)) return false;
-    if (k > 0 && course.values[k].value - course.values[k - 1].value >
-                     kFalls * std::hypot(course.values[k].std_error, course.values[k - 1].std_error))
+bool wears(const Course& course) {
+  for (std::size_t k = 1; k < course.values.size(); ++k)
+    if (course.values[k].value - course.values[k - 1].value >
+        kFalls * std::hypot(course.values[k].std_error, course.values[k - 1].std_error))
       return false;
-  }
-  return course.values.front().value > course.values.back().value && course.standard_errors() >= kChanged;
+  return course.values.front().value > course.values.back().value;
 }
 
-bool is_likelier(const FittedModel& ageing, const Data& ageing_holdout, const FittedModel& common,
-                 const Data& common_holdout) {
-  const std::optional<Misfit> own = misfit_in_common(ageing, ageing_holdout);
-  const std::optional<Misfit> shared = misfit_in_common(common, common_holdout);
-  if (!own || !shared) return own.has_value();
-  const double phi = std::max(1.0, std::min(own->sum, shared->sum) / own->residuals);
-  return own->criterion(phi) < shared->criterion(phi) - kWorthAnother;
+bool is_preferred(const Trial& ageing, const Trial& common) {
+  const double phi = std::min(dispersion(*ageing.model), dispersion(*common.model));
+  const auto fewer = static_cast<double>(common.effects.size()) - static_cast<double>(ageing.effects.size());
+  const double ahead = criterion(*common.model, phi) - criterion(*ageing.model, phi);
+  return ahead > (fewer > 0.0 ? -fewer * kWorthAnother : kWorthAnother);
 }
 
 }  // namespace
 
-std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const Data& holdout, const FittedModel& baseline,
-                                           const Trial& common, const ExplainOptions& options,
-                                           const Progress& progress) {
+std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const FittedModel& baseline, const Trial& common,
+                                           const ExplainOptions& options, const Progress& progress) {
   if (!may_age(baseline.asset, fit)) return std::nullopt;
-  AgeingSeal seal{.fit = fit, .holdout = holdout, .baseline = nullptr, .naming = {}};
-  seal.fit.own_parameter = seal.holdout.own_parameter = kSealLeakage;
+  AgeingSeal seal{.fit = fit, .baseline = nullptr, .naming = {}};
+  seal.fit.own_parameter = kSealLeakage;
   Result<FittedModel> with_laws = fit_model(common.model->asset, seal.fit, common.model.get(), options.threads);
-  if (!with_laws || !is_likelier(*with_laws, seal.holdout, *common.model, holdout)) return std::nullopt;
   Result<FittedModel> without = fit_model(baseline.asset, seal.fit, &baseline, options.threads);
-  if (!without) return std::nullopt;
+  if (!with_laws || !without) return std::nullopt;
   if (progress) progress("asking again, with a seal that ages between the tests", 0.5);
   seal.baseline = std::make_shared<const FittedModel>(std::move(*without));
   const Trial from{common.effects, std::make_shared<const FittedModel>(std::move(*with_laws))};
   Result<Naming> naming = name_effects(seal.baseline, seal.fit, options, progress, from);
-  if (!naming || !ages(*naming->best.model, seal.fit) ||
-      !is_likelier(*naming->best.model, seal.holdout, *common.model, holdout))
-    return std::nullopt;
+  if (!naming || !is_preferred(naming->best, common)) return std::nullopt;
+  const Course course = seal_course(*naming->best.model, seal.fit);
+  const bool known = std::ranges::all_of(course.values, [](const auto& one) { return std::isfinite(one.std_error); });
+  if (!known || course.standard_errors() < kChanged) return std::nullopt;
+  seal.wears = wears(course);
   seal.naming = std::move(*naming);
   return seal;
 }
 
+double predicted_leakage(const FittedModel& model, const Data& fit, std::optional<UtcTime> time) {
+  const Course course = seal_course(model, fit);
+  const std::size_t last = course.values.size() - 1;
+  if (!time || last == 0) return course.values.back().value;
+  std::size_t next = 1;  // end of the interval that the time lies in, or of the nearest
+  while (next < last && *fit.start_time[next] < *time) ++next;
+  const double interval_s = seconds_between(*fit.start_time[next - 1], *fit.start_time[next]);
+  const double share = interval_s > 0.0 ? seconds_between(*fit.start_time[next - 1], *time) / interval_s : 1.0;
+  return course.values[next - 1].value * std::pow(course.values[next].value / course.values[next - 1].value, share);
+}
+
 std::string ageing_in_words(const FittedModel& model, const Data& fit) {
-  return "The piston seal aged between these tests: R_CL is " + seal_course(model, fit).in_words() + ".";
+  return "From test to test R_CL is " + seal_course(model, fit).in_words() + ".";
 }
 
 }  // namespace sealwatch::mismatch

@@ -1,7 +1,13 @@
-// A seal that ages while physics is missing: each recording keeps a leakage resistance R_CL of its own, and laws are
-// asked for beside it, beginning with those that were found in common. That model must be likelier than theirs by the
-// rule of between_tests.hpp (a parameter more for each recording) and 12 more, and R_CL must fall from recording to
-// recording: wear does not heal. Only tests of different days are asked: within one a seal does not age.
+// A seal that ages while physics is missing: each fitted recording keeps a leakage resistance R_CL of its own, and laws
+// are asked for beside it, beginning with those that were found in common. Only tests of different days are asked:
+// within one a seal does not age. By the criterion of the fitted recordings (criterion.hpp), with a parameter more for
+// each,
+//
+//   with fewer laws it is preferred unless those that it does without are worth 12 each, as any law must be
+//   with as many it must be better by 12
+//
+// Recordings that took no part have the R_CL that its course in the others predicts for their dates: ln R_CL is taken
+// as linear in time between two tests, and goes on as it ended.
 #pragma once
 
 #include <optional>
@@ -11,20 +17,25 @@
 
 namespace sealwatch::mismatch {
 
-/// The recordings, each with its own R_CL, and what is missing beside that.
+/// The fitted recordings, each with its own R_CL, and what is missing beside that.
 struct AgeingSeal {
-  Data fit, holdout;
+  Data fit;
   std::shared_ptr<const FittedModel> baseline;
   Naming naming;
+  bool wears = false;  ///< R_CL falls from test to test, as wear does not heal; else something else changed
 };
 
-/// Nothing where `common`, the best that was found with one R_CL for all of them, is as likely. `baseline`: the model
-/// without any law, likewise.
-[[nodiscard]] std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const Data& holdout,
-                                                         const FittedModel& baseline, const Trial& common,
-                                                         const ExplainOptions& options, const Progress& progress);
+/// Nothing where `common`, the best that was found with one R_CL for all of them, is preferred, or where R_CL does not
+/// differ by far more than its standard errors. `baseline`: the model without any law, likewise.
+[[nodiscard]] std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const FittedModel& baseline,
+                                                         const Trial& common, const ExplainOptions& options,
+                                                         const Progress& progress);
 
-/// "The piston seal aged between these tests: R_CL is ...", value by value.
+/// R_CL at a time [Pa s/m3] by its course in `fit`, to which `model` was fitted; the latest where the time is not
+/// known.
+[[nodiscard]] double predicted_leakage(const FittedModel& model, const Data& fit, std::optional<UtcTime> time);
+
+/// "From test to test R_CL is ...", value by value.
 [[nodiscard]] std::string ageing_in_words(const FittedModel& model, const Data& fit);
 
 }  // namespace sealwatch::mismatch

@@ -328,7 +328,9 @@ PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<Param
   const std::string condition = number(100.0 * shift.theta_after, 4) + " %";
   const double months = std::round(shift.months_after), months_before = std::round(shift.months_before);
   if (condition == number(100.0 * shift.theta_before, 4) + " %" && months == months_before) {
-    shift.sentence = "The seal's condition is " + condition + " with and without what was found.";
+    const bool nothing_found = leakage->after == leakage->before;
+    shift.sentence =
+        "The seal's condition is " + condition + (nothing_found ? "." : " with and without what was found.");
     return shift;
   }
   const std::string not_before = months == months_before ? ", as before" : ", not " + number(months_before);

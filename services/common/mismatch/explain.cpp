@@ -107,15 +107,23 @@ class Analysis {
   // A seal that ages from test to test, and physics missing beside it: laws in common would bend to the ageing.
   void let_the_seal_age() {
     if (!result_.statistically_significant || windowed()) return;
-    std::optional<AgeingSeal> seal = with_ageing_seal(fit_, holdout_, *baseline_, best_, options_, progress_);
+    std::optional<AgeingSeal> seal = with_ageing_seal(fit_, *baseline_, best_, options_, progress_);
     if (!seal) return;
     fit_ = std::move(seal->fit);
-    holdout_ = std::move(seal->holdout);
     baseline_ = std::move(seal->baseline);
     naming_ = std::move(seal->naming);
     best_ = naming_.best;
-    if (best_.effects.empty() && !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate))
-      why_none_ = {.summary = ageing_in_words(*best_.model, fit_) + " Nothing else was found to be missing.",
+    const std::string course = ageing_in_words(*best_.model, fit_);
+    const bool nothing_else =
+        best_.effects.empty() && !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
+    if (!seal->wears)
+      why_none_ = {.summary = course +
+                              " That is no wear: the seal was changed, or something else changed between these "
+                              "tests, and laws for all of them cannot be told from it.",
+                   .next_test = kTestsOfOneTime,
+                   .element = "piston_seal"};
+    else if (nothing_else)
+      why_none_ = {.summary = course + " The piston seal aged; nothing else was found to be missing.",
                    .next_test = kTestsOfOneTime,
                    .element = "piston_seal"};
   }
@@ -181,6 +189,7 @@ class Analysis {
     }
     if (!model) {
       Error error = model.error();
+      if (error.file.empty()) error.file = first_not_simulated();
       error.advice =
           "the model cannot be simulated at the start values: check the asset's parameters against the recording";
       return fail(std::move(error));
@@ -188,6 +197,13 @@ class Analysis {
     if (!windowed()) model = weighed_by_what_is_recorded(std::move(*model));
     if (!model) return fail(model.error());
     baseline_ = std::make_shared<const FittedModel>(std::move(*model));
+    return {};
+  }
+
+  // The recording on which the model fails by itself, at the start values or while it is fitted; "" where none does.
+  [[nodiscard]] std::string first_not_simulated() const {
+    for (std::size_t k = 0; k < fit_.samples.size(); ++k)
+      if (!fit_model(asset_, prepared(only(fit_, k)), nullptr, options_.threads)) return fit_.names[k];
     return {};
   }
 
@@ -305,7 +321,7 @@ class Analysis {
     if (!best_.effects.empty()) {
       result_.location = locate(result_.effects);
     } else if (result_.statistically_significant) {
-      result_.location = tried_.effects.empty() ? locate_without_law(naming_.first) : places_;
+      result_.location = locate_without_law(naming_.first);
     }
     for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
     for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
@@ -334,6 +350,8 @@ class Analysis {
   bool takes_back_what_comes_nowhere_near() {
     if (windowed() || best_.effects.empty()) return false;
     const ChannelComparison* far = farthest_off(result_.fit);
+    // Where the seal ages, R_CL of the held-out ones is predicted, and what they miss by is that prediction's error.
+    if (far == nullptr && fit_.own_parameter.empty()) far = farthest_off(result_.holdout);
     if (far == nullptr) return false;
     why_none_ = {.summary = "The simulation comes nowhere near these recordings, whatever law is added: it misses " +
                             in_words(far->channel) + " by " + number(far->rms_after) +
@@ -374,7 +392,6 @@ class Analysis {
                             " the mean squared residual of the fit recordings falls from " +
                             number(baseline_->misfit / baseline_->residuals) + " to " +
                             number(best_.model->misfit / best_.model->residuals) + " times the noise variance.");
-    places_ = locate(result_.effects);
     tried_ = best_;
     best_ = {.effects = {}, .model = baseline_};
     proven_ = false;
@@ -387,8 +404,8 @@ class Analysis {
   // alone, has no part in the fit that could tell it.
   void compare_with_what_was_kept_aside() {
     if (windowed() || why_none_ || result_.statistically_significant) return;
-    const auto worst = std::ranges::max_element(result_.holdout.channels, {}, &ChannelComparison::rms_after);
-    if (worst == result_.holdout.channels.end() || worst->rms_after < kHeldOutAgrees) return;
+    const auto worst = std::ranges::max_element(result_.holdout.channels, {}, &ChannelComparison::weighed_rms_after);
+    if (worst == result_.holdout.channels.end() || worst->weighed_rms_after < kHeldOutAgrees) return;
     why_none_ = {.summary = "The fitted recordings agree with the model, those that were kept aside do not: " +
                             in_words(worst->channel) + " misses by " + number(worst->rms_after) +
                             " times the noise. The asset changed between them, or what is missing acts in these alone.",
@@ -414,8 +431,12 @@ class Analysis {
 
   void say_that_the_seal_aged() {
     if (fit_.own_parameter.empty() || why_none_) return;
-    result_.notes.push_back(ageing_in_words(*best_.model, fit_));
-    result_.summary += " " + result_.notes.back();
+    const std::string course = "The piston seal aged between these tests. " + ageing_in_words(*best_.model, fit_);
+    result_.summary += " " + course;
+    result_.notes.push_back(
+        course +
+        " Recordings that took no part have the R_CL that this course predicts for their dates, and "
+        "their misfit contains its error.");
   }
 
   // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
@@ -455,8 +476,7 @@ class Analysis {
   std::shared_ptr<const FittedModel> baseline_;
   Naming naming_;
   Trial best_;
-  Trial tried_;                   ///< what was taken back, as it explains too little,
-  std::vector<Location> places_;  ///< and where it sits
+  Trial tried_;  ///< what was taken back, as it explains too little
   bool proven_ = false;
   bool all_compared_ = true;         ///< the models can be simulated on every recording
   std::optional<WhyNone> why_none_;  ///< set: no law is named

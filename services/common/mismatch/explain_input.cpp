@@ -41,34 +41,36 @@ bool same_samples(const TimeSeries& a, const TimeSeries& b) {
   return shared;
 }
 
-// Samples from `begin` on that a channel shows the same value.
-struct Frozen {
-  std::string channel;
+// Samples from `begin` on in which a channel shows the same value.
+struct Run {
   std::size_t begin = 0, samples = 0;
 };
 
-Frozen longest_run(const Series& channel) {
-  Frozen longest{.channel = channel.name}, run = longest;
-  for (std::size_t k = 0; k < channel.values.size(); ++k) {
-    if (k > 0 && channel.values[k] != channel.values[k - 1]) run.begin = k;
-    run.samples = k + 1 - run.begin;
+// The longest run, and how long the longest beside it is.
+std::pair<Run, std::size_t> longest_runs(const std::vector<double>& values) {
+  Run longest, run;
+  std::size_t second = 0;
+  for (std::size_t k = 0; k <= values.size(); ++k) {
+    if (k < values.size() && (k == 0 || values[k] == values[k - 1])) continue;
+    run.samples = k - run.begin;
+    second = std::max(second, std::min(run.samples, longest.samples));
     if (run.samples > longest.samples) longest = run;
+    run.begin = k;
   }
-  return longest;
+  return {longest, second};
 }
 
-// A sensor that rounds shows the same value again and again without having stopped.
-bool rounds(const Series& channel, const Frozen& longest) {
-  constexpr double kOften = 0.05;  // of the samples outside the longest run
-  std::size_t again = 0;
-  for (std::size_t k = 1; k < channel.values.size(); ++k)
-    if ((k < longest.begin || k >= longest.begin + longest.samples) && channel.values[k] == channel.values[k - 1])
-      ++again;
-  return static_cast<double>(again) > kOften * static_cast<double>(channel.values.size() - longest.samples);
+// A sensor at the end of its range shows its largest or smallest value, and shows it before and after too, where the
+// noise takes it there.
+bool at_its_end(const std::vector<double>& values, const Run& run) {
+  const double value = values[run.begin];
+  const auto [least, most] = std::ranges::minmax(values);
+  return (value == least || value == most) &&
+         std::ranges::count(values, value) > static_cast<std::ptrdiff_t>(run.samples);
 }
 
 // Whether a channel moves far beyond its noise in these samples.
-bool moves(const Series& channel, const Frozen& during) {
+bool moves(const Series& channel, const Run& during) {
   constexpr double kMoves = 50.0;
   const auto begin = channel.values.begin() + static_cast<std::ptrdiff_t>(during.begin);
   const auto [least, most] = std::minmax_element(begin, begin + static_cast<std::ptrdiff_t>(during.samples));
@@ -77,21 +79,35 @@ bool moves(const Series& channel, const Frozen& during) {
 }
 
 // An output that is one number for a tenth of the recording or more while another moves far beyond its noise: a dead
-// sensor, which gains and offsets of healthy ones would be bent to explain. At rest every output may be.
-std::optional<Frozen> frozen_channel(const PlantSimulation& simulation, const TimeSeries& samples) {
+// sensor, which gains and offsets of healthy ones would be bent to explain. Not one that rounds, and so stays for
+// nearly as long elsewhere, nor one at the end of its range; at rest every output may be.
+std::optional<Run> frozen_run(const PlantSimulation& simulation, const TimeSeries& samples, const Series& channel) {
   constexpr double kLong = 0.1;
-  for (const std::string& name : simulation.channels()) {
-    const Series& channel = *samples.find(name);
-    const Frozen run = longest_run(channel);
-    const bool all = run.samples == channel.values.size();
-    if (static_cast<double>(run.samples) < kLong * static_cast<double>(channel.values.size())) continue;
-    if (!all && rounds(channel, run)) continue;
-    if (std::ranges::any_of(simulation.channels(), [&](const std::string& other) {
-          return other != name && moves(*samples.find(other), run);
-        }))
-      return run;
-  }
+  constexpr std::size_t kTimesTheNext = 10;
+  const auto [run, second] = longest_runs(channel.values);
+  if (static_cast<double>(run.samples) < kLong * static_cast<double>(channel.values.size())) return std::nullopt;
+  if (run.samples < kTimesTheNext * second || at_its_end(channel.values, run)) return std::nullopt;
+  for (const std::string& other : simulation.channels())
+    if (other != channel.name && moves(*samples.find(other), run)) return run;
   return std::nullopt;
+}
+
+Status check_sensors(const PlantSimulation& simulation, const Recording& recording) {
+  const std::vector<double>& time_s = recording.samples.time_s;
+  for (const std::string& name : simulation.channels()) {
+    const auto run = frozen_run(simulation, recording.samples, *recording.samples.find(name));
+    if (!run) continue;
+    const std::string during = run->samples == time_s.size()
+                                   ? "never changes"
+                                   : "does not change from " + number(time_s[run->begin], 4) + " s to " +
+                                         number(time_s[run->begin + run->samples - 1], 4) + " s";
+    return fail(Error{.file = recording.file,
+                      .place = "column " + name,
+                      .value = {},
+                      .rule = during + " while other channels of the recording do: the sensor is stuck",
+                      .advice = "leave the column out of the recordings, or those with it"});
+  }
+  return {};
 }
 
 }  // namespace
@@ -150,17 +166,7 @@ Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span
         if (error.file.empty()) error.file = recording.file;
         return fail(std::move(error));
       }
-      if (const auto frozen = frozen_channel(**simulation, recording.samples)) {
-        const std::vector<double>& time_s = recording.samples.time_s;
-        const bool all = frozen->samples == time_s.size();
-        return fail(Error{.file = recording.file,
-                          .place = "column " + frozen->channel,
-                          .value = all ? "never changes"
-                                       : "does not change from " + number(time_s[frozen->begin], 4) + " s to " +
-                                             number(time_s[frozen->begin + frozen->samples - 1], 4) + " s",
-                          .rule = "while other channels of the recording do: the sensor is stuck",
-                          .advice = "leave the column out of the recordings, or those with it"});
-      }
+      if (const Status sensors = check_sensors(**simulation, recording); !sensors) return fail(sensors.error());
     }
   for (const Recording& one : holdout)
     for (const Recording& other : fit)

@@ -1,5 +1,6 @@
 #include "services/common/mismatch/held_out.hpp"
 
+#include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/telling.hpp"
@@ -10,13 +11,19 @@ namespace {
 
 Result<FittedModel> predict(const HeldOut& of, const Trial& trial, const Data& data, std::size_t recording) {
   AssetConfig asset = trial.model->asset;
+  const std::string& own = of.fit.own_parameter;
   if (of.holdout.samples.empty()) {
-    const Data others = in_windows(without(data, recording), of.window_s);
-    Result<FittedModel> rest = fit_model(asset, others, nullptr, of.options.threads);
-    if (!rest) return fail(rest.error());
-    asset = rest->asset;
+    const Data rest = without(data, recording);
+    Result<FittedModel> model = fit_model(asset, in_windows(rest, of.window_s), nullptr, of.options.threads);
+    if (!model) return fail(model.error());
+    asset = model->asset;
+    if (!own.empty()) asset.parameters.at(own).value = predicted_leakage(*model, rest, data.start_time[recording]);
+  } else if (!own.empty()) {
+    asset.parameters.at(own).value = predicted_leakage(*trial.model, of.fit, data.start_time[recording]);
   }
-  return fit_model(with_fixed_parameters(asset), in_windows(only(data, recording), of.window_s), nullptr, 1);
+  Data one = in_windows(only(data, recording), of.window_s);
+  one.own_parameter.clear();  // predicted
+  return fit_model(with_fixed_parameters(asset), one, nullptr, 1);
 }
 
 Result<RecordingComparison> compare_whole(const FittedModel& before, const FittedModel& after, const Data& data,

@@ -28,7 +28,7 @@ std::vector<double> driving_input(const PlantSimulation& simulation, const TimeS
 }
 
 struct ChannelFigures {
-  double rms = 0.0, nrmse = 0.0, whiteness = 1.0, independence = 1.0;
+  double rms = 0.0, weighed_rms = 0.0, nrmse = 0.0, whiteness = 1.0, independence = 1.0;
 };
 
 // Weights of one channel's residuals.
@@ -41,9 +41,13 @@ std::vector<double> weights_of(const PemRecording& part, Eigen::Index channel) {
 
 ChannelFigures figures(const std::vector<double>& recorded, const std::vector<double>& simulated, double noise_std,
                        const std::vector<double>& weights, const PastInput& past) {
-  std::vector<double> residual(recorded.size());
-  for (std::size_t k = 0; k < residual.size(); ++k) residual[k] = weights[k] * (recorded[k] - simulated[k]) / noise_std;
-  return {.rms = root_mean_square(residual),
+  std::vector<double> plain(recorded.size()), residual(recorded.size());
+  for (std::size_t k = 0; k < residual.size(); ++k) {
+    plain[k] = (recorded[k] - simulated[k]) / noise_std;
+    residual[k] = weights[k] * plain[k];
+  }
+  return {.rms = root_mean_square(plain),
+          .weighed_rms = root_mean_square(residual),
           .nrmse = nrmse_percent(recorded, simulated),
           .whiteness = whiteness_p(residual),
           .independence = past.independence_p(residual)};
@@ -119,6 +123,7 @@ RecordingComparison compare(const FittedModel& before, const FittedModel& after,
     comparison.channels.push_back({.channel = channels[c],
                                    .rms_before = a.rms,
                                    .rms_after = b.rms,
+                                   .weighed_rms_after = b.weighed_rms,
                                    .nrmse_before = a.nrmse,
                                    .nrmse_after = b.nrmse,
                                    .whiteness_before = a.whiteness,
@@ -167,6 +172,7 @@ PooledFit pool(const std::vector<RecordingComparison>& recordings, bool holdout)
     };
     all.rms_before = root_mean(&ChannelComparison::rms_before);
     all.rms_after = root_mean(&ChannelComparison::rms_after);
+    all.weighed_rms_after = root_mean(&ChannelComparison::weighed_rms_after);
     all.nrmse_before = percent(&ChannelComparison::nrmse_before);
     all.nrmse_after = percent(&ChannelComparison::nrmse_after);
     all.whiteness_before = smallest(&ChannelComparison::whiteness_before);

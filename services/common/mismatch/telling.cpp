@@ -64,7 +64,9 @@ std::string joined(const std::vector<std::string>& words, const char* last) {
 }
 
 std::string law_in_words(const LawAt& law) {
-  return in_words(law.id).append(" at ").append(element_in_words(law.element));
+  return (law.id == "unlisted" ? "physics without a name" : in_words(law.id))
+      .append(" at ")
+      .append(element_in_words(law.element));
 }
 
 std::string reason_in_words(const Error& error) {

@@ -52,9 +52,8 @@ std::string unrecorded_input_in_words(const FittedModel& model) {
     if (little[c] > 0.0)
       texts.push_back(in_words(channels[c]) + " in " + number(100.0 * little[c] / samples, 2) + " %");
   if (texts.empty()) return {};
-  return "The input swings from sample to sample, and its course between them is not recorded: there what answers at "
-         "once counts less than half (of the time, " +
-         joined(texts, " and ") + ").";
+  return "What the input does between two samples is not recorded. Where the simulation depends on it (" +
+         joined(texts, " and ") + " of the time) residuals count less than half.";
 }
 
 }  // namespace sealwatch::mismatch

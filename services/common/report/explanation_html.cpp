@@ -39,14 +39,23 @@ void add_figure(const std::string& value, const std::string& meaning, std::strin
       .append("</span></div>\n");
 }
 
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
+  return text;
+}
+
 // Once the physics is known: look there, calculate with it, settle what is open.
 std::string steps_after(const Explanation& explanation) {
   std::string html = "<ol>\n";
   const auto add = [&html](const std::string& step) { html.append("<li>").append(escaped(step)).append("</li>\n"); };
   for (const mismatch::FoundEffect& effect : explanation.effects) {
-    std::string step = "Inspect the " + element_name(effect.what.element) + " for " + law_name(effect.what);
-    for (const std::string& other : effect.same_elements) step += ", and the " + element_name(other);
-    add(step + ". If it belongs there, the model is to have it; if not, it is a fault.");
+    std::string step = "Inspect the " + element_name(effect.what.element) + " for " + law_name(effect.what) +
+                       ": it belongs there, or it is a fault.";
+    std::vector<std::string> others;
+    for (const std::string& other : effect.same_elements) others.push_back(element_name(other));
+    if (!others.empty()) step += " It may as well sit in: " + list_of(others) + ".";
+    add(step);
   }
   add("Calculate with it: asset.explained.yaml of this analysis, in place of the asset's file, for fit, forecast, "
       "simulate and the next explain; in the services, accept this discrepancy (sealwatch accept), which can be "
@@ -73,12 +82,6 @@ std::string figures(const Explanation& explanation) {
   add_misfit(explanation.fit, "fitted");
   if (changed) add_figure(percent_text(explanation.explained_share), "of the misfit explained", html);
   return html.append("</div>\n");
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
-  return text;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "services/common/mismatch/held_out.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
+#include "services/common/mismatch/standard_errors.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
 namespace sealwatch::mismatch {
@@ -37,6 +38,15 @@ Trial unusable(FittedModel model) {
   model.optimum.point.shared.assign(model.optimum.point.shared.size(), kNoForce);
   model.optimum.converged = true;
   return {{{law, "piston"}}, std::make_shared<const FittedModel>(std::move(model))};
+}
+
+TEST(StandardErrors, OfATrialWhoseDerivativesWereNotKeptAreThoseThatItHad) {
+  FittedModel model = fit_model(plant(), one_test("fit"), nullptr, 1).value();
+  const std::vector<double> errors = standard_errors(model);
+  for (Linearisation& at : model.optimum.at_optimum) at.jacobian.resize(0, 0);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_GT(errors.front(), 0.0);
+  EXPECT_NEAR(standard_errors(model).front(), errors.front(), 1e-6 * errors.front());
 }
 
 TEST(FailedSimulation, OfAHeldOutRecordingIsAnErrorOfTheLawOrLeavesTheRecordingOut) {

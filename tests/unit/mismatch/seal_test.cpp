@@ -8,6 +8,7 @@
 
 #include "sealwatch/mismatch/explain.hpp"
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/recording/recording_file.hpp"
@@ -76,7 +77,8 @@ TEST(Seal, ThatAgesBesideMissingPhysicsIsToldApartFromIt) {
   EXPECT_EQ(explanation->effects[0].what.element, "chamber_a");
   EXPECT_EQ(explanation->effects[0].what.form, "laminar");
   EXPECT_NEAR(explanation->effects[0].parameters[0].value, 4.0e-13, 0.01 * 4.0e-13);
-  EXPECT_NE(explanation->summary.find("The piston seal aged between these tests: R_CL is 2.2"), std::string::npos)
+  EXPECT_NE(explanation->summary.find("The piston seal aged between these tests. From test to test R_CL is 2.2"),
+            std::string::npos)
       << explanation->summary;
   EXPECT_EQ(explanation->fit_recordings.front(), fit[1].recording_id) << "in the order of time";
   EXPECT_NEAR(explanation->prognosis.R_CL_after, 1.8e13, 0.01 * 1.8e13) << "of the latest test that was fitted";
@@ -107,21 +109,47 @@ TEST(Recorded, AChannelThatNeverChangesWhileThePistonMovesIsRefused) {
   EXPECT_EQ(refused.error().file, fit[1].file);
 }
 
-TEST(Recorded, AChannelThatStopsHalfWayIsRefusedUnlessItsSensorRounds) {
+std::vector<double>& values_of(Recording& recording, const std::string& channel) {
+  return std::ranges::find(recording.samples.channels, channel, &Series::name)->values;
+}
+
+void freeze(std::vector<double>& values, std::size_t begin) {
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(begin), values.end(), values[begin]);
+}
+
+void round_to(std::vector<double>& values, double step) {
+  for (double& value : values) value = step * std::round(value / step);
+}
+
+TEST(Recorded, AChannelThatStopsHalfWayIsRefused) {
   const AssetConfig asset = actuator();
   std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
-  std::vector<double>& values = std::ranges::find(fit[1].samples.channels, "velocity", &Series::name)->values;
-  const std::vector<double> good = values;
-  std::fill(values.begin() + static_cast<std::ptrdiff_t>(values.size()) / 2, values.end(), values[values.size() / 2]);
-  const auto refused = explain(asset, fit, {});
+  freeze(values_of(fit[1], "velocity"), 1550);
+  const Status refused = check(asset, fit, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().place, "column velocity");
-  EXPECT_NE(refused.error().value.find("does not change from 15.5 s"), std::string::npos) << refused.error().value;
+  EXPECT_EQ(refused.error().file, fit[1].file);
+  EXPECT_NE(refused.error().rule.find("does not change from 15.5 s to 30.99 s"), std::string::npos)
+      << refused.error().rule;
 
-  values = good;
-  for (double& value : values) value = 1e-3 * std::round(value / 1e-3);
-  const auto rounded = explain(asset, fit, {});
-  EXPECT_TRUE(rounded) << rounded.error().describe();
+  fit[1] = recording_of(asset, 1.2);
+  round_to(values_of(fit[1], "pressure_a"), 1e4);
+  EXPECT_TRUE(check(asset, fit, {})) << "it rounds to its noise";
+  freeze(values_of(fit[1], "pressure_a"), 1550);
+  EXPECT_FALSE(check(asset, fit, {})) << "it rounds, and then stops";
+}
+
+TEST(Recorded, AChannelThatRoundsCoarselyOrIsAtTheEndOfItsRangeIsNotStuck) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  round_to(values_of(fit[0], "velocity"), 1e-3);
+  std::vector<double>& pressure = values_of(fit[1], "pressure_b");
+  std::vector<double> sorted = pressure;
+  std::ranges::sort(sorted);
+  const double end = sorted[sorted.size() / 3];
+  for (double& value : pressure) value = std::max(value, end);
+  const Status accepted = check(asset, fit, {});
+  EXPECT_TRUE(accepted) << accepted.error().describe();
 }
 
 TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {
@@ -151,7 +179,8 @@ TEST(Seal, IsNotSaidToHaveChangedWhereItHasNot) {
                                     .after_std = after_std,
                                     .datasheet = 2.6e13}});
   };
-  EXPECT_NE(shift(2.0e13, 1e10).sentence.find("with and without what was found"), std::string::npos);
+  EXPECT_NE(shift(2.000001e13, 1e10).sentence.find("with and without what was found"), std::string::npos);
+  EXPECT_EQ(shift(2.0e13, 1e10).sentence.find("found"), std::string::npos) << "nothing was";
   EXPECT_NE(shift(2.2e13, 1e10).sentence.find("instead of"), std::string::npos);
   EXPECT_FALSE(shift(2.2e13, std::numeric_limits<double>::infinity()).known) << "at a bound, or not told";
 }

@@ -59,7 +59,7 @@ TEST(UnrecordedInput, NamesNoLaw) {
   ASSERT_TRUE(explanation) << explanation.error().describe();
   EXPECT_NE(explanation->verdict, Verdict::mismatch) << explanation->summary;
   EXPECT_TRUE(explanation->effects.empty()) << explanation->summary;
-  EXPECT_THAT(explanation->notes, testing::Contains(testing::HasSubstr("counts less than half")));
+  EXPECT_THAT(explanation->notes, testing::Contains(testing::HasSubstr("count less than half")));
 }
 
 TEST(UnrecordedInput, WeighsNothingWhereTheInputIsSmooth) {

@@ -89,9 +89,9 @@ struct Power {
 struct ChannelComparison {
   std::string channel;
   double rms_before = 0.0, rms_after = 0.0;      ///< noise-normalised
-  double weighed_rms_after = 0.0;                ///< where the input's unrecorded course decides, residuals count less
   double nrmse_before = 0.0, nrmse_after = 0.0;  ///< percent
   double whiteness_before = 0.0, whiteness_after = 0.0, independence_before = 0.0, independence_after = 0.0;  ///< p
+  double weighed_rms_after = 0.0;  ///< where the input's unrecorded course decides, residuals count less
 };
 
 struct RecordingComparison {

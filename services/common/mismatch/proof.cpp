@@ -123,13 +123,13 @@ RecordingComparison compare(const FittedModel& before, const FittedModel& after,
     comparison.channels.push_back({.channel = channels[c],
                                    .rms_before = a.rms,
                                    .rms_after = b.rms,
-                                   .weighed_rms_after = b.weighed_rms,
                                    .nrmse_before = a.nrmse,
                                    .nrmse_after = b.nrmse,
                                    .whiteness_before = a.whiteness,
                                    .whiteness_after = b.whiteness,
                                    .independence_before = a.independence,
-                                   .independence_after = b.independence});
+                                   .independence_after = b.independence,
+                                   .weighed_rms_after = b.weighed_rms});
     comparison.recorded.channels.push_back({measured.name, measured.unit, noise_std, measured.values});
     comparison.before.channels.push_back({measured.name, measured.unit, noise_std, old_curve});
     comparison.after.channels.push_back({measured.name, measured.unit, noise_std, new_curve});

@@ -127,9 +127,9 @@ class Controls {
     }
   }
 
-  /// The true laws' best forms, refitted with the residuals weighed as the analysis weighs them, so that both misfits are
-  /// of one kind; for two laws every form of the one with the first of the other. For physics
-  /// without a name the best closed form at its element.
+  /// The true laws' best forms, refitted with the residuals weighed as the analysis weighs them, so that both misfits
+  /// are of one kind; for two laws every form of the one with the first of the other. For physics without a name the
+  /// best closed form at its element.
   void fit_oracle(const Screening& screening) {
     const std::vector<bench::TrialTruth> truths = plan_.truths();
     std::vector<std::vector<LawStart>> tried;

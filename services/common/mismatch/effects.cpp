@@ -56,7 +56,10 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   }
   Trial from{others, naming.baseline};
   std::vector<std::vector<LawStart>> starts;
-  if (best.effects.size() > 1) {
+  // A search that began with this law has not asked for others in its place.
+  const bool asked = std::ranges::any_of(
+      found, [&](const Trial& trial) { return trial.effects.back().law->id != best.effects[slot].law->id; });
+  if (best.effects.size() > 1 || !asked) {
     AssetConfig asset = best.model->asset;
     asset.physics.erase(asset.physics.begin() + static_cast<std::ptrdiff_t>(place_of(best, slot)));
     Result<FittedModel> fewer = fit_model(asset, data, best.model.get(), options.threads);

@@ -85,6 +85,18 @@ TEST(Seal, ThatAgesBesideMissingPhysicsIsToldApartFromIt) {
   EXPECT_NEAR(explanation->explained.parameters.at("R_CL").value, 1.8e13, 0.01 * 1.8e13);
 }
 
+TEST(Seal, ThatWasReplacedBetweenTestsNamesNoLaw) {
+  const AssetConfig asset = actuator();
+  const AssetConfig truth = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{1.0e-13});
+  const std::vector<Recording> fit{monthly_test(truth, 1, 1.2e13), monthly_test(truth, 4, 2.6e13)};
+  const auto explanation = explain(asset, fit, std::vector{monthly_test(truth, 5, 2.5e13)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_TRUE(explanation->effects.empty());
+  EXPECT_NE(explanation->summary.find("R_CL is 1.2e+13 (1970-01-31), 2.6"), std::string::npos) << explanation->summary;
+  EXPECT_NE(explanation->summary.find("no wear"), std::string::npos) << explanation->summary;
+}
+
 TEST(KeptAside, RecordingsThatDifferFromTheFittedOnesAreNotConsistent) {
   const AssetConfig asset = actuator();
   const AssetConfig leaking = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4.0e-14});

@@ -345,6 +345,13 @@ class Analysis {
     return {};
   }
 
+  void take_all_laws_back() {
+    best_ = {.effects = {}, .model = baseline_};
+    proven_ = false;
+    result_.effects.clear();
+    result_.recordings.clear();
+  }
+
   // Laws that leave less than half of a channel's course reproduced, far above its noise, bend to something else: a
   // wrong unit, a sign, a channel of another sensor.
   bool takes_back_what_comes_nowhere_near() {
@@ -359,10 +366,7 @@ class Analysis {
                  .next_test =
                      "Check the units, signs and wiring of the recorded channels first, then the parameters "
                      "in the asset file."};
-    best_ = {.effects = {}, .model = baseline_};
-    proven_ = false;
-    result_.effects.clear();
-    result_.recordings.clear();
+    take_all_laws_back();
     return true;
   }
 
@@ -393,10 +397,7 @@ class Analysis {
                             number(baseline_->misfit / baseline_->residuals) + " to " +
                             number(best_.model->misfit / best_.model->residuals) + " times the noise variance.");
     tried_ = best_;
-    best_ = {.effects = {}, .model = baseline_};
-    proven_ = false;
-    result_.effects.clear();
-    result_.recordings.clear();
+    take_all_laws_back();
     return true;
   }
 

@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kAgrees = 1.5;  // mean square over the noise's, of one recording by itself
 
-std::vector<Data> one_by_one(const Data& data) {
-  std::vector<Data> ones;
-  for (std::size_t k = 0; k < data.samples.size(); ++k) ones.push_back(only(data, k));
-  return ones;
-}
-
 }  // namespace
 
 double Course::standard_errors() const {
@@ -44,25 +38,13 @@ std::string date_or_name(const Data& data, std::size_t recording) {
   return data.start_time[recording] ? format_date(*data.start_time[recording]) : data.names[recording];
 }
 
-std::optional<Misfit> misfit_in_common(const FittedModel& best, const Data& holdout) {
-  Misfit all{best.misfit, best.residuals, static_cast<double>(best.free_shared)};
-  if (holdout.samples.empty()) return all;
-  const Result<FittedModel> held_out = fit_model(with_fixed_parameters(best.asset), holdout, nullptr, 1);
-  if (!held_out) return std::nullopt;
-  return Misfit{all.sum + held_out->misfit, all.residuals + held_out->residuals,
-                all.free + static_cast<double>(held_out->free_shared)};
-}
-
-std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit, const Data& holdout,
+std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit,
                                                        const FittedModel& best) {
   std::map<std::string, Course> courses;
   double largest_misfit = 0.0;
   Misfit alone;
-  std::vector<Data> ones = one_by_one(fit);
-  for (Data& one : one_by_one(holdout)) ones.push_back(std::move(one));
-  if (std::ranges::all_of(ones, [](const Data& one) { return one.start_time.front().has_value(); }))
-    std::ranges::stable_sort(ones, {}, [](const Data& one) { return *one.start_time.front(); });
-  for (const Data& one : ones) {
+  for (std::size_t k = 0; k < fit.samples.size(); ++k) {
+    const Data one = only(fit, k);
     const Result<FittedModel> model = fit_model(asset, one, nullptr, 1);
     if (!model || model->misfit > kAgrees * model->residuals) return std::nullopt;
     largest_misfit = std::max(largest_misfit, model->misfit / model->residuals);
@@ -75,11 +57,10 @@ std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset,
       course.values.push_back({date_or_name(one, 0), parameter.after, parameter.after_std});
     }
   }
-  const std::optional<Misfit> common = misfit_in_common(best, holdout);
-  if (!common) return std::nullopt;
-  alone.residuals = common->residuals;
+  const Misfit common{best.misfit, best.residuals, static_cast<double>(best.free_shared)};
+  alone.residuals = common.residuals;
   const double phi = std::max(1.0, alone.sum / alone.residuals);
-  if (alone.criterion(phi) >= common->criterion(phi)) return std::nullopt;
+  if (alone.criterion(phi) >= common.criterion(phi)) return std::nullopt;
   const auto changed =
       std::ranges::max_element(courses, {}, [](const auto& entry) { return entry.second.standard_errors(); });
   if (changed == courses.end() || changed->second.standard_errors() < kChanged) return std::nullopt;

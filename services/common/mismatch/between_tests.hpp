@@ -3,11 +3,9 @@
 //
 //   sum_i misfit_i / phi + sum_i k_i ln N  <  misfit / phi + k ln N,   phi = max(1, sum_i misfit_i / N)
 //
-// i: a recording, held out or not, fitted by itself with k_i free parameters; right: the laws found with k free
-// parameters, fitted to the fit recordings together, of which nothing but load and initial state is fitted to the
-// held-out ones. Parameters of its own for each test must be likelier than laws in common: where the laws are right,
-// they cost less. The held-out recordings can so take a claim back, never make one: of two tests of an ageing seal laws
-// in common can still take the difference, a third shows that it was not theirs.
+// i: a fitted recording by itself with k_i free parameters; right: the laws found with k free parameters, fitted to all
+// of them together. Parameters of its own for each test must be likelier than laws in common: where the laws are right,
+// they cost less.
 #pragma once
 
 #include <optional>
@@ -44,19 +42,15 @@ struct Misfit {
   [[nodiscard]] double criterion(double phi) const;
 };
 
-/// Of the model with its laws on the recordings that it was fitted to and on held-out ones; nothing where it cannot be
-/// simulated on one of these.
-[[nodiscard]] std::optional<Misfit> misfit_in_common(const FittedModel& best, const Data& holdout);
-
 /// What is said of a parameter that changed, and the element that it belongs to ("" where it belongs to several).
 struct ChangeBetweenTests {
   std::string sentence;
   std::string element;
 };
 
-/// Nothing where one of the recordings disagrees with the model by itself, or where `best`, fitted to those of `fit`,
-/// is likelier.
+/// Nothing where one of the recordings disagrees with the model by itself, or where `best`, fitted to all of
+/// them, is likelier.
 [[nodiscard]] std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit,
-                                                                     const Data& holdout, const FittedModel& best);
+                                                                     const FittedModel& best);
 
 }  // namespace sealwatch::mismatch

@@ -93,7 +93,7 @@ class Analysis {
   void look_for_another_reason() {
     // A seal that ages from test to test is no physics that a test lacks.
     if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
-      if (auto change = change_between_tests(asset_, fit_, holdout_, *best_.model))
+      if (auto change = change_between_tests(asset_, fit_, *best_.model))
         why_none_ = {.summary = std::move(change->sentence),
                      .next_test = kTestsOfOneTime,
                      .element = std::move(change->element)};

@@ -12,12 +12,10 @@ namespace {
 constexpr double kFalls = 3.0;  // standard errors by which a value may lie above the one before it
 constexpr const char* kSealLeakage = "R_CL";
 
-// Whether the seal's leakage is estimated, and the recordings, which are in the order of time, are of several days.
+// Within one day a seal does not age.
 bool may_age(const AssetConfig& asset, const Data& fit) {
   const auto leakage = asset.parameters.find(kSealLeakage);
-  if (leakage == asset.parameters.end() || !leakage->second.estimate || fit.start_time.size() < 2) return false;
-  if (!std::ranges::all_of(fit.start_time, [](const auto& time) { return time.has_value(); })) return false;
-  return seconds_between(*fit.start_time.front(), *fit.start_time.back()) > kSecondsPerDay;
+  return leakage != asset.parameters.end() && leakage->second.estimate && are_of_several_days(fit);
 }
 
 Course seal_course(const FittedModel& model, const Data& fit) {

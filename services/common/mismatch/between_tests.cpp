@@ -38,6 +38,12 @@ std::string date_or_name(const Data& data, std::size_t recording) {
   return data.start_time[recording] ? format_date(*data.start_time[recording]) : data.names[recording];
 }
 
+bool are_of_several_days(const Data& data) {
+  if (data.start_time.size() < 2) return false;
+  if (!std::ranges::all_of(data.start_time, [](const auto& time) { return time.has_value(); })) return false;
+  return seconds_between(*data.start_time.front(), *data.start_time.back()) > kSecondsPerDay;
+}
+
 std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit,
                                                        const FittedModel& best) {
   std::map<std::string, Course> courses;

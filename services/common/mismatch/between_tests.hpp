@@ -33,6 +33,9 @@ struct Course {
 /// The date of a recording, or its name where it has none.
 [[nodiscard]] std::string date_or_name(const Data& data, std::size_t recording);
 
+/// Whether all recordings, which are in the order of time, have one, and more than a day lies between first and last.
+[[nodiscard]] bool are_of_several_days(const Data& data);
+
 /// Standard errors by which a parameter must have changed.
 inline constexpr double kChanged = 10.0;
 

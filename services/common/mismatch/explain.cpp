@@ -18,6 +18,7 @@
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/unrecorded_input.hpp"
+#include "services/common/mismatch/why_none.hpp"
 #include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
@@ -30,15 +31,6 @@ constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model,
 
 // -ln p, to the smallest p that a double holds.
 double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)); }
-
-// What is said in place of a law.
-struct WhyNone {
-  std::string summary, next_test;
-  std::string element = {};  ///< where it is, if that is known
-};
-
-constexpr const char* kTestsOfOneTime =
-    "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -79,9 +71,7 @@ class Analysis {
  private:
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
   Result<Explanation> cannot_look(const Error& why) {
-    why_none_ = {.summary = "The model was fitted, but it could not be asked for what is missing (" +
-                            reason_in_words(why) + "): nothing can be said of these recordings.",
-                 .next_test = "Check the recorded input around that time, or analyse without this recording."};
+    why_none_ = cannot_be_asked(why);
     naming_ = {.baseline = baseline_, .best = {{}, baseline_}, .trials = {{{}, baseline_}}, .first = {}, .last = {}};
     best_ = naming_.best;
     if (const Status status = finish(); !status) return fail(status.error());
@@ -93,15 +83,8 @@ class Analysis {
   void look_for_another_reason() {
     // A seal that ages from test to test is no physics that a test lacks.
     if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
-      if (auto change = change_between_tests(asset_, fit_, *best_.model))
-        why_none_ = {.summary = std::move(change->sentence),
-                     .next_test = kTestsOfOneTime,
-                     .element = std::move(change->element)};
-    if (at_rest(*baseline_, prepared(fit_)))
-      why_none_ = {.summary = "The actuator does not move in these recordings: there is nothing to see.",
-                   .next_test =
-                       "Record tests in which the piston moves out, holds and comes back, under several loads "
-                       "and speeds."};
+      if (auto change = change_between_tests(asset_, fit_, *best_.model)) why_none_ = something_changed(*change);
+    if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
   }
 
   // A seal that ages from test to test, and physics missing beside it: laws in common would bend to the ageing.
@@ -117,15 +100,9 @@ class Analysis {
     const bool nothing_else =
         best_.effects.empty() && !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
     if (!seal->wears)
-      why_none_ = {.summary = course +
-                              " That is no wear: the seal was changed, or something else changed between these "
-                              "tests, and laws for all of them cannot be told from it.",
-                   .next_test = kTestsOfOneTime,
-                   .element = "piston_seal"};
+      why_none_ = seal_changed_but_not_by_wear(course);
     else if (nothing_else)
-      why_none_ = {.summary = course + " The piston seal aged; nothing else was found to be missing.",
-                   .next_test = kTestsOfOneTime,
-                   .element = "piston_seal"};
+      why_none_ = seal_aged_and_no_more(course);
   }
 
   void tell(std::string_view step, double share) const {
@@ -211,12 +188,18 @@ class Analysis {
   Result<FittedModel> weighed_by_what_is_recorded(FittedModel model) {
     if (!holdout_.samples.empty())
       if (const auto held_out = fit_model(with_fixed_parameters(model.asset), holdout_, nullptr, options_.threads))
-        holdout_.weight = unrecorded_input_weights(*held_out, holdout_);
-    fit_.weight = unrecorded_input_weights(model, fit_);
+        holdout_.weight = unrecorded_input(*held_out, holdout_).weight;
+    UnrecordedInput unrecorded = unrecorded_input(model, fit_);
+    fit_.weight = std::move(unrecorded.weight);
+    fit_.resolution = std::max(fit_.resolution, unrecorded.resolution);
     if (fit_.weight.empty()) return model;
     Result<FittedModel> again = fit_model(model.asset, fit_, &model, options_.threads);
-    if (again)
-      if (std::string note = unrecorded_input_in_words(*again); !note.empty()) result_.notes.push_back(std::move(note));
+    if (std::string note = again ? unrecorded_input_in_words(*again) : ""; !note.empty()) {
+      if (unrecorded.resolution > 0.0)
+        note += " That may feign laws: below " + number(100.0 * unrecorded.resolution) +
+                " % of a size that matters none is asked for.";
+      result_.notes.push_back(std::move(note));
+    }
     return again;
   }
 
@@ -360,12 +343,7 @@ class Analysis {
     // Where the seal ages, R_CL of the held-out ones is predicted, and what they miss by is that prediction's error.
     if (far == nullptr && fit_.own_parameter.empty()) far = farthest_off(result_.holdout);
     if (far == nullptr) return false;
-    why_none_ = {.summary = "The simulation comes nowhere near these recordings, whatever law is added: it misses " +
-                            in_words(far->channel) + " by " + number(far->rms_after) +
-                            " times the noise, more than half of the course. No physics is named for that.",
-                 .next_test =
-                     "Check the units, signs and wiring of the recorded channels first, then the parameters "
-                     "in the asset file."};
+    why_none_ = nowhere_near(*far, fit_);
     take_all_laws_back();
     return true;
   }
@@ -407,12 +385,7 @@ class Analysis {
     if (windowed() || why_none_ || result_.statistically_significant) return;
     const auto worst = std::ranges::max_element(result_.holdout.channels, {}, &ChannelComparison::weighed_rms_after);
     if (worst == result_.holdout.channels.end() || worst->weighed_rms_after < kHeldOutAgrees) return;
-    why_none_ = {.summary = "The fitted recordings agree with the model, those that were kept aside do not: " +
-                            in_words(worst->channel) + " misses by " + number(worst->rms_after) +
-                            " times the noise. The asset changed between them, or what is missing acts in these alone.",
-                 .next_test =
-                     "Fit some of the recordings that were kept aside together with the others, and keep "
-                     "others of each kind aside."};
+    why_none_ = those_kept_aside_differ(*worst);
   }
 
   void say_why_none() {

@@ -13,12 +13,25 @@ constexpr double kTimesTheChange = 1.5;
 constexpr Eigen::Index kReach = 10;  // of every second sample, either side
 constexpr double kMatters = 0.95;    // a weight below it
 constexpr double kLittle = 0.5;
+constexpr double kSwings = 54.0;   // per recording: twice lambda (screening.hpp), a change that shows by itself
+constexpr double kFeigned = 0.05;  // of a significant strength: twice what was seen
+
+// Sum of the squares of a change [noise], weighed; of every second sample, each standing for two.
+double noncentrality(const RowMatrix& change, const Eigen::VectorXd& noise_std, const Eigen::VectorXd& weight) {
+  const Eigen::Index channels = noise_std.size();
+  double sum = 0.0;
+  for (Eigen::Index half = 0; half < change.rows(); ++half)
+    for (Eigen::Index c = 0; c < channels; ++c)
+      sum += 2.0 * std::pow(weight(2 * half * channels + c) * change(half, c) / noise_std(c), 2);
+  return sum;
+}
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> unrecorded_input_weights(const FittedModel& model, const Data& data) {
-  std::vector<Eigen::VectorXd> weights;
-  double least = 1.0;
+UnrecordedInput unrecorded_input(const FittedModel& model, const Data& data) {
+  UnrecordedInput unrecorded;
+  std::vector<Eigen::VectorXd>& weights = unrecorded.weight;
+  double least = 1.0, changes = 0.0;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const PemRecording& part = model.problem.recordings[k];
     const Eigen::Index channels = part.noise_std.size(), samples = static_cast<Eigen::Index>(part.time_s.size());
@@ -33,8 +46,11 @@ std::vector<Eigen::VectorXd> unrecorded_input_weights(const FittedModel& model, 
         weights.back()(sample * channels + c) = 1.0 / std::hypot(1.0, kTimesTheChange * largest(c) / part.noise_std(c));
     }
     least = std::min(least, weights.back().minCoeff());
+    changes += noncentrality(change, part.noise_std, weights.back());
   }
-  return least < kMatters ? weights : std::vector<Eigen::VectorXd>{};
+  if (least >= kMatters) weights.clear();
+  if (changes > kSwings * static_cast<double>(data.samples.size())) unrecorded.resolution = kFeigned;
+  return unrecorded;
 }
 
 std::string unrecorded_input_in_words(const FittedModel& model) {

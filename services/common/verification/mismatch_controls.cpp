@@ -143,7 +143,7 @@ class Controls {
       }
     }
     Data weighed = fit_;
-    weighed.weight = mismatch::unrecorded_input_weights(*baseline_, fit_);
+    weighed.weight = mismatch::unrecorded_input(*baseline_, fit_).weight;
     Result<FittedModel> model = mismatch::fit_model(asset_, weighed, baseline_.get(), threads_);
     if (!model) return;
     const auto baseline = std::make_shared<const FittedModel>(std::move(*model));
@@ -183,7 +183,7 @@ class Controls {
       Data one{.names = {holdout_.names[k]}, .samples = {holdout_.samples[k]}, .colour = {holdout_.colour[k]}};
       auto predicted = mismatch::fit_model(fixed, one, nullptr, 1);
       if (predicted) {
-        one.weight = mismatch::unrecorded_input_weights(*predicted, one);
+        one.weight = mismatch::unrecorded_input(*predicted, one).weight;
         predicted = mismatch::fit_model(fixed, one, nullptr, 1);
       }
       if (!predicted) return 0.0;

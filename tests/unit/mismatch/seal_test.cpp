@@ -46,16 +46,6 @@ TEST(Seal, ThatAgedBetweenTestsIsNoMissingPhysics) {
   EXPECT_TRUE(of_two->effects.empty());
 }
 
-Recording recording_of(const AssetConfig& truth, double load) {
-  AssetConfig loaded = truth;
-  loaded.parameters.at("phi").value *= load;
-  Recording recording;
-  recording.asset_id = truth.asset_id;
-  recording.file = recording.recording_id = recording.content_hash = number(load);
-  recording.samples = simulated_test(loaded, 1.0);
-  return recording;
-}
-
 // Months apart, with a seal that wears from one to the next.
 Recording monthly_test(AssetConfig truth, int month, double leakage) {
   truth.parameters.at("R_CL").value = leakage;
@@ -95,73 +85,6 @@ TEST(Seal, ThatWasReplacedBetweenTestsNamesNoLaw) {
   EXPECT_TRUE(explanation->effects.empty());
   EXPECT_NE(explanation->summary.find("R_CL is 1.2e+13 (1970-01-31), 2.6"), std::string::npos) << explanation->summary;
   EXPECT_NE(explanation->summary.find("no wear"), std::string::npos) << explanation->summary;
-}
-
-TEST(KeptAside, RecordingsThatDifferFromTheFittedOnesAreNotConsistent) {
-  const AssetConfig asset = actuator();
-  const AssetConfig leaking = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4.0e-14});
-  const std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
-  const auto same = explain(asset, fit, std::vector{recording_of(asset, 1.0)});
-  ASSERT_TRUE(same) << same.error().describe();
-  EXPECT_EQ(same->verdict, Verdict::consistent) << same->summary;
-  const auto other = explain(asset, fit, std::vector{recording_of(leaking, 1.0)});
-  ASSERT_TRUE(other) << other.error().describe();
-  EXPECT_EQ(other->verdict, Verdict::undetermined);
-  EXPECT_NE(other->summary.find("those that were kept aside do not"), std::string::npos) << other->summary;
-}
-
-TEST(Recorded, AChannelThatNeverChangesWhileThePistonMovesIsRefused) {
-  const AssetConfig asset = actuator();
-  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
-  for (Series& channel : fit[1].samples.channels)
-    if (channel.name == "pressure_b") std::ranges::fill(channel.values, 1.8e6);
-  const auto refused = explain(asset, fit, {});
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().place, "column pressure_b");
-  EXPECT_EQ(refused.error().file, fit[1].file);
-}
-
-std::vector<double>& values_of(Recording& recording, const std::string& channel) {
-  return std::ranges::find(recording.samples.channels, channel, &Series::name)->values;
-}
-
-void freeze(std::vector<double>& values, std::size_t begin) {
-  std::fill(values.begin() + static_cast<std::ptrdiff_t>(begin), values.end(), values[begin]);
-}
-
-void round_to(std::vector<double>& values, double step) {
-  for (double& value : values) value = step * std::round(value / step);
-}
-
-TEST(Recorded, AChannelThatStopsHalfWayIsRefused) {
-  const AssetConfig asset = actuator();
-  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
-  freeze(values_of(fit[1], "velocity"), 1550);
-  const Status refused = check(asset, fit, {});
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().place, "column velocity");
-  EXPECT_EQ(refused.error().file, fit[1].file);
-  EXPECT_NE(refused.error().rule.find("does not change from 15.5 s to 30.99 s"), std::string::npos)
-      << refused.error().rule;
-
-  fit[1] = recording_of(asset, 1.2);
-  round_to(values_of(fit[1], "pressure_a"), 1e4);
-  EXPECT_TRUE(check(asset, fit, {})) << "it rounds to its noise";
-  freeze(values_of(fit[1], "pressure_a"), 1550);
-  EXPECT_FALSE(check(asset, fit, {})) << "it rounds, and then stops";
-}
-
-TEST(Recorded, AChannelThatRoundsCoarselyOrIsAtTheEndOfItsRangeIsNotStuck) {
-  const AssetConfig asset = actuator();
-  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
-  round_to(values_of(fit[0], "velocity"), 1e-3);
-  std::vector<double>& pressure = values_of(fit[1], "pressure_b");
-  std::vector<double> sorted = pressure;
-  std::ranges::sort(sorted);
-  const double end = sorted[sorted.size() / 3];
-  for (double& value : pressure) value = std::max(value, end);
-  const Status accepted = check(asset, fit, {});
-  EXPECT_TRUE(accepted) << accepted.error().describe();
 }
 
 TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {

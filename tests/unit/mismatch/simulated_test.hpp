@@ -1,9 +1,11 @@
-// A standard test of 31 s at 100 Hz of a given actuator, simulated, with seeded noise.
+// Standard tests of 31 s at 100 Hz of a given actuator, simulated, with seeded noise.
 #pragma once
 
 #include <random>
 
+#include "sealwatch/core/recording.hpp"
 #include "sealwatch/model/simulation.hpp"
+#include "services/common/mismatch/telling.hpp"
 #include "tests/unit/model/standard_pst.hpp"
 
 namespace sealwatch::mismatch {
@@ -34,6 +36,17 @@ inline TimeSeries simulated(const AssetConfig& truth, TimeSeries samples, double
 
 inline TimeSeries simulated_test(const AssetConfig& truth, double noise_share, TimeSeries* clean = nullptr) {
   return simulated(truth, standard_pst(truth, 100.0), noise_share, clean);
+}
+
+/// Such a test under `load` times the actuator's, as a recording of that name.
+inline Recording recording_of(const AssetConfig& truth, double load) {
+  AssetConfig loaded = truth;
+  loaded.parameters.at("phi").value *= load;
+  Recording recording;
+  recording.asset_id = truth.asset_id;
+  recording.file = recording.recording_id = recording.content_hash = number(load);
+  recording.samples = simulated_test(loaded, 1.0);
+  return recording;
 }
 
 }  // namespace sealwatch::mismatch

@@ -62,17 +62,23 @@ TEST(UnrecordedInput, NamesNoLaw) {
   EXPECT_THAT(explanation->notes, testing::Contains(testing::HasSubstr("count less than half")));
 }
 
-TEST(UnrecordedInput, WeighsNothingWhereTheInputIsSmooth) {
+UnrecordedInput of_first_test(double swing_V) {
   const AssetConfig asset = nominal_asset("eha");
   Data data;
-  data.names = {"smooth"};
-  data.samples = {chattering_tests(0.0).front().samples};
-  const auto model = fit_model(asset, data, nullptr, 1);
-  ASSERT_TRUE(model) << model.error().describe();
-  const auto weights = unrecorded_input_weights(*model, data);
-  const auto little = weights.empty() ? 0 : (weights.front().array() < 0.5).count();
-  EXPECT_LT(static_cast<double>(little), 0.05 * model->residuals) << "corners of the test alone";
+  data.names = {"first"};
+  data.samples = {chattering_tests(swing_V).front().samples};
+  return unrecorded_input(fit_model(asset, data, nullptr, 1).value(), data);
 }
+
+TEST(UnrecordedInput, WeighsNothingWhereItIsSmooth) {
+  const UnrecordedInput smooth = of_first_test(0.0);
+  const auto little = smooth.weight.empty() ? 0 : (smooth.weight.front().array() < 0.5).count();
+  const auto residuals = smooth.weight.empty() ? 1 : smooth.weight.front().size();
+  EXPECT_LT(static_cast<double>(little), 0.05 * static_cast<double>(residuals)) << "corners of the test alone";
+  EXPECT_EQ(smooth.resolution, 0.0);
+}
+
+TEST(UnrecordedInput, FeignsLawsWhereItSwings) { EXPECT_EQ(of_first_test(4.0).resolution, 0.05); }
 
 }  // namespace
 }  // namespace sealwatch::mismatch

@@ -1,0 +1,69 @@
+#include "services/common/mismatch/why_none.hpp"
+
+#include <algorithm>
+
+#include "services/common/mismatch/telling.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr const char* kTestsOfOneTime =
+    "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
+
+}  // namespace
+
+WhyNone cannot_be_asked(const Error& why) {
+  return {.summary = "The model was fitted, but it could not be asked for what is missing (" + reason_in_words(why) +
+                     "): nothing can be said of these recordings.",
+          .next_test = "Check the recorded input around that time, or analyse without this recording."};
+}
+
+WhyNone nothing_moves() {
+  return {.summary = "The actuator does not move in these recordings: there is nothing to see.",
+          .next_test =
+              "Record tests in which the piston moves out, holds and comes back, under several loads "
+              "and speeds."};
+}
+
+WhyNone something_changed(const ChangeBetweenTests& change) {
+  return {.summary = change.sentence, .next_test = kTestsOfOneTime, .element = change.element};
+}
+
+WhyNone seal_changed_but_not_by_wear(const std::string& course) {
+  return {.summary = course +
+                     " That is no wear: the seal was changed, or something else changed between these "
+                     "tests, and laws for all of them cannot be told from it.",
+          .next_test = kTestsOfOneTime,
+          .element = "piston_seal"};
+}
+
+WhyNone seal_aged_and_no_more(const std::string& course) {
+  return {.summary = course + " The piston seal aged; nothing else was found to be missing.",
+          .next_test = kTestsOfOneTime,
+          .element = "piston_seal"};
+}
+
+WhyNone nowhere_near(const ChannelComparison& far, const Data& fit) {
+  const std::string check =
+      "Check the units, signs and wiring of the recorded channels, then the parameters in the asset file.";
+  const bool several_days = are_of_several_days(fit);
+  return {.summary = "The simulation comes nowhere near these recordings, whatever law is added: it misses " +
+                     in_words(far.channel) + " by " + number(far.rms_after) +
+                     " times the noise, more than half of the course. No physics is named for that." +
+                     (several_days ? " What is missing may also differ from test to test." : ""),
+          .next_test = several_days ? "These tests are of different days: analyse each alone, or those of one time "
+                                      "together. Where even one alone is missed: " +
+                                          check
+                                    : check};
+}
+
+WhyNone those_kept_aside_differ(const ChannelComparison& worst) {
+  return {.summary = "The fitted recordings agree with the model, those that were kept aside do not: " +
+                     in_words(worst.channel) + " misses by " + number(worst.rms_after) +
+                     " times the noise. The asset changed between them, or what is missing acts in these alone.",
+          .next_test =
+              "Fit some of the recordings that were kept aside together with the others, and keep "
+              "others of each kind aside."};
+}
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,33 @@
+// What is said in place of a law: why none is named though recordings and simulation differ, or why nothing can be seen
+// in the recordings.
+#pragma once
+
+#include <string>
+
+#include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/between_tests.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
+
+namespace sealwatch::mismatch {
+
+struct WhyNone {
+  std::string summary, next_test;
+  std::string element = {};  ///< where it is, if that is known
+};
+
+/// The model follows the recordings, but its sensitivities cannot be simulated.
+[[nodiscard]] WhyNone cannot_be_asked(const Error& why);
+[[nodiscard]] WhyNone nothing_moves();
+[[nodiscard]] WhyNone something_changed(const ChangeBetweenTests& change);
+
+/// `course`: R_CL from test to test, in words.
+[[nodiscard]] WhyNone seal_changed_but_not_by_wear(const std::string& course);
+[[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
+
+/// `far`: the channel that is missed most. Tests of different days may also differ from one another.
+[[nodiscard]] WhyNone nowhere_near(const ChannelComparison& far, const Data& fit);
+
+/// The fitted recordings agree with the model; `worst`: of the held-out ones.
+[[nodiscard]] WhyNone those_kept_aside_differ(const ChannelComparison& worst);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,72 @@
+// Channels whose sensor shows nothing are refused; those that round or saturate are not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/explain_input.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+AssetConfig actuator() { return load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value(); }
+
+TEST(Recorded, AChannelThatNeverChangesWhileThePistonMovesIsRefused) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  for (Series& channel : fit[1].samples.channels)
+    if (channel.name == "pressure_b") std::ranges::fill(channel.values, 1.8e6);
+  const auto refused = explain(asset, fit, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().place, "column pressure_b");
+  EXPECT_EQ(refused.error().file, fit[1].file);
+}
+
+std::vector<double>& values_of(Recording& recording, const std::string& channel) {
+  return std::ranges::find(recording.samples.channels, channel, &Series::name)->values;
+}
+
+void freeze(std::vector<double>& values, std::size_t begin) {
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(begin), values.end(), values[begin]);
+}
+
+void round_to(std::vector<double>& values, double step) {
+  for (double& value : values) value = step * std::round(value / step);
+}
+
+TEST(Recorded, AChannelThatStopsHalfWayIsRefused) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  freeze(values_of(fit[1], "velocity"), 1550);
+  const Status refused = check(asset, fit, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().place, "column velocity");
+  EXPECT_EQ(refused.error().file, fit[1].file);
+  EXPECT_NE(refused.error().rule.find("does not change from 15.5 s to 30.99 s"), std::string::npos)
+      << refused.error().rule;
+
+  fit[1] = recording_of(asset, 1.2);
+  round_to(values_of(fit[1], "pressure_a"), 1e4);
+  EXPECT_TRUE(check(asset, fit, {})) << "it rounds to its noise";
+  freeze(values_of(fit[1], "pressure_a"), 1550);
+  EXPECT_FALSE(check(asset, fit, {})) << "it rounds, and then stops";
+}
+
+TEST(Recorded, AChannelThatRoundsCoarselyOrIsAtTheEndOfItsRangeIsNotStuck) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  round_to(values_of(fit[0], "velocity"), 1e-3);
+  std::vector<double>& pressure = values_of(fit[1], "pressure_b");
+  std::vector<double> sorted = pressure;
+  std::ranges::sort(sorted);
+  const double end = sorted[sorted.size() / 3];
+  for (double& value : pressure) value = std::max(value, end);
+  const Status accepted = check(asset, fit, {});
+  EXPECT_TRUE(accepted) << accepted.error().describe();
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

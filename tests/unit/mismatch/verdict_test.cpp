@@ -1,0 +1,48 @@
+// What must hold before a law is named: it explains most of the misfit, and what was kept aside agrees.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+AssetConfig actuator() { return load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value(); }
+
+TEST(KeptAside, RecordingsThatDifferFromTheFittedOnesAreNotConsistent) {
+  const AssetConfig asset = actuator();
+  const AssetConfig leaking = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4.0e-14});
+  const std::vector<Recording> fit{recording_of(asset, 0.8), recording_of(asset, 1.2)};
+  const auto same = explain(asset, fit, std::vector{recording_of(asset, 1.0)});
+  ASSERT_TRUE(same) << same.error().describe();
+  EXPECT_EQ(same->verdict, Verdict::consistent) << same->summary;
+  const auto other = explain(asset, fit, std::vector{recording_of(leaking, 1.0)});
+  ASSERT_TRUE(other) << other.error().describe();
+  EXPECT_EQ(other->verdict, Verdict::undetermined);
+  EXPECT_NE(other->summary.find("those that were kept aside do not"), std::string::npos) << other->summary;
+}
+
+// Four sensors are off by as much; the one law that is allowed explains a part.
+TEST(Verdict, LawsThatExplainTooLittleAreNotNamed) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = asset;
+  for (const char* channel : {"shaft_speed", "flow", "velocity", "pressure_b"})
+    truth = with_law(truth, **find_law("sensor_gain", {"g"}), std::string("sensor:") + channel, std::vector{0.02});
+  const std::vector<Recording> fit{recording_of(truth, 0.7), recording_of(truth, 1.0)};
+  const std::vector<Recording> holdout{recording_of(truth, 1.3)};
+  const auto explanation = explain(asset, fit, holdout, {.maximum_laws = 1});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_TRUE(explanation->effects.empty()) << explanation->summary;
+  EXPECT_TRUE(explanation->explained.physics.empty());
+  EXPECT_TRUE(std::ranges::any_of(
+      explanation->notes, [](const std::string& note) { return note.starts_with("Not enough to be named: with "); }));
+  EXPECT_FALSE(explanation->location.empty()) << "where to look is said all the same";
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

@@ -16,6 +16,7 @@
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/unrecorded_input.hpp"
 #include "services/common/mismatch/why_none.hpp"
@@ -241,35 +242,34 @@ class Analysis {
         result_.notes.push_back(note);
   }
 
-  Trial without_last(const Trial& trial) {
-    Trial fewer{.effects = {trial.effects.begin(), trial.effects.end() - 1}, .model = baseline_};
+  Trial without_last(const Trial& trial) { return without(trial, trial.effects.size() - 1); }
+
+  Trial without(const Trial& trial, std::size_t slot) {
+    Trial fewer{.effects = trial.effects, .model = baseline_};
+    fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
     if (fewer.effects.empty()) return fewer;
     for (const Trial& known : naming_.trials)
       if (same_effects(known.effects, fewer.effects)) fewer.model = known.model;
     if (fewer.model != baseline_) return fewer;
     AssetConfig asset = trial.model->asset;
-    asset.physics.pop_back();
+    asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));
     Result<FittedModel> model = fit_model(asset, prepared(fit_), trial.model.get(), options_.threads);
     if (model) fewer.model = std::make_shared<const FittedModel>(std::move(*model));
     return fewer;
   }
 
-  // Beside another law, one that could as well sit in three other elements says that something is left, not what.
+  // What is left beside a law says that something is left, not what, where it could as well sit in three other elements
+  // or is no more than the law's own form may be off by.
   void describe_what_was_found() {
-    constexpr std::size_t kAnywhere = 3;
     while (!best_.effects.empty()) {
       result_.effects = describe_effects(naming_, best_, prepared(fit_), options_);
-      const LawAt last = law_at(best_.effects.back());
-      const auto found = std::ranges::find_if(result_.effects, [&](const FoundEffect& effect) {
-        return effect.what.id == last.id && effect.what.element == last.element;
-      });
-      const bool anywhere = found != result_.effects.end() && found->same_elements.size() >= kAnywhere;
-      if (best_.effects.size() == 1 || !anywhere || excess(*best_.model) > kGross) return;
-      std::vector<std::string> places = {element_in_words(last.element)};
-      for (const std::string& other : found->same_elements) places.push_back(element_in_words(other));
-      result_.notes.push_back("A remainder beyond the noise could sit at " + joined(places, " or at ") +
-                              " alike: no second law is claimed for it.");
-      best_ = without_last(best_);
+      if (best_.effects.size() == 1 || excess(*best_.model) > kGross) return;
+      const std::optional<Remainder> remainder = remainder_among(result_.effects, law_at(best_.effects.back()));
+      if (!remainder) return;
+      result_.notes.push_back(remainder->sentence);
+      const auto slot = std::ranges::find_if(
+          best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder->law); });
+      best_ = without(best_, static_cast<std::size_t>(slot - best_.effects.begin()));
     }
   }
 

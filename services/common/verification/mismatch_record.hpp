@@ -18,10 +18,11 @@ struct LawRecord {
   std::string strength = {};  ///< name of the catalogue's strength that means the same; "" where none does
   double value = 0.0, std_error = 0.0;
   double probability = 0.0;                   ///< found
+  double delta_bic = 0.0;                     ///< found: criterion with it less that without
   std::vector<std::string> same = {};         ///< found: "id element" that this data cannot tell from it
   std::vector<std::string> same_places = {};  ///< found: elements likewise
-  SEALWATCH_FIELDS(LawRecord, id, element, form, size, times_barely, strength, value, std_error, probability, same,
-                   same_places)
+  SEALWATCH_FIELDS(LawRecord, id, element, form, size, times_barely, strength, value, std_error, probability, delta_bic,
+                   same, same_places)
 };
 
 /// Noise-normalised rms of one channel over the held-out recordings.

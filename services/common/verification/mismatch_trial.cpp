@@ -28,6 +28,7 @@ LawRecord found_law(const mismatch::FoundEffect& effect) {
     law.std_error = effect.parameters.front().std_error;
   }
   law.probability = effect.probability;
+  law.delta_bic = effect.delta_bic;
   for (const mismatch::LawAt& other : effect.indistinguishable)
     if (place_of(other) != place_of(effect.what)) law.same.push_back(place_of(other));
   law.same_places = effect.same_elements;

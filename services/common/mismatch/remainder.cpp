@@ -1,0 +1,48 @@
+#include "services/common/mismatch/remainder.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "services/common/mismatch/telling.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr std::size_t kAnywhere = 3;
+constexpr double kFormHere = 1e-2, kFormElsewhere = 1e-4;  // of the largest law's gain
+
+double gain_of(const FoundEffect& effect) { return -effect.delta_bic; }
+
+std::string could_sit_anywhere(const FoundEffect& effect) {
+  std::vector<std::string> places = {element_in_words(effect.what.element)};
+  for (const std::string& other : effect.same_elements) places.push_back(element_in_words(other));
+  return "A remainder beyond the noise could sit at " + joined(places, " or at ") +
+         " alike: no second law is claimed for it.";
+}
+
+std::string may_be_the_form(const FoundEffect& largest, const FoundEffect& effect) {
+  return "What is left beside " + law_in_words(largest.what) + " is " +
+         number(100.0 * gain_of(effect) / gain_of(largest), 2) + " % of what it took, and may be its exact form. " +
+         "It would be taken by " + law_in_words(effect.what) + ", which is not claimed.";
+}
+
+}  // namespace
+
+bool same_place(const LawAt& a, const LawAt& b) { return a.id == b.id && a.element == b.element; }
+
+std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last) {
+  for (const FoundEffect& effect : effects)
+    if (same_place(effect.what, last) && effect.same_elements.size() >= kAnywhere)
+      return Remainder{effect.what, could_sit_anywhere(effect)};
+  const FoundEffect& largest = *std::ranges::max_element(effects, {}, gain_of);
+  const FoundEffect* least = nullptr;
+  for (const FoundEffect& effect : effects) {
+    const double form = effect.what.element == largest.what.element ? kFormHere : kFormElsewhere;
+    const bool little = gain_of(effect) < form * gain_of(largest);
+    if (little && (least == nullptr || gain_of(effect) < gain_of(*least))) least = &effect;
+  }
+  if (least == nullptr) return std::nullopt;
+  return Remainder{least->what, may_be_the_form(largest, *least)};
+}
+
+}  // namespace sealwatch::mismatch

@@ -9,7 +9,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kAnywhere = 3;
-constexpr double kFormHere = 2e-2, kFormElsewhere = 1e-4;  // of the largest law's gain
+constexpr double kFormHere = 2e-2, kFormElsewhere = 2e-3;  // of the largest law's gain
 
 double gain_of(const FoundEffect& effect) { return -effect.delta_bic; }
 

@@ -1,9 +1,9 @@
 // A law beside another one that says only that something is left. Either it could as well sit in three other elements,
 // or what it takes is so little beside what the largest law takes that it may be no more than that law's exact form:
 //
-//   gain < 2e-2 of the largest law's at the same element,  < 1e-4 elsewhere
+//   gain < 2e-2 of the largest law's at the same element,  < 2e-3 elsewhere
 //
-// gain: criterion without the law less that with all. As amplitudes a seventh and a hundredth: no closer is the form of a
+// gain: criterion without the law less that with all. As amplitudes a seventh and a twentieth: no closer is the form of a
 // law known (a clamp or an arctangent where the catalogue has a hyperbolic tangent). Of two true effects so different
 // in size the smaller is lost by this; a note says what would take it.
 #pragma once

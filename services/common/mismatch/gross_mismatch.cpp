@@ -249,11 +249,11 @@ class GrossMismatch {
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = found_.model.asset;
     add_notes();
-    if (!proven_) {  // what is not proven is a place to look at, not an effect
+    const bool explained = proven_ && !result_.effects.empty() && result_.explained_share >= kExplainedAtLeast;
+    if (!explained) {  // what is not proven, or explains too little, is a place to look at, not an effect
       result_.effects.clear();
       result_.explained = found_.baseline.asset;
     }
-    const bool explained = proven_ && !result_.effects.empty() && result_.explained_share >= kExplainedAtLeast;
     result_.verdict = explained ? Verdict::mismatch : Verdict::undetermined;
     result_.next_test = next_test_of(result_);
     result_.summary = gross_summary(result_);

@@ -124,5 +124,16 @@ TEST(BenchEha, FindsWhatIsOffAndFollowsALoadThatTookNoPart) {
   EXPECT_GT(channel(explanation->holdout, "position").nrmse_after, 50.0);
 }
 
+TEST(BenchEha, NamesNothingWhereTooLittleIsExplained) {
+  const auto fit = recordings({"load1_stroke2", "load2_stroke2", "load3_stroke2"});
+  if (fit.empty()) GTEST_SKIP() << "the recordings bench_eha are not here";
+  const auto explanation = explain(bench(), fit, {});
+  ASSERT_TRUE(explanation);
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_TRUE(explanation->effects.empty());
+  EXPECT_TRUE(explanation->explained.physics.empty());
+  EXPECT_FALSE(explanation->location.empty()) << "where to look is said all the same";
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

@@ -24,6 +24,15 @@ const ChannelComparison* most_improved_channel(const PooledFit& fit) {
   return most == fit.channels.end() ? nullptr : &*most;
 }
 
+// "" where the noise is nearly reached.
+std::string left_in_words(const PooledFit& fit) {
+  constexpr double kNearly = 3.0;
+  const auto most = std::ranges::max_element(fit.channels, {}, &ChannelComparison::weighed_rms_after);
+  if (most == fit.channels.end() || most->weighed_rms_after < kNearly) return {};
+  return " Not all is explained: " + in_words(most->channel) + " still misses by " + number(most->rms_after) +
+         " times the noise.";
+}
+
 // Which change of the test's conditions tells apart laws of these kinds.
 std::string separating_test(const FoundEffect& effect) {
   if (!effect.same_elements.empty() && effect.what.element.starts_with("sensor:"))
@@ -126,6 +135,7 @@ std::string summary_of(const Explanation& explanation) {
           .append(" to ")
           .append(number(proof->rms_after))
           .append(" times the noise.");
+      text += left_in_words(explanation.holdout);
     }
     for (const FoundEffect& effect : explanation.effects) {
       if (effect.indistinguishable.empty()) continue;

@@ -71,6 +71,21 @@ TEST(Evidence, OfSeveralLawsIsSaidOfAllTogether) {
   EXPECT_EQ(evidence_of(drag, 2, 12.0, 1.02).find("With the other laws found, quadratic drag at the piston takes"), 0U);
 }
 
+TEST(Summary, SaysWhereMuchIsLeft) {
+  Explanation found;
+  found.verdict = Verdict::mismatch;
+  found.effects.emplace_back().what = {"coulomb_friction", "", "piston", "F_c tanh(v/v_s)", ""};
+  ChannelComparison& position = found.holdout.channels.emplace_back();
+  position.channel = "position";
+  position.rms_before = 9000.0;
+  position.rms_after = position.weighed_rms_after = 1700.0;
+  EXPECT_NE(summary_of(found).find("Not all is explained: position still misses by 1700 times the noise."),
+            std::string::npos)
+      << summary_of(found);
+  position.rms_after = position.weighed_rms_after = 1.02;
+  EXPECT_EQ(summary_of(found).find("Not all"), std::string::npos);
+}
+
 TEST(FarthestOff, IsAChannelOfWhichLessThanHalfIsReproducedFarAboveTheNoise) {
   const auto channel = [](const char* name, double rms, double nrmse) {
     ChannelComparison one;

@@ -46,6 +46,8 @@ bool are_of_several_days(const Data& data) {
 
 std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit,
                                                        const FittedModel& best) {
+  const bool dated = std::ranges::all_of(fit.start_time, [](const auto& time) { return time.has_value(); });
+  if (dated && !fit.start_time.empty() && !are_of_several_days(fit)) return std::nullopt;
   std::map<std::string, Course> courses;
   double largest_misfit = 0.0;
   Misfit alone;

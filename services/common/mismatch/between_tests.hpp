@@ -51,8 +51,8 @@ struct ChangeBetweenTests {
   std::string element;
 };
 
-/// Nothing where one of the recordings disagrees with the model by itself, or where `best`, fitted to all of
-/// them, is likelier.
+/// Nothing where all are known to be of one day, where one of the recordings disagrees with the model by itself, or
+/// where `best`, fitted to all of them, is likelier.
 [[nodiscard]] std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit,
                                                                      const FittedModel& best);
 

@@ -7,6 +7,7 @@
 
 #include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/between_tests.hpp"
+#include "services/common/mismatch/datasheet.hpp"
 #include "services/common/mismatch/drawn_terms.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
@@ -53,10 +54,11 @@ class Analysis {
     if (!naming) return cannot_look(naming.error());
     naming_ = std::move(*naming);
     best_ = naming_.best;
-    result_.p_value = std::max(naming_.first.p_value, kSmallestP);
+    result_.p_value = excess(*baseline_) > kGross ? kSmallestP : std::max(naming_.first.p_value, kSmallestP);
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
     look_for_another_reason();
     if (!why_none_) let_the_seal_age();
+    if (!why_none_) ask_the_datasheet();
     if (why_none_) best_ = {.effects = {}, .model = baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
@@ -104,6 +106,24 @@ class Analysis {
       why_none_ = seal_changed_but_not_by_wear(course);
     else if (nothing_else)
       why_none_ = seal_aged_and_no_more(course);
+  }
+
+  // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it.
+  void ask_the_datasheet() {
+    if (best_.effects.empty() || windowed()) return;
+    tell("asking the values that the asset file fixes", 0.7);
+    wrong_datasheet_ = wrong_datasheet(best_, *baseline_, fit_, options_.threads);
+    if (!wrong_datasheet_ || !wrong_datasheet_->instead) return;
+    std::vector<std::string> laws;
+    for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
+    why_none_ = value_of_the_asset_file(wrong_datasheet_->in_words(), joined(laws, " and "));
+  }
+
+  void say_that_the_asset_file_explains_it_too() {
+    if (!wrong_datasheet_ || why_none_ || result_.effects.empty()) return;
+    const std::string values = wrong_datasheet_->in_words();
+    result_.summary += " A wrong value in the asset file would do the same: " + values + ".";
+    result_.next_test = "Check this value of the asset file first: " + values + ". " + result_.next_test;
   }
 
   void tell(std::string_view step, double share) const {
@@ -193,6 +213,7 @@ class Analysis {
     UnrecordedInput unrecorded = unrecorded_input(model, fit_);
     fit_.weight = std::move(unrecorded.weight);
     fit_.resolution = std::max(fit_.resolution, unrecorded.resolution);
+    input_swings_ = unrecorded.resolution > 0.0;
     if (fit_.weight.empty()) return model;
     Result<FittedModel> again = fit_model(model.asset, fit_, &model, options_.threads);
     if (std::string note = again ? unrecorded_input_in_words(*again) : ""; !note.empty()) {
@@ -323,6 +344,8 @@ class Analysis {
           "alone, what chamber B's pressure does cannot be told from missing physics.";
     result_.summary = summary_of(result_);
     say_that_the_seal_aged();
+    say_that_the_asset_file_explains_it_too();
+    say_that_faster_sampling_helps();
     say_that_the_leak_is_in_two_parts();
     say_why_none();
     return {};
@@ -413,6 +436,13 @@ class Analysis {
         "their misfit contains its error.");
   }
 
+  void say_that_faster_sampling_helps() {
+    if (!input_swings_ || why_none_ || result_.verdict != Verdict::undetermined) return;
+    result_.summary +=
+        " The input swings from sample to sample, and its unrecorded course may account for what is left.";
+    result_.next_test = "Record these tests with five times as many samples a second.";
+  }
+
   // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
   void say_that_the_leak_is_in_two_parts() {
     if (std::ranges::none_of(result_.effects, [](const FoundEffect& one) { return one.what.element == "piston_seal"; }))
@@ -452,7 +482,9 @@ class Analysis {
   Trial best_;
   Trial tried_;  ///< what was taken back, as it explains too little
   bool proven_ = false;
-  bool all_compared_ = true;         ///< the models can be simulated on every recording
+  bool all_compared_ = true;   ///< the models can be simulated on every recording
+  bool input_swings_ = false;  ///< between its samples, through much of the tests
+  std::optional<WrongDatasheet> wrong_datasheet_;
   std::optional<WhyNone> why_none_;  ///< set: no law is named
   double window_s_ = 0.0;
   Explanation result_;

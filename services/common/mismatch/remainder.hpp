@@ -3,8 +3,8 @@
 //
 //   gain < 2e-2 of the largest law's at the same element,  < 2e-3 elsewhere
 //
-// gain: criterion without the law less that with all. As amplitudes a seventh and a twentieth: no closer is the form of a
-// law known (a clamp or an arctangent where the catalogue has a hyperbolic tangent). Of two true effects so different
+// gain: criterion without the law less that with all. As amplitudes a seventh and a twentieth: no closer is the form of
+// a law known (a clamp or an arctangent where the catalogue has a hyperbolic tangent). Of two true effects so different
 // in size the smaller is lost by this; a note says what would take it.
 #pragma once
 

@@ -24,6 +24,9 @@ struct WhyNone {
 [[nodiscard]] WhyNone seal_changed_but_not_by_wear(const std::string& course);
 [[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
 
+/// `values`: of the asset file, and what would explain the recordings instead, in words; `laws`: that it stands for.
+[[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, const std::string& laws);
+
 /// `far`: the channel that is missed most. Tests of different days may also differ from one another.
 [[nodiscard]] WhyNone nowhere_near(const ChannelComparison& far, const Data& fit);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 namespace sealwatch {
 namespace {
@@ -133,8 +134,11 @@ class CostResolved final : public ceres::IterationCallback {
 };
 
 // Ceres reports steps into parameter regions that cannot be simulated as warnings; they are ordinary rejected steps
-// here.
-void silence_ceres() { FLAGS_minloglevel = google::GLOG_FATAL; }
+// here. Once: searches run side by side.
+void silence_ceres() {
+  static std::once_flag once;
+  std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
+}
 
 }  // namespace
 

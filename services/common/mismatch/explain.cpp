@@ -56,7 +56,8 @@ class Analysis {
     best_ = naming_.best;
     result_.p_value = excess(*baseline_) > kGross ? kSmallestP : std::max(naming_.first.p_value, kSmallestP);
     result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
-    look_for_another_reason();
+    if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
+    if (!why_none_) look_for_a_change();
     if (!why_none_) let_the_seal_age();
     if (!why_none_) ask_the_datasheet();
     if (why_none_) best_ = {.effects = {}, .model = baseline_};
@@ -82,12 +83,10 @@ class Analysis {
     return std::move(result_);
   }
 
-  // Why the recordings differ though no physics is missing, or why nothing can be seen in them.
-  void look_for_another_reason() {
-    // A seal that ages from test to test is no physics that a test lacks.
-    if (result_.statistically_significant && !windowed() && fit_.samples.size() > 1)
-      if (auto change = change_between_tests(asset_, fit_, *best_.model)) why_none_ = something_changed(*change);
-    if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
+  // Why the recordings differ though no physics is missing: something changed from test to test.
+  void look_for_a_change() {
+    if (!result_.statistically_significant || windowed() || fit_.samples.size() < 2) return;
+    if (const auto change = change_between_tests(asset_, fit_, *best_.model)) why_none_ = something_changed(*change);
   }
 
   // A seal that ages from test to test, and physics missing beside it: laws in common would bend to the ageing.

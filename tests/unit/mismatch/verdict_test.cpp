@@ -44,5 +44,19 @@ TEST(Verdict, LawsThatExplainTooLittleAreNotNamed) {
   EXPECT_FALSE(explanation->location.empty()) << "where to look is said all the same";
 }
 
+TEST(Verdict, AWrongValueOfTheAssetFileIsNoPhysics) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = asset;
+  truth.parameters.at("A_C").value *= 1.03;
+  const std::vector<Recording> fit{recording_of(truth, 0.7), recording_of(truth, 1.0)};
+  const auto explanation = explain(asset, fit, std::vector{recording_of(truth, 1.3)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_TRUE(explanation->effects.empty());
+  EXPECT_NE(explanation->summary.find("A_C = 0.006067 m2 instead of 0.00589 (+3 %)"), std::string::npos)
+      << explanation->summary;
+  EXPECT_NE(explanation->next_test.find("estimate: true"), std::string::npos) << explanation->next_test;
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

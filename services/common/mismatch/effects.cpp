@@ -280,6 +280,17 @@ std::vector<Location> locate_without_law(const Screening& screening) {
   return places;
 }
 
+std::vector<Location> locate_at_a_sensor(const PooledFit& fit) {
+  const auto worst = std::ranges::max_element(fit.channels, {}, &ChannelComparison::weighed_rms_after);
+  if (worst == fit.channels.end()) return {};
+  return {{.element = "sensor:" + worst->channel,
+           .probability = kNeverCertain,
+           .indistinguishable_from = {},
+           .evidence = "It misses by " + number(worst->rms_after) +
+                       " times the noise, and no law asks for any of that: single samples are far off, or something "
+                       "disturbs its signal."}};
+}
+
 Rejected describe(const Forbidden& forbidden) {
   const LawParameter& strength = forbidden.effect.law->parameters[strengths_of(*forbidden.effect.law).front()];
   std::string why = "The data would want ";

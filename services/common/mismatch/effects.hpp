@@ -17,6 +17,9 @@ namespace sealwatch::mismatch {
 /// Where the residual asks for something that no law gives: elements by the gain of their best law.
 [[nodiscard]] std::vector<Location> locate_without_law(const Screening& screening);
 
+/// The sensor of the channel that misses most: where no law asks for any of the misfit.
+[[nodiscard]] std::vector<Location> locate_at_a_sensor(const PooledFit& fit);
+
 [[nodiscard]] Rejected describe(const Forbidden& forbidden);
 
 [[nodiscard]] std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const FittedModel& before,

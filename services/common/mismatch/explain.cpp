@@ -324,7 +324,8 @@ class Analysis {
     if (!best_.effects.empty()) {
       result_.location = locate(result_.effects);
     } else if (result_.statistically_significant) {
-      result_.location = locate_without_law(naming_.first);
+      const bool laws_ask = naming_.first.p_value <= options_.false_alarm_rate;
+      result_.location = laws_ask ? locate_without_law(naming_.first) : locate_at_a_sensor(result_.fit);
     }
     for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
     for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
@@ -345,6 +346,7 @@ class Analysis {
     say_that_the_seal_aged();
     say_that_the_asset_file_explains_it_too();
     say_that_faster_sampling_helps();
+    say_that_a_signal_is_disturbed();
     say_that_the_leak_is_in_two_parts();
     say_why_none();
     return {};
@@ -440,6 +442,14 @@ class Analysis {
     result_.summary +=
         " The input swings from sample to sample, and its unrecorded course may account for what is left.";
     result_.next_test = "Record these tests with five times as many samples a second.";
+  }
+
+  // Far from the noise, and no law asks for any of it: outliers, or what a cable picks up.
+  void say_that_a_signal_is_disturbed() {
+    const bool nothing_asks = naming_.first.p_value > options_.false_alarm_rate;
+    if (why_none_ || !result_.statistically_significant || !nothing_asks || result_.location.empty()) return;
+    result_.next_test = "Look at the signal of " + element_in_words(result_.location.front().element) +
+                        " for single samples that are far off, and analyse again without them.";
   }
 
   // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.

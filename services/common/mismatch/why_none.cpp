@@ -55,14 +55,16 @@ WhyNone nowhere_near(const ChannelComparison& far, const Data& fit) {
   const std::string check =
       "Check the units, signs and wiring of the recorded channels, then the parameters in the asset file.";
   const bool several_days = are_of_several_days(fit);
-  return {.summary = "The simulation comes nowhere near these recordings, whatever law is added: it misses " +
-                     in_words(far.channel) + " by " + number(far.rms_after) +
-                     " times the noise, more than half of the course. No physics is named for that." +
-                     (several_days ? " What is missing may also differ from test to test." : ""),
-          .next_test = several_days ? "These tests are of different days: analyse each alone, or those of one time "
-                                      "together. Where even one alone is missed: " +
-                                          check
-                                    : check};
+  return {
+      .summary =
+          "The simulation comes nowhere near these recordings, whatever law is added: with the best it still misses " +
+          in_words(far.channel) + " by " + number(far.rms_after) +
+          " times the noise, more than half of the course. No physics is named for that." +
+          (several_days ? " What is missing may also differ from test to test." : ""),
+      .next_test = several_days ? "These tests are of different days: analyse each alone, or those of one time "
+                                  "together. Where even one alone is missed: " +
+                                      check
+                                : check};
 }
 
 WhyNone those_kept_aside_differ(const ChannelComparison& worst) {

@@ -76,6 +76,8 @@ class Analysis {
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
   Result<Explanation> cannot_look(const Error& why) {
     why_none_ = cannot_be_asked(why);
+    result_.statistically_significant = excess(*baseline_) > kGross;  // seen without any law
+    if (result_.statistically_significant) result_.p_value = kSmallestP;
     naming_ = {.baseline = baseline_, .best = {{}, baseline_}, .trials = {{{}, baseline_}}, .first = {}, .last = {}};
     best_ = naming_.best;
     if (const Status status = finish(); !status) return fail(status.error());

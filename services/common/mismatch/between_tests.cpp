@@ -11,8 +11,8 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kAgrees =
-    1.1;  // mean square over the noise's, of one recording by itself: the noise is known to a tenth
+// Mean square over the noise's, of one recording by itself: the noise is known to a tenth.
+constexpr double kAgrees = 1.1;
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
@@ -39,7 +40,7 @@ TEST(Seal, ThatAgedBetweenTestsIsNoMissingPhysics) {
   EXPECT_EQ(explanation->location.front().element, "piston_seal");
   EXPECT_FALSE(explanation->prognosis.known) << "one condition for tests of different ones";
 
-  // Of two tests laws in common take the difference; a third, held out, shows that it was not theirs.
+  // Two tests alone tell it too: what is held out takes no part in that.
   const auto of_two = explain(asset, std::vector{read("2016-10"), read("2016-11")}, std::vector{read("2016-12")});
   ASSERT_TRUE(of_two) << of_two.error().describe();
   EXPECT_EQ(of_two->verdict, Verdict::undetermined) << of_two->summary;
@@ -85,6 +86,18 @@ TEST(Seal, ThatWasReplacedBetweenTestsNamesNoLaw) {
   EXPECT_TRUE(explanation->effects.empty());
   EXPECT_NE(explanation->summary.find("R_CL is 1.2e+13 (1970-01-31), 2.6"), std::string::npos) << explanation->summary;
   EXPECT_NE(explanation->summary.find("no wear"), std::string::npos) << explanation->summary;
+}
+
+TEST(Seal, IsNotSaidToHaveChangedBetweenTestsOfOneDay) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> tests{monthly_test(asset, 1, 1.8e13), monthly_test(asset, 2, 2.2e13)};
+  const auto change = [&] {
+    const Data data = data_of(tests);
+    return change_between_tests(asset, data, fit_model(asset, data, nullptr, 1).value());
+  };
+  EXPECT_TRUE(change());
+  tests[1].start_time = tests[0].start_time;
+  EXPECT_FALSE(change());
 }
 
 TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {

@@ -58,5 +58,22 @@ TEST(Verdict, AWrongValueOfTheAssetFileIsNoPhysics) {
   EXPECT_NE(explanation->next_test.find("estimate: true"), std::string::npos) << explanation->next_test;
 }
 
+TEST(Verdict, WildSamplesSendToTheirSensor) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.7), recording_of(asset, 1.0)};
+  for (Recording& recording : fit)
+    for (Series& channel : recording.samples.channels)
+      for (std::size_t row = 150; channel.name == "pressure_a" && row < channel.values.size(); row += 350)
+        channel.values[row] += 2e6;
+  const auto explanation = explain(asset, fit, std::vector{recording_of(asset, 1.3)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_LT(explanation->p_value, 1e-9);
+  ASSERT_FALSE(explanation->location.empty());
+  EXPECT_EQ(explanation->location.front().element, "sensor:pressure_a");
+  EXPECT_NE(explanation->next_test.find("single samples that are far off"), std::string::npos)
+      << explanation->next_test;
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

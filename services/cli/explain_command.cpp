@@ -55,18 +55,34 @@ Status all_different(const std::vector<Recording>& fit, const std::vector<Record
   return {};
 }
 
-/// Made before the analysis, so that a place that cannot be written to costs no waiting.
-Status make_directory(const std::string& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (!std::filesystem::is_directory(directory))
-    return fail(Error{.file = directory,
-                      .place = "--out",
-                      .value = {},
-                      .rule = "is no directory and cannot be made",
-                      .advice = error.message()});
-  return {};
-}
+/// Made before the analysis, so that a place that cannot be written to costs no waiting; taken away again where nothing
+/// came to be written.
+class Directory {
+ public:
+  explicit Directory(std::string name) : name_(std::move(name)) {}
+  Directory(const Directory&) = delete;
+  Directory& operator=(const Directory&) = delete;
+  ~Directory() {
+    std::error_code ignored;
+    if (made_) std::filesystem::remove(name_, ignored);  // an empty one only
+  }
+
+  Status make() {
+    std::error_code error;
+    made_ = std::filesystem::create_directories(name_, error);
+    if (!std::filesystem::is_directory(name_))
+      return fail(Error{.file = name_,
+                        .place = "--out",
+                        .value = {},
+                        .rule = "is no directory and cannot be made",
+                        .advice = error.message()});
+    return {};
+  }
+
+ private:
+  std::string name_;
+  bool made_ = false;
+};
 
 Status write_file(const std::string& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary);
@@ -180,7 +196,8 @@ int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
   const auto fit = read_recordings(options.fit, *asset, **plant);
   if (!fit) return kBadInput;
   const auto holdout = read_recordings(options.holdout, *asset, **plant);
-  if (!holdout || !good(all_different(*fit, *holdout)) || !good(make_directory(options.directory))) return kBadInput;
+  Directory directory(options.directory);
+  if (!holdout || !good(all_different(*fit, *holdout)) || !good(directory.make())) return kBadInput;
 
   const Result<Explanation> explanation = analyse(engine, options, *asset, *fit, *holdout);
   if (!explanation) {

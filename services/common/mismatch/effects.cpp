@@ -116,6 +116,11 @@ double engineering_share(const FoundEffect& effect, const Effect& chosen, const 
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+// What a difference of the criterion means to a reader.
+std::string stands_behind(double behind) {
+  return "stands " + number(behind) + " behind (squared misfit and a penalty for each parameter; 12 decides).";
+}
+
 // Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place.
 void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& alternatives, double best_criterion,
            double best_misfit, double phi) {
@@ -153,8 +158,7 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
                                    .misfit_above_best = std::max(behind, 0.0),
                                    .why_not = behind < kCannotTell
                                                   ? "These recordings cannot tell it from the law that was chosen."
-                                                  : "Refitted in its place it leaves " + number(behind) +
-                                                        " more (misfit with penalty; 12 counts as decisive)."});
+                                                  : "Refitted in its place it " + stands_behind(behind)});
   }
   double all = 0.0, element = 0.0;
   for (const auto& [key, share] : weight) {
@@ -227,8 +231,8 @@ std::string against_elsewhere(const FoundEffect& effect) {
         (best == nullptr || other.misfit_above_best < best->misfit_above_best))
       best = &other;
   if (best == nullptr) return "No law that sits elsewhere came near it.";
-  return "The best law that sits elsewhere (" + law_in_words(best->what) + ") leaves " +
-         number(best->misfit_above_best) + " more (misfit with penalty; 12 counts as decisive).";
+  return "The best law that sits elsewhere (" + law_in_words(best->what) + ") " +
+         stands_behind(best->misfit_above_best);
 }
 
 }  // namespace

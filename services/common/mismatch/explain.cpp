@@ -17,6 +17,7 @@
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/unrecorded_input.hpp"
@@ -123,7 +124,10 @@ class Analysis {
   void say_that_the_asset_file_explains_it_too() {
     if (!wrong_datasheet_ || why_none_ || result_.effects.empty()) return;
     const std::string values = wrong_datasheet_->in_words();
-    result_.summary += " A wrong value in the asset file would do the same: " + values + ".";
+    const std::string same = " A wrong value in the asset file would do the same: " + values + ".";
+    result_.summary += same;
+    for (FoundEffect& effect : result_.effects) effect.evidence += same;
+    for (Location& place : result_.location) place.evidence += same;
     result_.next_test = "Check this value of the asset file first: " + values + ". " + result_.next_test;
   }
 
@@ -189,8 +193,10 @@ class Analysis {
     if (!model) {
       Error error = model.error();
       if (error.file.empty()) error.file = first_not_simulated();
-      error.advice =
-          "the model cannot be simulated at the start values: check the asset's parameters against the recording";
+      const std::string unit = outside_of_its_range((*simulation)->plant(), fit_);
+      error.advice = unit.empty() ? "the model cannot be simulated at the start values: check the asset's parameters "
+                                    "against the recording"
+                                  : unit;
       return fail(std::move(error));
     }
     if (!windowed()) model = weighed_by_what_is_recorded(std::move(*model));
@@ -226,6 +232,9 @@ class Analysis {
     return again;
   }
 
+  [[nodiscard]] const PlantDescription& plant() const {
+    return baseline_->problem.recordings.front().simulation->plant();
+  }
   [[nodiscard]] bool windowed() const { return window_s_ > 0.0; }
   [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_}; }
   [[nodiscard]] Data prepared(const Data& data) const { return in_windows(data, window_s_); }
@@ -322,7 +331,7 @@ class Analysis {
     if (takes_back_what_comes_nowhere_near() || takes_back_what_does_not_explain()) return finish();
     result_.explained_share = explained_share();
     result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last,
-                             baseline_->problem.recordings.front().simulation->plant());
+                             plant());
     if (!best_.effects.empty()) {
       result_.location = locate(result_.effects);
     } else if (result_.statistically_significant) {
@@ -369,7 +378,7 @@ class Analysis {
     // Where the seal ages, R_CL of the held-out ones is predicted, and what they miss by is that prediction's error.
     if (far == nullptr && fit_.own_parameter.empty()) far = farthest_off(result_.holdout);
     if (far == nullptr) return false;
-    why_none_ = nowhere_near(*far, fit_);
+    why_none_ = nowhere_near(*far, fit_, result_.fit, plant());
     take_all_laws_back();
     return true;
   }

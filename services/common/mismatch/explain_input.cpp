@@ -119,7 +119,8 @@ Data data_of(std::span<const Recording> recordings) {
     std::ranges::stable_sort(in_turn, {}, [](const Recording* one) { return *one->start_time; });
   Data data;
   for (const Recording* recording : in_turn) {
-    data.names.push_back(recording->recording_id.empty() ? recording->file : recording->recording_id);
+    const auto alike = std::ranges::count(recordings, recording->recording_id, &Recording::recording_id);
+    data.names.push_back(alike > 1 || recording->recording_id.empty() ? recording->file : recording->recording_id);
     data.samples.push_back(recording->samples);
     data.start_time.push_back(recording->start_time);
   }

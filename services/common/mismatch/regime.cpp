@@ -285,13 +285,32 @@ std::array<SignalWords, kSiteSignals> signals_of(const PlantSimulation& simulati
   return signals;
 }
 
-std::size_t deciding_signal(std::span<const TermPath> recordings, SiteKind kind) {
+std::array<bool, kSiteSignals> signals_seen(std::span<const TermPath> recordings, const Law& law,
+                                            std::span<const double> parameters) {
+  constexpr std::size_t kEvery = 10;    // steps: neighbours see the same
+  constexpr double kSomeMemory = 0.3;   // of the hidden state's size: neither at rest nor at its end
+  constexpr std::size_t kPosition = 1;  // of the piston's signals
+  std::array<bool, kSiteSignals> seen{};
+  if (is_sensor(law.kind)) return {true};
+  const double hidden = law.hidden ? kSomeMemory * law.hidden->scale : 0.0;
+  for (const TermPath& path : recordings)
+    for (std::size_t step = 0; step < path.signals.size(); step += kEvery) {
+      const LawOutput output = law.evaluate(law_input(path.signals[step], hidden, parameters));
+      for (std::size_t k = 0; k < kSiteSignals; ++k)
+        seen[k] = seen[k] || output.contribution.derivative[k] != 0.0 || output.rate.derivative[k] != 0.0;
+    }
+  if (law.kind == SiteKind::piston_force && law.hidden) seen[kPosition] = true;  // what a memory of the way shows over
+  return seen;
+}
+
+std::size_t deciding_signal(std::span<const TermPath> recordings, SiteKind kind,
+                            const std::array<bool, kSiteSignals>& seen) {
   constexpr double kNearlyEqual = 0.05;
   const std::vector<Step> steps = steps_of(recordings);
   std::size_t best = 0;
   double largest = 0.0;
   for (std::size_t k = 0; k < kSiteSignals && !steps.empty(); ++k) {
-    if (words_of(kind).signals[k].name.empty()) continue;
+    if (words_of(kind).signals[k].name.empty() || !seen[k]) continue;
     const double ratio = correlation_ratio(steps, k, [](const Step& step) { return step.term; });
     if (ratio > largest + kNearlyEqual) best = k, largest = ratio;
   }

@@ -25,7 +25,14 @@ namespace sealwatch::mismatch {
 [[nodiscard]] std::array<SignalWords, kSiteSignals> signals_of(const PlantSimulation& simulation,
                                                                const std::string& element, SiteKind kind);
 
-/// Index of the site's signal that the term goes by: that of the largest eta2 of its value, the first of nearly equal.
-[[nodiscard]] std::size_t deciding_signal(std::span<const TermPath> recordings, SiteKind kind);
+/// Which of the site's signals move the law anywhere on these paths, by its derivatives; the position too where it
+/// remembers the piston's way. What else correlates with a force may be what it causes: a chamber's pressure.
+[[nodiscard]] std::array<bool, kSiteSignals> signals_seen(std::span<const TermPath> recordings, const Law& law,
+                                                          std::span<const double> parameters);
+
+/// Index of the site's signal that the term goes by: of those `seen`, that of the largest eta2 of its value, the first
+/// of nearly equal.
+[[nodiscard]] std::size_t deciding_signal(std::span<const TermPath> recordings, SiteKind kind,
+                                          const std::array<bool, kSiteSignals>& seen);
 
 }  // namespace sealwatch::mismatch

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -9,6 +10,11 @@ namespace {
 
 constexpr const char* kTestsOfOneTime =
     "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
+
+std::string suspected_unit(const PooledFit& before, const Data& fit, const PlantDescription& plant) {
+  const std::string outside = outside_of_its_range(plant, fit);
+  return outside.empty() ? hardly_moves(before) : outside;
+}
 
 }  // namespace
 
@@ -51,15 +57,17 @@ WhyNone value_of_the_asset_file(const std::string& values, const std::string& la
               "the asset file), and analyse again."};
 }
 
-WhyNone nowhere_near(const ChannelComparison& far, const Data& fit) {
-  const std::string check =
+WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before,
+                     const PlantDescription& plant) {
+  std::string check =
       "Check the units, signs and wiring of the recorded channels, then the parameters in the asset file.";
+  if (const std::string unit = suspected_unit(before, fit, plant); !unit.empty()) check += " First: " + unit + ".";
   const bool several_days = are_of_several_days(fit);
   return {
       .summary =
           "The simulation comes nowhere near these recordings, whatever law is added: with the best it still misses " +
           in_words(far.channel) + " by " + number(far.rms_after) +
-          " times the noise, more than half of the course. No physics is named for that." +
+          " times the noise, more than half of the course (the tables are without it). No physics is named for that." +
           (several_days ? " What is missing may also differ from test to test." : ""),
       .next_test = several_days ? "These tests are of different days: analyse each alone, or those of one time "
                                   "together. Where even one alone is missed: " +

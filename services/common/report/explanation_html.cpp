@@ -141,6 +141,8 @@ std::string notes_section(const Explanation& explanation) {
   html +=
       "<li>Misfit over noise: root mean square of (recording - simulation) / noise of the sensor; 1 is the floor. "
       "Fit: 100 % is perfect, 0 % no better than a constant.</li>\n"
+      "<li>p, white: how likely noise alone leaves residuals as smooth as these; p, independent of input: as much like "
+      "the input. Below 0.01 a residual has a course of its own that the model does not explain.</li>\n"
       "<li>A recording that was kept aside took no part in any fit or choice, but for its own starting state and "
       "load.</li>\n</ul>\n";
   return section("Notes", html);

@@ -91,9 +91,9 @@ std::string effect_html(const FoundEffect& effect) {
   std::string sure = std::string("Probability ")
                          .append(percent_text(effect.probability))
                          .append(" among the laws tried; that it sits in this element ");
-  sure.append(percent_text(effect.element_probability)).append(". BIC changes by ");
-  sure.append(number_text(effect.delta_bic, 3))
-      .append(" (negative favours it). ")
+  sure.append(percent_text(effect.element_probability)).append(". Without it the model stands ");
+  sure.append(number_text(-effect.delta_bic, 3))
+      .append(" behind (squared misfit and a penalty for each parameter, BIC; 12 decides). ")
       .append(size_words(effect.engineering_share));
   html += paragraph(sure);
   if (!effect.regime.empty()) html += paragraph(std::string("It acts: ").append(effect.regime).append("."));
@@ -119,7 +119,7 @@ void add_alternative(const mismatch::Alternative& alternative, Table& table) {
 /// The nearest ones open, the rest folded.
 std::string alternatives_to(const FoundEffect& effect) {
   constexpr std::size_t kOpen = 5;
-  const std::vector<std::string> columns = {"~instead of " + law_name(effect.what), "element", ">misfit above the best",
+  const std::vector<std::string> columns = {"~instead of " + law_name(effect.what), "element", ">stands behind by",
                                             "~why not"};
   Table near(columns);
   Table far(columns);

@@ -161,7 +161,7 @@ std::string overlays_section(const Explanation& explanation) {
 std::string comparison_section(const Explanation& explanation) {
   const bool changed = !explanation.effects.empty();
   const std::vector<std::string> columns = {
-      "recording", "", "channel", ">misfit / noise", ">fit, %", ">white, p", ">independent of input, p"};
+      "recording", "", "channel", ">misfit / noise", ">fit, %", ">p, white", ">p, independent of input"};
   Table pooled(columns);
   add_rows("all kept aside", "", explanation.holdout.channels, changed, pooled);
   add_rows("all fitted", "", explanation.fit.channels, changed, pooled);

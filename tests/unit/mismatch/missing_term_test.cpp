@@ -286,11 +286,22 @@ TEST(Regime, OfASensorGoesByWhatItMeasures) {
 TEST(Regime, IsShownAgainstTheSignalThatTheTermGoesBy) {
   const auto signal = [](const auto& force) {
     const std::array paths{path_of(force)};
-    return deciding_signal(paths, SiteKind::piston_force);
+    return deciding_signal(paths, SiteKind::piston_force, {true, true, true, true});
   };
   EXPECT_EQ(signal([](double, double v, double) { return 100.0 * std::tanh(v / 1e-4); }), 0U);
   EXPECT_EQ(signal([](double, double, double x) { return 1e4 * (x - 0.054) * (x - 0.054); }), 1U);
   EXPECT_EQ(signal([](double, double, double) { return 4.0; }), 0U);
+}
+
+TEST(Regime, ALawSeesWhatMovesItAndNotWhatItCauses) {
+  using testing::ElementsAre;
+  TermPath path = path_of([](double, double, double) { return 0.0; });
+  for (auto& signals : path.signals) signals[2] = signals[3] = 5e6;
+  const std::array paths{path};
+  const Law& coulomb = **find_law("coulomb_friction", {"F_c", "v_s"});
+  EXPECT_THAT(signals_seen(paths, coulomb, std::array{500.0, 5e-4}), ElementsAre(true, false, false, false));
+  const Law& hysteretic = **find_law("hysteretic_load", {"F_h", "x_y"});
+  EXPECT_THAT(signals_seen(paths, hysteretic, std::array{500.0, 2e-3}), ElementsAre(true, true, false, false));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sealwatch/model/plant_description.hpp"
 #include "services/virtual_bench/random.hpp"
 
 namespace sealwatch::bench {
@@ -213,6 +214,8 @@ Result<TrialRecordings> record_trial(const TrialPlan& plan) {
 AssetConfig trial_asset() {
   AssetConfig asset;
   asset.asset_id = "TRIAL";
+  for (const ParameterDescription& row : (*find_plant(asset.model))->parameters)
+    asset.parameters[row.name] = {.value = row.value, .min = row.min, .max = row.max, .estimate = false};
   const TruthParameters p;
   const std::pair<const char*, double> free[] = {{"R_CL", p.seal_resistance},
                                                  {"f_C", p.piston_viscosity},

@@ -88,6 +88,28 @@ SensorFault draw_fault(std::uint64_t seed, const std::vector<std::string>& chann
           .size = sign * std::min(barely_fault(kind, channel) * times, largest_fault(kind, channel))};
 }
 
+void make_wrong(TrialPlan& plan) {
+  static constexpr std::array<std::pair<std::string_view, double TruthParameters::*>, 12> kValues = {
+      {{"A_C", &TruthParameters::piston_area},
+       {"T_M", &TruthParameters::torque_constant},
+       {"V_0", &TruthParameters::dead_volume},
+       {"alpha_P", &TruthParameters::displacement},
+       {"p_0", &TruthParameters::reservoir_pressure},
+       {"J_M", &TruthParameters::shaft_inertia},
+       {"Omega_M", &TruthParameters::back_emf},
+       {"a_V", &TruthParameters::valve_area},
+       {"p_crack", &TruthParameters::cracking_pressure},
+       {"V_P", &TruthParameters::port_volume},
+       {"x_C", &TruthParameters::stroke},
+       {"g_V", &TruthParameters::pilot_steepness}}};
+  static constexpr std::array kShares = {0.02, 0.05, 0.10, 0.20};
+  const auto& [name, value] = kValues[plan.seed % kValues.size()];
+  const std::uint64_t round = plan.seed / kValues.size() + plan.seed;
+  const double share = (round % 2 == 0 ? 1.0 : -1.0) * kShares[(round / 2) % kShares.size()];
+  plan.parameters.*value *= 1.0 + share;
+  plan.wrong_value = {std::string(name), share};
+}
+
 void hide(TrialPlan& plan, forecast::UniformRandom& random) {
   const std::uint64_t seed = plan.seed;
   const auto plainly = std::span(kTimesBarely).subspan(3);
@@ -135,6 +157,9 @@ void hide(TrialPlan& plan, forecast::UniformRandom& random) {
       return;
     case TrialStratum::inseparable:
       hide_inseparable(plan, random);
+      return;
+    case TrialStratum::asset_file:
+      make_wrong(plan);
       return;
   }
 }
@@ -210,6 +235,7 @@ std::string TrialPlan::label() const {
     add(" | %s %s at %s %.6g %s [%.6g %.6g %.6g]", std::string(e.form->id).c_str(), std::string(e.form->form).c_str(),
         e.element.c_str(), e.size, std::string(e.form->unit).c_str(), e.shape[0], e.shape[1], e.shape[2]);
   for (const SensorFault& f : faults) add(" | %s of %s %.6g", f.kind.c_str(), f.channel.c_str(), f.size);
+  if (!wrong_value.name.empty()) add(" | %s %+.3g", wrong_value.name.c_str(), wrong_value.share);
   add(" | R_CL %.6g f_C %.6g R_PL %.6g f_M %.6g beta %.6g R_M %.6g phi %.6g", parameters.seal_resistance,
       parameters.piston_viscosity, parameters.pump_resistance, parameters.motor_viscosity, parameters.oil_modulus,
       parameters.winding_resistance, parameters.load);

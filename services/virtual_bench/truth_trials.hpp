@@ -9,6 +9,7 @@
 //   concealed       two nominal tests, on which free parameters swallow the effect, and two under other conditions
 //   inseparable     two explanations that these channels and tests cannot tell apart
 //   nominal_only    effects that free parameters swallow, and nothing but nominal tests
+//   asset_file      no physics hidden: one value of the datasheet that is not estimated is wrong
 //
 // Four recordings to fit and two held out under loads and speeds that no fit has, 100 Hz, 30 to 60 s each. The seven
 // free parameters are drawn about the datasheet; noise is white or coloured, some channels are rounded, some sets have
@@ -25,7 +26,8 @@
 
 namespace sealwatch {
 
-SEALWATCH_ENUM(TrialStratum, null, single, pair, outside, sensor, source_sensors, concealed, inseparable, nominal_only)
+SEALWATCH_ENUM(TrialStratum, null, single, pair, outside, sensor, source_sensors, concealed, inseparable, nominal_only,
+               asset_file)
 
 }  // namespace sealwatch
 
@@ -56,6 +58,12 @@ struct PlannedTrialTest {
   std::uint64_t seed = 0;    ///< of noise and jitter
 };
 
+/// A value of the plant that is not what the datasheet says.
+struct WrongValue {
+  std::string name;    ///< as the interface names it: "A_C"; "": none
+  double share = 0.0;  ///< by which the plant's is larger
+};
+
 /// What is hidden, as the interface names it.
 struct TrialTruth {
   std::string id, element, form;
@@ -72,6 +80,7 @@ struct TrialPlan {
   TruthParameters parameters;  ///< load: phi
   std::vector<HiddenEffect> effects;
   std::vector<SensorFault> faults;
+  WrongValue wrong_value;
   std::map<std::string, TrialNoise> noise;  ///< by channel
   std::vector<std::string> channels;
   double jitter = 0.0;  ///< share of the sampling period that a sample may be off
@@ -92,7 +101,7 @@ struct TrialRecordings {
 };
 [[nodiscard]] Result<TrialRecordings> record_trial(const TrialPlan& plan);
 
-/// What the engine is given: the datasheet, seven parameters free.
+/// What the engine is given, as from an asset file: the datasheet, seven parameters free, all others fixed.
 [[nodiscard]] AssetConfig trial_asset();
 
 /// Hash of the labels of the sets with the seeds first .. first + count - 1.

@@ -112,6 +112,12 @@ struct ParameterShift {
   bool before_at_bound = false, after_at_bound = false;  ///< the search ended at an end of its range
 };
 
+/// A value that the asset file fixes, and what would fit instead.
+struct AssetValue {
+  std::string name, unit;
+  double in_asset_file = 0.0, fitted = 0.0;
+};
+
 /// An improvement that physics forbids: it fits better and is not claimed. Shares are of the misfit beyond the noise,
 /// on the linearised model before any law was added, one law at a time.
 struct Rejected {
@@ -158,6 +164,8 @@ struct Explanation {
   std::vector<ParameterShift> parameters;
   std::vector<Power> power;
   std::vector<Rejected> rejected;
+  /// Each entry, of one value or two, would explain the recordings by itself, without any law; the best first.
+  std::vector<std::vector<AssetValue>> asset_values;
   PrognosisShift prognosis;
   std::string next_test;           ///< what to record to settle what is still open, or empty
   std::string summary;             ///< two or three sentences for a maintenance engineer

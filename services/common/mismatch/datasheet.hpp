@@ -1,9 +1,7 @@
 // Values of the asset file that are not estimated, and may be wrong: a piston area that is 2 % off comes out as a
-// sensor's gain, a slip of the pump and an offset. Each is freed by itself, without any law, then the best of them with
-// each other, two at most, and compared with the laws by the criterion of the fitted recordings (criterion.hpp):
-//
-//   instead   two values are as good as two or more laws, or better; one as a law alone, if it is better by 12
-//   as well   they come within 6 of the laws: these recordings cannot tell them apart
+// sensor's gain, a slip of the pump and an offset. Those of which the linearised model promises most are freed, each by
+// itself and without any law, then the best of them with another, two at most, and compared with what was found by the
+// criterion of the fitted recordings (criterion.hpp).
 //
 // Values that are 0, the mean load (each recording's own load is free) and what the recordings leave at a bound are not
 // asked.
@@ -13,25 +11,22 @@
 #include <string>
 #include <vector>
 
-#include "services/common/mismatch/refits.hpp"
+#include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
 
 namespace sealwatch::mismatch {
 
-struct DatasheetValue {
-  std::string name, unit;
-  double in_asset_file = 0.0, fitted = 0.0;
-};
-
 struct WrongDatasheet {
-  std::vector<DatasheetValue> values;
-  bool instead = false;  ///< of the laws; else as well
-
-  /// "A_C = 0.00601 m2 instead of 0.00589 (+2.0 %)"
-  [[nodiscard]] std::string in_words() const;
+  std::vector<std::vector<AssetValue>> values;  ///< that these recordings cannot tell apart, the best first
+  double behind = 0.0;                          ///< criterion with the first less that of the rival
 };
 
-/// `laws`: what was found beside `baseline`, both fitted to `fit`. Nothing where the laws are better by more than 6.
-[[nodiscard]] std::optional<WrongDatasheet> wrong_datasheet(const Trial& laws, const FittedModel& baseline,
-                                                            const Data& fit, int threads);
+/// "A_C = 0.00601 m2 instead of 0.00589 (+2.0 %), or ..."
+[[nodiscard]] std::string values_in_words(const std::vector<std::vector<AssetValue>>& values);
+
+/// `rival`: what was found beside `baseline` (laws, another seal in each test), both fitted to `fit`. Nothing where it
+/// is better than `most_values` values by more than 6.
+[[nodiscard]] std::optional<WrongDatasheet> wrong_datasheet(const FittedModel& rival, std::size_t most_values,
+                                                            const FittedModel& baseline, const Data& fit, int threads);
 
 }  // namespace sealwatch::mismatch

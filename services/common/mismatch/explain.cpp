@@ -97,6 +97,15 @@ class Analysis {
     if (!result_.statistically_significant || windowed()) return;
     std::optional<AgeingSeal> seal = with_ageing_seal(fit_, *baseline_, best_, options_, progress_);
     if (!seal) return;
+    if (!seal->wears) {
+      const auto wrong =
+          wrong_datasheet(*seal->naming.best.model, fit_.samples.size(), *baseline_, fit_, options_.threads);
+      if (wrong && wrong->behind <= 0.0) {
+        result_.asset_values = wrong->values;
+        why_none_ = value_of_the_asset_file(values_in_words(wrong->values), "another seal in each test");
+        return;
+      }
+    }
     fit_ = std::move(seal->fit);
     baseline_ = std::move(seal->baseline);
     naming_ = std::move(seal->naming);
@@ -114,16 +123,23 @@ class Analysis {
   void ask_the_datasheet() {
     if (best_.effects.empty() || windowed()) return;
     tell("asking the values that the asset file fixes", 0.7);
-    wrong_datasheet_ = wrong_datasheet(best_, *baseline_, fit_, options_.threads);
-    if (!wrong_datasheet_ || !wrong_datasheet_->instead) return;
+    const auto wrong = wrong_datasheet(*best_.model, best_.effects.size(), *baseline_, fit_, options_.threads);
+    // Two values have to be as good as two laws or more, one has to be better than a law alone.
+    const double enough = best_.effects.size() > 1 ? 0.0 : -kWorthAnother;
+    if (wrong) result_.asset_values = wrong->values;
+    if (!wrong || wrong->behind > enough) return;
     std::vector<std::string> laws;
     for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
-    why_none_ = value_of_the_asset_file(wrong_datasheet_->in_words(), joined(laws, " and "));
+    why_none_ = value_of_the_asset_file(values_in_words(result_.asset_values), joined(laws, " and "));
   }
 
   void say_that_the_asset_file_explains_it_too() {
-    if (!wrong_datasheet_ || why_none_ || result_.effects.empty()) return;
-    const std::string values = wrong_datasheet_->in_words();
+    if (result_.asset_values.empty() || why_none_) return;
+    if (result_.effects.empty()) {  // taken back since: what stood for them has nothing to stand for
+      result_.asset_values.clear();
+      return;
+    }
+    const std::string values = values_in_words(result_.asset_values);
     const std::string same = " A wrong value in the asset file would do the same: " + values + ".";
     result_.summary += same;
     for (FoundEffect& effect : result_.effects) effect.evidence += same;
@@ -330,8 +346,7 @@ class Analysis {
     result_.holdout = pool(result_.recordings, true);
     if (takes_back_what_comes_nowhere_near() || takes_back_what_does_not_explain()) return finish();
     result_.explained_share = explained_share();
-    result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last,
-                             plant());
+    result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last, plant());
     if (!best_.effects.empty()) {
       result_.location = locate(result_.effects);
     } else if (result_.statistically_significant) {
@@ -367,6 +382,7 @@ class Analysis {
     best_ = {.effects = {}, .model = baseline_};
     proven_ = false;
     result_.effects.clear();
+    result_.asset_values.clear();
     result_.recordings.clear();
   }
 
@@ -502,9 +518,8 @@ class Analysis {
   Trial best_;
   Trial tried_;  ///< what was taken back, as it explains too little
   bool proven_ = false;
-  bool all_compared_ = true;   ///< the models can be simulated on every recording
-  bool input_swings_ = false;  ///< between its samples, through much of the tests
-  std::optional<WrongDatasheet> wrong_datasheet_;
+  bool all_compared_ = true;         ///< the models can be simulated on every recording
+  bool input_swings_ = false;        ///< between its samples, through much of the tests
   std::optional<WhyNone> why_none_;  ///< set: no law is named
   double window_s_ = 0.0;
   Explanation result_;

@@ -31,7 +31,8 @@ std::string hardly_moves(const PooledFit& fit) {
   constexpr double kTenTimesLess_percent = -900.0;  // of the recorded course reproduced
   const auto least = std::ranges::min_element(fit.channels, {}, &ChannelComparison::nrmse_before);
   if (least == fit.channels.end() || !(least->nrmse_before < kTenTimesLess_percent)) return {};
-  return "the simulation's " + in_words(least->channel) + " moves some " + number(1.0 - least->nrmse_before / 100.0, 2) +
+  return "the simulation's " + in_words(least->channel) + " moves some " +
+         number(1.0 - least->nrmse_before / 100.0, 2) +
          " times as much as the recorded one: check the unit in the header of column " + least->channel;
 }
 

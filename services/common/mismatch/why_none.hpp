@@ -27,8 +27,8 @@ struct WhyNone {
 /// `values`: of the asset file, and what would explain the recordings instead, in words; `laws`: that it stands for.
 [[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, const std::string& laws);
 
-/// `far`: the channel that is missed most with the laws, `before`: without. Tests of different days may also differ from
-/// one another.
+/// `far`: the channel that is missed most with the laws, `before`: without. Tests of different days may also differ
+/// from one another.
 [[nodiscard]] WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before,
                                    const PlantDescription& plant);
 

@@ -156,6 +156,7 @@ std::string explanation_to_html(const Explanation& explanation) {
   if (nothing_found) body += power_section(explanation);  // what the silence is worth
   body.append(where_section(explanation))
       .append(effects_section(explanation))
+      .append(asset_values_section(explanation))
       .append(missing_section(explanation))
       .append(overlays_section(explanation))
       .append(comparison_section(explanation))

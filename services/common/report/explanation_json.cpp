@@ -193,6 +193,14 @@ void add_details(const Explanation& explanation, Json& json) {
     one["allowed_share"] = number(rejected.allowed_share);
     return one;
   });
+  json["asset_values"] = list(explanation.asset_values, [](const std::vector<mismatch::AssetValue>& entry) {
+    return list(entry, [](const mismatch::AssetValue& value) {
+      return Json{{"name", value.name},
+                  {"unit", value.unit},
+                  {"in_asset_file", number(value.in_asset_file)},
+                  {"fitted", number(value.fitted)}};
+    });
+  });
   json["prognosis"] = prognosis_json(explanation.prognosis);
   json["notes"] = explanation.notes;
 }

@@ -185,6 +185,22 @@ ParameterShift read_shift(const Json& json) {
           .after_at_bound = truth(json, "after_at_bound")};
 }
 
+// Absent in reports of before it was asked.
+std::vector<std::vector<AssetValue>> read_asset_values(const Json& json) {
+  std::vector<std::vector<AssetValue>> values;
+  if (!json.contains("asset_values")) return values;
+  for (const Json& entry : array(json, "asset_values")) {
+    if (!entry.is_array()) throw WrongKey{"asset_values", "must be a list of lists"};
+    values.emplace_back();
+    for (const Json& value : entry)
+      values.back().push_back({.name = text(value, "name"),
+                               .unit = text(value, "unit"),
+                               .in_asset_file = number(value, "in_asset_file"),
+                               .fitted = number(value, "fitted")});
+  }
+  return values;
+}
+
 PrognosisShift read_prognosis(const Json& json) {
   if (json.is_null()) return {};
   return {.known = true,
@@ -224,6 +240,7 @@ Explanation read(const Json& json) {
                     .share = number(one, "share"),
                     .allowed_share = number(one, "allowed_share")};
   });
+  explanation.asset_values = read_asset_values(json);
   explanation.prognosis = read_prognosis(member(json, "prognosis"));
   explanation.next_test = text(json, "next_test");
   explanation.summary = text(json, "summary");

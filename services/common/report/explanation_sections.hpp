@@ -24,6 +24,7 @@ struct Misfit {
 [[nodiscard]] std::string banner(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string where_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string effects_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string asset_values_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string missing_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string overlays_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string comparison_section(const mismatch::Explanation& explanation);

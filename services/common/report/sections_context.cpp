@@ -118,6 +118,28 @@ std::string parameters_section(const Explanation& explanation) {
                  paragraph(std::string(words).append(any_at_bound ? bound : ""), "small muted").append(table.html()));
 }
 
+std::string asset_values_section(const Explanation& explanation) {
+  if (explanation.asset_values.empty()) return {};
+  const Result<const PlantDescription*> plant = find_plant(explanation.model);
+  Table table({"", "parameter", ">in the asset file", ">would fit", ">change", "~meaning"});
+  std::size_t entry = 0;
+  for (const std::vector<mismatch::AssetValue>& values : explanation.asset_values) {
+    std::string which = entry++ == 0 ? "" : "or";
+    for (const mismatch::AssetValue& value : values) {
+      const ParameterDescription* known = plant ? (*plant)->find_parameter(value.name) : nullptr;
+      table.row({which, value.name, readable(value.in_asset_file, value.unit, 4), readable(value.fitted, value.unit, 4),
+                 change_text(value.in_asset_file, value.fitted), known == nullptr ? "" : known->meaning});
+      which = "and";
+    }
+  }
+  return section("A value of the asset file that may be wrong",
+                 paragraph("The analysis does not estimate these. With another value and no physics added the "
+                           "recordings would be explained as well: check it against the drawing or the datasheet, or "
+                           "let it be estimated (estimate: true) and analyse again.",
+                           "small muted")
+                     .append(table.html()));
+}
+
 std::string prognosis_section(const Explanation& explanation) {
   const mismatch::PrognosisShift& prognosis = explanation.prognosis;
   if (!prognosis.known || explanation.effects.empty()) return {};

@@ -43,9 +43,10 @@ struct AnswerRecord {
   double held_before = 0.0, held_after = 0.0;  ///< noise-normalised rms of the held-out recordings
   std::vector<HeldOutRecord> held_out = {};    ///< the same of each channel
   std::vector<std::string> rejected = {};      ///< "id element" that physics forbids
+  std::vector<std::string> asset_values = {};  ///< of the asset file, that would do: "A_C", "Omega_M T_M"
   double seconds = 0.0;
   SEALWATCH_FIELDS(AnswerRecord, verdict, p_value, explained_share, found, places, next_test, held_before, held_after,
-                   held_out, rejected, seconds)
+                   held_out, rejected, asset_values, seconds)
 };
 
 /// The same set by other means. Absent (known = false) where the voltage was not recorded.
@@ -81,14 +82,16 @@ struct MismatchRecord {
   std::string stratum = {};
   std::uint64_t seed = 0;
   std::string label = {};
-  std::string twin = {};  ///< inseparable sets: "id element"
+  std::string twin = {};         ///< inseparable sets: "id element"
+  std::string wrong_value = {};  ///< of the asset file: "A_C"
+  double wrong_share = 0.0;      ///< by which the plant's is larger
   bool coloured = false, rounded = false, jittered = false;
   std::vector<LawRecord> hidden = {};
   std::string error = {};  ///< the analysis, or the trial itself, could not be done
   AnswerRecord answer = {};
   ControlRecord control = {};
-  SEALWATCH_FIELDS(MismatchRecord, stratum, seed, label, twin, coloured, rounded, jittered, hidden, error, answer,
-                   control)
+  SEALWATCH_FIELDS(MismatchRecord, stratum, seed, label, twin, wrong_value, wrong_share, coloured, rounded, jittered,
+                   hidden, error, answer, control)
 };
 
 }  // namespace sealwatch::verification

@@ -51,8 +51,14 @@ bool renamed(const MismatchRecord& r) {
 
 constexpr double kAsGood = 1.02;  // of the oracle's held-out rms
 
-bool oracle_known(const MismatchRecord& r) { return r.control.oracle_held > 0.0 && r.answer.held_after > 0.0; }
+bool oracle_known(const MismatchRecord& r) {
+  return r.wrong_value.empty() && r.control.oracle_held > 0.0 && r.answer.held_after > 0.0;
+}
 bool as_good(const MismatchRecord& r) { return r.answer.held_after <= kAsGood * r.control.oracle_held; }
+
+bool value_named(const MismatchRecord& r) {
+  return std::ranges::find(r.answer.asset_values, r.wrong_value) != r.answer.asset_values.end();
+}
 
 /// Two explanations that the tests cannot tell apart: both in a returned set, both elements listed as one place, or
 /// nothing claimed.
@@ -185,6 +191,11 @@ TrialTally tally_of(std::string name, const Records& records) {
   tally.twin_in_set = share(
       records, [&](const MismatchRecord& r) { return hides(r) && !r.twin.empty() && claimed(r); },
       [](const MismatchRecord& r) { return in_set(r, r.twin) && all_in_set(r); });
+  const auto wrong_value = [](const MismatchRecord& r) { return r.error.empty() && !r.wrong_value.empty(); };
+  tally.value_named = share(
+      records, [&](const MismatchRecord& r) { return wrong_value(r) && detected(r); }, value_named);
+  tally.value_unsaid =
+      share(records, wrong_value, [](const MismatchRecord& r) { return claimed(r) && !value_named(r); });
   tally.strength_within = share(
       records, [](const MismatchRecord& r) { return check_strength(r).comparable; },
       [](const MismatchRecord& r) { return check_strength(r).within; });
@@ -225,6 +236,23 @@ std::string law_list(const std::vector<LawRecord>& laws) {
   return text.empty() ? "nothing" : text;
 }
 
+std::string hidden_text(const MismatchRecord& r) {
+  char text[64];
+  if (!r.wrong_value.empty()) {
+    std::snprintf(text, sizeof text, " wrong by %+.0f %%", 100.0 * r.wrong_share);
+    return r.wrong_value + text;
+  }
+  std::snprintf(text, sizeof text, " (%.1f x barely, %.1f x detectable)",
+                r.hidden.empty() ? 0.0 : r.hidden.front().times_barely, times_detectable(r));
+  return law_list(r.hidden) + text;
+}
+
+std::string found_text(const AnswerRecord& answer) {
+  std::string text = law_list(answer.found);
+  for (const std::string& names : answer.asset_values) text += ", or the asset file's " + names;
+  return text;
+}
+
 }  // namespace
 
 double times_detectable(const MismatchRecord& record) {
@@ -240,8 +268,8 @@ int named_effects(const MismatchRecord& record) {
 
 std::vector<TrialTally> summarise_trials(std::span<const MismatchRecord> records) {
   std::vector<TrialTally> tallies;
-  for (const char* stratum :
-       {"null", "single", "pair", "outside", "sensor", "source_sensors", "concealed", "inseparable", "nominal_only"}) {
+  for (const char* stratum : {"null", "single", "pair", "outside", "sensor", "source_sensors", "concealed",
+                              "inseparable", "nominal_only", "asset_file"}) {
     const auto own = [&](const MismatchRecord& r) { return r.stratum == stratum; };
     const Records all = those(records, own);
     if (all.empty()) continue;
@@ -294,6 +322,8 @@ std::string trial_table(std::span<const TrialTally> tallies) {
     line("all hidden laws in the returned sets", cell(t.all_named));
     line("law and its twin in the returned set", cell(t.twin_in_set));
     line("both twins left open, of those detected", cell(t.twins_left_open));
+    line("the wrong value named, of those detected", cell(t.value_named));
+    line("a law claimed and the value not said", cell(t.value_unsaid));
     line("unlisted, a listed law claimed", cell(t.renamed));
     line("  and worse on held-out than a closed form", cell(t.renamed_worse));
     line("  and within 2 % of the closed form there", cell(t.renamed_as_good));
@@ -319,14 +349,15 @@ std::string trial_table(std::span<const TrialTally> tallies) {
 std::string trial_failures(std::span<const MismatchRecord> records) {
   std::string text;
   for (const MismatchRecord& r : records) {
-    const bool wrong = !r.error.empty() || (r.hidden.empty() ? detected(r) : !law_first(r));
+    const bool null_set = r.hidden.empty() && r.wrong_value.empty();
+    const bool value_missed = !r.wrong_value.empty() && detected(r) && !value_named(r);
+    const bool wrong =
+        !r.error.empty() || (null_set && detected(r)) || value_missed || (!r.hidden.empty() && !law_first(r));
     if (!wrong) continue;
     char line[800];
-    std::snprintf(
-        line, sizeof line, "%s %llu: hidden %s (%.1f x barely, %.1f x detectable); %s, p %.2g, found %s%s%s\n",
-        r.stratum.c_str(), static_cast<unsigned long long>(r.seed), law_list(r.hidden).c_str(),
-        r.hidden.empty() ? 0.0 : r.hidden.front().times_barely, times_detectable(r), r.answer.verdict.c_str(),
-        r.answer.p_value, law_list(r.answer.found).c_str(), r.error.empty() ? "" : "; error: ", r.error.c_str());
+    std::snprintf(line, sizeof line, "%s %llu: hidden %s; %s, p %.2g, found %s%s%s\n", r.stratum.c_str(),
+                  static_cast<unsigned long long>(r.seed), hidden_text(r).c_str(), r.answer.verdict.c_str(),
+                  r.answer.p_value, found_text(r.answer).c_str(), r.error.empty() ? "" : "; error: ", r.error.c_str());
     text += line;
   }
   return text;

@@ -6,6 +6,8 @@
 //   renamed       an `unlisted` truth that a listed law was claimed for; an error where it misses the held-out
 //                 recordings by more than 2 % above the best closed form at the true element (the oracle)
 //   strength      within 1.96 standard errors of the truth, where a strength of the catalogue means the same
+//   value named   the wrong value of the asset file is among those that the answer says would do, of those detected
+//   value unsaid  a law was claimed, and not said that the wrong value would do
 //   held-out      rms of the held-out recordings over the oracle's
 //
 // Single effects are also divided by their strength (as the oracle refits it) over the smallest that the analysis says
@@ -34,6 +36,7 @@ struct TrialTally {
   int consistent = 0, mismatch = 0, undetermined = 0;
   CountedShare detected = {}, claimed = {}, element_first = {}, law_first = {}, law_in_set = {}, all_named = {},
                renamed = {}, renamed_worse = {}, renamed_as_good = {}, twin_in_set = {}, twins_left_open = {};
+  CountedShare value_named = {}, value_unsaid = {};
   CountedShare strength_within = {}, held_within_2_percent = {};
   double set_size = 0.0;          ///< mean, of those with something found
   double held_over_oracle = 0.0;  ///< median
@@ -45,10 +48,10 @@ struct TrialTally {
   double seconds = 0.0, control_seconds = 0.0;  ///< mean
   SEALWATCH_FIELDS(TrialTally, name, sets, errors, consistent, mismatch, undetermined, detected, claimed, element_first,
                    law_first, law_in_set, all_named, renamed, renamed_worse, renamed_as_good, twin_in_set,
-                   twins_left_open, strength_within, held_within_2_percent, set_size, held_over_oracle,
-                   held_before_over_oracle, chi_square_detected, bic_detected, bic_element_first, bic_law_first,
-                   sparse_detected, sparse_element_first, sparse_law_first, sparse_terms, concealed, seconds,
-                   control_seconds)
+                   twins_left_open, value_named, value_unsaid, strength_within, held_within_2_percent, set_size,
+                   held_over_oracle, held_before_over_oracle, chi_square_detected, bic_detected, bic_element_first,
+                   bic_law_first, sparse_detected, sparse_element_first, sparse_law_first, sparse_terms, concealed,
+                   seconds, control_seconds)
 };
 
 /// Strength over the smallest that shows; 0 where it is not known.

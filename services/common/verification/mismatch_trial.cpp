@@ -46,6 +46,10 @@ AnswerRecord answer_of(const mismatch::Explanation& explanation) {
   answer.held_after = rms_of(explanation.holdout, &mismatch::ChannelComparison::rms_after);
   for (const mismatch::ChannelComparison& channel : explanation.holdout.channels)
     answer.held_out.push_back({channel.channel, channel.rms_before, channel.rms_after});
+  for (const std::vector<mismatch::AssetValue>& entry : explanation.asset_values) {
+    std::string& names = answer.asset_values.emplace_back();
+    for (const mismatch::AssetValue& value : entry) names.append(names.empty() ? "" : " ").append(value.name);
+  }
   for (const mismatch::Rejected& rejected : explanation.rejected) answer.rejected.push_back(place_of(rejected.what));
   return answer;
 }
@@ -54,6 +58,8 @@ MismatchRecord record_of(const TrialPlan& plan) {
   MismatchRecord record{.stratum = std::string(name_of(plan.stratum)), .seed = plan.seed};
   record.label = plan.label();
   record.twin = plan.twin;
+  record.wrong_value = plan.wrong_value.name;
+  record.wrong_share = plan.wrong_value.share;
   record.jittered = plan.jitter > 0.0;
   for (const auto& [channel, noise] : plan.noise) {
     record.coloured = record.coloured || noise.correlation > 0.0;

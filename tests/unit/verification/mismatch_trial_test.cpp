@@ -166,6 +166,29 @@ MismatchRecord run_shortened(TrialStratum stratum, std::uint64_t seed) {
   return run_trial(plan, {.controls = false, .threads = 2});
 }
 
+TEST(MismatchSummary, AWrongValueOfTheAssetFileIsNamedOrLeftUnsaid) {
+  const auto set = [](std::uint64_t seed, const char* verdict, double p, std::vector<std::string> named) {
+    MismatchRecord one = record("asset_file", seed, verdict, p);
+    one.wrong_value = "A_C";
+    one.wrong_share = -0.05;
+    one.answer.asset_values = std::move(named);
+    return one;
+  };
+  const std::vector<MismatchRecord> records = {set(1, "undetermined", 1e-9, {"V_0", "A_C"}),
+                                               set(2, "mismatch", 1e-9, {"A_C T_M"}), set(3, "mismatch", 1e-9, {"A_C"}),
+                                               set(4, "consistent", 0.4, {})};
+  const auto tallies = summarise_trials(records);
+  const TrialTally& t = tally(tallies, "asset_file");
+  EXPECT_EQ(t.value_named.of, 3);
+  EXPECT_EQ(t.value_named.count, 2);
+  EXPECT_EQ(t.value_unsaid.of, 4);
+  EXPECT_EQ(t.value_unsaid.count, 1);
+  const std::string failures = trial_failures(records);
+  EXPECT_EQ(failures.find("asset_file 1:"), std::string::npos);
+  EXPECT_NE(failures.find("asset_file 2: hidden A_C wrong by -5 %"), std::string::npos);
+  EXPECT_EQ(failures.find("asset_file 4:"), std::string::npos);
+}
+
 TEST(MismatchTrial, NothingHiddenIsNoMismatch) {
   const MismatchRecord r = run_shortened(TrialStratum::null, 1);
   ASSERT_EQ(r.error, "");

@@ -121,6 +121,20 @@ TEST(Trials, SinglesHoldEveryListedPlaceInEverySize) {
   for (const auto& [place, steps] : sizes) EXPECT_GE(steps.size(), 4U) << place;
 }
 
+TEST(Trials, AWrongValueIsThePlantsAndNotTheDatasheets) {
+  const AssetConfig datasheet = trial_asset();
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const TrialPlan plan = plan_trial(TrialStratum::asset_file, seed);
+    EXPECT_TRUE(plan.effects.empty() && plan.faults.empty());
+    const ParameterSetting& setting = datasheet.parameters.at(plan.wrong_value.name);
+    EXPECT_FALSE(setting.estimate) << plan.wrong_value.name;
+    EXPECT_GE(std::abs(plan.wrong_value.share), 0.02);
+    EXPECT_NE(plan.label().find(plan.wrong_value.name + " "), std::string::npos);
+  }
+  EXPECT_NEAR(plan_trial(TrialStratum::asset_file, 0).parameters.piston_area, 1.02 * TruthParameters{}.piston_area,
+              1e-12);
+}
+
 TEST(Trials, ARecordingHasItsNoiseAndItsFault) {
   TrialPlan plan = plan_trial(TrialStratum::null, 11);
   plan.fit.resize(1);

@@ -58,6 +58,35 @@ TEST(Verdict, AWrongValueOfTheAssetFileIsNoPhysics) {
   EXPECT_NE(explanation->next_test.find("estimate: true"), std::string::npos) << explanation->next_test;
 }
 
+// The fitted model is so far bent to a wrong back-EMF constant that the first steps from it lead nowhere.
+TEST(Verdict, AWrongValueIsFoundWhereTheFitIsFarOff) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = asset;
+  truth.parameters.at("Omega_M").value *= 1.05;
+  const std::vector<Recording> fit{recording_of(truth, 0.7), recording_of(truth, 1.0)};
+  const auto explanation = explain(asset, fit, std::vector{recording_of(truth, 1.3)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  ASSERT_FALSE(explanation->asset_values.empty()) << explanation->summary;
+  const AssetValue& value = explanation->asset_values.front().front();
+  EXPECT_EQ(value.name, "Omega_M");
+  EXPECT_NEAR(value.fitted, 0.21, 0.001);
+}
+
+// Of discharge coefficient, opening area and density only one combination acts.
+TEST(Verdict, ValuesThatDoTheSameAreAllTold) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = asset;
+  truth.parameters.at("c_D").value *= 1.2;
+  const std::vector<Recording> fit{recording_of(truth, 0.7), recording_of(truth, 1.0)};
+  const auto explanation = explain(asset, fit, std::vector{recording_of(truth, 1.3)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  std::vector<std::string> names;
+  for (const auto& entry : explanation->asset_values)
+    if (entry.size() == 1) names.push_back(entry.front().name);
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"a_V", "c_D", "rho"})) << explanation->summary;
+}
+
 TEST(Verdict, WildSamplesSendToTheirSensor) {
   const AssetConfig asset = actuator();
   std::vector<Recording> fit{recording_of(asset, 0.7), recording_of(asset, 1.0)};

@@ -173,9 +173,10 @@ std::optional<WrongDatasheet> wrong_datasheet(const FittedModel& rival, std::siz
     const auto behind = [&](const FittedModel& model) { return criterion(model, phi) - criterion(rival, phi); };
     const double best = behind(models.front());
     if (best <= kCannotTell) {
-      WrongDatasheet wrong{.values = {}, .behind = best};
+      WrongDatasheet wrong{.values = {}, .behind = best, .model = {}};
       for (const FittedModel& model : models)
         if (behind(model) <= best + kCannotTell) wrong.values.push_back(values_of(model, baseline));
+      wrong.model = std::make_shared<const FittedModel>(std::move(models.front()));
       return wrong;
     }
     from = std::move(models.front());

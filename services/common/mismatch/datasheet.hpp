@@ -7,6 +7,7 @@
 // asked.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ namespace sealwatch::mismatch {
 struct WrongDatasheet {
   std::vector<std::vector<AssetValue>> values;  ///< that these recordings cannot tell apart, the best first
   double behind = 0.0;                          ///< criterion with the first less that of the rival
+  std::shared_ptr<const FittedModel> model;     ///< with the first
 };
 
 /// "A_C = 0.00601 m2 instead of 0.00589 (+2.0 %), or ..."

@@ -100,11 +100,7 @@ class Analysis {
     if (!seal->wears) {
       const auto wrong =
           wrong_datasheet(*seal->naming.best.model, fit_.samples.size(), *baseline_, fit_, options_.threads);
-      if (wrong && wrong->behind <= 0.0) {
-        result_.asset_values = wrong->values;
-        why_none_ = value_of_the_asset_file(values_in_words(wrong->values), "another seal in each test");
-        return;
-      }
+      if (wrong && wrong->behind <= 0.0 && says_so(*wrong, "another seal in each test")) return;
     }
     fit_ = std::move(seal->fit);
     baseline_ = std::move(seal->baseline);
@@ -126,11 +122,23 @@ class Analysis {
     const auto wrong = wrong_datasheet(*best_.model, best_.effects.size(), *baseline_, fit_, options_.threads);
     // Two values have to be as good as two laws or more, one has to be better than a law alone.
     const double enough = best_.effects.size() > 1 ? 0.0 : -kWorthAnother;
-    if (wrong) result_.asset_values = wrong->values;
-    if (!wrong || wrong->behind > enough) return;
     std::vector<std::string> laws;
     for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
-    why_none_ = value_of_the_asset_file(values_in_words(result_.asset_values), joined(laws, " and "));
+    if (!wrong || (wrong->behind <= enough && says_so(*wrong, joined(laws, " and ")))) return;
+    if (wrong->behind > enough) result_.asset_values = wrong->values;
+  }
+
+  // False where the value does not help on recordings that took no part: it is not claimed either.
+  bool says_so(const WrongDatasheet& wrong, const std::string& laws) {
+    std::vector<RecordingComparison> compared;
+    const auto blocks = held_out().gains({{}, baseline_}, {{}, wrong.model}, &compared);
+    if (!blocks) return false;
+    const bool none = blocks->gain.empty();
+    if (!none && gain_interval(*blocks, dispersion(*wrong.model), options_.seed).low <= 0.0) return false;
+    result_.asset_values = wrong.values;
+    why_none_ = value_of_the_asset_file(values_in_words(wrong.values), laws,
+                                        none ? std::string() : proof_in_words(pool(compared, true)));
+    return true;
   }
 
   void say_that_the_asset_file_explains_it_too() {

@@ -78,6 +78,13 @@ std::string law_in_words(const LawAt& law) {
       .append(element_in_words(law.element));
 }
 
+std::string proof_in_words(const PooledFit& holdout) {
+  const ChannelComparison* proof = most_improved_channel(holdout);
+  if (proof == nullptr) return {};
+  return "the misfit of " + in_words(proof->channel) + " on recordings that took no part falls from " +
+         number(proof->rms_before) + " to " + number(proof->rms_after) + " times the noise";
+}
+
 std::string reason_in_words(const Error& error) {
   return error.place.empty() ? error.rule : error.place + ": " + error.rule;
 }
@@ -126,17 +133,8 @@ std::string summary_of(const Explanation& explanation) {
     std::vector<std::string> laws;
     for (const FoundEffect& effect : explanation.effects) laws.push_back(law_in_words(effect.what));
     text = "The simulation lacks " + joined(laws, " and ") + (laws.size() > 1 ? ". With them " : ". With it ");
-    const ChannelComparison* proof = most_improved_channel(explanation.holdout);
-    if (proof != nullptr) {
-      text.append("the misfit of ")
-          .append(in_words(proof->channel))
-          .append(" on recordings that took no part falls from ");
-      text.append(number(proof->rms_before))
-          .append(" to ")
-          .append(number(proof->rms_after))
-          .append(" times the noise.");
-      text += left_in_words(explanation.holdout);
-    }
+    if (const std::string proof = proof_in_words(explanation.holdout); !proof.empty())
+      text += proof + "." + left_in_words(explanation.holdout);
     for (const FoundEffect& effect : explanation.effects) {
       if (effect.indistinguishable.empty()) continue;
       std::vector<std::string> others;

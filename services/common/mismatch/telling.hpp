@@ -20,6 +20,9 @@ inline constexpr double kNeverCertain = 0.999;
 [[nodiscard]] std::string joined(const std::vector<std::string>& words, const char* last);
 /// What broke which rule where, without file and advice: for a remark within a sentence.
 [[nodiscard]] std::string reason_in_words(const Error& error);
+/// "the misfit of flow on recordings that took no part falls from 5 to 1.01 times the noise", where it falls most; ""
+/// without any channel.
+[[nodiscard]] std::string proof_in_words(const PooledFit& holdout);
 /// One sentence; of several `effects` the misfit is what all of them leave together.
 [[nodiscard]] std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before,
                                       double misfit_after);

@@ -49,9 +49,10 @@ WhyNone seal_aged_and_no_more(const std::string& course) {
           .element = "piston_seal"};
 }
 
-WhyNone value_of_the_asset_file(const std::string& values, const std::string& laws) {
-  return {.summary = "A value of the asset file that is not estimated explains these recordings as well as " + laws +
-                     " would, or better: " + values + ". No physics is named.",
+WhyNone value_of_the_asset_file(const std::string& values, const std::string& laws, const std::string& proof) {
+  return {.summary = "A value that the asset file fixes may be wrong: " + values + "." +
+                     (proof.empty() ? "" : " With it " + proof + ".") + " It explains these recordings as well as " +
+                     laws + " would, or better: no physics is named.",
           .next_test =
               "Check this value against the drawing or the datasheet, or let it be estimated (estimate: true in "
               "the asset file), and analyse again."};

@@ -25,6 +25,7 @@ VerdictWords words_of(const Explanation& explanation) {
     case Verdict::mismatch:
       return {"bad", "Mismatch found and explained"};
     case Verdict::undetermined:
+      if (!explanation.asset_values.empty()) return {"warn", "Undetermined: a value of the asset file may be wrong"};
       return {"warn", explanation.statistically_significant ? "Undetermined: a mismatch that is not explained"
                                                             : "Undetermined: these recordings cannot tell"};
   }
@@ -153,10 +154,11 @@ std::string explanation_to_html(const Explanation& explanation) {
   body.append(escaped(explanation.asset_id)).append("</h1>\n");
   const bool nothing_found = explanation.effects.empty();
   body += banner(explanation);
+  if (nothing_found) body += asset_values_section(explanation);
   if (nothing_found) body += power_section(explanation);  // what the silence is worth
   body.append(where_section(explanation))
       .append(effects_section(explanation))
-      .append(asset_values_section(explanation))
+      .append(nothing_found ? std::string() : asset_values_section(explanation))
       .append(missing_section(explanation))
       .append(overlays_section(explanation))
       .append(comparison_section(explanation))

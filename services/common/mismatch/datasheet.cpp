@@ -163,25 +163,53 @@ std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) 
   return text;
 }
 
-std::optional<WrongDatasheet> wrong_datasheet(const FittedModel& rival, std::size_t most_values,
-                                              const FittedModel& baseline, const Data& fit, int threads) {
+std::optional<WrongDatasheet> wrong_datasheet(const Trial& rival, std::size_t most_values, const FittedModel& baseline,
+                                              const Data& fit, int threads) {
   std::optional<FittedModel> from;
   for (std::size_t values = 1; values <= std::min(most_values, kMostValues); ++values) {
     std::vector<FittedModel> models = with_another_value(from ? *from : baseline, fit, threads);
     if (models.empty()) return std::nullopt;
-    const double phi = std::min(dispersion(models.front()), dispersion(rival));
-    const auto behind = [&](const FittedModel& model) { return criterion(model, phi) - criterion(rival, phi); };
+    const double phi = std::min(dispersion(models.front()), dispersion(*rival.model));
+    const auto behind = [&](const FittedModel& model) { return criterion(model, phi) - criterion(*rival.model, phi); };
     const double best = behind(models.front());
     if (best <= kCannotTell) {
-      WrongDatasheet wrong{.values = {}, .behind = best, .model = {}};
+      WrongDatasheet wrong{.values = {}, .behind = best, .with = {}};
       for (const FittedModel& model : models)
         if (behind(model) <= best + kCannotTell) wrong.values.push_back(values_of(model, baseline));
-      wrong.model = std::make_shared<const FittedModel>(std::move(models.front()));
+      wrong.with.model = std::make_shared<const FittedModel>(std::move(models.front()));
       return wrong;
     }
     from = std::move(models.front());
   }
   return std::nullopt;
+}
+
+std::optional<WrongDatasheet> wrong_datasheet_beside_laws(const Trial& rival, const FittedModel& baseline,
+                                                          const Data& fit, int threads) {
+  const std::size_t laws = rival.effects.size();
+  if (laws < 2) return std::nullopt;
+  const std::vector<FittedModel> models = with_another_value(baseline, fit, threads);
+  if (models.empty()) return std::nullopt;
+  std::optional<WrongDatasheet> best;
+  for (std::size_t chosen = 1; chosen + 1 < std::size_t{1} << laws; ++chosen) {
+    Trial with;
+    AssetConfig asset = models.front().asset;
+    const std::vector<PhysicsTerm>& terms = rival.model->asset.physics;
+    for (std::size_t k = 0; k < laws; ++k) {
+      if ((chosen >> k & 1U) == 0) continue;
+      with.effects.push_back(rival.effects[k]);
+      asset.physics.push_back(terms[terms.size() - laws + k]);
+    }
+    Result<FittedModel> model = fit_model(asset, fit, &models.front(), threads, kIterations);
+    if (!model) continue;
+    const double phi = std::min(dispersion(*model), dispersion(*rival.model));
+    const double behind = criterion(*model, phi) - criterion(*rival.model, phi);
+    const double enough = with.effects.size() + 1 < laws ? 0.0 : -kWorthAnother;
+    if (behind > enough || (best && behind >= best->behind)) continue;
+    with.model = std::make_shared<const FittedModel>(std::move(*model));
+    best = WrongDatasheet{.values = {values_of(*with.model, baseline)}, .behind = behind, .with = std::move(with)};
+  }
+  return best;
 }
 
 }  // namespace sealwatch::mismatch

@@ -98,9 +98,9 @@ class Analysis {
     std::optional<AgeingSeal> seal = with_ageing_seal(fit_, *baseline_, best_, options_, progress_);
     if (!seal) return;
     if (!seal->wears) {
-      const auto wrong =
-          wrong_datasheet(*seal->naming.best.model, fit_.samples.size(), *baseline_, fit_, options_.threads);
-      if (wrong && wrong->behind <= 0.0 && says_so(*wrong, "another seal in each test")) return;
+      const auto wrong = wrong_datasheet(seal->naming.best, fit_.samples.size(), *baseline_, fit_, options_.threads);
+      if (wrong && wrong->behind <= 0.0) say_that_the_asset_file_explains_it(*wrong, "another seal in each test");
+      if (why_none_) return;
     }
     fit_ = std::move(seal->fit);
     baseline_ = std::move(seal->baseline);
@@ -119,26 +119,34 @@ class Analysis {
   void ask_the_datasheet() {
     if (best_.effects.empty() || windowed()) return;
     tell("asking the values that the asset file fixes", 0.7);
-    const auto wrong = wrong_datasheet(*best_.model, best_.effects.size(), *baseline_, fit_, options_.threads);
-    // Two values have to be as good as two laws or more, one has to be better than a law alone.
-    const double enough = best_.effects.size() > 1 ? 0.0 : -kWorthAnother;
     std::vector<std::string> laws;
     for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
-    if (!wrong || (wrong->behind <= enough && says_so(*wrong, joined(laws, " and ")))) return;
-    if (wrong->behind > enough) result_.asset_values = wrong->values;
+    auto wrong = wrong_datasheet(best_, best_.effects.size(), *baseline_, fit_, options_.threads);
+    if (!wrong) {
+      wrong = wrong_datasheet_beside_laws(best_, *baseline_, fit_, options_.threads);
+      if (wrong) say_that_the_asset_file_explains_it(*wrong, joined(laws, " and "));
+      return;
+    }
+    // Two values have to be as good as two laws or more, one has to be better than a law alone.
+    const double enough = best_.effects.size() > 1 ? 0.0 : -kWorthAnother;
+    if (wrong->behind > enough)
+      result_.asset_values = wrong->values;
+    else
+      say_that_the_asset_file_explains_it(*wrong, joined(laws, " and "));
   }
 
-  // False where the value does not help on recordings that took no part: it is not claimed either.
-  bool says_so(const WrongDatasheet& wrong, const std::string& laws) {
+  // Not where the value does not help on recordings that took no part: it is not claimed either.
+  void say_that_the_asset_file_explains_it(const WrongDatasheet& wrong, const std::string& instead_of) {
     std::vector<RecordingComparison> compared;
-    const auto blocks = held_out().gains({{}, baseline_}, {{}, wrong.model}, &compared);
-    if (!blocks) return false;
+    const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
+    if (!blocks) return;
     const bool none = blocks->gain.empty();
-    if (!none && gain_interval(*blocks, dispersion(*wrong.model), options_.seed).low <= 0.0) return false;
+    if (!none && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0) return;
+    std::vector<std::string> beside;
+    for (const Effect& effect : wrong.with.effects) beside.push_back(law_in_words(law_at(effect)));
     result_.asset_values = wrong.values;
-    why_none_ = value_of_the_asset_file(values_in_words(wrong.values), laws,
+    why_none_ = value_of_the_asset_file(values_in_words(wrong.values), joined(beside, " and "), instead_of,
                                         none ? std::string() : proof_in_words(pool(compared, true)));
-    return true;
   }
 
   void say_that_the_asset_file_explains_it_too() {

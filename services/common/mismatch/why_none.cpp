@@ -49,10 +49,13 @@ WhyNone seal_aged_and_no_more(const std::string& course) {
           .element = "piston_seal"};
 }
 
-WhyNone value_of_the_asset_file(const std::string& values, const std::string& laws, const std::string& proof) {
+WhyNone value_of_the_asset_file(const std::string& values, const std::string& beside, const std::string& instead_of,
+                                const std::string& proof) {
+  const std::string with = beside.empty() ? "With it " : "With it and " + beside + " ";
   return {.summary = "A value that the asset file fixes may be wrong: " + values + "." +
-                     (proof.empty() ? "" : " With it " + proof + ".") + " It explains these recordings as well as " +
-                     laws + " would, or better: no physics is named.",
+                     (proof.empty() ? "" : " " + with + proof + ".") +
+                     (beside.empty() ? " It explains" : " Together they explain") + " these recordings as well as " +
+                     instead_of + " would, or better: no physics is named.",
           .next_test =
               "Check this value against the drawing or the datasheet, or let it be estimated (estimate: true in "
               "the asset file), and analyse again."};

@@ -137,7 +137,7 @@ void print_prognosis(const Explanation& explanation) {
 
 /// A parameter that wants to go further than its range allows stands in for something: said before all figures.
 void print_bounds(const Explanation& explanation) {
-  const bool changed = !explanation.effects.empty();
+  const bool changed = explanation.changed();
   std::string text;
   for (const mismatch::ParameterShift& shift : explanation.parameters) {
     if (!shift.before_at_bound && !shift.after_at_bound) continue;
@@ -156,14 +156,19 @@ void print_text(const Explanation& explanation, const Files& files) {
   std::printf("%s: %s\n  %s\n", explanation.asset_id.c_str(), std::string(name_of(explanation.verdict)).c_str(),
               wrapped(explanation.summary, kWidth, 2).c_str());
   for (const FoundEffect& effect : explanation.effects) print_effect(effect);
-  const bool changed = !explanation.effects.empty();
-  if (changed) print_prognosis(explanation);
+  const bool as_well = !explanation.effects.empty() && !explanation.asset_values.empty();
+  if (as_well) std::printf("    cannot be told from: a value of the asset file (above)\n");
+  const bool changed = explanation.changed();
+  if (!explanation.effects.empty()) print_prognosis(explanation);
   print_bounds(explanation);
   print_channels("kept aside", explanation.holdout, changed);
   print_channels("fitted", explanation.fit, changed);
   if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());
   std::printf("\n  look at %s\n  scripts read %s\n  the asset with %s: %s\n", files.html.c_str(), files.json.c_str(),
-              changed ? "what was found" : "the fitted parameters", files.asset.c_str());
+              !explanation.effects.empty() ? "what was found"
+              : changed                    ? "the value that would do"
+                                           : "the fitted parameters",
+              files.asset.c_str());
 }
 
 Result<Explanation> analyse(const ExplainEngine& engine, const ExplainOptions& options, const AssetConfig& asset,

@@ -116,6 +116,7 @@ struct ParameterShift {
 struct AssetValue {
   std::string name, unit;
   double in_asset_file = 0.0, fitted = 0.0;
+  double std_error = 0.0;  ///< infinite where the data cannot tell
 };
 
 /// An improvement that physics forbids: it fits better and is not claimed. Shares are of the misfit beyond the noise,
@@ -171,6 +172,11 @@ struct Explanation {
   std::string summary;             ///< two or three sentences for a maintenance engineer
   std::vector<std::string> notes;  ///< noise model, what was tried, limits of the data
   AssetConfig explained;           ///< the asset with fitted parameters and the found physics
+
+  /// Whether a model after differs from that before: by laws, or by a value of the asset file in their place.
+  [[nodiscard]] bool changed() const {
+    return !effects.empty() || (verdict == Verdict::undetermined && !asset_values.empty());
+  }
 };
 
 }  // namespace mismatch

@@ -6,14 +6,14 @@
 
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
+#include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr std::size_t kMostValues = 2;
-constexpr std::size_t kAsked = 4;  // values that are fitted: those that promise most
-constexpr int kIterations = 20;
+constexpr std::size_t kMostValues = 3;
+constexpr std::size_t kAsked = 4;     // values that are fitted: those that promise most
 constexpr double kOffByAtMost = 1.5;  // times: further off a datasheet is not wrong but another's
 constexpr double kCannotTell = 6.0;   // criterion
 
@@ -25,23 +25,53 @@ std::vector<std::string> fixed_values(const AssetConfig& asset, const PlantDescr
   return names;
 }
 
+const PlantDescription& plant_of(const FittedModel& model) {
+  return model.problem.recordings.front().simulation->plant();
+}
+
 AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
   ParameterSetting& setting = asset.parameters.at(name);
-  setting.estimate = true;
-  setting.min = std::min(setting.value / kOffByAtMost, setting.value * kOffByAtMost);
-  setting.max = std::max(setting.value / kOffByAtMost, setting.value * kOffByAtMost);
+  const auto [low, high] = std::minmax({setting.value / kOffByAtMost, setting.value * kOffByAtMost});
+  setting = {
+      .value = setting.value, .min = std::max(setting.min, low), .max = std::min(setting.max, high), .estimate = true};
   return asset;
 }
 
-// With one value more set free; nothing where that cannot be fitted, or ends at a bound.
-std::optional<FittedModel> freed(const FittedModel& from, const std::string& name, const Data& fit) {
-  Result<FittedModel> model = fit_model(with_free_value(from.asset, name), fit, &from, 1, kIterations);
-  if (!model) return std::nullopt;
-  const auto unknown = std::ranges::find(model->problem.shared, name, &Unknown::name);
-  if (unknown == model->problem.shared.end()) return std::nullopt;
+// An asset with a value more set free, and a model near it.
+struct Attempt {
+  AssetConfig asset;
+  std::string name;
+  std::shared_ptr<const FittedModel> near;
+};
+
+// From the asset's values, and from the model near it where that leads further; nothing where it cannot be fitted or
+// the value ends at a bound.
+std::shared_ptr<const FittedModel> fitted(const Attempt& attempt, const Data& fit) {
+  Result<FittedModel> model = fit_model(attempt.asset, fit, nullptr, 1);
+  if (!model || model->misfit >= attempt.near->misfit) {
+    Result<FittedModel> other = fit_model(attempt.asset, fit, attempt.near.get(), 1);
+    if (other && (!model || other->misfit < model->misfit)) model = std::move(other);
+  }
+  if (!model) return nullptr;
+  const auto unknown = std::ranges::find(model->problem.shared, attempt.name, &Unknown::name);
+  if (unknown == model->problem.shared.end()) return nullptr;
   const auto at = static_cast<std::size_t>(unknown - model->problem.shared.begin());
-  if (at_bound(*unknown, model->optimum.point.shared[at])) return std::nullopt;
-  return std::move(*model);
+  if (at_bound(*unknown, model->optimum.point.shared[at])) return nullptr;
+  return std::make_shared<const FittedModel>(std::move(*model));
+}
+
+// Side by side; in the order of the attempts.
+std::vector<std::shared_ptr<const FittedModel>> all_fitted(const std::vector<Attempt>& attempts, const Data& fit,
+                                                           int threads) {
+  std::vector<std::shared_ptr<const FittedModel>> models;
+  const auto together = static_cast<std::size_t>(threads);
+  for (std::size_t first = 0; first < attempts.size(); first += together) {
+    std::vector<std::future<std::shared_ptr<const FittedModel>>> running;
+    for (std::size_t k = first; k < std::min(attempts.size(), first + together); ++k)
+      running.push_back(std::async(std::launch::async, [&, k] { return fitted(attempts[k], fit); }));
+    for (auto& one : running) models.push_back(one.get());
+  }
+  return models;
 }
 
 // Normal equations of all recordings together: shared unknowns, then each recording's own.
@@ -91,59 +121,125 @@ double promised_gain(const NormalEquations& all, const std::vector<Eigen::Index>
   return 2.0 * step * h - step * step * s;
 }
 
-// The values that promise most, in that order.
-std::vector<std::string> worth_asking(const FittedModel& from, const Data& fit, int threads) {
-  const std::vector<std::string> names = fixed_values(from.asset, from.problem.recordings.front().simulation->plant());
-  AssetConfig asset = from.asset;
-  for (const std::string& name : names) asset = with_free_value(std::move(asset), name);
-  const Result<FittedModel> all = fit_model(asset, fit, &from, threads, 0);
+struct Promise {
+  std::string name;
+  double misfit = 0.0;  ///< that would be left
+};
+
+// Of each fixed value of `asset`, the most promising first.
+std::vector<Promise> promises_of(const AssetConfig& asset, const FittedModel& model, const Data& fit, int threads) {
+  const std::vector<std::string> names = fixed_values(asset, plant_of(model));
+  AssetConfig all_free = model.asset;
+  for (const std::string& name : names) all_free = with_free_value(std::move(all_free), name);
+  const Result<FittedModel> all = fit_model(all_free, fit, &model, threads, 0);
   if (!all) return {};
   const NormalEquations equations = normal_equations(*all);
-  std::vector<Eigen::Index> estimated;
-  std::vector<std::pair<double, std::string>> gains;
-  const auto is_value = [&](Eigen::Index k) {
-    return k < static_cast<Eigen::Index>(all->problem.shared.size()) &&
-           std::ranges::find(names, all->problem.shared[static_cast<std::size_t>(k)].name) != names.end();
+  const std::vector<Unknown>& shared = all->problem.shared;
+  std::vector<Eigen::Index> estimated, values;
+  for (Eigen::Index k = 0; k < equations.gradient.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const bool is_value = at < shared.size() && std::ranges::find(names, shared[at].name) != names.end();
+    (is_value ? values : estimated).push_back(k);
+  }
+  std::vector<Promise> promises;
+  for (const Eigen::Index value : values)
+    promises.push_back({.name = shared[static_cast<std::size_t>(value)].name,
+                        .misfit = model.misfit - promised_gain(equations, estimated, value)});
+  std::ranges::stable_sort(promises, {}, &Promise::misfit);
+  return promises;
+}
+
+std::vector<AssetValue> values_of(const FittedModel& model, const AssetConfig& asset) {
+  const PlantDescription& plant = plant_of(model);
+  const std::vector<double> errors = standard_errors(model);
+  std::vector<AssetValue> values;
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const std::string& name = model.problem.shared[k].name;
+    const auto sheet = asset.parameters.find(name);
+    if (sheet == asset.parameters.end() || sheet->second.estimate || plant.find_parameter(name) == nullptr) continue;
+    values.push_back({.name = name,
+                      .unit = plant.find_parameter(name)->unit,
+                      .in_asset_file = sheet->second.value,
+                      .fitted = model.asset.parameters.at(name).value,
+                      .std_error = errors[k]});
+  }
+  return values;
+}
+
+double behind(const FittedModel& model, const FittedModel& found) {
+  const double phi = std::min(dispersion(model), dispersion(found));
+  return criterion(model, phi) - criterion(found, phi);
+}
+
+// The asset with those of the laws found that are kept, at the values they were found with.
+AssetConfig with_laws(AssetConfig asset, const Trial& found, const std::vector<std::size_t>& kept) {
+  const std::vector<PhysicsTerm>& terms = found.model->asset.physics;
+  for (const std::size_t k : kept) asset.physics.push_back(terms[terms.size() - found.effects.size() + k]);
+  return asset;
+}
+
+std::vector<std::size_t> without(std::vector<std::size_t> kept, std::size_t left_out) {
+  std::erase(kept, left_out);
+  return kept;
+}
+
+// The best value in place of one law.
+struct Replaced {
+  std::string name;
+  std::vector<std::size_t> kept;
+  std::shared_ptr<const FittedModel> model;
+};
+
+std::optional<Replaced> one_law_replaced(const DatasheetQuestion& of) {
+  std::vector<std::size_t> all(of.found.effects.size());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+  struct Place {
+    Promise promise;
+    std::size_t law;
+    std::shared_ptr<const FittedModel> near;
   };
-  for (Eigen::Index k = 0; k < equations.gradient.size(); ++k)
-    if (!is_value(k)) estimated.push_back(k);
-  for (Eigen::Index k = 0; k < equations.gradient.size(); ++k)
-    if (is_value(k))
-      gains.emplace_back(promised_gain(equations, estimated, k), all->problem.shared[static_cast<std::size_t>(k)].name);
-  std::ranges::stable_sort(gains, std::greater<>(), &std::pair<double, std::string>::first);
-  std::vector<std::string> best;
-  for (std::size_t k = 0; k < std::min(kAsked, gains.size()); ++k)
-    if (gains[k].first > 0.0) best.push_back(gains[k].second);
+  std::vector<Place> places;
+  for (const std::size_t law : all) {
+    Result<FittedModel> fewer =
+        fit_model(with_laws(of.asset, of.found, without(all, law)), of.fit, of.found.model.get(), of.threads);
+    if (!fewer) continue;
+    const auto near = std::make_shared<const FittedModel>(std::move(*fewer));
+    for (Promise& promise : promises_of(of.asset, *near, of.fit, of.threads))
+      places.push_back({std::move(promise), law, near});
+  }
+  std::ranges::stable_sort(places, {}, [](const Place& place) { return place.promise.misfit; });
+  if (places.size() > kAsked) places.resize(kAsked);
+  std::vector<Attempt> attempts;
+  for (const Place& place : places)
+    attempts.push_back(
+        {.asset = with_free_value(with_laws(of.asset, of.found, without(all, place.law)), place.promise.name),
+         .name = place.promise.name,
+         .near = place.near});
+  const auto models = all_fitted(attempts, of.fit, of.threads);
+  std::optional<Replaced> best;
+  for (std::size_t k = 0; k < models.size(); ++k)
+    if (models[k] != nullptr && (!best || models[k]->misfit < best->model->misfit))
+      best = Replaced{places[k].promise.name, without(all, places[k].law), models[k]};
   return best;
 }
 
-// Each of these by itself, the best fit first.
-std::vector<FittedModel> with_another_value(const FittedModel& from, const Data& fit, int threads) {
-  const std::vector<std::string> names = worth_asking(from, fit, threads);
-  std::vector<FittedModel> models;
-  for (std::size_t first = 0; first < names.size(); first += static_cast<std::size_t>(threads)) {
-    std::vector<std::future<std::optional<FittedModel>>> running;
-    for (std::size_t k = first; k < std::min(names.size(), first + static_cast<std::size_t>(threads)); ++k)
-      running.push_back(std::async(std::launch::async, [&, k] { return freed(from, names[k], fit); }));
-    for (auto& one : running) {
-      std::optional<FittedModel> model = one.get();
-      if (model) models.push_back(std::move(*model));
-    }
+// Laws that are not needed beside the value are taken out, one at a time.
+void drop_what_is_not_needed(const DatasheetQuestion& of, Replaced& replaced) {
+  while (!replaced.kept.empty()) {
+    std::vector<Attempt> attempts;
+    for (const std::size_t law : replaced.kept)
+      attempts.push_back(
+          {.asset = with_free_value(with_laws(of.asset, of.found, without(replaced.kept, law)), replaced.name),
+           .name = replaced.name,
+           .near = replaced.model});
+    const auto models = all_fitted(attempts, of.fit, of.threads);
+    std::size_t best = models.size();
+    for (std::size_t k = 0; k < models.size(); ++k)
+      if (models[k] != nullptr && (best == models.size() || models[k]->misfit < models[best]->misfit)) best = k;
+    if (best == models.size() || behind(*models[best], *replaced.model) > kWorthAnother) return;
+    replaced.kept = without(replaced.kept, replaced.kept[best]);
+    replaced.model = models[best];
   }
-  std::ranges::stable_sort(models, {}, &FittedModel::misfit);
-  return models;
-}
-
-std::vector<AssetValue> values_of(const FittedModel& model, const FittedModel& baseline) {
-  const PlantDescription& plant = baseline.problem.recordings.front().simulation->plant();
-  std::vector<AssetValue> values;
-  for (const std::string& name : fixed_values(baseline.asset, plant))
-    if (model.asset.parameters.at(name).estimate)
-      values.push_back({.name = name,
-                        .unit = plant.find_parameter(name)->unit,
-                        .in_asset_file = baseline.asset.parameters.at(name).value,
-                        .fitted = model.asset.parameters.at(name).value});
-  return values;
 }
 
 }  // namespace
@@ -163,53 +259,48 @@ std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) 
   return text;
 }
 
-std::optional<WrongDatasheet> wrong_datasheet(const Trial& rival, std::size_t most_values, const FittedModel& baseline,
-                                              const Data& fit, int threads) {
-  std::optional<FittedModel> from;
-  for (std::size_t values = 1; values <= std::min(most_values, kMostValues); ++values) {
-    std::vector<FittedModel> models = with_another_value(from ? *from : baseline, fit, threads);
+std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::size_t most) {
+  AssetConfig asset = of.asset;
+  auto from = std::make_shared<const FittedModel>();
+  for (std::size_t count = 1; count <= std::min(most, kMostValues); ++count) {
+    const FittedModel& near = count == 1 ? of.baseline : *from;
+    std::vector<Attempt> attempts;
+    for (const Promise& promise : promises_of(asset, near, of.fit, of.threads))
+      if (attempts.size() < kAsked)
+        attempts.push_back({.asset = with_free_value(asset, promise.name),
+                            .name = promise.name,
+                            .near = std::shared_ptr<const FittedModel>(from, &near)});
+    auto models = all_fitted(attempts, of.fit, of.threads);
+    std::erase(models, nullptr);
+    std::ranges::stable_sort(models, {}, [](const auto& model) { return model->misfit; });
     if (models.empty()) return std::nullopt;
-    const double phi = std::min(dispersion(models.front()), dispersion(*rival.model));
-    const auto behind = [&](const FittedModel& model) { return criterion(model, phi) - criterion(*rival.model, phi); };
-    const double best = behind(models.front());
+    const double best = behind(*models.front(), *of.found.model);
     if (best <= kCannotTell) {
-      WrongDatasheet wrong{.values = {}, .behind = best, .with = {}};
-      for (const FittedModel& model : models)
-        if (behind(model) <= best + kCannotTell) wrong.values.push_back(values_of(model, baseline));
-      wrong.with.model = std::make_shared<const FittedModel>(std::move(models.front()));
+      WrongDatasheet wrong{.values = {}, .behind = best, .with = {.effects = {}, .model = models.front()}};
+      for (const auto& model : models)
+        if (behind(*model, *models.front()) <= kCannotTell) wrong.values.push_back(values_of(*model, of.asset));
       return wrong;
     }
-    from = std::move(models.front());
+    for (const AssetValue& value : values_of(*models.front(), of.asset))
+      if (!asset.parameters.at(value.name).estimate) asset = with_free_value(std::move(asset), value.name);
+    from = models.front();
   }
   return std::nullopt;
 }
 
-std::optional<WrongDatasheet> wrong_datasheet_beside_laws(const Trial& rival, const FittedModel& baseline,
-                                                          const Data& fit, int threads) {
-  const std::size_t laws = rival.effects.size();
+std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& of) {
+  const std::size_t laws = of.found.effects.size();
   if (laws < 2) return std::nullopt;
-  const std::vector<FittedModel> models = with_another_value(baseline, fit, threads);
-  if (models.empty()) return std::nullopt;
-  std::optional<WrongDatasheet> best;
-  for (std::size_t chosen = 1; chosen + 1 < std::size_t{1} << laws; ++chosen) {
-    Trial with;
-    AssetConfig asset = models.front().asset;
-    const std::vector<PhysicsTerm>& terms = rival.model->asset.physics;
-    for (std::size_t k = 0; k < laws; ++k) {
-      if ((chosen >> k & 1U) == 0) continue;
-      with.effects.push_back(rival.effects[k]);
-      asset.physics.push_back(terms[terms.size() - laws + k]);
-    }
-    Result<FittedModel> model = fit_model(asset, fit, &models.front(), threads, kIterations);
-    if (!model) continue;
-    const double phi = std::min(dispersion(*model), dispersion(*rival.model));
-    const double behind = criterion(*model, phi) - criterion(*rival.model, phi);
-    const double enough = with.effects.size() + 1 < laws ? 0.0 : -kWorthAnother;
-    if (behind > enough || (best && behind >= best->behind)) continue;
-    with.model = std::make_shared<const FittedModel>(std::move(*model));
-    best = WrongDatasheet{.values = {values_of(*with.model, baseline)}, .behind = behind, .with = std::move(with)};
-  }
-  return best;
+  std::optional<Replaced> replaced = one_law_replaced(of);
+  if (!replaced) return std::nullopt;
+  drop_what_is_not_needed(of, *replaced);
+  const double enough = replaced->kept.size() + 1 < laws ? 0.0 : -kWorthAnother;
+  WrongDatasheet wrong{.values = {values_of(*replaced->model, of.asset)},
+                       .behind = behind(*replaced->model, *of.found.model),
+                       .with = {.effects = {}, .model = replaced->model}};
+  if (wrong.behind > enough) return std::nullopt;
+  for (const std::size_t k : replaced->kept) wrong.with.effects.push_back(of.found.effects[k]);
+  return wrong;
 }
 
 }  // namespace sealwatch::mismatch

@@ -1,12 +1,15 @@
 // Values of the asset file that are not estimated, and may be wrong: a piston area that is 2 % off comes out as a
-// sensor's gain, a slip of the pump and an offset. Those of which the linearised model promises most are freed, each by
-// itself and without any law, then the best of them with another, two at most, and compared with what was found by the
-// criterion of the fitted recordings (criterion.hpp).
-// Where no value does by itself, the best is tried beside some of the laws: a wrong value and missing physics together
-// come out as more laws than there are.
+// sensor's gain, a slip of the pump and an offset.
 //
-// Values that are 0, the mean load (each recording's own load is free) and what the recordings leave at a bound are not
-// asked.
+//   alone            values are freed without any law: of those that the linearised model promises most of, the best;
+//                    where that does not do, the best beside it, and so on
+//   in place of one  a value takes the place of one of the laws found, then the others go that are not needed with it:
+//   a
+//                    wrong value and missing physics together come out as more laws than there are
+//
+// Each fit starts from the asset file's values, as the fit without laws may be bent too far; models are compared by the
+// criterion of the fitted recordings (criterion.hpp). Values that are 0, the mean load (each recording's own load is
+// free) and what the recordings leave at a bound (1.5 times off, or that of the asset file) are not asked.
 #pragma once
 
 #include <optional>
@@ -20,20 +23,27 @@ namespace sealwatch::mismatch {
 
 struct WrongDatasheet {
   std::vector<std::vector<AssetValue>> values;  ///< that these recordings cannot tell apart, the best first
-  double behind = 0.0;                          ///< criterion with the first less that of the rival
+  double behind = 0.0;                          ///< criterion with the first less that of what was found
   Trial with;                                   ///< the model with the first, and the laws that it leaves standing
 };
 
 /// "A_C = 0.00601 m2 instead of 0.00589 (+2.0 %), or ..."
 [[nodiscard]] std::string values_in_words(const std::vector<std::vector<AssetValue>>& values);
 
-/// `rival`: what was found beside `baseline` (laws, another seal in each test), both fitted to `fit`. Nothing where it
-/// is better than `most_values` values by more than 6.
-[[nodiscard]] std::optional<WrongDatasheet> wrong_datasheet(const Trial& rival, std::size_t most_values,
-                                                            const FittedModel& baseline, const Data& fit, int threads);
+/// What is asked: the asset as it was given, the model fitted to it without laws, and what was found beside it (laws,
+/// another seal in each test), all of the same recordings.
+struct DatasheetQuestion {
+  const AssetConfig& asset;
+  const FittedModel& baseline;
+  const Trial& found;
+  const Data& fit;
+  int threads = 1;
+};
 
-/// One value beside some of the rival's laws, fewer than all of them. Nothing where that is no better.
-[[nodiscard]] std::optional<WrongDatasheet> wrong_datasheet_beside_laws(const Trial& rival, const FittedModel& baseline,
-                                                                        const Data& fit, int threads);
+/// At most `most` values alone. Nothing where what was found is better by more than 6.
+[[nodiscard]] std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& question, std::size_t most);
+
+/// A value in place of one law or more of those found. Nothing where that is no better.
+[[nodiscard]] std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& question);
 
 }  // namespace sealwatch::mismatch

@@ -61,7 +61,7 @@ class Analysis {
     if (!why_none_) look_for_a_change();
     if (!why_none_) let_the_seal_age();
     if (!why_none_) ask_the_datasheet();
-    if (why_none_) best_ = {.effects = {}, .model = baseline_};
+    if (why_none_) best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
       prove();
@@ -98,8 +98,9 @@ class Analysis {
     std::optional<AgeingSeal> seal = with_ageing_seal(fit_, *baseline_, best_, options_, progress_);
     if (!seal) return;
     if (!seal->wears) {
-      const auto wrong = wrong_datasheet(seal->naming.best, fit_.samples.size(), *baseline_, fit_, options_.threads);
-      if (wrong && wrong->behind <= 0.0) say_that_the_asset_file_explains_it(*wrong, "another seal in each test");
+      const DatasheetQuestion question{asset_, *baseline_, seal->naming.best, fit_, options_.threads};
+      const auto wrong = values_alone(question, fit_.samples.size());
+      if (wrong && wrong->behind <= 0.0) blame_the_asset_file(*wrong, "another seal in each test");
       if (why_none_) return;
     }
     fit_ = std::move(seal->fit);
@@ -117,26 +118,26 @@ class Analysis {
 
   // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it.
   void ask_the_datasheet() {
-    if (best_.effects.empty() || windowed()) return;
+    if (best_.effects.empty() || (windowed() && asset_.model != "eha")) return;
     tell("asking the values that the asset file fixes", 0.7);
+    const Data data = prepared(fit_);
+    const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};
     std::vector<std::string> laws;
     for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
-    auto wrong = wrong_datasheet(best_, best_.effects.size(), *baseline_, fit_, options_.threads);
-    if (!wrong) {
-      wrong = wrong_datasheet_beside_laws(best_, *baseline_, fit_, options_.threads);
-      if (wrong) say_that_the_asset_file_explains_it(*wrong, joined(laws, " and "));
-      return;
-    }
-    // Two values have to be as good as two laws or more, one has to be better than a law alone.
-    const double enough = best_.effects.size() > 1 ? 0.0 : -kWorthAnother;
-    if (wrong->behind > enough)
-      result_.asset_values = wrong->values;
-    else
-      say_that_the_asset_file_explains_it(*wrong, joined(laws, " and "));
+    auto wrong = values_alone(question, best_.effects.size());
+    const bool alone = wrong.has_value();
+    if (!wrong) wrong = value_in_place_of_laws(question);
+    if (!wrong) return;
+    // Several values have to be as good as the laws, one has to be better than a law alone that has a name.
+    const bool named = !best_.effects.front().law->closed_form;
+    const double enough = best_.effects.size() > 1 ? 0.0 : named ? -kWorthAnother : wrong->behind;
+    if (!alone || wrong->behind <= enough) return blame_the_asset_file(*wrong, joined(laws, " and "));
+    result_.asset_values = wrong->values;
+    instead_of_ = best_.effects.size();
   }
 
   // Not where the value does not help on recordings that took no part: it is not claimed either.
-  void say_that_the_asset_file_explains_it(const WrongDatasheet& wrong, const std::string& instead_of) {
+  void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of) {
     std::vector<RecordingComparison> compared;
     const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
     if (!blocks) return;
@@ -145,13 +146,15 @@ class Analysis {
     std::vector<std::string> beside;
     for (const Effect& effect : wrong.with.effects) beside.push_back(law_in_words(law_at(effect)));
     result_.asset_values = wrong.values;
-    why_none_ = value_of_the_asset_file(values_in_words(wrong.values), joined(beside, " and "), instead_of,
-                                        none ? std::string() : proof_in_words(pool(compared, true)));
+    why_none_ =
+        value_of_the_asset_file(values_in_words(wrong.values), wrong.values.front().size() > 1, joined(beside, " and "),
+                                instead_of, none ? std::string() : proof_in_words(pool(compared, true)));
+    with_another_value_ = wrong.with.model;
   }
 
   void say_that_the_asset_file_explains_it_too() {
     if (result_.asset_values.empty() || why_none_) return;
-    if (result_.effects.empty()) {  // taken back since: what stood for them has nothing to stand for
+    if (result_.effects.size() != instead_of_) {  // taken back since: what stood for them has nothing to stand for
       result_.asset_values.clear();
       return;
     }
@@ -374,6 +377,8 @@ class Analysis {
     result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model);
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = best_.model->asset;
+    for (const std::vector<AssetValue>& entry : result_.asset_values)  // fixed again, at what fits
+      for (const AssetValue& value : entry) result_.explained.parameters.at(value.name).estimate = false;
     compare_with_what_was_kept_aside();
     decide();
     for (FoundEffect& effect : result_.effects)
@@ -465,6 +470,8 @@ class Analysis {
                                   .evidence = why_none_->summary});
     result_.rejected.clear();
     result_.prognosis = {};
+    if (with_another_value_ && !fit_.own_parameter.empty())
+      why_none_->summary += " The piston seal aged between these tests. " + ageing_in_words(*best_.model, fit_);
     result_.notes.push_back(why_none_->summary);
     result_.summary = why_none_->summary;
     result_.next_test = why_none_->next_test;
@@ -534,9 +541,11 @@ class Analysis {
   Trial best_;
   Trial tried_;  ///< what was taken back, as it explains too little
   bool proven_ = false;
-  bool all_compared_ = true;         ///< the models can be simulated on every recording
-  bool input_swings_ = false;        ///< between its samples, through much of the tests
-  std::optional<WhyNone> why_none_;  ///< set: no law is named
+  bool all_compared_ = true;                               ///< the models can be simulated on every recording
+  bool input_swings_ = false;                              ///< between its samples, through much of the tests
+  std::optional<WhyNone> why_none_;                        ///< set: no law is named
+  std::shared_ptr<const FittedModel> with_another_value_;  ///< of the asset file, where that explains it
+  std::size_t instead_of_ = 0;                             ///< laws, for which a value would do as well
   double window_s_ = 0.0;
   Explanation result_;
 };

@@ -49,16 +49,18 @@ WhyNone seal_aged_and_no_more(const std::string& course) {
           .element = "piston_seal"};
 }
 
-WhyNone value_of_the_asset_file(const std::string& values, const std::string& beside, const std::string& instead_of,
-                                const std::string& proof) {
-  const std::string with = beside.empty() ? "With it " : "With it and " + beside + " ";
-  return {.summary = "A value that the asset file fixes may be wrong: " + values + "." +
-                     (proof.empty() ? "" : " " + with + proof + ".") +
-                     (beside.empty() ? " It explains" : " Together they explain") + " these recordings as well as " +
-                     instead_of + " would, or better: no physics is named.",
+WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
+                                const std::string& instead_of, const std::string& proof) {
+  const std::string start =
+      several ? "Values that the asset file fixes may be wrong: " : "A value that the asset file fixes may be wrong: ";
+  const std::string with = (several ? "With them " : "With it ") + (beside.empty() ? "" : "and " + beside + " ");
+  const std::string explains = several || !beside.empty() ? " Together they explain" : " It explains";
+  return {.summary = start + values + "." + (proof.empty() ? "" : " " + with + proof + ".") + explains +
+                     " these recordings as well as " + instead_of + " would, or better: no physics is named" +
+                     (beside.empty() ? "." : " before that is checked."),
           .next_test =
-              "Check this value against the drawing or the datasheet, or let it be estimated (estimate: true in "
-              "the asset file), and analyse again."};
+              "Check this against the drawing or the datasheet. Only where neither tells, let it be estimated "
+              "(estimate: true in the asset file) and analyse again: a fault that acts like it would then be hidden."};
 }
 
 WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before,

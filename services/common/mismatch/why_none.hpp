@@ -24,10 +24,10 @@ struct WhyNone {
 [[nodiscard]] WhyNone seal_changed_but_not_by_wear(const std::string& course);
 [[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
 
-/// `values`: of the asset file, and what would explain the recordings instead, in words; `beside`: laws that are needed
-/// with it ("" for none); `instead_of`: what it stands for; `proof`: what it does on recordings that took no part, ""
-/// where there are none.
-[[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, const std::string& beside,
+/// `values`: of the asset file (`several`: more than one), and what would explain the recordings instead, in words;
+/// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for; `proof`: what they do on
+/// recordings that took no part, "" where there are none.
+[[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
                                               const std::string& instead_of, const std::string& proof);
 
 /// `far`: the channel that is missed most with the laws, `before`: without. Tests of different days may also differ

@@ -23,7 +23,9 @@ VerdictWords words_of(const Explanation& explanation) {
     case Verdict::consistent:
       return {"good", "Consistent: simulation and recordings agree within the noise"};
     case Verdict::mismatch:
-      return {"bad", "Mismatch found and explained"};
+      return {"bad", explanation.asset_values.empty()
+                         ? "Mismatch found and explained"
+                         : "Mismatch found and explained, by physics or by a value of the asset file"};
     case Verdict::undetermined:
       if (!explanation.asset_values.empty()) return {"warn", "Undetermined: a value of the asset file may be wrong"};
       return {"warn", explanation.statistically_significant ? "Undetermined: a mismatch that is not explained"
@@ -72,7 +74,7 @@ std::string arrow(double before, double after) {
 std::string figures(const Explanation& explanation) {
   std::string html = "<div class=\"figures\">\n";
   add_figure(p_value_text(explanation.p_value), "probability of noise alone", html);
-  const bool changed = !explanation.effects.empty();
+  const bool changed = explanation.changed();
   const auto add_misfit = [&html, changed](const mismatch::PooledFit& fit, const std::string& where) {
     const Misfit misfit = overall(fit);
     if (misfit.known)

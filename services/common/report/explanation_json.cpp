@@ -198,7 +198,8 @@ void add_details(const Explanation& explanation, Json& json) {
       return Json{{"name", value.name},
                   {"unit", value.unit},
                   {"in_asset_file", number(value.in_asset_file)},
-                  {"fitted", number(value.fitted)}};
+                  {"fitted", number(value.fitted)},
+                  {"std_error", number(value.std_error)}};
     });
   });
   json["prognosis"] = prognosis_json(explanation.prognosis);

@@ -196,7 +196,8 @@ std::vector<std::vector<AssetValue>> read_asset_values(const Json& json) {
       values.back().push_back({.name = text(value, "name"),
                                .unit = text(value, "unit"),
                                .in_asset_file = number(value, "in_asset_file"),
-                               .fitted = number(value, "fitted")});
+                               .fitted = number(value, "fitted"),
+                               .std_error = number(value, "std_error")});
   }
   return values;
 }

@@ -83,7 +83,7 @@ std::string power_words(const Power& power) {
 std::string parameters_section(const Explanation& explanation) {
   if (explanation.parameters.empty()) return {};
   const Result<const PlantDescription*> plant = find_plant(explanation.model);
-  const bool changed = !explanation.effects.empty();
+  const bool changed = explanation.changed();
   Table table(changed ? std::vector<std::string>{"parameter", "unit", ">datasheet", ">before", ">after", ">change",
                                                  ">over its error", "~meaning"}
                       : std::vector<std::string>{"parameter", "unit", ">datasheet", ">fitted", "~meaning"});
@@ -127,7 +127,8 @@ std::string asset_values_section(const Explanation& explanation) {
     std::string which = entry++ == 0 ? "" : "or";
     for (const mismatch::AssetValue& value : values) {
       const ParameterDescription* known = plant ? (*plant)->find_parameter(value.name) : nullptr;
-      table.row({which, value.name, readable(value.in_asset_file, value.unit, 4), readable(value.fitted, value.unit, 4),
+      table.row({which, value.name, readable(value.in_asset_file, value.unit, 4),
+                 readable_with_error(value.fitted, value.std_error, value.unit),
                  change_text(value.in_asset_file, value.fitted), known == nullptr ? "" : known->meaning});
       which = "and";
     }

@@ -143,7 +143,7 @@ std::string overlays_section(const Explanation& explanation) {
       ++left_out;
       continue;
     }
-    const std::string plots = overlays_of(*recording, !explanation.effects.empty());
+    const std::string plots = overlays_of(*recording, explanation.changed());
     if (plots.empty()) continue;
     const std::string label = recording->recording + ", " + kind_of(*recording);
     if (first || kept_aside(*recording))
@@ -159,7 +159,7 @@ std::string overlays_section(const Explanation& explanation) {
 }
 
 std::string comparison_section(const Explanation& explanation) {
-  const bool changed = !explanation.effects.empty();
+  const bool changed = explanation.changed();
   const std::vector<std::string> columns = {
       "recording", "", "channel", ">misfit / noise", ">fit, %", ">p, white", ">p, independent of input"};
   Table pooled(columns);

@@ -134,9 +134,9 @@ std::string asset_values_section(const Explanation& explanation) {
     }
   }
   return section("A value of the asset file that may be wrong",
-                 paragraph("The analysis does not estimate these. With another value and no physics added the "
-                           "recordings would be explained as well: check it against the drawing or the datasheet, or "
-                           "let it be estimated (estimate: true) and analyse again.",
+                 paragraph("The analysis takes these as exact. With another value the recordings would be explained "
+                           "without the physics that was found, or with less of it: check the drawing or the datasheet "
+                           "before anything else.",
                            "small muted")
                      .append(table.html()));
 }

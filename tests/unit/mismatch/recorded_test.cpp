@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "sealwatch/model/plant_description.hpp"
 #include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
@@ -66,6 +68,29 @@ TEST(Recorded, AChannelThatRoundsCoarselyOrIsAtTheEndOfItsRangeIsNotStuck) {
   for (double& value : pressure) value = std::max(value, end);
   const Status accepted = check(asset, fit, {});
   EXPECT_TRUE(accepted) << accepted.error().describe();
+}
+
+// A recorded pressure in bar under a header of pascal, and one in pascal under a header of bar.
+TEST(Recorded, AColumnInAnotherUnitIsSuspectedByName) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> fit{recording_of(asset, 0.8)};
+  const PlantDescription& plant = **find_plant("eha");
+  EXPECT_EQ(outside_of_its_range(plant, data_of(fit)), "");
+  for (double& value : values_of(fit[0], "pressure_a")) value *= 1e5;
+  EXPECT_TRUE(outside_of_its_range(plant, data_of(fit)).starts_with("column pressure_a of 0.8 goes to "))
+      << outside_of_its_range(plant, data_of(fit));
+  const auto refused = explain(asset, fit, {});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().describe().find("check the unit in its header"), std::string::npos)
+      << refused.error().describe();
+
+  PooledFit pooled{.channels = {{.channel = "pressure_b", .nrmse_before = 40.0},
+                                {.channel = "pressure_a", .nrmse_before = -99900.0}}};
+  EXPECT_EQ(hardly_moves(pooled),
+            "the simulation's pressure A moves some 1000 times as much as the recorded one: check the unit in the "
+            "header of column pressure_a");
+  pooled.channels.pop_back();
+  EXPECT_EQ(hardly_moves(pooled), "");
 }
 
 }  // namespace

@@ -72,6 +72,42 @@ TEST(Verdict, AWrongValueIsFoundWhereTheFitIsFarOff) {
   EXPECT_NEAR(value.fitted, 0.21, 0.001);
 }
 
+// Both at once come out as three laws; the one that is there stays standing beside the value.
+TEST(Verdict, AWrongValueIsFoundBesidePhysics) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = with_law(asset, **find_law("coulomb_friction", {"F_c", "v_s"}), "piston", std::vector{2e3, 5e-4});
+  truth.parameters.at("A_C").value *= 1.02;
+  const std::vector<Recording> fit{recording_of(truth, 0.7), recording_of(truth, 1.0)};
+  const auto explanation = explain(asset, fit, std::vector{recording_of(truth, 1.3)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  ASSERT_EQ(explanation->asset_values.size(), 1U) << explanation->summary;
+  EXPECT_EQ(explanation->asset_values.front().front().name, "A_C");
+  EXPECT_NEAR(explanation->asset_values.front().front().fitted, 1.02 * 5.89e-3, 1e-5);
+  EXPECT_NE(explanation->summary.find(" friction at the piston the misfit of position"), std::string::npos)
+      << explanation->summary;
+  EXPECT_TRUE(explanation->changed());
+  EXPECT_NEAR(explanation->explained.parameters.at("A_C").value, 1.02 * 5.89e-3, 1e-5);
+  EXPECT_FALSE(explanation->explained.parameters.at("A_C").estimate);
+  EXPECT_LT(explanation->holdout.channels.front().rms_after, 1.2);
+}
+
+// A current sensor's gain and the torque constant nearly do the same: the sensor stays named, and the value is told.
+TEST(Verdict, ALawStaysNamedWhereAValueWouldDoTheSame) {
+  const AssetConfig asset = actuator();
+  const AssetConfig truth =
+      with_law(asset, **find_law("sensor_gain", {"g"}), "sensor:motor_current", std::vector{0.05});
+  const std::vector<Recording> fit{recording_of(truth, 0.7), recording_of(truth, 1.0)};
+  const auto explanation = explain(asset, fit, std::vector{recording_of(truth, 1.3)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
+  ASSERT_EQ(explanation->effects.size(), 1U) << explanation->summary;
+  EXPECT_EQ(explanation->effects.front().what.element, "sensor:motor_current");
+  ASSERT_FALSE(explanation->asset_values.empty()) << explanation->summary;
+  EXPECT_EQ(explanation->asset_values.front().front().name, "T_M");
+  EXPECT_NE(explanation->effects.front().evidence.find("wrong value in the asset file"), std::string::npos);
+}
+
 // Of discharge coefficient, opening area and density only one combination acts.
 TEST(Verdict, ValuesThatDoTheSameAreAllTold) {
   const AssetConfig asset = actuator();

@@ -49,6 +49,24 @@ TEST(ReportHtml, IsWellFormedAndSelfContained) {
   }
 }
 
+mismatch::Explanation blamed_example() {
+  mismatch::Explanation explanation = undetermined_example();
+  explanation.model = "eha";
+  explanation.asset_values = {
+      {{.name = "A_C", .unit = "m2", .in_asset_file = 5.89e-3, .fitted = 6.067e-3, .std_error = 1e-6}},
+      {{.name = "V_0", .unit = "m3", .in_asset_file = 5e-5, .fitted = 6e-5, .std_error = 1e-7}}};
+  return explanation;
+}
+
+TEST(ReportHtml, TellsWhichValueOfTheAssetFileMayBeWrongBeforeWhatCouldHaveBeenSeen) {
+  const std::string html = explanation_to_html(blamed_example());
+  EXPECT_EQ(what_is_wrong(html), "");
+  for (const char* part : {"Undetermined: a value of the asset file may be wrong", "piston area on chamber A",
+                           "dead volume of one chamber", "+3.0 %", "+20 %"})
+    EXPECT_THAT(html, HasSubstr(part));
+  EXPECT_LT(html.find("A value of the asset file that may be wrong"), html.find("What could have been seen"));
+}
+
 TEST(ReportHtml, TellsWhatWasFound) {
   const std::string html = explanation_to_html(example_explanation());
   for (const char* part :

@@ -89,7 +89,11 @@ TEST(ReportJson, OtherElementsWithTheSameLawAreNoOtherId) {
 }
 
 TEST(ReportJson, ReadsBackWhatItWrote) {
-  for (const mismatch::Explanation& explanation : {example_explanation(), consistent_example()}) {
+  mismatch::Explanation blamed = consistent_example();
+  blamed.asset_values = {{{.name = "A_C", .unit = "m2", .in_asset_file = 5.89e-3, .fitted = 6e-3, .std_error = 1e-6},
+                          {.name = "T_M", .unit = "N m/A", .in_asset_file = 0.2, .fitted = 0.21, .std_error = 1e-3}},
+                         {{.name = "V_0", .unit = "m3", .in_asset_file = 5e-5, .fitted = 6e-5, .std_error = 1e-7}}};
+  for (const mismatch::Explanation& explanation : {example_explanation(), consistent_example(), blamed}) {
     const std::string text = explanation_to_json(explanation);
     const auto read = explanation_from_json(text);
     ASSERT_TRUE(read) << read.error().describe();

@@ -19,6 +19,7 @@
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/remainder.hpp"
+#include "services/common/mismatch/remarks.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/unrecorded_input.hpp"
 #include "services/common/mismatch/why_none.hpp"
@@ -150,20 +151,6 @@ class Analysis {
         value_of_the_asset_file(values_in_words(wrong.values), wrong.values.front().size() > 1, joined(beside, " and "),
                                 instead_of, none ? std::string() : proof_in_words(pool(compared, true)));
     with_another_value_ = wrong.with.model;
-  }
-
-  void say_that_the_asset_file_explains_it_too() {
-    if (result_.asset_values.empty() || why_none_) return;
-    if (result_.effects.size() != instead_of_) {  // taken back since: what stood for them has nothing to stand for
-      result_.asset_values.clear();
-      return;
-    }
-    const std::string values = values_in_words(result_.asset_values);
-    const std::string same = " A wrong value in the asset file would do the same: " + values + ".";
-    result_.summary += same;
-    for (FoundEffect& effect : result_.effects) effect.evidence += same;
-    for (Location& place : result_.location) place.evidence += same;
-    result_.next_test = "Check this value of the asset file first: " + values + ". " + result_.next_test;
   }
 
   void tell(std::string_view step, double share) const {
@@ -390,12 +377,7 @@ class Analysis {
           "Record the pressures of both chambers, or the motor's voltage: with the flow and the differential pressure "
           "alone, what chamber B's pressure does cannot be told from missing physics.";
     result_.summary = summary_of(result_);
-    say_that_the_seal_aged();
-    say_that_the_asset_file_explains_it_too();
-    say_that_faster_sampling_helps();
-    say_that_a_signal_is_disturbed();
-    say_that_the_leak_is_in_two_parts();
-    say_why_none();
+    say_what_else_is_known();
     return {};
   }
 
@@ -460,56 +442,25 @@ class Analysis {
     why_none_ = those_kept_aside_differ(*worst);
   }
 
-  void say_why_none() {
-    if (!why_none_) return;
-    result_.location.clear();
-    if (!why_none_->element.empty())
-      result_.location.push_back({.element = why_none_->element,
-                                  .probability = kNeverCertain,
-                                  .indistinguishable_from = {},
-                                  .evidence = why_none_->summary});
-    result_.rejected.clear();
-    result_.prognosis = {};
-    if (with_another_value_ && !fit_.own_parameter.empty())
-      why_none_->summary += " The piston seal aged between these tests. " + ageing_in_words(*best_.model, fit_);
-    result_.notes.push_back(why_none_->summary);
-    result_.summary = why_none_->summary;
-    result_.next_test = why_none_->next_test;
-  }
-
-  void say_that_the_seal_aged() {
-    if (fit_.own_parameter.empty() || why_none_) return;
-    const std::string course = "The piston seal aged between these tests. " + ageing_in_words(*best_.model, fit_);
-    result_.summary += " " + course;
-    result_.notes.push_back(
-        course +
-        " Recordings that took no part have the R_CL that this course predicts for their dates, and "
-        "their misfit contains its error.");
-  }
-
-  void say_that_faster_sampling_helps() {
-    if (!input_swings_ || why_none_ || result_.verdict != Verdict::undetermined) return;
-    result_.summary +=
-        " The input swings from sample to sample, and its unrecorded course may account for what is left.";
-    result_.next_test = "Record these tests with five times as many samples a second.";
-  }
-
-  // Far from the noise, and no law asks for any of it: outliers, or what a cable picks up.
-  void say_that_a_signal_is_disturbed() {
+  // Beside the verdict and the laws.
+  void say_what_else_is_known() {
+    const std::string course = fit_.own_parameter.empty()
+                                   ? ""
+                                   : "The piston seal aged between these tests. " + ageing_in_words(*best_.model, fit_);
+    remark_leak_in_two_parts(result_);
+    if (why_none_) {
+      if (with_another_value_ && !course.empty()) why_none_->summary += " " + course;
+      return remark_why_none(*why_none_, result_);
+    }
+    if (!course.empty()) remark_ageing(course, result_);
+    // Taken back since: what stood for laws has nothing to stand for.
+    if (result_.effects.size() != instead_of_) result_.asset_values.clear();
+    if (!result_.asset_values.empty()) remark_asset_values(result_);
+    const bool undetermined = result_.verdict == Verdict::undetermined;
+    if (input_swings_ && undetermined) remark_faster_sampling(result_);
     const bool nothing_asks = naming_.first.p_value > options_.false_alarm_rate;
-    if (why_none_ || !result_.statistically_significant || !nothing_asks || result_.location.empty()) return;
-    result_.next_test = "Look at the signal of " + element_in_words(result_.location.front().element) +
-                        " for single samples that are far off, and analyse again without them.";
-  }
-
-  // A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
-  void say_that_the_leak_is_in_two_parts() {
-    if (std::ranges::none_of(result_.effects, [](const FoundEffect& one) { return one.what.element == "piston_seal"; }))
-      return;
-    result_.prognosis = {};
-    result_.notes.emplace_back(
-        "The leak past the piston is R_CL and the law found together: R_CL alone no longer tells how the seal is, and "
-        "no condition or remaining life is derived from it.");
+    if (result_.statistically_significant && nothing_asks && !result_.location.empty())
+      remark_disturbed_signal(result_);
   }
 
   void decide() {

@@ -1,0 +1,29 @@
+// What a report says beside verdict and laws: into its summary, its advice and its notes.
+#pragma once
+
+#include <string>
+
+#include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/why_none.hpp"
+
+namespace sealwatch::mismatch {
+
+/// In place of everything that laws would say.
+void remark_why_none(const WhyNone& why, Explanation& result);
+
+/// `course`: R_CL from test to test, in words.
+void remark_ageing(const std::string& course, Explanation& result);
+
+/// Values of the asset file that would do the same as the laws found.
+void remark_asset_values(Explanation& result);
+
+/// The input's course between its samples may account for what is left.
+void remark_faster_sampling(Explanation& result);
+
+/// Far from the noise, and no law asks for any of it: outliers, or what a cable picks up, at the first place.
+void remark_disturbed_signal(Explanation& result);
+
+/// A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
+void remark_leak_in_two_parts(Explanation& result);
+
+}  // namespace sealwatch::mismatch

@@ -517,7 +517,7 @@ Result<Explanation> explain(const AssetConfig& asset, std::span<const Recording>
                             const Progress& progress) {
   if (const Status status = options.validate(); !status) return fail(status.error());
   if (const Status status = check(asset, fit, holdout); !status) return fail(status.error());
-  return Analysis(asset, data_of(fit), data_of(holdout), options, progress).run();
+  return Analysis(asset, data_of(fit, holdout), data_of(holdout, fit), options, progress).run();
 }
 
 }  // namespace sealwatch::mismatch

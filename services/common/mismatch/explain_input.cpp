@@ -112,14 +112,15 @@ Status check_sensors(const PlantSimulation& simulation, const Recording& recordi
 
 }  // namespace
 
-Data data_of(std::span<const Recording> recordings) {
+Data data_of(std::span<const Recording> recordings, std::span<const Recording> others) {
   std::vector<const Recording*> in_turn;
   for (const Recording& recording : recordings) in_turn.push_back(&recording);
   if (std::ranges::all_of(recordings, [](const Recording& one) { return one.start_time.has_value(); }))
     std::ranges::stable_sort(in_turn, {}, [](const Recording* one) { return *one->start_time; });
   Data data;
   for (const Recording* recording : in_turn) {
-    const auto alike = std::ranges::count(recordings, recording->recording_id, &Recording::recording_id);
+    const auto alike = std::ranges::count(recordings, recording->recording_id, &Recording::recording_id) +
+                       std::ranges::count(others, recording->recording_id, &Recording::recording_id);
     data.names.push_back(alike > 1 || recording->recording_id.empty() ? recording->file : recording->recording_id);
     data.samples.push_back(recording->samples);
     data.start_time.push_back(recording->start_time);

@@ -8,8 +8,9 @@
 
 namespace sealwatch::mismatch {
 
-/// In the order of their times, where all have one.
-[[nodiscard]] Data data_of(std::span<const Recording> recordings);
+/// In the order of their times, where all have one. Named by their ids, or by their files where another of these or of
+/// `others` has the same id.
+[[nodiscard]] Data data_of(std::span<const Recording> recordings, std::span<const Recording> others = {});
 [[nodiscard]] Data without(const Data& data, std::size_t left_out);
 [[nodiscard]] Data only(const Data& data, std::size_t one);
 

@@ -70,6 +70,18 @@ TEST(Recorded, AChannelThatRoundsCoarselyOrIsAtTheEndOfItsRangeIsNotStuck) {
   EXPECT_TRUE(accepted) << accepted.error().describe();
 }
 
+TEST(Recorded, RecordingsOfOneIdGoByTheirFiles) {
+  Recording first, second, third;
+  first.recording_id = second.recording_id = "2031-04-12-PST";
+  first.file = "a/pst.csv";
+  second.file = "b/pst.csv";
+  third.recording_id = "2031-05-12-PST";
+  const std::vector<Recording> fit{first, third}, holdout{second};
+  EXPECT_EQ(data_of(fit, holdout).names, (std::vector<std::string>{"a/pst.csv", "2031-05-12-PST"}));
+  EXPECT_EQ(data_of(holdout, fit).names, (std::vector<std::string>{"b/pst.csv"}));
+  EXPECT_EQ(data_of(fit).names, (std::vector<std::string>{"2031-04-12-PST", "2031-05-12-PST"}));
+}
+
 // A recorded pressure in bar under a header of pascal, and one in pascal under a header of bar.
 TEST(Recorded, AColumnInAnotherUnitIsSuspectedByName) {
   const AssetConfig asset = actuator();

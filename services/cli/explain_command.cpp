@@ -152,6 +152,20 @@ void print_bounds(const Explanation& explanation) {
   if (!text.empty()) std::printf("\n  %s\n", wrapped("at a bound of their range: " + text, kWidth, 4).c_str());
 }
 
+/// Where nothing was found, what the fit came to beside what the asset file has.
+void print_estimates(const Explanation& explanation) {
+  constexpr double kShown = 0.02;  // of the asset file's value
+  std::string text;
+  for (const mismatch::ParameterShift& shift : explanation.parameters) {
+    const bool told = std::isfinite(shift.after_std) && !shift.after_at_bound;
+    if (!told || !(std::abs(shift.after - shift.datasheet) > kShown * std::abs(shift.datasheet))) continue;
+    text.append(text.empty() ? "" : "; ").append(shift.name).append(" ");
+    text.append(report::readable_with_error(shift.after, shift.after_std, shift.unit)).append(" (asset file ");
+    text.append(report::readable(shift.datasheet, shift.unit)).append(")");
+  }
+  if (!text.empty()) std::printf("\n  %s\n", wrapped("fitted: " + text, kWidth, 4).c_str());
+}
+
 void print_text(const Explanation& explanation, const Files& files) {
   std::printf("%s: %s\n  %s\n", explanation.asset_id.c_str(), std::string(name_of(explanation.verdict)).c_str(),
               wrapped(explanation.summary, kWidth, 2).c_str());
@@ -159,9 +173,11 @@ void print_text(const Explanation& explanation, const Files& files) {
   const bool as_well = !explanation.effects.empty() && !explanation.asset_values.empty();
   if (as_well) std::printf("    cannot be told from: a value of the asset file (above)\n");
   const bool changed = explanation.changed();
-  if (!explanation.effects.empty()) print_prognosis(explanation);
+  if (changed) print_prognosis(explanation);
   print_bounds(explanation);
-  print_channels("kept aside", explanation.holdout, changed);
+  if (!changed) print_estimates(explanation);
+  print_channels(explanation.holdout_recordings.empty() ? "left out in turn" : "kept aside", explanation.holdout,
+                 changed);
   print_channels("fitted", explanation.fit, changed);
   if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());
   std::printf("\n  look at %s\n  scripts read %s\n  the asset with %s: %s\n", files.html.c_str(), files.json.c_str(),
@@ -204,13 +220,15 @@ int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
   Directory directory(options.directory);
   if (!holdout || !good(all_different(*fit, *holdout)) || !good(directory.make())) return kBadInput;
 
+  const Files files = files_in(options.directory);
   const Result<Explanation> explanation = analyse(engine, options, *asset, *fit, *holdout);
   if (!explanation) {
     complain(explanation.error());
+    if (std::filesystem::exists(files.json))
+      std::fprintf(stderr, "sealwatch: %s is of an earlier run\n", files.json.c_str());
     return kBadInput;
   }
   const std::string json = report::explanation_to_json(*explanation);
-  const Files files = files_in(options.directory);
   if (!good(write_all(*explanation, json, files))) return kBadInput;
   options.json ? static_cast<void>(std::fputs(json.c_str(), stdout)) : print_text(*explanation, files);
   return explanation->verdict == mismatch::Verdict::undetermined ? kAnswerIsNo : kOk;

@@ -167,6 +167,7 @@ struct Explanation {
   std::vector<Rejected> rejected;
   /// Each entry, of one value or two, would explain the recordings by itself, without any law; the best first.
   std::vector<std::vector<AssetValue>> asset_values;
+  std::vector<LawAt> beside_asset_values;  ///< laws that are needed beside the first entry: no names of what is there
   PrognosisShift prognosis;
   std::string next_test;           ///< what to record to settle what is still open, or empty
   std::string summary;             ///< two or three sentences for a maintenance engineer

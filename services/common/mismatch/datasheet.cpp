@@ -37,15 +37,15 @@ AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
   return asset;
 }
 
-// An asset with a value more set free, and a model near it.
+// An asset with some values set free, and a model near it.
 struct Attempt {
   AssetConfig asset;
-  std::string name;
+  std::vector<std::string> values;
   std::shared_ptr<const FittedModel> near;
 };
 
 // From the asset's values, and from the model near it where that leads further; nothing where it cannot be fitted or
-// the value ends at a bound.
+// a value ends at a bound.
 std::shared_ptr<const FittedModel> fitted(const Attempt& attempt, const Data& fit) {
   Result<FittedModel> model = fit_model(attempt.asset, fit, nullptr, 1);
   if (!model || model->misfit >= attempt.near->misfit) {
@@ -53,10 +53,11 @@ std::shared_ptr<const FittedModel> fitted(const Attempt& attempt, const Data& fi
     if (other && (!model || other->misfit < model->misfit)) model = std::move(other);
   }
   if (!model) return nullptr;
-  const auto unknown = std::ranges::find(model->problem.shared, attempt.name, &Unknown::name);
-  if (unknown == model->problem.shared.end()) return nullptr;
-  const auto at = static_cast<std::size_t>(unknown - model->problem.shared.begin());
-  if (at_bound(*unknown, model->optimum.point.shared[at])) return nullptr;
+  for (std::size_t k = 0; k < model->problem.shared.size(); ++k) {
+    const Unknown& unknown = model->problem.shared[k];
+    const bool is_value = std::ranges::find(attempt.values, unknown.name) != attempt.values.end();
+    if (is_value && at_bound(unknown, model->optimum.point.shared[k])) return nullptr;
+  }
   return std::make_shared<const FittedModel>(std::move(*model));
 }
 
@@ -213,7 +214,7 @@ std::optional<Replaced> one_law_replaced(const DatasheetQuestion& of) {
   for (const Place& place : places)
     attempts.push_back(
         {.asset = with_free_value(with_laws(of.asset, of.found, without(all, place.law)), place.promise.name),
-         .name = place.promise.name,
+         .values = {place.promise.name},
          .near = place.near});
   const auto models = all_fitted(attempts, of.fit, of.threads);
   std::optional<Replaced> best;
@@ -230,7 +231,7 @@ void drop_what_is_not_needed(const DatasheetQuestion& of, Replaced& replaced) {
     for (const std::size_t law : replaced.kept)
       attempts.push_back(
           {.asset = with_free_value(with_laws(of.asset, of.found, without(replaced.kept, law)), replaced.name),
-           .name = replaced.name,
+           .values = {replaced.name},
            .near = replaced.model});
     const auto models = all_fitted(attempts, of.fit, of.threads);
     std::size_t best = models.size();
@@ -261,15 +262,18 @@ std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) 
 
 std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::size_t most) {
   AssetConfig asset = of.asset;
+  std::vector<std::string> free;
   auto from = std::make_shared<const FittedModel>();
   for (std::size_t count = 1; count <= std::min(most, kMostValues); ++count) {
     const FittedModel& near = count == 1 ? of.baseline : *from;
     std::vector<Attempt> attempts;
-    for (const Promise& promise : promises_of(asset, near, of.fit, of.threads))
-      if (attempts.size() < kAsked)
-        attempts.push_back({.asset = with_free_value(asset, promise.name),
-                            .name = promise.name,
-                            .near = std::shared_ptr<const FittedModel>(from, &near)});
+    for (const Promise& promise : promises_of(asset, near, of.fit, of.threads)) {
+      if (attempts.size() == kAsked) break;
+      attempts.push_back({.asset = with_free_value(asset, promise.name),
+                          .values = free,
+                          .near = std::shared_ptr<const FittedModel>(from, &near)});
+      attempts.back().values.push_back(promise.name);
+    }
     auto models = all_fitted(attempts, of.fit, of.threads);
     std::erase(models, nullptr);
     std::ranges::stable_sort(models, {}, [](const auto& model) { return model->misfit; });
@@ -281,8 +285,11 @@ std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::siz
         if (behind(*model, *models.front()) <= kCannotTell) wrong.values.push_back(values_of(*model, of.asset));
       return wrong;
     }
-    for (const AssetValue& value : values_of(*models.front(), of.asset))
-      if (!asset.parameters.at(value.name).estimate) asset = with_free_value(std::move(asset), value.name);
+    for (const AssetValue& value : values_of(*models.front(), of.asset)) {
+      if (asset.parameters.at(value.name).estimate) continue;
+      asset = with_free_value(std::move(asset), value.name);
+      free.push_back(value.name);
+    }
     from = models.front();
   }
   return std::nullopt;
@@ -294,11 +301,10 @@ std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& of
   std::optional<Replaced> replaced = one_law_replaced(of);
   if (!replaced) return std::nullopt;
   drop_what_is_not_needed(of, *replaced);
-  const double enough = replaced->kept.size() + 1 < laws ? 0.0 : -kWorthAnother;
   WrongDatasheet wrong{.values = {values_of(*replaced->model, of.asset)},
                        .behind = behind(*replaced->model, *of.found.model),
                        .with = {.effects = {}, .model = replaced->model}};
-  if (wrong.behind > enough) return std::nullopt;
+  if (wrong.behind > kCannotTell) return std::nullopt;
   for (const std::size_t k : replaced->kept) wrong.with.effects.push_back(of.found.effects[k]);
   return wrong;
 }

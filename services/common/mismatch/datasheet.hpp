@@ -43,7 +43,7 @@ struct DatasheetQuestion {
 /// At most `most` values alone. Nothing where what was found is better by more than 6.
 [[nodiscard]] std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& question, std::size_t most);
 
-/// A value in place of one law or more of those found. Nothing where that is no better.
+/// A value in place of one law or more of those found. Nothing where these are better by more than 6.
 [[nodiscard]] std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& question);
 
 }  // namespace sealwatch::mismatch

@@ -116,6 +116,9 @@ double engineering_share(const FoundEffect& effect, const Effect& chosen, const 
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+constexpr const char* kContains =
+    "It contains the law that was chosen and fits no better with what it has more: no recording can exclude it.";
+
 // What a difference of the criterion means to a reader.
 std::string stands_behind(double behind) {
   return "stands " + number(behind) + " behind (squared misfit and a penalty for each parameter; 12 decides).";
@@ -158,7 +161,8 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
                                    .misfit_above_best = std::max(behind, 0.0),
                                    .why_not = behind < kCannotTell
                                                   ? "These recordings cannot tell it from the law that was chosen."
-                                                  : "Refitted in its place it " + stands_behind(behind)});
+                                              : contains ? kContains
+                                                         : "Refitted in its place it " + stands_behind(behind)});
   }
   double all = 0.0, element = 0.0;
   for (const auto& [key, share] : weight) {

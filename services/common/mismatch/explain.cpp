@@ -17,7 +17,6 @@
 #include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
-#include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/remarks.hpp"
 #include "services/common/mismatch/telling.hpp"
@@ -126,13 +125,14 @@ class Analysis {
     std::vector<std::string> laws;
     for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
     auto wrong = values_alone(question, best_.effects.size());
-    const bool alone = wrong.has_value();
     if (!wrong) wrong = value_in_place_of_laws(question);
     if (!wrong) return;
-    // Several values have to be as good as the laws, one has to be better than a law alone that has a name.
-    const bool named = !best_.effects.front().law->closed_form;
-    const double enough = best_.effects.size() > 1 ? 0.0 : named ? -kWorthAnother : wrong->behind;
-    if (!alone || wrong->behind <= enough) return blame_the_asset_file(*wrong, joined(laws, " and "));
+    // Fewer causes, or one with a name, have to be as good; as many have to be better.
+    const std::size_t causes = wrong->values.front().size() + wrong->with.effects.size();
+    const bool unlisted = best_.effects.front().law->id == "unlisted";
+    const bool fewer = causes < best_.effects.size() || unlisted;
+    if (wrong->behind <= (fewer ? 0.0 : -kWorthAnother)) blame_the_asset_file(*wrong, joined(laws, " and "));
+    if (why_none_) return;
     result_.asset_values = wrong->values;
     instead_of_ = best_.effects.size();
   }
@@ -144,12 +144,15 @@ class Analysis {
     if (!blocks) return;
     const bool none = blocks->gain.empty();
     if (!none && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0) return;
+    if (share_explained_by(*wrong.with.model) < kExplainedAtLeast) return;
     std::vector<std::string> beside;
-    for (const Effect& effect : wrong.with.effects) beside.push_back(law_in_words(law_at(effect)));
+    for (const Effect& effect : wrong.with.effects) {
+      beside.push_back(law_in_words(law_at(effect)));
+      result_.beside_asset_values.push_back(law_at(effect));
+    }
     result_.asset_values = wrong.values;
-    why_none_ =
-        value_of_the_asset_file(values_in_words(wrong.values), wrong.values.front().size() > 1, joined(beside, " and "),
-                                instead_of, none ? std::string() : proof_in_words(pool(compared, true)));
+    why_none_ = value_of_the_asset_file(values_in_words(wrong.values), wrong.values.front().size() > 1,
+                                        joined(beside, " and "), instead_of, none ? PooledFit{} : pool(compared, true));
     with_another_value_ = wrong.with.model;
   }
 
@@ -164,7 +167,7 @@ class Analysis {
     if (windowed() || !little || excess(*best_.model) <= kGross) return;
     const auto before = std::tuple(fit_.colour, holdout_.colour, baseline_, naming_, best_, proven_, result_.notes);
     const Status status = weigh_by_colour();
-    if (status) return;
+    if (status) return result_.asset_values.clear();  // those were asked beside other laws
     std::tie(fit_.colour, holdout_.colour, baseline_, naming_, best_, proven_, result_.notes) = before;
     result_.notes.push_back("A second look, weighed by the colour of what is left, was not possible (" +
                             reason_in_words(status.error()) + ").");
@@ -215,10 +218,8 @@ class Analysis {
     if (!model) {
       Error error = model.error();
       if (error.file.empty()) error.file = first_not_simulated();
-      const std::string unit = outside_of_its_range((*simulation)->plant(), fit_);
-      error.advice = unit.empty() ? "the model cannot be simulated at the start values: check the asset's parameters "
-                                    "against the recording"
-                                  : unit;
+      error.advice =
+          "the model cannot be simulated at the start values: check the asset's parameters against the recording";
       return fail(std::move(error));
     }
     if (!windowed()) model = weighed_by_what_is_recorded(std::move(*model));
@@ -365,7 +366,11 @@ class Analysis {
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = best_.model->asset;
     for (const std::vector<AssetValue>& entry : result_.asset_values)  // fixed again, at what fits
-      for (const AssetValue& value : entry) result_.explained.parameters.at(value.name).estimate = false;
+      for (const AssetValue& value : entry) {
+        ParameterSetting& setting = result_.explained.parameters.at(value.name);
+        const ParameterSetting& given = asset_.parameters.at(value.name);
+        setting = {.value = setting.value, .min = given.min, .max = given.max, .estimate = false};
+      }
     compare_with_what_was_kept_aside();
     decide();
     for (FoundEffect& effect : result_.effects)
@@ -397,17 +402,18 @@ class Analysis {
     // Where the seal ages, R_CL of the held-out ones is predicted, and what they miss by is that prediction's error.
     if (far == nullptr && fit_.own_parameter.empty()) far = farthest_off(result_.holdout);
     if (far == nullptr) return false;
-    why_none_ = nowhere_near(*far, fit_, result_.fit, plant());
+    why_none_ = nowhere_near(*far, fit_, result_.fit);
     take_all_laws_back();
     return true;
   }
 
   // Of the misfit above the noise.
-  [[nodiscard]] double explained_share() const {
+  [[nodiscard]] double share_explained_by(const FittedModel& model) const {
     const double before = baseline_->misfit / baseline_->residuals - 1.0;
-    const double after = best_.model->misfit / best_.model->residuals - 1.0;
+    const double after = model.misfit / model.residuals - 1.0;
     return before > 0.0 ? std::clamp(1.0 - std::max(after, 0.0) / before, 0.0, 1.0) : 0.0;
   }
+  [[nodiscard]] double explained_share() const { return share_explained_by(*best_.model); }
 
   // Nothing significant is left, or at least half of the excess or nine tenths of the evidence is gone: the noise's own
   // estimate is not exact enough for the first two alone where the effect is small.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sealwatch/estimation/noise_floor.hpp"
+#include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -168,6 +169,9 @@ Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span
         if (error.file.empty()) error.file = recording.file;
         return fail(std::move(error));
       }
+      if (const std::string unit = another_unit((*simulation)->plant(), recording.samples); !unit.empty())
+        return fail(Error{
+            .file = recording.file, .place = {}, .value = {}, .rule = unit, .advice = "check the units in its header"});
       if (const Status sensors = check_sensors(**simulation, recording); !sensors) return fail(sensors.error());
     }
   for (const Recording& one : holdout)

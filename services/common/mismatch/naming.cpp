@@ -201,7 +201,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   drop_what_is_not_needed(naming, data, options.threads);
   prefer_plain_laws(naming, data, options.threads);
   if (naming.last.p_value <= options.false_alarm_rate) try_closed_forms(naming, data, options);
-  one_shape_for_two_laws(naming, data, options);
+  one_shape_for_several(naming, data, options);
   return naming;
 }
 

@@ -9,7 +9,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kUncertain = 1.0 / 3.0;  // of a strength: its standard error
-constexpr double kExplainsEnough = 0.5;   // of what the pair takes
+constexpr double kExplainsEnough = 0.5;   // of what they take
 
 bool is_uncertain(const Effect& effect, const FittedModel& model, const std::vector<double>& errors) {
   for (const LawParameter& parameter : effect.law->parameters) {
@@ -23,15 +23,16 @@ bool is_uncertain(const Effect& effect, const FittedModel& model, const std::vec
 }
 
 bool imitate_one_shape(const Trial& best) {
-  if (best.effects.size() != 2 || best.effects[0].element != best.effects[1].element) return false;
+  const auto elsewhere = [&](const Effect& effect) { return effect.element != best.effects.front().element; };
+  if (best.effects.size() < 2 || std::ranges::any_of(best.effects, elsewhere)) return false;
   const std::vector<double> errors = standard_errors(*best.model);
-  return std::ranges::all_of(best.effects,
-                             [&](const Effect& effect) { return is_uncertain(effect, *best.model, errors); });
+  return std::ranges::count_if(best.effects,
+                               [&](const Effect& effect) { return is_uncertain(effect, *best.model, errors); }) >= 2;
 }
 
 }  // namespace
 
-void one_shape_for_two_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
+void one_shape_for_several(Naming& naming, const Data& data, const ExplainOptions& options) {
   if (!imitate_one_shape(naming.best)) return;
   const std::string& element = naming.best.effects.front().element;
   const Trial* form = nullptr;

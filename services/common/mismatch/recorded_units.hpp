@@ -8,8 +8,9 @@
 
 namespace sealwatch::mismatch {
 
-/// The column that leaves its plausible range furthest, in words; "" where all stay inside.
-[[nodiscard]] std::string outside_of_its_range(const PlantDescription& plant, const Data& data);
+/// A column that is outside of its plausible range for half of a recording or more, or a position and a velocity that
+/// do not belong together by a factor of ten, in words; "" where there is none.
+[[nodiscard]] std::string another_unit(const PlantDescription& plant, const TimeSeries& samples);
 
 /// The channel that moves ten times less than its simulation or still less, in words; "" where none does.
 [[nodiscard]] std::string hardly_moves(const PooledFit& fit);

@@ -12,9 +12,14 @@ void remark_why_none(const WhyNone& why, Explanation& result) {
   if (!why.element.empty())
     result.location.push_back(
         {.element = why.element, .probability = kNeverCertain, .indistinguishable_from = {}, .evidence = why.summary});
+  for (const LawAt& law : result.beside_asset_values)
+    result.location.push_back({.element = law.element,
+                               .probability = kNeverCertain,
+                               .indistinguishable_from = {},
+                               .evidence = "Something is missing here too, beside the value of the asset file: " +
+                                           law_in_words(law) + " was fitted."});
   result.rejected.clear();
-  result.prognosis = {};
-  result.notes.push_back(why.summary);
+  if (result.asset_values.empty()) result.prognosis = {};
   result.summary = why.summary;
   result.next_test = why.next_test;
 }
@@ -31,7 +36,9 @@ void remark_asset_values(Explanation& result) {
   const std::string same = " A wrong value in the asset file would do the same: " + values + ".";
   result.summary += same;
   for (FoundEffect& effect : result.effects) effect.evidence += same;
-  for (Location& place : result.location) place.evidence += same;
+  for (Location& place : result.location)
+    if (std::ranges::any_of(result.effects, [&](const auto& one) { return one.what.element == place.element; }))
+      place.evidence += same;
   const std::string check = "Check this value of the asset file first: " + values + ".";
   result.next_test = result.next_test.empty() ? check : check + " " + result.next_test;
 }

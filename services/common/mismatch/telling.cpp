@@ -24,15 +24,6 @@ const ChannelComparison* most_improved_channel(const PooledFit& fit) {
   return most == fit.channels.end() ? nullptr : &*most;
 }
 
-// "" where the noise is nearly reached.
-std::string left_in_words(const PooledFit& fit) {
-  constexpr double kNearly = 3.0;
-  const auto most = std::ranges::max_element(fit.channels, {}, &ChannelComparison::weighed_rms_after);
-  if (most == fit.channels.end() || most->weighed_rms_after < kNearly) return {};
-  return " Not all is explained: " + in_words(most->channel) + " still misses by " + number(most->rms_after) +
-         " times the noise.";
-}
-
 // Which change of the test's conditions tells apart laws of these kinds.
 std::string separating_test(const FoundEffect& effect) {
   if (!effect.same_elements.empty() && effect.what.element.starts_with("sensor:"))
@@ -76,6 +67,14 @@ std::string law_in_words(const LawAt& law) {
   return (law.id == "unlisted" ? "physics without a name" : in_words(law.id))
       .append(" at ")
       .append(element_in_words(law.element));
+}
+
+std::string left_in_words(const PooledFit& fit) {
+  constexpr double kNearly = 3.0;
+  const auto most = std::ranges::max_element(fit.channels, {}, &ChannelComparison::weighed_rms_after);
+  if (most == fit.channels.end() || most->weighed_rms_after < kNearly) return {};
+  return " Not all is explained: " + in_words(most->channel) + " still misses by " + number(most->rms_after) +
+         " times the noise.";
 }
 
 std::string proof_in_words(const PooledFit& holdout) {
@@ -156,7 +155,9 @@ std::string summary_of(const Explanation& explanation) {
         .append(": ")
         .append(number(worst->rms_before))
         .append(" times the noise)");
-  text += ", and no law was found that explains it and holds on recordings that took no part.";
+  const bool single = explanation.fit_recordings.size() < 2 && explanation.holdout_recordings.empty();
+  text += single ? "; with a single recording no law can be proven."
+                 : ", and no law was found that explains it and holds on recordings that took no part.";
   if (!explanation.location.empty())
     text.append(" The first place to look is ")
         .append(element_in_words(explanation.location.front().element))

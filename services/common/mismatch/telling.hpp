@@ -23,6 +23,8 @@ inline constexpr double kNeverCertain = 0.999;
 /// "the misfit of flow on recordings that took no part falls from 5 to 1.01 times the noise", where it falls most; ""
 /// without any channel.
 [[nodiscard]] std::string proof_in_words(const PooledFit& holdout);
+/// " Not all is explained: flow still misses by 7 times the noise."; "" where the noise is nearly reached.
+[[nodiscard]] std::string left_in_words(const PooledFit& fit);
 /// One sentence; of several `effects` the misfit is what all of them leave together.
 [[nodiscard]] std::string evidence_of(const FoundEffect& effect, std::size_t effects, double misfit_before,
                                       double misfit_after);

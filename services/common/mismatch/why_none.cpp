@@ -11,11 +11,6 @@ namespace {
 constexpr const char* kTestsOfOneTime =
     "Analyse tests of one time together: several loads, speeds and strokes within a few days.";
 
-std::string suspected_unit(const PooledFit& before, const Data& fit, const PlantDescription& plant) {
-  const std::string outside = outside_of_its_range(plant, fit);
-  return outside.empty() ? hardly_moves(before) : outside;
-}
-
 }  // namespace
 
 WhyNone cannot_be_asked(const Error& why) {
@@ -50,12 +45,14 @@ WhyNone seal_aged_and_no_more(const std::string& course) {
 }
 
 WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
-                                const std::string& instead_of, const std::string& proof) {
+                                const std::string& instead_of, const PooledFit& holdout) {
+  const std::string proof = proof_in_words(holdout);
   const std::string start =
       several ? "Values that the asset file fixes may be wrong: " : "A value that the asset file fixes may be wrong: ";
   const std::string with = (several ? "With them " : "With it ") + (beside.empty() ? "" : "and " + beside + " ");
   const std::string explains = several || !beside.empty() ? " Together they explain" : " It explains";
-  return {.summary = start + values + "." + (proof.empty() ? "" : " " + with + proof + ".") + explains +
+  return {.summary = start + values + "." + (proof.empty() ? "" : " " + with + proof + ".") + left_in_words(holdout) +
+                     (proof.empty() ? " No recording was left to prove it on." : "") + explains +
                      " these recordings as well as " + instead_of + " would, or better: no physics is named" +
                      (beside.empty() ? "." : " before that is checked."),
           .next_test =
@@ -63,11 +60,10 @@ WhyNone value_of_the_asset_file(const std::string& values, bool several, const s
               "(estimate: true in the asset file) and analyse again: a fault that acts like it would then be hidden."};
 }
 
-WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before,
-                     const PlantDescription& plant) {
+WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before) {
   std::string check =
       "Check the units, signs and wiring of the recorded channels, then the parameters in the asset file.";
-  if (const std::string unit = suspected_unit(before, fit, plant); !unit.empty()) check += " First: " + unit + ".";
+  if (const std::string unit = hardly_moves(before); !unit.empty()) check += " First: " + unit + ".";
   const bool several_days = are_of_several_days(fit);
   return {
       .summary =

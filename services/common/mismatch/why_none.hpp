@@ -25,15 +25,14 @@ struct WhyNone {
 [[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
 
 /// `values`: of the asset file (`several`: more than one), and what would explain the recordings instead, in words;
-/// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for; `proof`: what they do on
-/// recordings that took no part, "" where there are none.
+/// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for; `holdout`: before and
+/// after on recordings that took no part.
 [[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
-                                              const std::string& instead_of, const std::string& proof);
+                                              const std::string& instead_of, const PooledFit& holdout);
 
 /// `far`: the channel that is missed most with the laws, `before`: without. Tests of different days may also differ
 /// from one another.
-[[nodiscard]] WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before,
-                                   const PlantDescription& plant);
+[[nodiscard]] WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before);
 
 /// The fitted recordings agree with the model; `worst`: of the held-out ones.
 [[nodiscard]] WhyNone those_kept_aside_differ(const ChannelComparison& worst);

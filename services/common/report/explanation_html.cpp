@@ -135,7 +135,8 @@ std::string banner(const Explanation& explanation) {
 std::string next_section(const Explanation& explanation) {
   if (explanation.verdict == Verdict::mismatch) return section("What to do next", steps_after(explanation));
   if (explanation.next_test.empty()) return {};
-  return section("What to record next", paragraph(explanation.next_test));
+  return section(explanation.asset_values.empty() ? "What to record next" : "What to do next",
+                 paragraph(explanation.next_test));
 }
 
 std::string notes_section(const Explanation& explanation) {

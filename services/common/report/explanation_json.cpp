@@ -202,6 +202,7 @@ void add_details(const Explanation& explanation, Json& json) {
                   {"std_error", number(value.std_error)}};
     });
   });
+  json["asset_values_beside"] = list(explanation.beside_asset_values, law_at);
   json["prognosis"] = prognosis_json(explanation.prognosis);
   json["notes"] = explanation.notes;
 }

@@ -242,6 +242,8 @@ Explanation read(const Json& json) {
                     .allowed_share = number(one, "allowed_share")};
   });
   explanation.asset_values = read_asset_values(json);
+  if (json.contains("asset_values_beside"))
+    explanation.beside_asset_values = list(json, "asset_values_beside", read_law);
   explanation.prognosis = read_prognosis(member(json, "prognosis"));
   explanation.next_test = text(json, "next_test");
   explanation.summary = text(json, "summary");

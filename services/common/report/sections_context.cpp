@@ -105,7 +105,7 @@ std::string parameters_section(const Explanation& explanation) {
     for (std::string& cell : cells) cell = escaped(cell);
     table.row_of_html(cells, at_bound || (changed && errors > kClearShift) ? "strong" : "");
   }
-  const char* words = changed ? "A parameter that moves when the missing physics is added had been standing in for it. "
+  const char* words = changed ? "A parameter that moves when what was found is put in had been standing in for it. "
                                 "In bold: at a bound, or moved by more than three standard errors."
                               : "The parameters as fitted to the recordings.";
   const char* bound =
@@ -133,17 +133,23 @@ std::string asset_values_section(const Explanation& explanation) {
       which = "and";
     }
   }
+  std::string beside;
+  for (const mismatch::LawAt& law : explanation.beside_asset_values)
+    beside +=
+        paragraph("Fitted beside it: " + law_name(law) + " of the " + element_name(law.element) +
+                  ". That something is missing there is likely; what it is, is asked again once the value is right.");
   return section("A value of the asset file that may be wrong",
                  paragraph("The analysis takes these as exact. With another value the recordings would be explained "
                            "without the physics that was found, or with less of it: check the drawing or the datasheet "
                            "before anything else.",
                            "small muted")
-                     .append(table.html()));
+                     .append(table.html())
+                     .append(beside));
 }
 
 std::string prognosis_section(const Explanation& explanation) {
   const mismatch::PrognosisShift& prognosis = explanation.prognosis;
-  if (!prognosis.known || explanation.effects.empty()) return {};
+  if (!prognosis.known || !explanation.changed()) return {};
   Table table({"", ">before", ">after", ">change"});
   table.row({"leakage resistance R_CL", readable(prognosis.R_CL_before, "Pa s/m3"),
              readable(prognosis.R_CL_after, "Pa s/m3"), change_text(prognosis.R_CL_before, prognosis.R_CL_after)});

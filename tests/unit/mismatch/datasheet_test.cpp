@@ -72,7 +72,8 @@ TEST(Datasheet, AWrongAreaIsFoundAlone) {
 
 TEST(Datasheet, ARightAssetFileIsNotBlamed) {
   const AssetConfig asset = actuator();
-  const AssetConfig truth = with_law(asset, **find_law("quadratic_drag", {"k"}), "piston", std::vector{2e9});
+  AssetConfig truth = with_law(asset, **find_law("quadratic_drag", {"k"}), "piston", std::vector{2e9});
+  truth = with_law(truth, **find_law("sensor_gain", {"g"}), "sensor:flow", std::vector{0.03});
   const Data data = two_tests_of(truth);
   const auto [baseline, laws] =
       found(asset, data, {{{*find_law("quadratic_drag", {"k"}), "piston"}, {1e9}}, gain_of("flow")});

@@ -87,14 +87,25 @@ TEST(Recorded, AColumnInAnotherUnitIsSuspectedByName) {
   const AssetConfig asset = actuator();
   std::vector<Recording> fit{recording_of(asset, 0.8)};
   const PlantDescription& plant = **find_plant("eha");
-  EXPECT_EQ(outside_of_its_range(plant, data_of(fit)), "");
+  const TimeSeries right = fit[0].samples;
+  EXPECT_EQ(another_unit(plant, right), "");
+  std::ranges::fill_n(values_of(fit[0], "pressure_a").begin(), 40, 1e12);  // wild samples are not another unit
+  EXPECT_EQ(another_unit(plant, fit[0].samples), "");
+  fit[0].samples = right;
   for (double& value : values_of(fit[0], "pressure_a")) value *= 1e5;
-  EXPECT_TRUE(outside_of_its_range(plant, data_of(fit)).starts_with("column pressure_a of 0.8 goes to "))
-      << outside_of_its_range(plant, data_of(fit));
-  const auto refused = explain(asset, fit, {});
+  EXPECT_TRUE(another_unit(plant, fit[0].samples).starts_with("column pressure_a goes to "))
+      << another_unit(plant, fit[0].samples);
+  const std::vector<Recording> good{recording_of(asset, 1.2)};
+  const auto refused = explain(asset, good, fit);  // the one that is held out
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().describe().find("check the unit in its header"), std::string::npos)
+  EXPECT_NE(refused.error().describe().find("check the units in its header"), std::string::npos)
       << refused.error().describe();
+  EXPECT_EQ(refused.error().file, "0.8");
+
+  fit[0].samples = right;
+  for (double& value : values_of(fit[0], "position")) value *= 1e-3;
+  EXPECT_TRUE(another_unit(plant, fit[0].samples).starts_with("column position moves 1.6e-05 m while column velocity"))
+      << another_unit(plant, fit[0].samples);
 
   PooledFit pooled{.channels = {{.channel = "pressure_b", .nrmse_before = 40.0},
                                 {.channel = "pressure_a", .nrmse_before = -99900.0}}};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <mutex>
 
@@ -26,7 +27,7 @@ class RecordingCost final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    if (!update(parameters)) return false;
+    if (!update(shared_.empty() ? nullptr : parameters[0], parameters[shared_.empty() ? 0 : 1])) return false;
     const auto n = static_cast<Eigen::Index>(shared_.size() + own_.size());
     Eigen::Map<Eigen::VectorXd>(residuals, n + 1) = compressed_.col(n);
     if (jacobians == nullptr) return true;
@@ -45,6 +46,7 @@ class RecordingCost final : public ceres::CostFunction {
     linearisation_ = std::move(linearisation);
     compressed_ = compress(linearisation_);
     known_ = true;
+    failed_ = false;
   }
 
   /// At the given point, which usually is the one that was evaluated last.
@@ -55,30 +57,56 @@ class RecordingCost final : public ceres::CostFunction {
     return std::move(linearisation_);
   }
 
- private:
-  // Ceres asks several times for the same point, first for the cost, then for its derivatives: both cost one
-  // simulation.
-  bool update(double const* const* parameters) const {
-    const double* shared = shared_.empty() ? nullptr : parameters[0];
-    const double* own = parameters[shared_.empty() ? 0 : 1];
-    if (known_ && std::equal(shared_.begin(), shared_.end(), shared) && std::equal(own_.begin(), own_.end(), own))
-      return true;
+  /// Ceres asks several times for the same point, first for the cost, then for its derivatives: both cost one
+  /// simulation. False where nothing can be simulated.
+  bool update(const double* shared, const double* own) const {
+    const bool same = std::equal(shared_.begin(), shared_.end(), shared) && std::equal(own_.begin(), own_.end(), own);
+    if (same && (known_ || failed_)) return known_;
     std::copy_n(shared, shared_.size(), shared_.begin());
     std::copy_n(own, own_.size(), own_.begin());
     Result<Linearisation> result = linearise(problem_, recording_, shared_, own_);
     known_ = result.has_value();
+    failed_ = !known_;
     if (!known_) return false;
     linearisation_ = std::move(*result);
     compressed_ = compress(linearisation_);
     return true;
   }
 
+ private:
   const PemProblem& problem_;
   std::size_t recording_;
   mutable std::vector<double> shared_, own_;
   mutable Linearisation linearisation_;
   mutable Eigen::MatrixXd compressed_;
-  mutable bool known_ = false;
+  mutable bool known_ = false, failed_ = false;  ///< at that point
+};
+
+// Recordings are simulated side by side before Ceres asks for any of them. Ceres itself runs in one thread: in several
+// it adds them up in the order in which they come, and the digits would depend on the number of threads.
+class SideBySide final : public ceres::EvaluationCallback {
+ public:
+  SideBySide(const PemPoint& point, int threads) : point_(point), threads_(static_cast<std::size_t>(threads)) {}
+  void add(const RecordingCost* cost) { costs_.push_back(cost); }
+
+  void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool new_evaluation_point) override {
+    if (!new_evaluation_point) return;
+    std::vector<std::future<void>> running;
+    for (std::size_t first = 1; first < std::min(threads_, costs_.size()); ++first)
+      running.push_back(std::async(std::launch::async, [this, first] { update_from(first); }));
+    update_from(0);
+    for (std::future<void>& one : running) one.get();
+  }
+
+ private:
+  void update_from(std::size_t first) const {
+    for (std::size_t k = first; k < costs_.size(); k += threads_)
+      static_cast<void>(costs_[k]->update(point_.shared.data(), point_.own[k].data()));
+  }
+
+  const PemPoint& point_;
+  std::size_t threads_;
+  std::vector<const RecordingCost*> costs_;
 };
 
 // Moves unknowns that left their bounds to the bound and adds them to `held`. True when there were any.
@@ -103,7 +131,6 @@ ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
   solver.function_tolerance = 0.0;     // CostResolved decides
   solver.parameter_tolerance = 1e-12;  // unknowns are of the order of one
   solver.logging_type = ceres::SILENT;
-  solver.num_threads = options.threads;
   return solver;
 }
 
@@ -157,10 +184,14 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
                           std::vector<Linearisation> at_start) {
   silence_ceres();
   PemOptimum optimum{.point = std::move(start), .at_optimum = {}, .termination = {}};
-  ceres::Problem ceres_problem;
+  SideBySide side_by_side(optimum.point, options.threads);
+  ceres::Problem::Options problem_options;
+  problem_options.evaluation_callback = &side_by_side;
+  ceres::Problem ceres_problem(problem_options);
   std::vector<RecordingCost*> costs;
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
     costs.push_back(new RecordingCost(problem, k));  // owned by ceres_problem
+    side_by_side.add(costs.back());
     if (k < at_start.size()) costs.back()->remember(optimum.point.shared, optimum.point.own[k], std::move(at_start[k]));
     std::vector<double*> blocks;
     if (!problem.shared.empty()) blocks.push_back(optimum.point.shared.data());

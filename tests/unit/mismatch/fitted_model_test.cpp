@@ -38,5 +38,22 @@ TEST(FittedModel, ASearchGoesOnFromWhereItEnded) {
   EXPECT_NEAR(further->misfit / further->residuals, 1.0, 0.1);
 }
 
+// To the last digit: recordings are added up in their order, whoever simulated them.
+TEST(FittedModel, IsTheSameOnOneThreadAndOnThree) {
+  Data data;
+  for (const double load : {0.7, 0.9, 1.1, 1.3, 1.5}) {
+    AssetConfig loaded = nominal_asset("eha");
+    loaded.parameters.at("phi").value *= load;
+    data.names.push_back(number(load));
+    data.samples.push_back(simulated(loaded, standard_pst(loaded, 20.0), 1.0));
+  }
+  const Result<FittedModel> one = fit_model(far_from_the_truth(), data, nullptr, 1);
+  const Result<FittedModel> three = fit_model(far_from_the_truth(), data, nullptr, 3);
+  ASSERT_TRUE(one && three);
+  EXPECT_EQ(one->misfit, three->misfit);
+  EXPECT_EQ(one->optimum.point.shared, three->optimum.point.shared);
+  EXPECT_EQ(one->optimum.point.own, three->optimum.point.own);
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

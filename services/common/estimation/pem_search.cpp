@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <future>
 #include <limits>
@@ -18,7 +19,9 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 // Ceres sees the same cost, gradient and Gauss-Newton matrix as with all samples.
 class RecordingCost final : public ceres::CostFunction {
  public:
-  RecordingCost(const PemProblem& problem, std::size_t recording) : problem_(problem), recording_(recording) {
+  /// `failed`: some recording cannot be simulated at the point that is asked.
+  RecordingCost(const PemProblem& problem, std::size_t recording, const std::atomic<bool>& failed)
+      : problem_(problem), recording_(recording), point_failed_(failed) {
     shared_.resize(problem.shared.size());
     own_.resize(problem.recordings[recording].own.size());
     set_num_residuals(static_cast<int>(shared_.size() + own_.size()) + 1);
@@ -27,7 +30,8 @@ class RecordingCost final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    if (!update(shared_.empty() ? nullptr : parameters[0], parameters[shared_.empty() ? 0 : 1])) return false;
+    if (point_failed_ || !update(shared_.empty() ? nullptr : parameters[0], parameters[shared_.empty() ? 0 : 1]))
+      return false;
     const auto n = static_cast<Eigen::Index>(shared_.size() + own_.size());
     Eigen::Map<Eigen::VectorXd>(residuals, n + 1) = compressed_.col(n);
     if (jacobians == nullptr) return true;
@@ -46,7 +50,6 @@ class RecordingCost final : public ceres::CostFunction {
     linearisation_ = std::move(linearisation);
     compressed_ = compress(linearisation_);
     known_ = true;
-    failed_ = false;
   }
 
   /// At the given point, which usually is the one that was evaluated last.
@@ -61,12 +64,11 @@ class RecordingCost final : public ceres::CostFunction {
   /// simulation. False where nothing can be simulated.
   bool update(const double* shared, const double* own) const {
     const bool same = std::equal(shared_.begin(), shared_.end(), shared) && std::equal(own_.begin(), own_.end(), own);
-    if (same && (known_ || failed_)) return known_;
+    if (same && known_) return true;
     std::copy_n(shared, shared_.size(), shared_.begin());
     std::copy_n(own, own_.size(), own_.begin());
     Result<Linearisation> result = linearise(problem_, recording_, shared_, own_);
     known_ = result.has_value();
-    failed_ = !known_;
     if (!known_) return false;
     linearisation_ = std::move(*result);
     compressed_ = compress(linearisation_);
@@ -76,21 +78,25 @@ class RecordingCost final : public ceres::CostFunction {
  private:
   const PemProblem& problem_;
   std::size_t recording_;
+  const std::atomic<bool>& point_failed_;
   mutable std::vector<double> shared_, own_;
   mutable Linearisation linearisation_;
   mutable Eigen::MatrixXd compressed_;
-  mutable bool known_ = false, failed_ = false;  ///< at that point
+  mutable bool known_ = false;  ///< at that point
 };
 
 // Recordings are simulated side by side before Ceres asks for any of them. Ceres itself runs in one thread: in several
-// it adds them up in the order in which they come, and the digits would depend on the number of threads.
+// it adds them up in the order in which they come, and the digits would depend on the number of threads. Where one
+// cannot be simulated the point is given up: failing costs the integrator most.
 class SideBySide final : public ceres::EvaluationCallback {
  public:
   SideBySide(const PemPoint& point, int threads) : point_(point), threads_(static_cast<std::size_t>(threads)) {}
   void add(const RecordingCost* cost) { costs_.push_back(cost); }
+  [[nodiscard]] const std::atomic<bool>& failed() const { return failed_; }
 
   void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool new_evaluation_point) override {
     if (!new_evaluation_point) return;
+    failed_ = false;
     std::vector<std::future<void>> running;
     for (std::size_t first = 1; first < std::min(threads_, costs_.size()); ++first)
       running.push_back(std::async(std::launch::async, [this, first] { update_from(first); }));
@@ -99,14 +105,15 @@ class SideBySide final : public ceres::EvaluationCallback {
   }
 
  private:
-  void update_from(std::size_t first) const {
-    for (std::size_t k = first; k < costs_.size(); k += threads_)
-      static_cast<void>(costs_[k]->update(point_.shared.data(), point_.own[k].data()));
+  void update_from(std::size_t first) {
+    for (std::size_t k = first; k < costs_.size() && !failed_; k += threads_)
+      if (!costs_[k]->update(point_.shared.data(), point_.own[k].data())) failed_ = true;
   }
 
   const PemPoint& point_;
   std::size_t threads_;
   std::vector<const RecordingCost*> costs_;
+  std::atomic<bool> failed_ = false;
 };
 
 // Moves unknowns that left their bounds to the bound and adds them to `held`. True when there were any.
@@ -190,7 +197,7 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   ceres::Problem ceres_problem(problem_options);
   std::vector<RecordingCost*> costs;
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
-    costs.push_back(new RecordingCost(problem, k));  // owned by ceres_problem
+    costs.push_back(new RecordingCost(problem, k, side_by_side.failed()));  // owned by ceres_problem
     side_by_side.add(costs.back());
     if (k < at_start.size()) costs.back()->remember(optimum.point.shared, optimum.point.own[k], std::move(at_start[k]));
     std::vector<double*> blocks;

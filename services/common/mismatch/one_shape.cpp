@@ -17,7 +17,7 @@ bool is_uncertain(const Effect& effect, const FittedModel& model, const std::vec
     const std::string name = physics_parameter_name(effect.element, effect.law->id, parameter.name);
     for (std::size_t k = 0; k < errors.size(); ++k)
       if (model.problem.shared[k].name == name)
-        return errors[k] > kUncertain * std::abs(*estimate_of(model, name));  // not one that ends at a bound: infinite
+        return std::isfinite(errors[k]) && errors[k] > kUncertain * std::abs(*estimate_of(model, name));
   }
   return false;
 }

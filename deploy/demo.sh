@@ -28,7 +28,7 @@ fi
 
 deploy/install_packages.sh build
 echo "== build: takes about twenty minutes on two cores the first time"
-deploy/build.sh release -DSEALWATCH_TESTS=OFF
+deploy/build.sh release --target monitoring -DSEALWATCH_TESTS=OFF
 sealwatch=build/release/bin/sealwatch
 
 # A discovery tag of its own keeps the demo apart from any other sealwatch on this machine.

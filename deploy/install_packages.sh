@@ -11,6 +11,8 @@ build_packages=(
   libyaml-cpp-dev libspdlog-dev libcli11-dev       # configuration, logs, command line
   libsoci-dev libsqlite3-dev                       # journals
   libmatio-dev zlib1g-dev nlohmann-json3-dev libexpected-dev  # MATLAB files, JSON, error values
+  libudunits2-dev                                  # units of foreign logs
+  libzip-dev libpugixml-dev                        # Functional Mock-up Units: archive and description
   libsystemd-dev                                   # readiness and watchdog
 )
 test_packages=(
@@ -18,6 +20,7 @@ test_packages=(
   libsundials-dev python3-scipy                    # independent solvers to compare with
   clang clang-format clang-tidy libclang-rt-14-dev # fuzzing, formatting, linting
   sqlite3 man-db dpkg-dev file                     # what tests look with, and what cpack packs with
+  doxygen                                          # API reference of the public headers
 )
 
 case "${1:-}" in

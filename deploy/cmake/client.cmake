@@ -16,6 +16,11 @@ install(EXPORT sealwatchTargets NAMESPACE sealwatch:: DESTINATION ${package_dire
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sealwatch/core ${PROJECT_SOURCE_DIR}/include/sealwatch/message
                   ${PROJECT_SOURCE_DIR}/include/sealwatch/client
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sealwatch COMPONENT client FILES_MATCHING PATTERN *.hpp)
+# What topics carry as it is.
+install(FILES ${PROJECT_SOURCE_DIR}/include/sealwatch/estimation/fit_report.hpp
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sealwatch/estimation COMPONENT client)
+install(FILES ${PROJECT_SOURCE_DIR}/include/sealwatch/forecast/forecast.hpp
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sealwatch/forecast COMPONENT client)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/idl/ DESTINATION ${SEALWATCH_IDL_DIR} COMPONENT client
   FILES_MATCHING PATTERN *.idl)
 

@@ -12,6 +12,8 @@ if(SEALWATCH_SANITIZE)
   target_link_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE})
 endif()
 
+include(${CMAKE_CURRENT_LIST_DIR}/unity.cmake)
+
 function(sealwatch_library name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINK;PRIVATE_LINK")
   add_library(${name} STATIC ${ARG_SOURCES})
@@ -19,6 +21,7 @@ function(sealwatch_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK} $<BUILD_INTERFACE:sealwatch_flags>)
+  sealwatch_unity(${name})
 endfunction()
 
 function(sealwatch_executable name)

@@ -34,11 +34,18 @@ void AdvisoryGeneration::restore(const Message& own_output) {
   const Header& header = advisory->header;
   if (is_answer_to_replacement(*advisory)) {
     asset.memory = {};
+    asset.judged.clear();
     asset.replaced = UtcTime{header.event_time_ns};
+  } else if (const auto retraction = answered_retraction(*advisory)) {
+    apply(*retraction, asset);
   } else if (header.message_id == "advisory/" + header.pst_id && !advisory->reasons.empty()) {
-    if (const auto record = from_words(advisory->reasons.back()))
+    std::optional<UtcTime> time;
+    if (header.event_time_known) time = UtcTime{header.event_time_ns};
+    if (const auto record = from_words(advisory->reasons.back())) {
       asset.memory.restore(record->verdict, record->in_force);
-    if (header.event_time_known) asset.last_test = UtcTime{header.event_time_ns};
+      remember({header.pst_id, time, record->verdict}, asset);
+    }
+    if (time) asset.last_test = time;
   }
 }
 
@@ -48,7 +55,8 @@ Conclusion AdvisoryGeneration::receive(const Message& input) {
   if (const auto* leakage = std::get_if<LeakageEstimate>(&input)) return join(*leakage, &Pending::leakage);
   if (const auto* state = std::get_if<StateReport>(&input))
     return state->header.pst_id.empty() ? overdue(*state) : join(*state, &Pending::state);
-  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) return replaced(*event);
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input))
+    return is_replacement(*event) ? replaced(*event) : retracted(*event);
   if (const auto* seen = std::get_if<Acknowledgement>(&input)) return acknowledged(*seen);
   return {.outputs = {}, .consumed = {header_of(input).message_id}};
 }
@@ -75,6 +83,8 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   const std::string& asset_id = evidence.life.asset_id;
   Asset& asset = assets_[asset_id];
   const Header& cause = evidence.life.header;
+  const auto is_this = [&](const auto& retracted) { return retracted.second == cause.pst_id; };
+  if (std::any_of(asset.retracted.begin(), asset.retracted.end(), is_this)) return conclusion;
   std::optional<UtcTime> now;
   if (cause.event_time_known) now = UtcTime{cause.event_time_ns};
   if (now && ((asset.last_test && *now < *asset.last_test) || (asset.replaced && *now < *asset.replaced)))
@@ -86,6 +96,7 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   const SiteConfig* site = site_of(asset_id);
   const Assessment assessment = assess(evidence, site, options_);
   const InForce& in_force = asset.memory.judge(assessment.verdict, now, options_);
+  remember({cause.pst_id, now, assessment.verdict}, asset);
   const Recommendation recommendation = recommend(evidence, assessment, in_force, site);
 
   Advisory advisory = revision_of(asset.current, asset_id, recommendation, cause);
@@ -125,6 +136,7 @@ Conclusion AdvisoryGeneration::replaced(const MaintenanceEvent& event) {
   const bool newer_known = asset.replaced && *asset.replaced >= time;
   if (!event.header.event_time_known || newer_known) return conclusion;
   asset.memory = {};
+  asset.judged.clear();
   asset.replaced = time;
   const bool tested_since = asset.current && asset.last_test && *asset.last_test > time;
   put_out(tested_since ? after_late_replacement(*asset.current, event) : after_replacement(asset.current, event),

@@ -1,17 +1,20 @@
 // Layer 6 of ISO 13374: one recommendation for each asset, with its priority, latest-by date and reasons.
 //
 // Driven by remaining_life, joined with health_report, state_report and leakage_estimate of the same pst_id, in
-// whatever order they come. Acknowledgements, replacements and overdue tests are answered at once. Tests older than the
+// whatever order they come. Acknowledgements, replacements, retractions and overdue tests are answered at once; after a
+// retraction the memory is what the tests that still count make of it. Tests older than the
 // last one judged change nothing. docs/advisories.md has the decision table and the rules against flapping.
 #pragma once
 
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "sealwatch/config/configuration.hpp"
+#include "sealwatch/message/retraction.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/advisory_generation/options.hpp"
 #include "services/advisory_generation/recommendation.hpp"
@@ -40,13 +43,22 @@ class AdvisoryGeneration final : public Layer {
     std::optional<LeakageEstimate> leakage;
     [[nodiscard]] bool complete() const { return life && health && state && leakage; }
   };
+  /// One test of the memory.
+  struct Judged {
+    std::string pst_id;
+    std::optional<UtcTime> time;
+    TestVerdict verdict;
+    std::set<std::string> retractions = {};  ///< ids of those in force: while there is one, the test does not count
+  };
   /// What is remembered of one asset, all of it rebuilt from its advisories.
   struct Asset {
     std::optional<Advisory> current;
     VerdictMemory memory;
     std::optional<UtcTime> last_test;
     std::optional<UtcTime> replaced;
-    std::vector<std::string> concluded;  ///< message ids of all advisories
+    std::vector<Judged> judged;                    ///< the last kMostJudged, in the order of judgement
+    std::map<std::string, std::string> retracted;  ///< single tests: PST id by the retraction's id
+    std::vector<std::string> concluded;            ///< message ids of all advisories
   };
 
   AdvisoryGeneration(const Configuration& configuration, const Options& options)
@@ -57,6 +69,10 @@ class AdvisoryGeneration final : public Layer {
   [[nodiscard]] Conclusion advise(const Evidence& evidence);
   [[nodiscard]] Conclusion overdue(const StateReport& report);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
+  [[nodiscard]] Conclusion retracted(const MaintenanceEvent& event);
+  /// The memory as it is with the tests that count after `retraction`.
+  void apply(const Retraction& retraction, Asset& asset) const;
+  static void remember(Judged judged, Asset& asset);
   [[nodiscard]] Conclusion acknowledged(const Acknowledgement& acknowledgement);
   /// Remembers `advisory` and puts it out, after the one that it supersedes.
   void put_out(Advisory advisory, Conclusion& conclusion);

@@ -146,6 +146,27 @@ Advisory after_late_replacement(const Advisory& current, const MaintenanceEvent&
   return advisory;
 }
 
+Advisory after_retraction(const Advisory& current, const MaintenanceEvent& event, const Retraction& retraction) {
+  Header cause = event.header;
+  cause.pst_id.clear();
+  Advisory advisory = said_again(current, answer_to(cause));
+  const std::string what = !retraction.withdrawn_id.empty() ? "retraction '" + retraction.withdrawn_id + "' withdrawn"
+                           : retraction.since ? "all tests since " + format_date(*retraction.since) + " retracted"
+                                              : "test " + retraction.pst_id + " retracted";
+  advisory.reasons.insert(advisory.reasons.begin(), what + " by " + event.reported_by +
+                                                        (event.remark.empty() ? "" : " (" + event.remark + ")") +
+                                                        ": this advice stands until the next test, which is judged "
+                                                        "with the tests that count; its id is " +
+                                                        retraction.id);
+  return advisory;
+}
+
+std::optional<Retraction> answered_retraction(const Advisory& advisory) {
+  constexpr std::string_view kPrefix = "advisory/";
+  const std::string& id = advisory.header.message_id;
+  return id.starts_with(kPrefix) ? retraction_of(advisory.asset_id, id.substr(kPrefix.size())) : std::nullopt;
+}
+
 bool is_answer_to_replacement(const Advisory& advisory) {
   return !advisory.header.source_ids.empty() &&
          advisory.header.message_id.rfind("advisory/maintenance_event/", 0) == 0 &&

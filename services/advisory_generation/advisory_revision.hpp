@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sealwatch/message/advisory_generation.hpp"
+#include "sealwatch/message/retraction.hpp"
 #include "sealwatch/message/state_detection.hpp"
 #include "services/advisory_generation/recommendation.hpp"
 
@@ -28,6 +29,12 @@ namespace sealwatch::advisory_generation {
 
 /// The call for an overdue test: its own advisory, or a reason more where something at least as urgent stands.
 [[nodiscard]] Advisory with_overdue_test(const std::optional<Advisory>& current, const StateReport& report);
+
+/// The advice in force stands; the retraction (or its withdrawal) is named, with who and why.
+[[nodiscard]] Advisory after_retraction(const Advisory& current, const MaintenanceEvent& event,
+                                        const Retraction& retraction);
+/// Which retraction the advisory answers; nothing for others.
+[[nodiscard]] std::optional<Retraction> answered_retraction(const Advisory& advisory);
 
 /// The fresh start after a replacement.
 [[nodiscard]] Advisory after_replacement(const std::optional<Advisory>& current, const MaintenanceEvent& event);

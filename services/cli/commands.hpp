@@ -29,6 +29,7 @@ int run_simulate(const SimulateOptions& options);
 
 struct FitOptions {
   std::string asset_file;
+  std::string map_file;  ///< how the recordings are written; "": as the asset file says
   std::vector<std::string> recordings;
   std::string model;  ///< "" the best that the channels allow
   bool json = false;
@@ -37,23 +38,51 @@ int run_fit(const FitOptions& options);
 
 struct ExplainOptions {
   std::string asset_file;
+  std::string map_file;  ///< how the recordings are written; "": as the asset file says
   std::vector<std::string> fit;
   std::vector<std::string> holdout;
-  std::string directory;   ///< for report.json, report.html and asset.explained.yaml
-  std::uint64_t seed = 1;  ///< the same seed gives the same report
+  std::string directory;       ///< for report.json, report.html and asset.explained.yaml
+  std::uint64_t seed = 1;      ///< the same seed gives the same report
+  double time_limit_s = 60.0;  ///< of the search
   int threads = 2;
   bool json = false;
 };
 int run_explain(const ExplainOptions& options);
 
+struct PlantImportOptions {
+  std::string fmu;
+  std::string file;  ///< plant file to write
+};
+int run_plant_import(const PlantImportOptions& options);
+
+struct PlantExportOptions {
+  std::string asset_file;
+  std::string fmu;  ///< to write
+};
+int run_plant_export(const PlantExportOptions& options);
+
 struct ValidateOptions {
   std::string asset_file;
+  std::string map_file;  ///< how the recordings are written; "": as the asset file says
   std::vector<std::string> recordings;
   std::string directory;  ///< for report.html and validation.json
   bool fit = false;       ///< estimate the asset's free parameters first
+  std::string simulated;  ///< a trace of somebody's simulation to hold against the recording, in place of a model
+  std::string page;       ///< of a trace: HTML file to write; "": none
+  std::vector<std::string> inputs;  ///< of a trace: channels that drive the simulation
   bool json = false;
 };
 int run_validate(const ValidateOptions& options);
+int run_validate_trace(const ValidateOptions& options);
+
+struct AssetNewOptions {
+  std::string log;       ///< somebody's own recording
+  std::string file;      ///< asset file to write
+  std::string model;     ///< "": the plant that the most of the log's columns speak for
+  std::string asset_id;  ///< "": the log's name
+  bool yes = false;      ///< takes the guess without asking
+};
+int run_asset_new(const AssetNewOptions& options);
 
 struct ForecastOptions {
   std::string history_file;         ///< "": what the services keep
@@ -69,11 +98,20 @@ struct ForecastOptions {
 };
 int run_forecast(const ForecastOptions& options);
 
+struct FleetFitOptions {
+  std::vector<std::string> histories;  ///< one a life
+  std::vector<std::string> installed;  ///< date of each; none: a month before its first test
+  std::string asset_file;              ///< seal resistances, for histories of R_CL
+  bool json = false;
+};
+int run_fleet_fit(const FleetFitOptions& options);
+
 struct ReplayOptions {
   std::string config;
   std::vector<std::string> recordings;
   std::string state_directory;  ///< of the services started with_services; "": the configuration's
   std::string asset_file;       ///< whose recordings are meant where they do not say
+  std::string map_file;         ///< how the recordings are written; "": as the asset files say
   std::string speed = "max";
   std::string results_directory;  ///< write each message as one JSON line per topic
   std::string page;               ///< HTML file for the forecasts at the end; "": none
@@ -115,6 +153,17 @@ struct StatusOptions {
 };
 int run_status(const StatusOptions& options);
 
+struct QuarantineOptions {
+  std::string config;
+  std::string state_directory;
+  bool json = false;
+  bool all = false;
+  std::string message_id;
+  std::string by;
+};
+int run_quarantine_list(const QuarantineOptions& options);
+int run_quarantine_retry(const QuarantineOptions& options);
+
 struct AcknowledgeOptions {
   std::string config;
   std::string asset_id;
@@ -134,6 +183,18 @@ struct ReplacedOptions {
 };
 int run_replaced(const ReplacedOptions& options);
 
+/// Tests that must not count, or count again.
+struct RetractOptions {
+  std::string config;
+  std::string asset_id;
+  std::string pst_id;    ///< one test; "" none
+  std::string since;     ///< all tests from this UTC time on; "" none
+  std::string withdraw;  ///< id of the retraction that is taken back; "" none
+  std::string by;
+  std::string reason;
+};
+int run_retract(const RetractOptions& options);
+
 /// An explained model comes into force, or no longer.
 struct AcceptOptions {
   std::string config;
@@ -150,6 +211,12 @@ struct ConfigCheckOptions {
   bool json = false;
 };
 int run_config_check(const ConfigCheckOptions& options);
+
+struct PlantCheckOptions {
+  std::string file;
+  bool json = false;
+};
+int run_plant_check(const PlantCheckOptions& options);
 
 /// Prints the shell's completion script, made from the program's own options.
 struct CompletionOptions {

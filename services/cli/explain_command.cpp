@@ -11,6 +11,7 @@
 #include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
+#include "services/common/fmi/export/law_code.hpp"
 #include "services/common/report/explanation_html.hpp"
 #include "services/common/report/explanation_json.hpp"
 #include "services/common/report/explanation_sections.hpp"
@@ -27,13 +28,13 @@ using mismatch::FoundParameter;
 constexpr std::size_t kWidth = 110;
 
 struct Files {
-  std::string json, html, asset;
+  std::string json, html, asset, laws_c, laws_modelica;
 };
 
 Files files_in(const std::string& directory) {
   const std::filesystem::path place(directory);
-  return {(place / "report.json").string(), (place / "report.html").string(),
-          (place / "asset.explained.yaml").string()};
+  return {(place / "report.json").string(), (place / "report.html").string(), (place / "asset.explained.yaml").string(),
+          (place / "laws.c").string(), (place / "laws.mo").string()};
 }
 
 /// The same bytes twice are no second test; a recording that took part in the fit proves nothing.
@@ -48,7 +49,7 @@ Status all_different(const std::vector<Recording>& fit, const std::vector<Record
           .file = recording.file,
           .place = {},
           .value = {},
-          .rule = (crossed ? "is kept aside, but has the same content as the fitted " : "has the same content as ") +
+          .rule = (crossed ? "is held out, but has the same content as the fitted " : "has the same content as ") +
                   other->second->file,
           .advice = "give each recording once"});
     }
@@ -92,9 +93,21 @@ Status write_file(const std::string& file, const std::string& text) {
   return {};
 }
 
+/// The laws as code for the tool that the model comes from; none of an earlier run are left where there are none.
+Status write_laws(const AssetConfig& explained, const Files& files) {
+  std::error_code ignored;
+  for (const std::string& file : {files.laws_c, files.laws_modelica}) std::filesystem::remove(file, ignored);
+  const auto plant = find_plant(explained.model);
+  if (explained.physics.empty() || !plant) return {};
+  const fmi::LawCode code = fmi::law_code(**plant, explained);
+  if (Status status = write_file(files.laws_c, code.c); !status) return status;
+  return write_file(files.laws_modelica, code.modelica);
+}
+
 Status write_all(const Explanation& explanation, const std::string& json, const Files& files) {
   if (Status status = write_file(files.json, json); !status) return status;
   if (Status status = write_file(files.html, report::explanation_to_html(explanation)); !status) return status;
+  if (Status status = write_laws(explanation.explained, files); !status) return status;
   return save_asset(explanation.explained, files.asset);
 }
 
@@ -113,7 +126,7 @@ void print_effect(const FoundEffect& effect) {
     others += (others.empty() ? "" : ", ") + (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
                                                                             : report::words_of(other.id) + " of the " +
                                                                                   report::element_name(other.element));
-  if (!others.empty()) std::printf("    %s\n", wrapped("cannot be told from: " + others, kWidth, 4).c_str());
+  if (!others.empty()) std::printf("    %s\n", wrapped("cannot be told apart from: " + others, kWidth, 4).c_str());
 }
 
 void print_channels(const char* which, const mismatch::PooledFit& fit, bool changed) {
@@ -171,18 +184,18 @@ void print_text(const Explanation& explanation, const Files& files) {
               wrapped(explanation.summary, kWidth, 2).c_str());
   for (const FoundEffect& effect : explanation.effects) print_effect(effect);
   const bool as_well = !explanation.effects.empty() && !explanation.asset_values.empty();
-  if (as_well) std::printf("    cannot be told from: a value of the asset file (above)\n");
+  if (as_well) std::printf("    cannot be told apart from: a value of the asset file (above)\n");
   const bool changed = explanation.changed();
   if (changed) print_prognosis(explanation);
   print_bounds(explanation);
   if (!changed) print_estimates(explanation);
-  print_channels(explanation.holdout_recordings.empty() ? "left out in turn" : "kept aside", explanation.holdout,
+  print_channels(explanation.holdout_recordings.empty() ? "left out in turn" : "held out", explanation.holdout,
                  changed);
   print_channels("fitted", explanation.fit, changed);
   if (!explanation.next_test.empty()) std::printf("\n  next: %s\n", wrapped(explanation.next_test, kWidth, 8).c_str());
   std::printf("\n  look at %s\n  scripts read %s\n  the asset with %s: %s\n", files.html.c_str(), files.json.c_str(),
               !explanation.effects.empty() ? "what was found"
-              : changed                    ? "the value that would do"
+              : changed                    ? "the value that explains as much"
                                            : "the fitted parameters",
               files.asset.c_str());
 }
@@ -192,6 +205,7 @@ Result<Explanation> analyse(const ExplainEngine& engine, const ExplainOptions& o
   mismatch::ExplainOptions settings;
   settings.seed = options.seed;
   settings.threads = options.threads;
+  settings.time_limit_s = options.time_limit_s;
   Progress progress("explain", 100);
   return engine(asset, fit, holdout, settings, [&progress](std::string_view step, double share) {
     progress.show(static_cast<std::size_t>(std::lround(100.0 * share)), step);
@@ -207,7 +221,7 @@ bool good(const Status& status) {
 }  // namespace
 
 int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
-  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   if (!plant) {

@@ -58,11 +58,12 @@ bool has_cylinder_circuit(const AssetConfig& asset) { return asset.parameters.co
 
 /// The cylinder circuit wants the test as the services see it: cut, aligned, with its phases.
 FitReport fit_cylinder(const AssetConfig& asset, const Recording& recording) {
-  std::vector<std::unique_ptr<Layer>> layers;
-  layers.push_back(std::make_unique<DataAcquisition>(std::vector<AssetConfig>{asset}));
-  layers.push_back(std::make_unique<DataManipulation>(std::vector<AssetConfig>{asset}));
+  const std::vector<AssetConfig> assets = {asset};
+  const std::vector<LayerMaker> layers = {
+      [&assets](const std::string&) { return std::make_unique<DataAcquisition>(assets); },
+      [&assets](const std::string&) { return std::make_unique<DataManipulation>(assets); }};
   TestWindow window;
-  InProcessPipeline pipeline(std::move(layers), [&window](const Message& message) {
+  InProcessPipeline pipeline(layers, [&window](const Message& message) {
     if (const auto* concluded = std::get_if<TestWindow>(&message)) window = *concluded;
   });
   for (RawSamples& block : blocks_of(recording)) pipeline.push(Message(std::move(block)));
@@ -203,7 +204,7 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
 }  // namespace
 
 int run_fit(const FitOptions& options) {
-  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   if (!plant) {

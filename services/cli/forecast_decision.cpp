@@ -100,11 +100,17 @@ std::string cost_words(const ForecastQuestion& question) {
   const SiteCosts& costs = *question.costs;
   std::string text =
       "Costs: planned " + number(costs.planned, 3) + ", after a failure " + number(costs.after_failure, 3);
-  text += ", a month with a failed valve " + number(costs.failed_month, 3) + ", a month of seal life thrown away " +
+  text += ", a month with a failed valve " + number(costs.failed_month, 3) + ", a month of unused seal life " +
           number(costs.unused_month, 3);
   text += "; waiting for the failure counts " + number(question.months_to_vessel, 3) +
           " months until a vessel comes. Formula: docs/forecast.md, Decision.";
   return text;
+}
+
+/// "cheapest: summer 2027", or what else there is to see.
+std::string inside(const std::vector<DecisionOption>& decision) {
+  const auto cheapest = std::ranges::find(decision, true, &DecisionOption::cheapest);
+  return cheapest == decision.end() ? "probability of failure before each date" : "cheapest: " + cheapest->label;
 }
 
 }  // namespace
@@ -113,9 +119,10 @@ std::string forecast_decision_part(const ForecastQuestion& question, const Forec
                                    const std::vector<DecisionOption>& decision) {
   if (decision.empty())
     return report::section("Decision", report::paragraph("Without a forecast no date can be weighed."));
-  return report::section("Decision", decision_table(decision) +
-                                         decision_plots(question, *answer.distributions.front(), decision) +
-                                         report::paragraph(cost_words(question), "muted"));
+  return report::folded_section("Decision", inside(decision),
+                                decision_table(decision) +
+                                    decision_plots(question, *answer.distributions.front(), decision) +
+                                    report::paragraph(cost_words(question), "muted"));
 }
 
 double calendar_year(UtcTime time) {

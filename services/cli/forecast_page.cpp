@@ -34,10 +34,10 @@ double quantile_factor(int degrees_of_freedom, double probability) {
                                 : forecast::normal_quantile(probability);
 }
 
-/// How far ahead is looked: past the latest date of the forecast in charge, and past the last campaign before that.
+/// How far ahead is looked: past the latest date of the primary forecast, and past the last campaign before that.
 double view_months(const ForecastPanel::Answer& answer) {
-  const Forecast& in_charge = answer.forecasts.front();
-  const double latest = in_charge.state == ForecastState::ok ? in_charge.interval_95_high_months : 0.0;
+  const Forecast& primary = answer.forecasts.front();
+  const double latest = primary.state == ForecastState::ok ? primary.interval_95_high_months : 0.0;
   return std::clamp(kBeyond * latest, kShortestView_months, kLongestView_months);
 }
 
@@ -94,21 +94,21 @@ void add_forecast_band(const std::vector<ConditionForecast>& conditions, double 
 Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
             const std::vector<ConditionForecast>& conditions) {
   const double threshold = question.request.threshold;
-  Plot plot{.title = "Seal condition, share of the elastic modulus when new",
+  Plot plot{.title = "Seal condition, leakage-derived index: 1 is new",
             .x = {.label = "year", .unit = "1", .range = view_of(question, conditions)},
             .y = {.label = "condition", .unit = "1"},
             .marks = {},
             .width = kWide,
-            .height = 330};
+            .height = 300};
   if (!conditions.empty()) add_forecast_band(conditions, threshold, plot);
   plot.marks.emplace_back(intervals_of(answer.used));
   plot.marks.emplace_back(tests_of(answer.used, Ink::first, ""));
   if (!answer.left_out.empty()) plot.marks.emplace_back(tests_of(answer.left_out, Ink::bad, "left out"));
   plot.marks.emplace_back(report::Reference{.at = threshold, .ink = Ink::bad, .label = "failed"});
-  const Forecast& in_charge = answer.forecasts.front();
-  if (in_charge.state == ForecastState::ok) {
+  const Forecast& primary = answer.forecasts.front();
+  if (primary.state == ForecastState::ok) {
     const auto year = [&](double months) { return calendar_year(add_months(question.request.now, months)); };
-    plot.marks.emplace_back(report::Line{.x = {year(in_charge.rul_p10_months), year(in_charge.rul_p90_months)},
+    plot.marks.emplace_back(report::Line{.x = {year(primary.rul_p10_months), year(primary.rul_p90_months)},
                                          .y = {threshold, threshold},
                                          .ink = Ink::bad,
                                          .label = "end of life, 80 %",
@@ -161,7 +161,7 @@ std::string methods_note(const ForecastPanel::Answer& answer) {
            {"average", "average: of methods, weighed by how well they forecast this seal before"}})
     if (any(method)) list.append("<li>").append(meaning);
   return report::paragraph(
-             "Months count from the last test. The method in bold is in charge; the others stand beside it.",
+             "Months count from the last test. The primary forecaster is in bold; the others stand beside it.",
              "small muted") +
          "<ul class=\"small muted\">" + list + "</ul>";
 }
@@ -197,7 +197,7 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
   if (question.advice)
     for (const std::string& reason : question.advice->reasons) list.append("<li>").append(report::escaped(reason));
   list += "<li>" + report::escaped(method_label(answer.forecasts.front()) +
-                                   " is in charge: " + answer.forecasts.front().explanation);
+                                   " is the primary forecaster: " + answer.forecasts.front().explanation);
   if (answer.windows_disagree) list.append("<li>Windows disagree: ").append(report::escaped(answer.disagreement));
   if (question.without_error > 0)
     list.append("<li>Standard errors are not known of " + std::to_string(question.without_error) + " of " +
@@ -206,7 +206,8 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
   list_samples(answer.left_out, "left out as an isolated outlier", list);
   for (const TestNotCounted& test : question.not_counted)
     list.append("<li>").append(report::escaped(format_date(test.time) + ", left out by the services: " + test.why));
-  return report::section("Reasons", list + "</ul>");
+  return report::folded_section("Reasons", "what the advice and the forecast rest on, what was left out",
+                                list + "</ul>");
 }
 
 std::string headline(const Forecast& forecast) {
@@ -234,35 +235,89 @@ std::string advice_line(const Advisory& advice) {
   return priority + ": " + advice.recommendation + (seen ? " (Acknowledged by " + advice.acknowledged_by + ".)" : "");
 }
 
+void add_figure(const std::string& value, const std::string& meaning, std::string& html) {
+  html.append("<div><b>").append(report::unbroken(report::escaped(value)));
+  html.append("</b><span>").append(report::escaped(meaning)).append("</span></div>\n");
+}
+
+/// Condition now, when it ends, and the day by which something has to be done.
+std::string figures(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
+  const Forecast& primary = answer.forecasts.front();
+  const auto day = [&](double months) { return format_date(add_months(question.request.now, months)); };
+  std::string html = "<div class=\"figures\">\n";
+  if (!answer.used.empty())
+    add_figure(forecast::condition_in_percent(answer.used.back().condition),
+               "seal condition, " + format_date(answer.used.back().time), html);
+  add_figure(report::percent_text(question.request.threshold), "failed at", html);
+  if (primary.state == ForecastState::ok) {
+    add_figure(date(primary.end_of_life_ns), "end of life, median", html);
+    add_figure(day(primary.rul_p10_months) + " to " + day(primary.rul_p90_months), "end of life, 80 %", html);
+  }
+  if (question.advice && question.advice->latest_by_known)
+    add_figure(date(question.advice->latest_by_ns), "act by", html);
+  return html.append("</div>\n");
+}
+
+/// What follows where no service has given advice: from the forecast alone.
+std::string step_without_advice(const ForecastQuestion& question, const Forecast& primary) {
+  const auto day = [&](double months) { return format_date(add_months(question.request.now, months)); };
+  switch (primary.state) {
+    case ForecastState::ok:
+      return "Replace the seal before " + day(primary.rul_p10_months) +
+             ", when one in ten would have failed, and book " + "the vessel " + number(question.months_to_vessel, 3) +
+             " months ahead, by " + day(primary.rul_p10_months - question.months_to_vessel) +
+             ". The services give advice with hysteresis.";
+    case ForecastState::past_threshold:
+      return "The seal has reached its limit. Follow the procedure for a valve that may not close, and replace it.";
+    case ForecastState::no_significant_trend:
+      return "Nothing to plan: the condition does not fall beyond the scatter of the tests. Go on testing every month.";
+    case ForecastState::insufficient_history:
+      break;
+  }
+  return "Go on testing every month: the history is too short for a forecast.";
+}
+
+std::string next_step(const ForecastQuestion& question, const Forecast& primary) {
+  return std::string("<div class=\"steps\">\n<h2>What to do next</h2>\n<p>")
+      .append(report::unbroken(
+          report::escaped(question.advice ? advice_line(*question.advice) : step_without_advice(question, primary))))
+      .append("</p>\n</div>\n");
+}
+
 std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
   const std::string of = question.asset_id.empty() ? "" : " of " + question.asset_id;
-  const Forecast& in_charge = answer.forecasts.front();
+  const Forecast& primary = answer.forecasts.front();
   std::string html = "<h1>Remaining life of the piston seal" + report::escaped(of) + "</h1>";
-  html.append(report::paragraph(history_words(question) + "; the seal fails at " +
-                                    report::percent_text(question.request.threshold) + " of its elastic modulus.",
-                                "muted"));
-  html.append("<div class=\"banner ").append(colour_of(question.advice, in_charge.state));
-  html.append("\"><p class=\"verdict\">").append(report::unbroken(report::escaped(headline(in_charge)))).append("</p>");
-  if (question.advice) html.append("<p>" + report::unbroken(report::escaped(advice_line(*question.advice))) + "</p>");
-  return html.append("</div>");
+  html.append(report::paragraph(history_words(question) + ". The seal condition is an index derived from its leakage: "
+                                                          "100 % is a new seal.",
+                                "muted small"));
+  html.append("<div class=\"banner ").append(colour_of(question.advice, primary.state));
+  html.append("\"><p class=\"verdict\">").append(report::unbroken(report::escaped(headline(primary)))).append("</p>");
+  html.append("</div>");
+  if (question.tests > 0) html += figures(question, answer);
+  return html;
 }
 
 }  // namespace
 
 Result<std::string> forecast_body(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
                                   const std::vector<DecisionOption>& decision) {
-  if (question.tests == 0) return head(question, answer) + forecast_decision_part(question, answer, decision);
-  const auto in_charge = forecast::make_forecaster(question.forecasters.front());
-  if (!in_charge) return fail(in_charge.error());
+  if (question.tests == 0)
+    return head(question, answer) + next_step(question, answer.forecasts.front()) +
+           forecast_decision_part(question, answer, decision);
+  const auto primary = forecast::make_forecaster(question.forecasters.front());
+  if (!primary) return fail(primary.error());
   forecast::ForecastRequest request = question.request;
   request.history = answer.used;
   std::vector<ConditionForecast> conditions;
   if (answer.forecasts.front().state == ForecastState::ok)
-    conditions = (*in_charge)->predict_conditions(request, months_ahead(request.now, view_months(answer)));
+    conditions = (*primary)->predict_conditions(request, months_ahead(request.now, view_months(answer)));
   std::string body = head(question, answer);
   body += report::to_svg(course(question, answer, conditions));
-  body += report::section("Remaining life",
-                          remaining_life_table(answer) + methods_note(answer) + report::to_svg(side_by_side(answer)));
+  body += next_step(question, answer.forecasts.front());
+  body += report::folded_section(
+      "Remaining life", "all methods side by side",
+      remaining_life_table(answer) + methods_note(answer) + report::to_svg(side_by_side(answer)));
   body += forecast_decision_part(question, answer, decision);
   body += reasons_part(question, answer);
   return body;

@@ -96,7 +96,7 @@ bool sensible_threshold(double threshold) {
                  .place = "--threshold",
                  .value = number(threshold),
                  .rule = "must be above 0, at most 1",
-                 .advice = "0.6 for a seal that has failed at 60 % of its elastic modulus"});
+                 .advice = "0.6 for a seal that has failed at a condition of 60 %"});
   return false;
 }
 

@@ -96,7 +96,7 @@ std::string forecast_table(const std::vector<Forecast>& forecasts) {
     return forecast.method == "ols" && forecast.state == ForecastState::ok;
   };
   const bool lines = std::ranges::any_of(forecasts, is_line);
-  text += std::string("                   (months from the last test; * in charge") +
+  text += std::string("                   (months from the last test; * primary") +
           (lines ? "; ols: a straight line, whose own interval is too narrow for an ageing seal)\n" : ")\n");
   return text + failure_chart(forecasts.front().failure_probability);
 }

@@ -6,6 +6,7 @@
 #include "services/common/mismatch/mismatch_explainer.hpp"
 #include "services/common/model/model_simulator.hpp"
 #include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/configuration_loader.hpp"
 #include "services/data_acquisition/data_acquisition.hpp"
 #include "services/data_manipulation/data_manipulation.hpp"
 #include "services/health_assessment/health_assessment.hpp"
@@ -18,25 +19,39 @@ Result<LayerSet> LayerSet::make(const Configuration& configuration) {
   LayerSet set;
   set.simulator_ = std::make_shared<ModelSimulator>();
   set.estimator_ = make_pem_estimator();
-  set.layers_.push_back(std::make_unique<DataAcquisition>(configuration.assets));
-  set.layers_.push_back(std::make_unique<DataManipulation>(configuration.assets));
-  set.layers_.push_back(std::make_unique<StateDetection>(configuration.assets, set.simulator_));
-  set.layers_.push_back(std::make_unique<HealthAssessment>(configuration.assets, HealthAssessmentOptions{},
-                                                           make_mismatch_explainer(asset_to_yaml)));
-  auto prognostic = prognostic_assessment::PrognosticAssessment::make(
-      configuration, *set.estimator_, {.forecasters = forecast::configured_forecasters(configuration)});
-  if (!prognostic) return fail(prognostic.error());
-  set.layers_.push_back(std::move(*prognostic));
-  auto advisory = advisory_generation::AdvisoryGeneration::make(configuration, configuration.advice);
-  if (!advisory) return fail(advisory.error());
-  set.layers_.push_back(std::move(*advisory));
+  const auto explainer = make_mismatch_explainer(asset_to_yaml);
+  const prognostic_assessment::Options prognosis{.forecasters = forecast::configured_forecasters(configuration)};
+  if (const auto valid = prognostic_assessment::PrognosticAssessment::make(configuration, *set.estimator_, prognosis);
+      !valid)
+    return fail(valid.error());
+  if (const auto valid = advisory_generation::AdvisoryGeneration::make(configuration, configuration.advice); !valid)
+    return fail(valid.error());
+  const auto add = [&set, &configuration](auto make) {
+    set.makers_.emplace_back([make, &configuration](const std::string& asset_id) -> std::unique_ptr<Layer> {
+      return make(configuration_of(asset_id, configuration));
+    });
+  };
+  add([](const Configuration& c) { return std::make_unique<DataAcquisition>(c.assets); });
+  add([](const Configuration& c) { return std::make_unique<DataManipulation>(c.assets); });
+  add([simulator = set.simulator_](const Configuration& c) {
+    return std::make_unique<StateDetection>(c.assets, simulator);
+  });
+  add([explainer](const Configuration& c) {
+    return std::make_unique<HealthAssessment>(c.assets, HealthAssessmentOptions{}, explainer);
+  });
+  add([estimator = set.estimator_, prognosis](const Configuration& c) {
+    return prognostic_assessment::PrognosticAssessment::make(c, *estimator, prognosis).value();
+  });
+  add([](const Configuration& c) { return advisory_generation::AdvisoryGeneration::make(c, c.advice).value(); });
   return set;
 }
 
 std::map<std::string, std::vector<std::string>> LayerSet::inputs_by_layer() const {
   std::map<std::string, std::vector<std::string>> inputs;
-  for (const auto& layer : layers_)
+  for (const LayerMaker& make : makers_) {
+    const std::unique_ptr<Layer> layer = make({});
     for (const Topic topic : layer->inputs()) inputs[std::string(layer->name())].emplace_back(name_of(topic));
+  }
   return inputs;
 }
 

@@ -17,15 +17,15 @@ class LayerSet {
  public:
   /// Keeps a reference to `configuration`.
   [[nodiscard]] static Result<LayerSet> make(const Configuration& configuration);
-  /// The layers, to be run by somebody else; this object must outlive them.
-  [[nodiscard]] std::vector<std::unique_ptr<Layer>> release() { return std::move(layers_); }
+  /// What makes each layer for an asset, in the order of the chain; this object must outlive what they make.
+  [[nodiscard]] const std::vector<LayerMaker>& makers() const { return makers_; }
   /// Topics that each layer reads, by the layer's name.
   [[nodiscard]] std::map<std::string, std::vector<std::string>> inputs_by_layer() const;
 
  private:
   std::shared_ptr<const Simulator> simulator_;
   std::shared_ptr<const Estimator> estimator_;
-  std::vector<std::unique_ptr<Layer>> layers_;
+  std::vector<LayerMaker> makers_;
 };
 
 }  // namespace sealwatch::cli

@@ -1,47 +1,36 @@
 // `sealwatch`: one program with subcommands for engineers and operators. Arguments only; each command is in its own
 // file.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
+#include <cerrno>
+#include <cstring>
 #include <exception>
-#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
 
 #include "sealwatch/core/text.hpp"
+#include "services/cli/arguments.hpp"
+#include "services/cli/build_version.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/completion.hpp"
 #include "services/cli/manual.hpp"
+#include "services/cli/publish.hpp"
 #include "services/cli/session.hpp"
-#include "services/cli/verify.hpp"
-#include "services/cli/verify_mismatch.hpp"
+#include "services/cli/supervisor.hpp"
+#include "services/verification/command/arguments.hpp"
 
 namespace sealwatch::cli {
 namespace {
-
-constexpr const char* kExitStatus =
-    "Exit status: 0 ok; 1 it ran and the answer is \"no\"; 2 bad usage or input; 3 internal failure.";
-
-std::string not_negative(const std::string& text) { return text.starts_with("-") ? "must not be negative" : ""; }
-
-/// CLI::Range lets what is not a number pass.
-std::string a_number(const std::string& text) {
-  return std::isnan(std::strtod(text.c_str(), nullptr)) ? "must be a number" : "";
-}
-
-/// An asset is given by its file: whoever gives the id is told so.
-std::string an_asset_file(const std::string& text) {
-  if (std::filesystem::is_regular_file(text)) return {};
-  return "wants an asset file, and '" + text + "' is none; for example --asset config/assets/xt03-mv2.yaml";
-}
 
 /// The command line: its options, and what to run when it has been parsed.
 class CommandLine {
  public:
   CommandLine() : app_("sealwatch: condition monitoring of electro-hydrostatic subsea valve actuators", "sealwatch") {
-    app_.set_version_flag("--version", std::string("sealwatch ") + SEALWATCH_VERSION);
+    app_.set_version_flag("--version",
+                          std::string("sealwatch " SEALWATCH_VERSION " (").append(build_version()).append(")"));
     app_.require_subcommand(1);
     app_.footer(std::string("First steps: sealwatch replay --with-services RECORDING.csv...\n") + kExitStatus);
     add_recordings();
@@ -50,12 +39,18 @@ class CommandLine {
     add_live();
     add_show();
     add_operator();
+    add_retract();
+    add_quarantine();
     add_accept();
+    add_plant();
+    add_fleet();
+    add_asset();
     add_configuration();
   }
 
   int run(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) return unknown(argv[1]);
+    arguments_.assign(argv + 1, argv + argc + 1);  // of the laboratory's program: its name in the place of "verify"
     try {
       app_.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -92,6 +87,16 @@ class CommandLine {
     config = default_config();
     subcommand->add_option("--config", config, "configuration file or directory ($SEALWATCH_CONFIG)")
         ->capture_default_str();
+  }
+
+  /// What every command that reads recordings takes.
+  static void add_map(CLI::App* subcommand, std::string& map_file) {
+    subcommand
+        ->add_option(
+            "--map", map_file,
+            "YAML file with channels: (columns and units of somebody's own log, docs/logs.md), in place of the "
+            "asset file's")
+        ->check(CLI::ExistingFile);
   }
 
   void add_recordings() {
@@ -135,19 +140,32 @@ class CommandLine {
                             [this] { return run_fit(fit_); });
     fit->add_option("--asset", fit_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     fit->add_option("recordings", fit_.recordings, "recordings, fitted jointly (CSV or MAT)")->required();
+    add_map(fit, fit_.map_file);
     fit->add_option("--model", fit_.model,
                     "cylinder_circuit, or the asset's whole model (default: the best the channels allow)");
     fit->add_flag("--json", fit_.json, "machine-readable result (schema sealwatch.fit/1)");
 
     CLI::App* validate =
         command("validate", "compare the model's simulation with recordings, channel by channel",
-                "sealwatch validate --asset config/assets/bench_eha.yaml stroke1.csv stroke2.csv --out validation",
+                "sealwatch validate --asset config/assets/bench_eha.yaml stroke1.csv stroke2.csv --out validation\n"
+                "  sealwatch validate --simulated sim.csv recorded.csv --page trace.html",
                 [this] { return run_validate(validate_); });
-    validate->add_option("--asset", validate_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
+    validate->add_option("--asset", validate_.asset_file, "asset file")->check(an_asset_file, "FILE");
     validate->add_option("recordings", validate_.recordings, "recordings (CSV or MAT)")->required();
-    validate->add_option("--out", validate_.directory, "directory for the report (made if absent)")->required();
+    validate->add_option("--out", validate_.directory, "directory for the report (made if absent)");
+    CLI::Option* simulated = validate->add_option(
+        "--simulated", validate_.simulated,
+        "trace of your own simulation, held against one recording without a model: whether they differ beyond noise, "
+        "when, and whether a gain, offset, delay, clock or sign would do (exit status 1: they differ)");
+    validate->add_option("--page", validate_.page, "with --simulated: HTML file to write")->needs(simulated);
+    validate
+        ->add_option("--input", validate_.inputs,
+                     "with --simulated: channels that drive the simulation (default: the asset's)")
+        ->needs(simulated);
+    add_map(validate, validate_.map_file);
     validate->add_flag("--fit", validate_.fit, "estimate the asset's free parameters from these recordings first");
-    validate->add_flag("--json", validate_.json, "machine-readable result (schema sealwatch.validation/1)");
+    validate->add_flag("--json", validate_.json,
+                       "machine-readable result (schema sealwatch.validation/1, of a trace sealwatch.trace/1)");
 
     add_explain();
 
@@ -155,10 +173,11 @@ class CommandLine {
   }
 
   void add_forecast() {
-    CLI::App* forecast = command("forecast", "remaining useful life from what the services keep, or from a history",
-                                 "sealwatch forecast --asset XT03-MV2 --state demo/state --page forecast.html\n"
-                                 "  sealwatch forecast --history history.csv --before 2019-06-01 --json",
-                                 [this] { return run_forecast(forecast_); });
+    CLI::App* forecast =
+        command("forecast", "forecast the remaining useful life, from the services' journals or from a history file",
+                "sealwatch forecast --asset XT03-MV2 --state demo/state --page forecast.html\n"
+                "  sealwatch forecast --history history.csv --before 2019-06-01 --json",
+                [this] { return run_forecast(forecast_); });
     CLI::Option* history = forecast->add_option(
         "--history", forecast_.history_file,
         "CSV: time[iso8601],theta[1],theta_std[1] (or R_CL[Pa s/m3] with --asset); default: what the services keep");
@@ -185,92 +204,45 @@ class CommandLine {
     forecast->add_flag("--json", forecast_.json, "machine-readable result (schema sealwatch.forecast/1)");
   }
 
+  // Its work is done by a program of its own: whoever monitors actuators does not load the laboratory.
   void add_verification() {
-    CLI::App* verify = app_.add_subcommand("verify", "verify estimates and forecasts on simulated lives");
-    verify->require_subcommand(1);
-    const auto part = [&](const char* name, const char* meaning, const char* example, std::function<int()> run) {
-      CLI::App* subcommand = verify->add_subcommand(name, meaning);
-      subcommand->footer(std::string("Example:\n  ") + example + "\n" + kExitStatus);
-      subcommand->callback([this, run = std::move(run)] { chosen_ = run; });
-      return subcommand;
-    };
-    add_verify_rul(part("rul", "Monte Carlo: random lives, monthly tests, estimates, forecasts until failure",
-                        "sealwatch verify rul --asset config/assets/xt03-mv2.yaml --lives 1000 --out verification",
-                        [this] { return run_verify_rul(verify_rul_); }));
-    add_verify_mismatch(part("mismatch", "blind trial of explain: recordings with hidden physics, and who finds it",
-                             "sealwatch verify mismatch --sets 40 --strata null,single --out trial",
-                             [this] { return run_verify_mismatch(verify_mismatch_); }));
-    CLI::App* merge = part("merge", "put the shards of one run together: the same results as of a run in one piece",
-                           "sealwatch verify merge shard1 shard2 --out verification",
-                           [this] { return run_verify_merge(verify_merge_); });
-    merge->add_option("directories", verify_merge_.directories, "the --out of each shard")->required();
-    merge->add_option("--out", verify_merge_.directory, "directory for the results (made if absent)")->required();
-    merge->add_flag("--json", verify_merge_.json, "machine-readable result (schema sealwatch.verification/1)");
+    CLI::App* verify = app_.add_subcommand("verify", "verify estimates, forecasts and explain against known truths");
+    add_verify_arguments(*verify, verify_, [this](VerifyPart) { chosen_ = [this] { return run_laboratory(); }; });
   }
 
-  void add_verify_mismatch(CLI::App* trial) {
-    VerifyMismatchOptions& o = verify_mismatch_;
-    trial->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
-    trial->add_option("--sets", o.sets, "sets of each stratum")->check(CLI::Range(0, 100000))->capture_default_str();
-    trial
-        ->add_option(
-            "--strata", o.strata,
-            "null, single, pair, outside, sensor, source_sensors, concealed, inseparable, nominal_only, asset_file "
-            "(default: all)")
-        ->delimiter(',');
-    trial->add_option("--seed", o.seed, "of the first set; the next has the next")
-        ->check(not_negative)
-        ->capture_default_str();
-    trial->add_option("--threads", o.threads, "0: one for each core")->check(CLI::Range(0, 256))->capture_default_str();
-    trial->add_option("--shard", o.shard, "k/n: only this part of the sets")->capture_default_str();
-    trial->add_option("--from", o.from, "directories of other shards, whose sets are counted too");
-    trial->add_flag("--no-controls", o.without_controls, "only the analysis itself");
-    trial->add_flag("--seal", o.seal, "run nothing: write the hash of the sets' labels to sealed.txt");
-    trial->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
-    trial->add_flag("--json", o.json, "machine-readable result (schema sealwatch.mismatch_trial/1)");
-  }
-
-  void add_verify_rul(CLI::App* rul) {
-    VerifyRulOptions& o = verify_rul_;
-    rul->add_option("--asset", o.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
-    rul->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
-    rul->add_option("--lives", o.lives, "number of random lives")->capture_default_str();
-    rul->add_option("--seed", o.seed, "same seed, same results")->check(not_negative)->capture_default_str();
-    rul->add_option("--months", o.months, "months of service")->capture_default_str();
-    rul->add_option("--rate", o.sample_rate_Hz, "samples a second")->capture_default_str();
-    rul->add_option("--threads", o.threads, "0: one for each core")->check(CLI::Range(0, 256))->capture_default_str();
-    rul->add_option("--shard", o.shard, "k/n: only this part of the lives, for `verify merge`")->capture_default_str();
-    rul->add_option("--truth", o.truth, "circuit, actuator (nine-state bench) or condition (no test is simulated)")
-        ->capture_default_str();
-    rul->add_option("--forecaster", o.forecasters, "METHOD or METHOD:MONTHS, several times (default: all)");
-    rul->add_option("--degradation", o.degradation,
-                    "published_ln_t (default), published_t, bench, or NAME=NUMBER; several");
-    rul->add_option("--missing", o.missing_share, "share of the months without a test")->capture_default_str();
-    rul->add_option("--cut", o.cut_share, "share of the tests that are cut short")->capture_default_str();
-    rul->add_option("--scenario", o.scenarios,
-                    "reference, outliers, missing, aborted, replaced, load_change, contamination; several with commas, "
-                    "or all: one table of them")
-        ->delimiter(',');
-    rul->add_flag("--direct", o.direct, "recordings go to the estimator directly, not through the first two layers");
-    rul->add_flag("--resume", o.resume, "go on with an interrupted run in --out");
-    rul->add_flag("--json", o.json, "machine-readable result (schema sealwatch.verification/1)");
+  int run_laboratory() {
+    const std::string program = program_path("sealwatch-verify");
+    arguments_.front() = const_cast<char*>(program.c_str());
+    ::execvp(program.c_str(), arguments_.data());
+    complain(Error{.file = program,
+                   .place = {},
+                   .value = std::strerror(errno),
+                   .rule = "cannot be run",
+                   .advice = "it belongs beside sealwatch; `deploy/build.sh release` builds it"});
+    return kInternalFailure;
   }
 
   void add_explain() {
     CLI::App* explain =
-        command("explain", "say where recordings and simulation differ, by what physics, and whether adding it helps",
+        command("explain", "find where simulation and recordings differ, name the missing physics, prove that it helps",
                 "sealwatch explain --asset asset.yaml --fit fit_*.csv --holdout holdout_*.csv --out found",
                 [this] { return run_explain(explain_); });
     explain->add_option("--asset", explain_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     explain->add_option("--fit", explain_.fit, "recordings to fit: tests that differ in load, speed or profile")
         ->required();
     explain->add_option("--holdout", explain_.holdout,
-                        "recordings kept aside to prove it on (default: each fitted one is left out in turn)");
+                        "held-out recordings to prove it on (default: each fitted one is left out in turn)");
     explain
         ->add_option("--out", explain_.directory,
                      "directory for report.json, report.html and asset.explained.yaml (made if absent)")
         ->required();
+    add_map(explain, explain_.map_file);
     explain->add_option("--seed", explain_.seed, "same seed, same report")->check(not_negative)->capture_default_str();
+    explain
+        ->add_option("--time-limit", explain_.time_limit_s,
+                     "seconds after which the best answer so far is given, with what was not asked")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     explain->add_option("--threads", explain_.threads, "threads to compute with")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
@@ -292,6 +264,7 @@ class CommandLine {
         ->add_option("--asset", replay_.asset_file,
                      "asset file: all recordings are of this asset; offline also in place of the configured one")
         ->check(an_asset_file, "FILE");
+    add_map(replay, replay_.map_file);
     replay->add_option("--results", replay_.results_directory,
                        "write every message there, a JSON line each, a file a topic");
     replay->add_option("--page", replay_.page,
@@ -313,12 +286,16 @@ class CommandLine {
         ->check(not_negative);
     watch->add_flag("--json", watch_.json, "one JSON object a line");
 
+    CLI::App* publish = command("publish", "send blocks of samples from any program, as JSON lines on standard input",
+                                "sealwatch publish < blocks.jsonl", [this] { return run_publish(publish_); });
+    add_config(publish, publish_.config);
+
     CLI::App* up = command("up", "start the six services here and keep them running", "sealwatch up --config config",
                            [this] { return run_up(up_); });
     add_config(up, up_.config);
     up->add_option("--state", up_.state_directory, "state directory instead of the configuration's");
 
-    CLI::App* status = command("status", "what the services are doing and the last word on every asset",
+    CLI::App* status = command("status", "show what the services do and the latest advice for every asset",
                                "sealwatch status", [this] { return run_status(status_); });
     add_config(status, status_.config);
     status->add_option("--seconds", status_.seconds, "how long to listen")
@@ -329,7 +306,7 @@ class CommandLine {
   }
 
   void add_show() {
-    CLI::App* show = command("show", "a message by its id, and what it was concluded from, down to the waveform",
+    CLI::App* show = command("show", "open a message by its id, and what it was concluded from, down to the waveform",
                              "sealwatch show XT03-MV2 --state demo/state", [this] { return run_show(show_); });
     add_config(show, show_.config);
     show->add_option("id", show_.id, "message id, or a test's PST id, or an asset id for its newest advisory")
@@ -341,9 +318,9 @@ class CommandLine {
   }
 
   void add_operator() {
-    CLI::App* acknowledge = command("acknowledge", "tell the system that an advisory has been seen",
-                                    "sealwatch acknowledge XT03-MV2 ADVISORY_ID --by 'J. Silva'",
-                                    [this] { return run_acknowledge(acknowledge_); });
+    CLI::App* acknowledge =
+        command("acknowledge", "acknowledge an advisory", "sealwatch acknowledge XT03-MV2 ADVISORY_ID --by 'J. Silva'",
+                [this] { return run_acknowledge(acknowledge_); });
     add_config(acknowledge, acknowledge_.config);
     acknowledge->add_option("asset", acknowledge_.asset_id, "asset id")->required();
     acknowledge->add_option("advisory", acknowledge_.advisory_id, "advisory id as `watch advisory --json` shows it")
@@ -352,7 +329,7 @@ class CommandLine {
     acknowledge->add_option("--remark", acknowledge_.remark, "free text");
 
     CLI::App* replaced = command(
-        "replaced", "tell the system that an actuator or its seal was replaced: histories start anew",
+        "replaced", "report that an actuator or its seal was replaced: its histories start again",
         "sealwatch replaced XT03-MV2 --at 2018-05-02 --by 'J. Silva'", [this] { return run_replaced(replaced_); });
     add_config(replaced, replaced_.config);
     replaced->add_option("asset", replaced_.asset_id, "asset id")->required();
@@ -362,6 +339,54 @@ class CommandLine {
         ->capture_default_str();
     replaced->add_option("--by", replaced_.by, "who")->required();
     replaced->add_option("--remark", replaced_.remark, "free text");
+  }
+
+  void add_retract() {
+    CLI::App* retract = command("retract",
+                                "tell the system that a test, or all since a date, must not count; reversible, nothing "
+                                "is deleted",
+                                "sealwatch retract XT03-MV2 --test PST_ID --by 'J. Silva' --reason 'wrong valve'",
+                                [this] { return run_retract(retract_); });
+    add_config(retract, retract_.config);
+    retract->add_option("asset", retract_.asset_id, "asset id")->required();
+    CLI::Option_group* what = retract->add_option_group("what");
+    what->add_option("--test", retract_.pst_id, "the test's PST id, as `show` and `status` name it");
+    what->add_option("--since", retract_.since, "UTC time: all tests known now that were made then or later");
+    what->add_option("--withdraw", retract_.withdraw, "id of a retraction: its tests count again");
+    what->require_option(1);
+    retract->add_option("--by", retract_.by, "who")->required();
+    retract->add_option("--reason", retract_.reason, "why")->required();
+  }
+
+  void add_quarantine() {
+    CLI::App* quarantine = app_.add_subcommand(
+        "quarantine",
+        "tests that were set aside because a service failed on them twice: list them, have them tried again");
+    quarantine->require_subcommand(1);
+    quarantine->footer(std::string("Examples:\n  sealwatch quarantine list --state STATE\n"
+                                   "  sealwatch quarantine retry test_window/XT03-MV2-20180324T033939Z-ca97c069 --by "
+                                   "'J. Silva'\n") +
+                       kExitStatus);
+    CLI::App* list = quarantine->add_subcommand("list", "what is set aside, since when and why");
+    list->footer(std::string("Example:\n  sealwatch quarantine list --state /var/lib/sealwatch\n") + kExitStatus +
+                 " Here 1 says that something is set aside.");
+    list->add_flag("--all", quarantine_.all, "also what was tried again since, and by whom");
+    list->add_flag("--json", quarantine_.json, "machine-readable result (schema sealwatch.quarantine/1)");
+    list->callback([this] { chosen_ = [this] { return run_quarantine_list(quarantine_); }; });
+    CLI::App* retry = quarantine->add_subcommand("retry", "have a message and its test tried again");
+    retry->footer(
+        std::string("Example:\n  sealwatch quarantine retry sample_block/XT03-MV2-20180324T033939Z-ca97c069/30 "
+                    "--by 'J. Silva'\nA service that runs does so within seconds, another when it starts. "
+                    "What fails twice again is set aside again.\n") +
+        kExitStatus);
+    retry->add_option("id", quarantine_.message_id, "message id, or PST id, as `quarantine list` shows it")->required();
+    retry->add_option("--by", quarantine_.by, "who")->required();
+    retry->callback([this] { chosen_ = [this] { return run_quarantine_retry(quarantine_); }; });
+    for (CLI::App* one : {list, retry}) {
+      add_config(one, quarantine_.config);
+      one->add_option("--state", quarantine_.state_directory,
+                      "state directory of the services, which need not run, instead of the configuration's");
+    }
   }
 
   void add_accept() {
@@ -379,8 +404,63 @@ class CommandLine {
     accept->add_option("--remark", accept_.remark, "free text");
   }
 
+  void add_plant() {
+    CLI::App* plant = app_.add_subcommand("plant", "plants of one's own: as text, as Functional Mock-up Units");
+    plant->require_subcommand(1);
+    CLI::App* unit = plant->add_subcommand("import", "write a first plant file for an FMU, to be completed");
+    unit->footer(std::string("Example:\n  sealwatch plant import model.fmu --out model.yaml\n") + kExitStatus);
+    unit->callback([this] { chosen_ = [this] { return run_plant_import(plant_import_); }; });
+    unit->add_option("fmu", plant_import_.fmu, "FMU of FMI 2.0 or 3.0, for Linux on x86-64")->required();
+    unit->add_option("--out", plant_import_.file, "plant file to write (YAML)")->required();
+    CLI::App* back = plant->add_subcommand("export", "write an asset's plant, with the laws in it, as an FMU");
+    back->footer(
+        std::string("Example:\n  sealwatch plant export --asset report/asset.explained.yaml --fmu explained.fmu\n") +
+        kExitStatus);
+    back->callback([this] { chosen_ = [this] { return run_plant_export(plant_export_); }; });
+    back->add_option("--asset", plant_export_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
+    back->add_option("--fmu", plant_export_.fmu, "FMU to write (FMI 2.0, Model Exchange)")->required();
+    CLI::App* check =
+        plant->add_subcommand("check", "show what was understood of a plant's file, or every fault in it");
+    check->footer(std::string("Example:\n  sealwatch plant check config/plants/spring_return.yaml\n") + kExitStatus);
+    check->callback([this] { chosen_ = [this] { return run_plant_check(plant_check_); }; });
+    check->add_option("file", plant_check_.file, "the plant's YAML file")->required();
+    check->add_flag("--json", plant_check_.json, "machine-readable result");
+  }
+
+  void add_fleet() {
+    CLI::App* fleet = app_.add_subcommand("fleet", "what a fleet of like actuators says");
+    fleet->require_subcommand(1);
+    CLI::App* fit = fleet->add_subcommand(
+        "fit", "the fleet's own ageing constants with their uncertainty, for the configuration that forecasts read");
+    fit->footer(std::string("Example:\n  sealwatch fleet fit life1.csv life2.csv life3.csv\n") + kExitStatus);
+    fit->callback([this] { chosen_ = [this] { return run_fleet_fit(fleet_fit_); }; });
+    fit->add_option("histories", fleet_fit_.histories,
+                    "one a life: CSV time[iso8601],theta[1],theta_std[1] (or R_CL[Pa s/m3] with --asset)")
+        ->required();
+    fit->add_option("--installed", fleet_fit_.installed,
+                    "date of each seal's installation (default: a month before its first test)")
+        ->delimiter(',');
+    fit->add_option("--asset", fleet_fit_.asset_file, "asset file: seal resistances")->check(an_asset_file, "FILE");
+    fit->add_flag("--json", fleet_fit_.json, "machine-readable result (schema sealwatch.fleet/1)");
+  }
+
+  void add_asset() {
+    CLI::App* asset = app_.add_subcommand("asset", "asset files");
+    asset->require_subcommand(1);
+    CLI::App* fresh = asset->add_subcommand(
+        "new",
+        "an asset file with its channel map from your own log: guesses, asks on a terminal, shows table and picture");
+    fresh->footer(std::string("Example:\n  sealwatch asset new --from log.csv --out asset.yaml\n") + kExitStatus);
+    fresh->callback([this] { chosen_ = [this] { return run_asset_new(asset_new_); }; });
+    fresh->add_option("--from", asset_new_.log, "your log: text in columns, MATLAB or HDF5")->required();
+    fresh->add_option("--out", asset_new_.file, "asset file to write, with a picture beside it (.html)")->required();
+    fresh->add_option("--model", asset_new_.model, "plant (default: the one that the most columns speak for)");
+    fresh->add_option("--id", asset_new_.asset_id, "asset id (default: the log's name)");
+    fresh->add_flag("--yes", asset_new_.yes, "take the guess without asking");
+  }
+
   void add_configuration() {
-    CLI::App* config = app_.add_subcommand("config", "look at the configuration");
+    CLI::App* config = app_.add_subcommand("config", "check the configuration");
     config->require_subcommand(1);
     CLI::App* check =
         config->add_subcommand("check", "validate the whole configuration and list every fault with file and line");
@@ -405,24 +485,31 @@ class CommandLine {
   }
 
   CLI::App app_;
+  std::vector<char*> arguments_;  ///< without the program's name, ends with nullptr
   std::function<int()> chosen_ = [] { return kBadInput; };
   SimulateOptions simulate_;
   FitOptions fit_;
   ExplainOptions explain_;
   ForecastOptions forecast_;
   ValidateOptions validate_;
-  VerifyMismatchOptions verify_mismatch_;
-  VerifyRulOptions verify_rul_;
-  VerifyMergeOptions verify_merge_;
+  AssetNewOptions asset_new_;
+  FleetFitOptions fleet_fit_;
+  PlantImportOptions plant_import_;
+  PlantExportOptions plant_export_;
+  VerifyOptions verify_;
   ReplayOptions replay_;
   WatchOptions watch_;
+  PublishOptions publish_;
   ShowOptions show_;
   UpOptions up_;
   StatusOptions status_;
   AcknowledgeOptions acknowledge_;
+  QuarantineOptions quarantine_;
   ReplacedOptions replaced_;
+  RetractOptions retract_;
   AcceptOptions accept_;
   ConfigCheckOptions config_check_;
+  PlantCheckOptions plant_check_;
   CompletionOptions completion_;
 };
 

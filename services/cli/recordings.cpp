@@ -1,5 +1,6 @@
 #include "services/cli/recordings.hpp"
 
+#include <cstdio>
 #include <utility>
 
 #include "services/cli/session.hpp"
@@ -7,26 +8,39 @@
 
 namespace sealwatch::cli {
 
+void tell_left_aside(const Recording& recording, const std::string& plant) {
+  if (recording.left_aside.empty()) return;
+  std::string columns;
+  for (const std::string& column : recording.left_aside) columns.append(columns.empty() ? "" : ", ").append(column);
+  std::fprintf(stderr, "sealwatch: %s: left aside, as plant %s does not know them: %s\n", recording.file.c_str(),
+               plant.c_str(), columns.c_str());
+}
+
 std::optional<std::vector<Recording>> read_recordings(const std::vector<std::string>& files, const AssetConfig& asset,
                                                       const PlantDescription& plant) {
   std::vector<Recording> recordings;
+  std::vector<std::string> told;  // of recordings of one kind once
   for (const std::string& file : files) {
-    Result<Recording> recording = read_recording(file, plant);
-    if (!recording) {
-      complain(recording.error());
+    Result<std::vector<Recording>> read = read_recordings(file, plant, asset.channel_map);
+    if (!read) {
+      complain(read.error());
       return std::nullopt;
     }
-    if (!recording->asset_id.empty() && recording->asset_id != asset.asset_id) {
-      complain(Error{.file = file,
-                     .place = "asset_id",
-                     .value = recording->asset_id,
-                     .rule = "is not the asset " + asset.asset_id,
-                     .advice = "give recordings of this one asset"});
-      return std::nullopt;
+    for (Recording& recording : *read) {
+      if (!recording.asset_id.empty() && recording.asset_id != asset.asset_id) {
+        complain(Error{.file = file,
+                       .place = "asset_id",
+                       .value = recording.asset_id,
+                       .rule = "is not the asset " + asset.asset_id,
+                       .advice = "give recordings of this one asset"});
+        return std::nullopt;
+      }
+      recording.asset_id =
+          asset.asset_id;  // without a sidecar too: cutting and aligning a test takes the asset's settings
+      if (!recording.left_aside.empty() && recording.left_aside != told) tell_left_aside(recording, plant.name);
+      told = recording.left_aside;
+      recordings.push_back(std::move(recording));
     }
-    recording->asset_id =
-        asset.asset_id;  // without a sidecar too: cutting and aligning a test takes the asset's settings
-    recordings.push_back(std::move(*recording));
   }
   return recordings;
 }

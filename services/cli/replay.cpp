@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -46,10 +47,18 @@ std::optional<double> speed_of(const std::string& text) {
   return std::nullopt;
 }
 
-int replay_offline(LayerSet layers, ReplaySource& source, ReplayLog& log) {
-  InProcessPipeline pipeline(layers.release(), [&log](const Message& message) { log.take(message); });
+/// `hangs`: something computes that does not end, so that the process must end without waiting for it.
+int replay_offline(const LayerSet& layers, ReplaySource& source, ReplayLog& log, bool& hangs) {
+  const auto set_aside = [&log](std::string_view layer, const Message& input, const std::string& why) {
+    log.refuse(header_of(input).message_id + " of " + asset_of(input) + ": " + std::string(layer) +
+               " failed on it twice (" + why + "); its test is set aside, all others go on");
+  };
+  auto pipeline = std::make_unique<InProcessPipeline>(
+      layers.makers(), [&log](const Message& message) { log.take(message); }, set_aside);
   for (std::vector<RawSamples> blocks = source.next(); !blocks.empty() && !interrupted(); blocks = source.next())
-    for (RawSamples& block : blocks) pipeline.push(Message(std::move(block)));
+    for (RawSamples& block : blocks) pipeline->push(Message(std::move(block)));
+  hangs = pipeline->hangs();
+  if (hangs) (void)pipeline.release();
   return interrupted() ? kAnswerIsNo : kOk;
 }
 
@@ -75,16 +84,13 @@ class LiveReplay {
     if (const Status joined = join(); !joined) return give_up(joined.error());
     if (!wait_for_services(supervisor)) return supervisor != nullptr && supervisor->refused() ? kBadInput : kAnswerIsNo;
     hear_what_is_known(supervisor);
-    reader_.emplace("replay", quiescence_.written(ReplayLog::topics()));
+    reader_.emplace("replay", quiescence_.written(ReplayLog::topics()), StreamReader::Limits{.compares = false});
     last_progress_ = steady_clock::now();
     while (!interrupted() && !over()) {
-      if (quiescence_.backlog() < kLongestBacklog)
-        if (const Status fed = feeder_.feed(*session_.bus, steady_clock::now()); !fed) return give_up(fed.error());
+      if (quiescence_.keeps_up(kLongestBacklog)) feeder_.feed(*session_.bus, steady_clock::now());
       const std::vector<BusItem> items = session_.bus->receive(std::chrono::milliseconds(20));
-      for (const BusItem& item : items)
-        if (const Status taken = take(item); !taken) return give_up(taken.error());
-      if (items.empty())
-        if (const Status asked = ask_for_missing(); !asked) return give_up(asked.error());
+      for (const BusItem& item : items) take(item);
+      if (items.empty()) ask_for_missing();
       tend(supervisor);
       if (steady_clock::now() - last_progress_ > kPatience) return stalled();
     }
@@ -150,7 +156,7 @@ class LiveReplay {
     }
   }
 
-  Status take(const BusItem& item) {
+  void take(const BusItem& item) {
     if (const auto* message = std::get_if<Message>(&item)) {
       for (const Message& next : reader_->accept(*message)) log_.take(next);
       last_progress_ = steady_clock::now();
@@ -159,9 +165,8 @@ class LiveReplay {
       for (const StreamPosition& written : quiescence_.written(ReplayLog::topics()))
         (void)reader_->note_written(written, seconds(steady_clock::now()));
     } else {
-      return feeder_.take(std::get<ResendRequest>(item), *session_.bus);
+      feeder_.take(std::get<ResendRequest>(item), *session_.bus);
     }
-    return {};
   }
 
   void take_heartbeat(const ServiceStatus& status) {
@@ -175,10 +180,9 @@ class LiveReplay {
     return feeder_.done() && quiescence_.reached(feeder_.writer_id(), feeder_.last_sequence()) && !reader_->is_behind();
   }
 
-  Status ask_for_missing() {
+  void ask_for_missing() {
     for (const ResendRequest& request : reader_->requests(seconds(steady_clock::now())))
-      if (const Status asked = session_.bus->publish(request); !asked) return asked;
-    return {};
+      (void)session_.bus->publish(request);  // it is asked again, more rarely
   }
 
   static double seconds(steady_clock::time_point time) {
@@ -200,7 +204,8 @@ class LiveReplay {
     complain(Error{.file = {},
                    .place = {},
                    .value = {},
-                   .rule = "nothing has come for 60 s; " + quiescence_.explain(),
+                   .rule = "nothing has come for 60 s; " + quiescence_.explain() +
+                           (feeder_.not_taken().empty() ? "" : "; " + feeder_.not_taken()),
                    .advice = disabled.empty() ? "see the services' logs, and `sealwatch status`" : disabled});
     return kInternalFailure;
   }
@@ -280,7 +285,8 @@ int run_replay(const ReplayOptions& options) {
   }
   ReplayLog log(options, source->tests());
   catch_interrupts();
-  int result = options.offline ? replay_offline(std::move(*layers), *source, log)
+  bool hangs = false;
+  int result = options.offline ? replay_offline(*layers, *source, log, hangs)
                                : replay_live(options, *layers, *source, log, *speed);
   if (const Status written = log.finish(); !written) {
     complain(written.error());
@@ -290,7 +296,10 @@ int run_replay(const ReplayOptions& options) {
   const std::string silence = log.without_advice();
   if (result == kOk && !silence.empty() && source->tests() > source->failures())
     std::fprintf(stderr, "sealwatch: %s\n", silence.c_str());
-  return (source->failures() > 0 || log.any_refused()) && result == kOk ? kBadInput : result;
+  if ((source->failures() > 0 || log.any_refused()) && result == kOk) result = kBadInput;
+  if (hangs) std::fflush(nullptr);
+  if (hangs) std::_Exit(result);
+  return result;
 }
 
 }  // namespace sealwatch::cli

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "services/cli/terminal.hpp"
+#include "services/common/runtime/stream_window.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -30,36 +31,41 @@ bool ReplayFeeder::due(std::chrono::steady_clock::time_point now) const {
   return std::chrono::duration<double>(now - test_started_).count() >= unsent_.front().samples.time_s.back() / speed_;
 }
 
-Status ReplayFeeder::repeat_unanswered(Bus& bus, std::chrono::steady_clock::time_point now) {
+bool ReplayFeeder::publish(Bus& bus, const RawSamples& block) {
+  const Status published = bus.publish(Message(block));
+  not_taken_ = published ? std::string() : published.error().describe();
+  return published.has_value();
+}
+
+void ReplayFeeder::repeat_unanswered(Bus& bus, std::chrono::steady_clock::time_point now) {
   constexpr std::chrono::seconds kUnanswered{3};  // several heartbeats
-  if (waiting_.empty()) return {};
+  if (waiting_.empty()) return;
   const std::pair<std::uint64_t, std::uint64_t> progress{waiting_.front().header.stream_sequence, last_sequence_};
   if (progress != progress_ || now - progressed_ < kUnanswered) {
     if (progress != progress_) progressed_ = now;
     progress_ = progress;
-    return {};
+    return;
   }
   progressed_ = now;
   for (const RawSamples& block : waiting_)
-    if (const Status published = bus.publish(Message(block)); !published) return published;
-  return {};
+    if (!publish(bus, block)) return;
 }
 
-Status ReplayFeeder::feed(Bus& bus, std::chrono::steady_clock::time_point now) {
-  if (const Status repeated = repeat_unanswered(bus, now); !repeated) return repeated;
-  while (true) {
+void ReplayFeeder::feed(Bus& bus, std::chrono::steady_clock::time_point now) {
+  repeat_unanswered(bus, now);
+  while (waiting_.size() < stream_window("raw_samples")) {
     if (unsent_.empty()) {
-      if (exhausted_ || tests_waiting() >= tests_ahead_) return {};
+      if (exhausted_ || tests_waiting() >= tests_ahead_) return;
       for (RawSamples& block : next_test_()) unsent_.push_back(std::move(block));
       exhausted_ = unsent_.empty();
-      if (exhausted_) return {};
+      if (exhausted_) return;
       ++tests_sent_;
       test_started_ = now;
     }
-    if (!due(now)) return {};
+    if (!due(now)) return;
     unsent_.front().header.writer_id = writer_id_;
     unsent_.front().header.stream_sequence = last_sequence_ + 1;
-    if (const Status published = bus.publish(Message(unsent_.front())); !published) return published;
+    if (!publish(bus, unsent_.front())) return;
     ++last_sequence_;
     waiting_.push_back(std::move(unsent_.front()));
     unsent_.pop_front();
@@ -85,31 +91,34 @@ void ReplayFeeder::take(const ServiceStatus& status) {
   while (!waiting_.empty() && waiting_.front().header.stream_sequence <= journaled) waiting_.pop_front();
 }
 
-Status ReplayFeeder::take(const ResendRequest& request, Bus& bus) {
-  if (request.writer_id != writer_id_ || request.topic != "raw_samples") return {};
+void ReplayFeeder::take(const ResendRequest& request, Bus& bus) {
+  if (request.writer_id != writer_id_ || request.topic != "raw_samples") return;
   for (const RawSamples& block : waiting_) {
     const std::uint64_t sequence = block.header.stream_sequence;
     if (sequence < request.first_sequence || sequence > request.last_sequence) continue;
-    if (const Status published = bus.publish(Message(block)); !published) return published;
+    if (!publish(bus, block)) return;  // it asks again
   }
-  return {};
 }
 
-std::uint64_t Quiescence::backlog() const {
+std::uint64_t Quiescence::backlog(const std::string& topic) const {
   std::uint64_t longest = 0;
   for (const auto& [service, topics] : inputs_of_) {
     const auto reader = last_.find(service);
-    if (reader == last_.end()) continue;
-    for (const std::string& topic : topics) {
-      if (topic == "raw_samples" || topic == "sample_block") continue;  // many a test; held back by their own limit
-      for (const auto& [other, writer] : last_)
-        for (const StreamPosition& written : writer.written)
-          if (const std::uint64_t received = received_up_to(reader->second, topic, written.writer_id);
-              written.topic == topic && written.sequence > received)
-            longest = std::max(longest, written.sequence - received);
-    }
+    if (reader == last_.end() || std::ranges::find(topics, topic) == topics.end()) continue;
+    for (const auto& [other, writer] : last_)
+      for (const StreamPosition& written : writer.written)
+        if (const std::uint64_t received = received_up_to(reader->second, topic, written.writer_id);
+            written.topic == topic && written.sequence > received)
+          longest = std::max(longest, written.sequence - received);
   }
   return longest;
+}
+
+bool Quiescence::keeps_up(std::uint64_t tests) const {
+  return std::ranges::all_of(EnumNames<Topic>::kNames, [&](std::string_view topic) {
+    const bool blocks = topic == "raw_samples" || topic == "sample_block";
+    return backlog(std::string(topic)) < (blocks ? stream_window(topic) : tests);
+  });
 }
 
 std::vector<StreamPosition> Quiescence::written(std::span<const Topic> topics) const {

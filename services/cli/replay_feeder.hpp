@@ -1,5 +1,6 @@
-// Feeds recorded tests to data acquisition as raw_samples, a few tests ahead of what it has safely journaled, and sends
-// again what it asks for: a data acquisition killed at any moment loses nothing.
+// Feeds recorded tests to data acquisition as raw_samples, a few tests and at most a stream's window of blocks ahead of
+// what it has safely journaled, and sends again what it asks for: a data acquisition killed at any moment loses
+// nothing.
 #pragma once
 
 #include <chrono>
@@ -26,25 +27,29 @@ class ReplayFeeder {
                double speed);
 
   /// Publishes what may be published at `now`; again what data acquisition has not journaled for some seconds. It asks
-  /// for what is missing before a block that it has, but of the last one, lost as it died, nothing tells it.
-  [[nodiscard]] Status feed(Bus& bus, std::chrono::steady_clock::time_point now);
+  /// for what is missing before a block that it has, but of the last one, lost as it died, nothing tells it. What the
+  /// bus does not take stays for the next call.
+  void feed(Bus& bus, std::chrono::steady_clock::time_point now);
   /// Learns from data acquisition's heartbeat how far it has come.
   void take(const ServiceStatus& status);
   /// Sends again what data acquisition misses.
-  [[nodiscard]] Status take(const ResendRequest& request, Bus& bus);
+  void take(const ResendRequest& request, Bus& bus);
 
   /// Nothing left to send and all of it journaled by data acquisition.
   [[nodiscard]] bool done() const { return exhausted_ && unsent_.empty() && waiting_.empty(); }
   [[nodiscard]] std::uint64_t last_sequence() const { return last_sequence_; }
   [[nodiscard]] const std::string& writer_id() const { return writer_id_; }
   [[nodiscard]] std::size_t tests_sent() const { return tests_sent_; }
+  /// Why the bus did not take the last block that it was given; "" when it did.
+  [[nodiscard]] const std::string& not_taken() const { return not_taken_; }
   /// Why data acquisition refused tests of this replay, by its heartbeats; each reason once.
   [[nodiscard]] std::vector<std::string> take_refusals() { return std::exchange(refusals_, {}); }
 
  private:
   void note_refusal(const ServiceStatus& status);
   [[nodiscard]] std::size_t tests_waiting() const;
-  [[nodiscard]] Status repeat_unanswered(Bus& bus, std::chrono::steady_clock::time_point now);
+  void repeat_unanswered(Bus& bus, std::chrono::steady_clock::time_point now);
+  [[nodiscard]] bool publish(Bus& bus, const RawSamples& block);
   /// Whether the first unsent block is due: its last sample has been "recorded" by now.
   [[nodiscard]] bool due(std::chrono::steady_clock::time_point now) const;
 
@@ -60,6 +65,7 @@ class ReplayFeeder {
   std::chrono::steady_clock::time_point progressed_;
   std::size_t tests_sent_ = 0;
   bool exhausted_ = false;
+  std::string not_taken_;
   std::string error_before_;  ///< the service's last error when the first block was sent
   std::vector<std::string> refusals_;
   std::set<std::string> refused_;  ///< those already told
@@ -75,8 +81,9 @@ class Quiescence {
   /// an input of long ago), and each has received every stream of its input
   /// topics to its end, that of `source` up to `sequence` included.
   [[nodiscard]] bool reached(const std::string& source_writer, std::uint64_t source_sequence) const;
-  /// Messages about whole tests that the service furthest behind has still to take: what a replay must not let grow.
-  [[nodiscard]] std::uint64_t backlog() const;
+  /// Whether no service is so far behind the one before it that a replay should wait: `tests` messages about whole
+  /// tests, or a stream's window of blocks of samples.
+  [[nodiscard]] bool keeps_up(std::uint64_t tests) const;
   /// How far all services' streams of these topics go.
   [[nodiscard]] std::vector<StreamPosition> written(std::span<const Topic> topics) const;
   /// Expected services that have not been heard.
@@ -85,6 +92,9 @@ class Quiescence {
   [[nodiscard]] std::string explain() const;
 
  private:
+  /// Messages of a topic that the service furthest behind has still to take.
+  [[nodiscard]] std::uint64_t backlog(const std::string& topic) const;
+
   std::map<std::string, std::vector<std::string>> inputs_of_;
   std::map<std::string, ServiceStatus> last_;
   std::map<std::string, std::uint64_t> waiting_at_first_;

@@ -8,9 +8,11 @@
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/channel_map_file.hpp"
 #include "services/data_acquisition/recording_blocks.hpp"
 
 namespace sealwatch::cli {
@@ -33,9 +35,17 @@ std::optional<ReplaySource> ReplaySource::open(const ReplayOptions& options, con
   source.configuration_ = &configuration;
   source.files_ = options.recordings;
   if (!options.asset_file.empty()) {
-    const auto asset = load_asset_or_explain(options.asset_file);
+    const auto asset = load_asset_or_explain(options.asset_file, options.map_file);
     if (!asset) return std::nullopt;
     source.asset_ = asset->asset_id;
+    if (!asset->channel_map.empty()) source.map_ = asset->channel_map;
+  } else if (!options.map_file.empty()) {
+    auto map = check_channel_map(options.map_file, nullptr);
+    if (!map) {
+      complain(combine(map.error()));
+      return std::nullopt;
+    }
+    source.map_ = std::move(*map);
   }
   // One that is missing is passed over as one that is damaged; where all are, nothing needs to be started.
   if (std::ranges::all_of(source.files_, [](const std::string& file) { return not_a_file(file).has_value(); })) {
@@ -83,8 +93,17 @@ Result<Recording> ReplaySource::read(const std::string& file) const {
   }
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   if (!plant) return fail(plant.error());
-  Result<Recording> recording = read_recording(file, **plant);
+  Result<Recording> recording = read_recording(file, **plant, map_.value_or(asset->channel_map));
+  if (recording) tell_left_aside(*recording, (*plant)->name);
   if (recording) recording->asset_id = *asset_id;
+  const auto commissioned = configuration_->commissioned.find(*asset_id);
+  const bool dated = recording && recording->start_time && commissioned != configuration_->commissioned.end();
+  if (dated && *recording->start_time < commissioned->second)
+    return fail(Error{.file = file,
+                      .place = "start_time",
+                      .value = format_utc(*recording->start_time),
+                      .rule = "lies before the asset was commissioned, " + format_utc(commissioned->second),
+                      .advice = "correct the start time, or 'commissioned' in the configuration"});
   return recording;
 }
 

@@ -28,7 +28,8 @@ class ReplaySource {
 
   const Configuration* configuration_ = nullptr;
   std::vector<std::string> files_;
-  std::string asset_;  ///< of all recordings, where the command line names one
+  std::optional<ChannelMap> map_;  ///< in place of the configured assets' own
+  std::string asset_;              ///< of all recordings, where the command line names one
   std::size_t next_ = 0;
   std::size_t failures_ = 0;
 };

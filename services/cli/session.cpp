@@ -11,8 +11,12 @@
 #include <random>
 #include <utility>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/visible_bus.hpp"
+#include "services/common/runtime/channel_map_file.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
+#include "services/common/runtime/process_end.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
 namespace sealwatch::cli {
@@ -28,7 +32,7 @@ std::string default_config() {
   return "config";
 }
 
-void complain(const Error& error) { std::fprintf(stderr, "sealwatch: %s\n", error.describe().c_str()); }
+void complain(const Error& error) { std::fprintf(stderr, "sealwatch: %s\n", visible(error.describe()).c_str()); }
 
 std::optional<Configuration> load_or_explain(const std::string& path) {
   auto configuration = load_configuration(path);
@@ -37,11 +41,21 @@ std::optional<Configuration> load_or_explain(const std::string& path) {
   return std::nullopt;
 }
 
-std::optional<AssetConfig> load_asset_or_explain(const std::string& path) {
+std::optional<AssetConfig> load_asset_or_explain(const std::string& path, const std::string& map_file) {
   auto asset = check_asset(path);
-  if (asset) return std::move(*asset);
-  for (const Error& error : asset.error()) complain(error);
-  return std::nullopt;
+  if (!asset) {
+    for (const Error& error : asset.error()) complain(error);
+    return std::nullopt;
+  }
+  if (map_file.empty()) return std::move(*asset);
+  const Result<const PlantDescription*> plant = find_plant(asset->model);
+  auto map = check_channel_map(map_file, plant ? *plant : nullptr);
+  if (!map) {
+    for (const Error& error : map.error()) complain(error);
+    return std::nullopt;
+  }
+  asset->channel_map = std::move(*map);
+  return std::move(*asset);
 }
 
 std::optional<Session> open_session(const std::string& config) {
@@ -52,7 +66,7 @@ std::optional<Session> open_session(const std::string& config) {
     complain(bus.error());
     return std::nullopt;
   }
-  return Session{std::move(*configuration), std::move(*bus)};
+  return Session{std::move(*configuration), std::make_unique<VisibleBus>(std::move(*bus))};
 }
 
 std::string running_services(Session& session, const std::vector<std::string>& wanted) {
@@ -85,7 +99,11 @@ bool free_to_start(Session& session, const std::vector<std::string>& wanted) {
 }
 
 void catch_interrupts() {
-  const auto remember = [](int) { interrupt_seen = true; };
+  prepare_process_end();
+  const auto remember = [](int signal) {
+    interrupt_seen = true;
+    end_process_in(kCommandStops, 128 + signal);
+  };
   std::signal(SIGINT, remember);
   std::signal(SIGTERM, remember);
   std::signal(SIGHUP, remember);  // the terminal was closed

@@ -14,8 +14,10 @@ namespace sealwatch::cli {
 /// The configuration at `path`; its faults are listed on standard error.
 [[nodiscard]] std::optional<Configuration> load_or_explain(const std::string& path);
 
-/// The asset file at `path`; its faults are listed on standard error.
-[[nodiscard]] std::optional<AssetConfig> load_asset_or_explain(const std::string& path);
+/// The asset file at `path`, with the channel map of `map_file` in place of its own where one is given; faults are listed
+/// on standard error.
+[[nodiscard]] std::optional<AssetConfig> load_asset_or_explain(const std::string& path,
+                                                               const std::string& map_file = {});
 
 struct Session {
   Configuration configuration;
@@ -35,7 +37,7 @@ struct Session {
 /// "sealwatch: " and the error, on standard error.
 void complain(const Error& error);
 
-/// Makes Ctrl-C and SIGTERM set interrupted() instead of ending the program.
+/// Makes Ctrl-C and SIGTERM set interrupted() instead of ending the program at once: it has until kCommandStops to end.
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
 

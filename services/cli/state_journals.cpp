@@ -13,9 +13,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Connection strings by service.
-std::optional<std::map<std::string, std::string>> connections_of(const std::string& state_directory,
-                                                                 const std::string& config) {
+Error missing(const std::string& service, const std::string& connection) {
+  return {.file = Journal::file_of(connection),
+          .place = {},
+          .value = {},
+          .rule = "is not there: what " + service + " concluded cannot be looked into",
+          .advice = "give the state directory where that service keeps it with --state, or restore it from a backup"};
+}
+
+void complain_of_none(const std::string& directory) {
+  complain(Error{.file = directory,
+                 .place = {},
+                 .value = {},
+                 .rule = "holds no journal of a service",
+                 .advice = "give their state directory with --state: demo/state after deploy/demo.sh, "
+                           "/var/lib/sealwatch where the package runs them"});
+}
+
+}  // namespace
+
+std::optional<std::map<std::string, std::string>> journal_connections(const std::string& state_directory,
+                                                                      const std::string& config) {
   std::map<std::string, std::string> connections;
   ConfigurationOverrides overrides;
   if (!state_directory.empty()) overrides.state_directory = state_directory;
@@ -37,25 +55,6 @@ bool is_missing(const std::string& connection) {
   std::error_code none;
   return connection.starts_with("sqlite3://") && !fs::exists(Journal::file_of(connection), none);
 }
-
-Error missing(const std::string& service, const std::string& connection) {
-  return {.file = Journal::file_of(connection),
-          .place = {},
-          .value = {},
-          .rule = "is not there: what " + service + " concluded cannot be looked into",
-          .advice = "give the state directory where that service keeps it with --state, or restore it from a backup"};
-}
-
-void complain_of_none(const std::string& directory) {
-  complain(Error{.file = directory,
-                 .place = {},
-                 .value = {},
-                 .rule = "holds no journal of a service",
-                 .advice = "give their state directory with --state: demo/state after deploy/demo.sh, "
-                           "/var/lib/sealwatch where the package runs them"});
-}
-
-}  // namespace
 
 std::string writer_of(Topic topic) {
   switch (topic) {
@@ -85,7 +84,7 @@ std::string writer_of(Topic topic) {
 }
 
 std::optional<StateJournals> StateJournals::open(const std::string& state_directory, const std::string& config) {
-  const auto connections = connections_of(state_directory, config);
+  const auto connections = journal_connections(state_directory, config);
   if (!connections) return std::nullopt;
   StateJournals found;
   std::string example = state_directory;

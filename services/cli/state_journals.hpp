@@ -11,6 +11,13 @@
 
 namespace sealwatch::cli {
 
+/// Connection strings of the services' journals, by service: those that the configuration names, or those of the state
+/// directory where there is no configuration. None, and said on standard error, where neither is at hand.
+[[nodiscard]] std::optional<std::map<std::string, std::string>> journal_connections(const std::string& state_directory,
+                                                                                    const std::string& config);
+/// Whether such a journal is a file that is not there.
+[[nodiscard]] bool is_missing(const std::string& connection);
+
 class StateJournals {
  public:
   /// The journals that the services have with this configuration and, unless it is "", this state directory: those that

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
+#include "services/cli/service_alarms.hpp"
 #include "services/cli/services_heard.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/summary.hpp"
@@ -48,9 +49,19 @@ nlohmann::ordered_json as_json(const ServicesHeard::Service& service) {
 void print_json(const Heard& heard) {
   nlohmann::ordered_json result = {{"schema", "sealwatch.status/1"},
                                    {"services", nlohmann::ordered_json::array()},
+                                   {"alarms", nlohmann::ordered_json::array()},
                                    {"assets", nlohmann::ordered_json::object()}};
   for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
     result["services"].push_back(as_json(service));
+  for (const HeardAlarm& one : alarms_of(heard.services.list(ServicesHeard::Clock::now())))
+    result["alarms"].push_back({{"service", one.service},
+                                {"kind", one.alarm.kind},
+                                {"ne107", words(category_of(one.alarm.kind))},
+                                {"asset_id", one.alarm.asset_id},
+                                {"subject", one.alarm.subject},
+                                {"pst_id", one.alarm.pst_id},
+                                {"text", one.alarm.text},
+                                {"since", one.alarm.since_ns == 0 ? "" : format_utc({one.alarm.since_ns})}});
   for (const auto& [asset, topics] : heard.last)
     for (const auto& [topic, text] : topics) result["assets"][asset][topic] = nlohmann::ordered_json::parse(text);
   std::printf("%s\n", result.dump(1).c_str());
@@ -62,6 +73,8 @@ void print_text(const Heard& heard, const std::vector<std::string>& configured) 
   } else {
     for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
       std::printf("%s\n", one_line(service).c_str());
+    for (const HeardAlarm& alarm : alarms_of(heard.services.list(ServicesHeard::Clock::now())))
+      std::printf("%s\n", one_line(alarm).c_str());
   }
   for (const auto& [asset, view] : heard.assets) std::printf("\n%s", view.screen().c_str());
   if (heard.services.none()) return;
@@ -99,7 +112,10 @@ int run_status(const StatusOptions& options) {
   std::vector<std::string> configured;
   for (const AssetConfig& asset : session->configuration.assets) configured.push_back(asset.asset_id);
   options.json ? print_json(heard) : print_text(heard, configured);
-  return heard.services.none() || !heard.services.all_well(ServicesHeard::Clock::now()) ? kAnswerIsNo : kOk;
+  const auto now = ServicesHeard::Clock::now();
+  const bool well =
+      !heard.services.none() && heard.services.all_well(now) && alarms_of(heard.services.list(now)).empty();
+  return well ? kOk : kAnswerIsNo;
 }
 
 }  // namespace sealwatch::cli

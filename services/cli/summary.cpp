@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/cli/forecast_text.hpp"
 #include "services/cli/message_words.hpp"
 #include "services/cli/terminal.hpp"
@@ -51,7 +52,7 @@ std::vector<const LeakageEstimate*> AssetView::estimates_of_now() const {
 std::string AssetView::seal_lines() const {
   std::string text;
   if (life_ && life_->condition_known)
-    text += "  seal condition   " + percent(life_->condition) + " of its elastic modulus when new (fails at " +
+    text += "  seal condition   " + percent(life_->condition) + " (index from the leakage: 100 % is new, fails at " +
             percent(life_->threshold, 0) + ")\n";
   const LeakageEstimate* latest = nullptr;
   for (const LeakageEstimate* estimate : estimates_of_now())
@@ -107,7 +108,7 @@ std::string AssetView::forecast_lines() const {
   if (!life_ || life_->forecasts.empty()) return {};
   if (replaced_ns_ && life_->tests_since_replacement == 0)
     return "  remaining life   " + life_->forecasts.front().explanation + "\n";
-  // The one in charge and the straight lines beside it; the others are in the message.
+  // The primary forecaster and the straight lines beside it; the others are in the message.
   std::vector<Forecast> shown = {life_->forecasts.front()};
   for (std::size_t k = 1; k < life_->forecasts.size(); ++k)
     if (life_->forecasts[k].method == "ols") shown.push_back(life_->forecasts[k]);
@@ -126,8 +127,8 @@ std::string AssetView::advisory_lines(bool services_run) const {
     text += "                   - " + wrapped(reason, 100, 21) + "\n";
   const bool seen = advisory_->state == AdvisoryState::acknowledged;
   if (!services_run || seen || advisory_->action == AdvisoryAction::none) return text;
-  return text + "                   (sealwatch acknowledge " + asset_id_ + " " + advisory_->advisory_id +
-         " --by NAME)\n";
+  return text + "                   (sealwatch acknowledge " + shell_word(asset_id_) + " " +
+         shell_word(advisory_->advisory_id) + " --by NAME)\n";
 }
 
 std::string AssetView::model_lines() const {
@@ -142,7 +143,8 @@ std::string AssetView::model_lines() const {
     text += "\n                   (version " + std::to_string(found.version);
     const bool can_be = found.analysed && found.verdict == DiscrepancyVerdict::mismatch && !found.physics.empty();
     if (can_be && !accepted)
-      text += ": sealwatch accept --asset-id " + asset_id_ + " --discrepancy " + found.header.message_id + " --by NAME";
+      text += ": sealwatch accept --asset-id " + shell_word(asset_id_) + " --discrepancy " +
+              shell_word(found.header.message_id) + " --by NAME";
     text += ")\n";
   }
   return text + acceptance_line();

@@ -19,21 +19,13 @@ extern char** environ;
 namespace sealwatch::cli {
 namespace {
 
-constexpr std::chrono::seconds kPatience{5};
+/// A service ends by itself within kServiceStops.
+constexpr std::chrono::milliseconds kPatience{1400};
 
 std::string program_name(std::string service) {
   for (char& letter : service)
     if (letter == '_') letter = '-';
   return "sealwatch-" + service;
-}
-
-/// Beside this program (a build tree, an installation), else wherever PATH finds it.
-std::string program_path(const std::string& program) {
-  std::error_code error;
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const auto& candidate : {here / program, here / ".." / "libexec" / "sealwatch" / program})
-    if (!error && std::filesystem::exists(candidate)) return std::filesystem::weakly_canonical(candidate).string();
-  return program;
 }
 
 std::string ending(int status) {
@@ -42,6 +34,14 @@ std::string ending(int status) {
 }
 
 }  // namespace
+
+std::string program_path(const std::string& program) {
+  std::error_code error;
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  for (const auto& candidate : {here / program, here / ".." / "libexec" / "sealwatch" / program})
+    if (!error && std::filesystem::exists(candidate)) return std::filesystem::weakly_canonical(candidate).string();
+  return program;
+}
 
 bool enabled(const Configuration& configuration, const std::string& service) {
   const auto named = configuration.services.find(service);

@@ -13,6 +13,9 @@
 
 namespace sealwatch::cli {
 
+/// Path of another program of sealwatch: beside this one (a build tree, an installation), else what PATH finds.
+[[nodiscard]] std::string program_path(const std::string& program);
+
 struct ServiceProgram {
   std::string name;                    ///< "state_detection"
   std::vector<std::string> arguments;  ///< argv, the program's path first
@@ -42,7 +45,7 @@ class Supervisor {
   [[nodiscard]] Status start();
   /// Restarts programs that ended; returns what happened, in words.
   [[nodiscard]] std::vector<std::string> tend();
-  /// Asks all to end (SIGTERM), waits up to five seconds, then kills. Idempotent.
+  /// Asks all to end (SIGTERM), waits until each has had time to, then kills. Idempotent.
   void stop();
   [[nodiscard]] pid_t process_of(const std::string& name) const;
   /// Whether a program ended at its first start because of bad input (exit status 2: its state directory cannot be

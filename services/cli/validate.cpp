@@ -1,4 +1,4 @@
-// `sealwatch validate`: the model's simulation beside recordings (docs/verification.md).
+// `sealwatch validate`: the model's simulation beside recordings (docs/records/verification.md).
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,9 +15,6 @@ namespace sealwatch::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using verification::ChannelValidation;
-using verification::ModelValidation;
-using verification::RecordingValidation;
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -81,7 +78,19 @@ Status write_text(const std::filesystem::path& file, const std::string& text) {
 }  // namespace
 
 int run_validate(const ValidateOptions& options) {
-  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
+  if (!options.simulated.empty()) return run_validate_trace(options);
+  for (const auto& [option, value] : {std::pair{"--asset", &options.asset_file}, {"--out", &options.directory}})
+    if (value->empty()) {
+      complain({.file = {},
+                .place = option,
+                .value = {},
+                .rule = "is required",
+                .advice =
+                    "a model needs an asset file and a directory for its report; a trace of your own simulation only "
+                    "--simulated SIM.csv"});
+      return kBadInput;
+    }
+  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   if (!plant) {
@@ -90,7 +99,7 @@ int run_validate(const ValidateOptions& options) {
   }
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
-  const auto validation = verification::validate_model(*asset, *recordings, options.recordings, options.fit);
+  const auto validation = validate_model(*asset, *recordings, options.recordings, options.fit);
   if (!validation) {
     complain(validation.error());
     return kBadInput;

@@ -12,9 +12,6 @@ namespace {
 
 using report::Ink;
 using report::Plot;
-using verification::ChannelValidation;
-using verification::ModelValidation;
-using verification::RecordingValidation;
 
 constexpr double kNormal97_5 = 1.959963984540054;
 

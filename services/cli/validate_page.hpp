@@ -4,13 +4,13 @@
 
 #include <string>
 
-#include "services/common/verification/model_validation.hpp"
+#include "services/common/estimation/model_validation.hpp"
 
 namespace sealwatch::cli {
 
 /// Whether the model is what was recorded, for the terminal and the page.
-[[nodiscard]] const char* verdict_in_words(const verification::ModelValidation& validation);
+[[nodiscard]] const char* verdict_in_words(const ModelValidation& validation);
 
-[[nodiscard]] std::string validation_page(const AssetConfig& asset, const verification::ModelValidation& validation);
+[[nodiscard]] std::string validation_page(const AssetConfig& asset, const ModelValidation& validation);
 
 }  // namespace sealwatch::cli

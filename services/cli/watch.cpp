@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "sealwatch/core/text.hpp"
 #include "services/cli/commands.hpp"
@@ -91,6 +93,22 @@ class Writers {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// Messages that a service sends again, because somebody missed them, are told once.
+class Repetitions {
+ public:
+  bool is_one(const Message& message) {
+    const Header& header = header_of(message);
+    if (header.stream_sequence == 0) return false;  // from outside
+    std::uint64_t& last = last_[{topic_of(message), header.writer_id, asset_of(message)}];
+    if (header.stream_sequence <= last) return true;
+    last = header.stream_sequence;
+    return false;
+  }
+
+ private:
+  std::map<std::tuple<Topic, std::string, std::string>, std::uint64_t> last_;
+};
+
 void print(const BusItem& item, const WatchOptions& options) {
   if (const auto* message = std::get_if<Message>(&item)) {
     if (!options.asset_id.empty() && asset_of(*message) != options.asset_id) return;
@@ -126,9 +144,12 @@ int run_watch(const WatchOptions& options) {
            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > options.seconds;
   };
   Writers writers(*selection);
+  Repetitions repetitions;
   while (!interrupted() && !over()) {
     for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100))) {
       writers.take(item);
+      if (const auto* message = std::get_if<Message>(&item); message != nullptr && repetitions.is_one(*message))
+        continue;
       if (selection->service_status || !std::holds_alternative<ServiceStatus>(item)) print(item, options);
     }
     writers.tell(std::chrono::steady_clock::now(), session->configuration.domain);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "sealwatch/port/patient_publish.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
 namespace sealwatch::client {
@@ -83,7 +84,7 @@ Status Subscriber::acknowledge(const Advisory& advisory, const std::string& who,
   header.producer = options_.name;
   header.event_time_known = true;
   header.event_time_ns = header.publishing_time_ns = now_ns();
-  return bus_->publish(Message(acknowledgement));
+  return publish_patiently(*bus_, Message(acknowledgement));
 }
 
 }  // namespace sealwatch::client

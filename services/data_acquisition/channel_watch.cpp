@@ -116,8 +116,8 @@ ChannelStatus ChannelWatch::status(const DataAcquisitionOptions& options) const 
   if (frozen_.count > 0) note(frozen_reason(), true);
   if (out_of_range_ > 0) note(range_reason(), static_cast<double>(out_of_range_) > least_failed);
   if (not_a_number_ > 0)
-    note(print("%llu of %llu samples are not a number", static_cast<unsigned long long>(not_a_number_),
-               static_cast<unsigned long long>(count_)),
+    note(print("%llu of %llu samples are not a number that a sensor gives",
+               static_cast<unsigned long long>(not_a_number_), static_cast<unsigned long long>(count_)),
          static_cast<double>(not_a_number_) > least_failed);
   return status;
 }

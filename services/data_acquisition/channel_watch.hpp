@@ -4,8 +4,7 @@
 //   input      commands and references (table's `input`): may be constant as long as they like, never judged
 //   slow       temperatures: constant for minutes is normal, never judged
 //   kinematic  m, m/s, rad, rad/s: constant while the piston rests; frozen when constant while another kinematic
-//   channel
-//              shows that the actuator moved (2 % of its stroke, or one revolution)
+//              channel shows that the actuator moved (2 % of its stroke, or one revolution)
 //   process    pressures, flow, current, force: their noise never repeats for long, so constant alone is frozen; where
 //              the noise is not known or drowns in the sensor's steps, or the value is exactly zero (a meter's low-flow
 //              cut-off), they are judged like kinematic ones

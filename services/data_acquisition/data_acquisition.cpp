@@ -110,6 +110,7 @@ void DataAcquisition::take_raw(const RawSamples& raw, Conclusion& conclusion) {
   Running* running = running_test(raw, conclusion);
   if (!running || running->test.seen(raw.block_number)) return;
   running->silent_s = 0.0;
+  if (const auto beyond = running->test.beyond_limits(raw)) return refuse(raw, "refused: " + *beyond, conclusion);
   SampleBlock block = stamp(raw, running->pst_id);
   running->test.complete(raw, block);
   if (ends(block.boundary)) finish(place_of(raw));
@@ -148,6 +149,20 @@ SampleBlock DataAcquisition::stamp(const RawSamples& raw, const std::string& pst
   block.aborted = raw.aborted;
   block.abort_reason = raw.abort_reason;
   return block;
+}
+
+/// Ends the test that would be more than one test may be: what came of it before is kept, with the reason, and what
+/// comes after is passed over.
+void DataAcquisition::refuse(const RawSamples& raw, const std::string& reason, Conclusion& conclusion) {
+  const std::string place = place_of(raw);
+  Running& running = running_.at(place);
+  if (running.test.begun()) return close(place, reason, conclusion);
+  SampleBlock block = stamp(raw, running.pst_id);
+  block.boundary = BlockBoundary::whole;
+  block.aborted = true;
+  block.abort_reason = reason;
+  finish(place);
+  conclusion.outputs.emplace_back(std::move(block));
 }
 
 void DataAcquisition::close(const std::string& place, const std::string& reason, Conclusion& conclusion) {

@@ -4,9 +4,10 @@
 // One raw block gives one sample block at once. A test begins with a block that says so, or with block 0, or with a
 // block of another test than the open one. It ends with a block that says so; when another test of the same actuator
 // begins first, or when nothing comes for time_out_s, it is closed as cut by an empty end block with aborted
-// set; not so a recording that is played back: it cuts no other test, and goes on when it is played again. What was
-// seen before changes nothing: blocks whose number came already and tests that are closed are passed over. Blocks out
-// of order go on as they come, under their numbers; data manipulation sorts them.
+// set, and so is one that would be more than one test may be (core/test_limits.hpp); not so a recording that is played
+// back: it cuts no other test, and goes on when it is played again. What was seen before changes nothing: blocks whose
+// number came already and tests that are closed are passed over. Blocks out of order go on as they come, under their
+// numbers; data manipulation sorts them.
 #pragma once
 
 #include <map>
@@ -46,6 +47,7 @@ class DataAcquisition final : public Layer {
   Running* running_test(const RawSamples& raw, Conclusion& conclusion);
   [[nodiscard]] OpenTest open(const std::string& asset_id) const;
   [[nodiscard]] SampleBlock stamp(const RawSamples& raw, const std::string& pst_id) const;
+  void refuse(const RawSamples& raw, const std::string& reason, Conclusion& conclusion);
   void close(const std::string& place, const std::string& reason, Conclusion& conclusion);
   void finish(const std::string& place);
 

@@ -9,32 +9,32 @@ namespace {
 
 using namespace sealwatch;
 
-/// A layer concludes and its runner stores in one transaction, and the folder is looked at between transactions: a test
-/// that the layer has closed is a test that is stored.
-std::function<std::vector<Message>()> watch_folder(const Configuration& configuration, const DataAcquisition& layer) {
+/// A test that the layer at rest has closed is a test that is stored.
+decltype(RunnerOptions::local_inputs) watch_folder(const Configuration& configuration) {
   const std::string& directory = configuration.services.at("data_acquisition").recordings_directory;
   if (directory.empty()) return {};
-  const auto folder = std::make_shared<RecordingsFolder>(
-      directory, configuration.assets, [&layer](const RawSamples& first) { return layer.is_closed(first); },
-      [](const Error& error) {
+  const auto layers = std::make_shared<RunnerOptions::LayerAtRest>();
+  const auto is_closed = [layers](const RawSamples& first) {
+    const auto* const layer = dynamic_cast<const DataAcquisition*>((*layers)(first.asset_id));
+    return layer != nullptr && layer->is_closed(first);
+  };
+  const auto folder =
+      std::make_shared<RecordingsFolder>(directory, configuration.assets, is_closed, [](const Error& error) {
         log_event(LogLevel::error, "recording", {{"error", error.describe()}});
       });
-  return [folder] { return folder->look(); };
+  return [folder, layers](const RunnerOptions::LayerAtRest& now) {
+    *layers = now;
+    return folder->look();
+  };
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const DataAcquisition* layer = nullptr;  // owned by the daemon, which makes it before its local inputs
   return run_daemon(argc, argv,
                     {.service = "data_acquisition",
-                     .make_layer =
-                         [&layer](const Configuration& configuration, const Clock&) {
-                           auto made = std::make_unique<DataAcquisition>(configuration.assets);
-                           layer = made.get();
-                           return made;
-                         },
+                     .make_layer = [](const Configuration& configuration,
+                                      const Clock&) { return std::make_unique<DataAcquisition>(configuration.assets); },
                      .make_bus = make_dds_bus,
-                     .make_local_inputs =
-                         [&layer](const Configuration& configuration) { return watch_folder(configuration, *layer); }});
+                     .make_local_inputs = watch_folder});
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/units.hpp"
 
 namespace sealwatch {
@@ -31,6 +32,11 @@ SensorSetting sensor_of(const AssetConfig* asset, const std::string& channel) {
   return found == asset->sensors.end() ? SensorSetting{} : found->second;
 }
 
+/// A block without rows counts as one row, so that a test of such blocks has an end too.
+double numbers_of(std::size_t rows, std::size_t channels) {
+  return static_cast<double>(std::max<std::size_t>(rows, 1)) * static_cast<double>(channels + 1);
+}
+
 double value_at(const TimeSeries& samples, std::string_view channel, std::size_t row) {
   const Series* series = samples.find(channel);
   return series ? series->values[row] : std::numeric_limits<double>::quiet_NaN();
@@ -48,6 +54,12 @@ OpenTest::OpenTest(std::string asset_id, const AssetConfig* asset, const PlantDe
     watches_.emplace_back(channel.name, ChannelWatch(channel, sensor_of(asset, channel.name), stroke_m));
 }
 
+/// Beyond the longest test a time is damaged, like one that goes back.
+bool OpenTest::is_time(double time_s) const {
+  const bool in_test = !first_time_s_ || time_s - *first_time_s_ <= kTestLimits.longest_s;
+  return plausible(time_s, kTestLimits.largest_time_s).has_value() && in_test;
+}
+
 /// Rows whose time is a number and increases. A block that comes late is only held against itself.
 std::vector<std::size_t> OpenTest::increasing_rows(const RawSamples& raw) {
   std::vector<std::size_t> rows;
@@ -55,7 +67,7 @@ std::vector<std::size_t> OpenTest::increasing_rows(const RawSamples& raw) {
   if (latest(raw.block_number) && last_time_s_) before = *last_time_s_;
   for (std::size_t row = 0; row < raw.samples.time_s.size(); ++row) {
     const double time_s = raw.samples.time_s[row];
-    if (!std::isfinite(time_s) || time_s <= before) {
+    if (!is_time(time_s) || time_s <= before) {
       ++clock_steps_back_;
       continue;
     }
@@ -65,7 +77,8 @@ std::vector<std::size_t> OpenTest::increasing_rows(const RawSamples& raw) {
   return rows;
 }
 
-/// The channel in SI with these rows, or nothing when it cannot be used. Values that are missing become NaN.
+/// The channel in SI with these rows, or nothing when it cannot be used. Values that are missing, or that no sensor
+/// gives, become NaN: a mark, which every later layer knows.
 std::optional<Series> OpenTest::accept(const Series& channel, const std::vector<std::size_t>& rows) {
   const ChannelDescription* known = plant_ ? plant_->find_channel(channel.name) : nullptr;
   if (plant_ && !known) {
@@ -74,6 +87,7 @@ std::optional<Series> OpenTest::accept(const Series& channel, const std::vector<
   }
   Series series{
       .name = channel.name, .unit = known ? known->unit : channel.unit, .noise_std = channel.noise_std, .values = {}};
+  const double largest = known ? largest_plausible(known->range_min, known->range_max) : kLargestOfAnyChannel;
   UnitConversion conversion;
   if (known && !channel.unit.empty() && channel.unit != known->unit) {
     const Result<UnitConversion> found = find_unit(channel.unit);
@@ -84,10 +98,13 @@ std::optional<Series> OpenTest::accept(const Series& channel, const std::vector<
     conversion = *found;
     series.noise_std *= conversion.scale;
   }
+  series.noise_std = std::max(0.0, plausible(series.noise_std, largest).value_or(0.0));
+  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   series.values.reserve(rows.size());
-  for (const std::size_t row : rows)
-    series.values.push_back(row < channel.values.size() ? conversion.to_si(channel.values[row])
-                                                        : std::numeric_limits<double>::quiet_NaN());
+  for (const std::size_t row : rows) {
+    const double value = row < channel.values.size() ? conversion.to_si(channel.values[row]) : kMissing;
+    series.values.push_back(plausible(value, largest).value_or(kMissing));
+  }
   return series;
 }
 
@@ -101,6 +118,15 @@ TimeSeries OpenTest::clean(const RawSamples& raw) {
     if (std::optional<Series> series = accept(channel, rows)) samples.channels.push_back(std::move(*series));
   }
   return samples;
+}
+
+std::optional<std::string> OpenTest::beyond_limits(const RawSamples& raw) const {
+  const std::vector<double>& time_s = raw.samples.time_s;
+  const std::size_t channels = raw.samples.channels.size();
+  if (channels > kTestLimits.most_channels) return sealwatch::beyond_limits({}, channels);
+  if (auto why = too_many_numbers(numbers_ + numbers_of(time_s.size(), channels))) return why;
+  if (time_s.empty() || !first_time_s_ || !plausible(time_s.front(), kTestLimits.largest_time_s)) return std::nullopt;
+  return too_long(time_s.front() - *first_time_s_);
 }
 
 void OpenTest::complete(const RawSamples& raw, SampleBlock& block) {
@@ -143,7 +169,9 @@ void OpenTest::count_gap(double interval_s) {
 void OpenTest::count_rows(const SampleBlock& block, bool in_order) {
   const std::vector<double>& time_s = block.samples.time_s;
   rows_ += time_s.size();
+  numbers_ += numbers_of(time_s.size(), block.samples.channels.size());
   if (time_s.empty()) return;
+  if (!first_time_s_) first_time_s_ = time_s.front();
   for (std::size_t row = 1; row < time_s.size(); ++row) count_gap(time_s[row] - time_s[row - 1]);
   if (!in_order) {
     missing_rows_ -= std::min<std::uint64_t>(missing_rows_, time_s.size());
@@ -199,7 +227,8 @@ std::vector<ChannelStatus> OpenTest::status() const {
 
 SampleBlock OpenTest::closing_block(const std::string& reason) const {
   SampleBlock block = *last_;
-  block.block_number = *seen_.rbegin() + 1;
+  block.block_number = *seen_.rbegin() + 1;  // 0 after the highest that there is: then the first that is free
+  while (seen_.contains(block.block_number)) ++block.block_number;
   block.boundary = BlockBoundary::end;
   block.aborted = true;
   block.abort_reason = reason;

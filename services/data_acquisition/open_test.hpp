@@ -24,13 +24,17 @@ class OpenTest {
   /// Cleans the samples of a raw block: SI units, only the plant's channels, rows whose time increases. Fills the
   /// block's samples, counts and status, and absorbs it.
   void complete(const RawSamples& raw, SampleBlock& block);
+  /// What forbids to take this block: with it the test would be more than one test may be (core/test_limits.hpp).
+  [[nodiscard]] std::optional<std::string> beyond_limits(const RawSamples& raw) const;
   /// Takes in a block that was made before.
   void absorb(const SampleBlock& block);
+  [[nodiscard]] bool begun() const { return last_.has_value(); }
   [[nodiscard]] bool seen(std::uint64_t block_number) const { return seen_.contains(block_number); }
   /// The block that closes a test whose end never came.
   [[nodiscard]] SampleBlock closing_block(const std::string& reason) const;
 
  private:
+  [[nodiscard]] bool is_time(double time_s) const;
   [[nodiscard]] TimeSeries clean(const RawSamples& raw);
   [[nodiscard]] std::vector<std::size_t> increasing_rows(const RawSamples& raw);
   [[nodiscard]] std::optional<Series> accept(const Series& channel, const std::vector<std::size_t>& rows);
@@ -49,10 +53,12 @@ class OpenTest {
   std::optional<SampleBlock> last_;  ///< without samples: what a closing block repeats
   std::vector<std::pair<std::string, ChannelWatch>> watches_;
   std::map<std::string, std::string> left_out_;  ///< channel and why
+  std::optional<double> first_time_s_;
   std::optional<double> last_time_s_;
   std::vector<double> first_intervals_s_;  ///< until the usual interval is known
   double usual_interval_s_ = 0.0;
   std::uint64_t rows_ = 0;
+  double numbers_ = 0.0;  ///< rows times channels so far, times among them
   std::uint64_t missing_rows_ = 0;
   std::uint64_t clock_steps_back_ = 0;
   Travel travel_;

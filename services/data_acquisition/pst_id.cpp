@@ -5,6 +5,7 @@
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/time.hpp"
+#include "sealwatch/message/made_up.hpp"
 
 namespace sealwatch {
 namespace {
@@ -52,7 +53,8 @@ std::string make_pst_id(const RawSamples& first_block) {
     when = plain(first_block.recording_id);
   const std::string content =
       first_block.content_hash.empty() ? hash_of(first_block.samples) : plain(first_block.content_hash);
-  return plain(first_block.asset_id) + "-" + when + "-" + content.substr(0, kHashDigits);
+  return plain(first_block.asset_id) + "-" + when + "-" + content.substr(0, kHashDigits) +
+         (is_made_up(first_block.source_id) ? "-simulated" : "");
 }
 
 }  // namespace sealwatch

@@ -1,11 +1,12 @@
 #include "services/data_acquisition/recordings_folder.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/data_acquisition/put_away.hpp"
 #include "services/data_acquisition/recording_blocks.hpp"
 
 namespace sealwatch {
@@ -52,14 +53,15 @@ std::vector<Message> RecordingsFolder::look() {
   return messages;
 }
 
-/// CSV and MAT files right in the folder, by name.
+/// CSV, MAT and HDF5 files right in the folder, by name.
 std::vector<fs::path> RecordingsFolder::recordings() const {
   std::vector<fs::path> paths;
   std::error_code error;
   for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error)) {
     const std::string suffix = suffix_of(entry->path().string());
     std::error_code ignored;
-    if ((suffix == ".csv" || suffix == ".mat") && entry->is_regular_file(ignored)) paths.push_back(entry->path());
+    const bool is_one = suffix == ".csv" || suffix == ".mat" || suffix == ".h5" || suffix == ".hdf5";
+    if (is_one && entry->is_regular_file(ignored)) paths.push_back(entry->path());
   }
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -68,7 +70,7 @@ std::vector<fs::path> RecordingsFolder::recordings() const {
 void RecordingsFolder::put_away_concluded() {
   for (auto file = files_.begin(); file != files_.end();) {
     const bool concluded = file->second.taken && !file->second.stuck && is_concluded_(file->second.first_block);
-    const bool gone = concluded && put_away(file->first, "done");
+    const bool gone = concluded && move_to("done", file->first);
     file->second.stuck = file->second.stuck || (concluded && !gone);
     file = gone ? files_.erase(file) : std::next(file);
   }
@@ -90,6 +92,7 @@ bool RecordingsFolder::is_settled(const fs::path& path) {
 }
 
 void RecordingsFolder::take(const fs::path& path, std::vector<Message>& messages) {
+  if (const auto link = not_a_file_of_its_own(path)) return reject(path, *link);
   Result<Recording> recording = read(path);
   if (!recording) return reject(path, recording.error());
   std::vector<RawSamples> blocks = blocks_of(*recording, kSamplesPerBlock, kSourceId, false);
@@ -118,39 +121,26 @@ Result<Recording> RecordingsFolder::read(const fs::path& path) const {
   }
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   if (!plant) return fail(plant.error());
-  return read_recording(path.string(), **plant);
+  return read_recording(path.string(), **plant, asset->channel_map);
 }
 
-bool RecordingsFolder::put_away(const fs::path& path, const std::string& folder) {
-  const fs::path target = path.parent_path() / folder;
-  std::error_code error;
-  fs::create_directories(target, error);
-  fs::rename(path, target / path.filename(), error);
-  if (error) {
-    report_(Error{.file = path.string(),
-                  .place = {},
-                  .value = {},
-                  .rule = "could not be moved to " + target.string() + ": " + error.message(),
-                  .advice = "let the service write there"});
-    return false;
-  }
-  // The sidecar goes last: a recording that is left without it would be another recording.
-  fs::path sidecar = path;
-  sidecar.replace_extension(".yaml");
-  if (fs::exists(sidecar, error)) fs::rename(sidecar, target / sidecar.filename(), error);
-  return true;
+std::optional<fs::path> RecordingsFolder::move_to(const std::string& folder, const fs::path& path) {
+  const Result<fs::path> place = put_away(path, folder);
+  if (place) return *place;
+  report_(place.error());
+  return std::nullopt;
 }
 
 void RecordingsFolder::reject(const fs::path& path, const Error& error) {
   report_(error);
-  if (!put_away(path, "rejected")) {
+  const std::optional<fs::path> place = move_to("rejected", path);
+  if (!place) {
     files_[path].taken = true;
     files_[path].stuck = true;
     return;
   }
   files_.erase(path);
-  std::ofstream(path.parent_path() / "rejected" / (path.filename().string() + ".error.txt"))
-      << error.describe() << "\n";
+  write_new(place->string() + ".error.txt", visible(error.describe()) + "\n");
 }
 
 }  // namespace sealwatch

@@ -2,7 +2,7 @@
 //
 // A file is read when it and its sidecar have not changed for ten looks, one a second: a copy in progress is left
 // alone. When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
-// NAME.error.txt; its sidecar, which must be there when the recording is read, moves along. Until then it stays, and a
+// NAME.error.txt (NAME.2 where that name is taken: nothing is overwritten); its sidecar, which must be there when the recording is read, moves along. Until then it stays, and a
 // change of file or sidecar or a restart reads it again: nothing is lost, and what comes twice is taken once, by its
 // message id.
 #pragma once
@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,8 @@ class RecordingsFolder {
   [[nodiscard]] bool is_settled(const std::filesystem::path& path);
   void take(const std::filesystem::path& path, std::vector<Message>& messages);
   [[nodiscard]] Result<Recording> read(const std::filesystem::path& path) const;
-  /// Moves a recording, then its sidecar; false when it could not.
-  bool put_away(const std::filesystem::path& path, const std::string& folder);
+  /// Where the recording is now; nothing where it could not be moved, which is reported.
+  std::optional<std::filesystem::path> move_to(const std::string& folder, const std::filesystem::path& path);
   void reject(const std::filesystem::path& path, const Error& error);
 
   std::filesystem::path directory_;

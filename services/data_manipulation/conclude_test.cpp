@@ -120,6 +120,8 @@ TestConclusion conclude_test(const std::vector<SampleBlock>& blocks, const Asset
     note(window.abort_reason,
          rows == 0 ? "no sample was recorded"
                    : "only " + std::to_string(rows) + (rows == 1 ? " sample was" : " samples were") + " recorded");
+  else if (const auto beyond = beyond_window(recorded))
+    note(window.abort_reason, "refused: " + *beyond);
   else
     cut_window(recorded, asset, options, window);
 

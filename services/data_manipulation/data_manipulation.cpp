@@ -54,7 +54,8 @@ Conclusion DataManipulation::receive(const Message& input) {
   }
   waiting_[pst_id].push_back(*block);
   if (!ends(*block)) return conclusion;
-  conclusion.later = [blocks = waiting_.extract(pst_id).mapped(), asset = view(block->asset_id), options = options_] {
+  conclusion.later = [blocks = waiting_.extract(pst_id).mapped(), asset = view(block->asset_id),
+                      options = options_](const std::stop_token& /*bounded by the test's rows*/) {
     Conclusion of_test;
     for (const SampleBlock& one : blocks) of_test.consumed.push_back(one.header.message_id);
     TestConclusion concluded = conclude_test(blocks, asset, options);

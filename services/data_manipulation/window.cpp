@@ -113,6 +113,22 @@ std::string cut_at_gap(TimeSeries& recorded, double longest_gap_s) {
   return reason;
 }
 
+std::optional<std::string> beyond_window(const TimeSeries& recorded, const TestLimits& limits) {
+  const std::size_t channels = recorded.channels.size();
+  if (auto why = beyond_limits(recorded.time_s, channels, limits)) return why;
+  const signal::SamplingGrid grid = signal::find_grid(recorded.time_s);
+  if (auto why = too_fast(grid.interval_s, limits)) return why;
+  const auto rows = static_cast<double>(recorded.time_s.size());
+  const auto window_rows = static_cast<double>(grid.count);
+  if (window_rows > limits.most_window_rows_per_row * rows) {
+    char why[160];
+    std::snprintf(why, sizeof why, "rows %.3g s apart but for gaps: %.0f rows would stand for the %.0f recorded",
+                  grid.interval_s, window_rows, rows);
+    return why;
+  }
+  return too_many_numbers(window_rows * static_cast<double>(channels + 1), limits);
+}
+
 UniformWindow make_uniform(const TimeSeries& recorded, const AssetView& asset,
                            const std::map<std::string, Correction>& corrections) {
   const signal::SamplingGrid whole = signal::find_grid(recorded.time_s);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/message/data_acquisition.hpp"
 #include "sealwatch/signal/resampling.hpp"
 #include "services/data_manipulation/asset_view.hpp"
@@ -24,6 +26,11 @@ struct Correction {
 
 /// Cuts the rows from the first gap longer than `longest_gap_s` on; returns the reason, "" when there was none.
 [[nodiscard]] std::string cut_at_gap(TimeSeries& recorded, double longest_gap_s);
+
+/// What forbids a window of these rows, at least two: too many, too fast, too long, or too few of those that a uniform
+/// window would have; nothing where there is nothing.
+[[nodiscard]] std::optional<std::string> beyond_window(const TimeSeries& recorded,
+                                                       const TestLimits& limits = kTestLimits);
 
 struct UniformWindow {
   TimeSeries samples;

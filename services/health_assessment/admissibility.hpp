@@ -3,8 +3,7 @@
 //   - the test was not judged (cut, no position, not a stroke test) or aborted
 //   - no hold was found: the holds are the mandatory control of the leakage resistance (MODEL section 4)
 //   - the drive was saturated, the oil off its temperature, or too many samples were missing: the test alone stands in
-//   the
-//     warning region of drive_saturation, fluid_temperature_deviation or missing_share
+//     the warning region of drive_saturation, fluid_temperature_deviation or missing_share
 //   - neither the cylinder circuit (flow, pressures or their difference, position or velocity) nor the whole actuator
 //     (voltage or duty, shaft speed, a pressure, position) has all its channels in order
 #pragma once

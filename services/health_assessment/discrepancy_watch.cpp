@@ -14,15 +14,17 @@ namespace {
 
 constexpr const char* kProducer = "health_assessment 0.1.0";
 
+using Work = std::function<Conclusion(const std::stop_token&)>;
+
 /// Both, one after the other, as one piece of work.
-void add_later(Conclusion& conclusion, std::function<Conclusion()> work) {
+void add_later(Conclusion& conclusion, Work work) {
   if (!conclusion.later) {
     conclusion.later = std::move(work);
     return;
   }
-  conclusion.later = [first = std::move(conclusion.later), second = std::move(work)] {
-    Conclusion both = completed(first());
-    Conclusion rest = completed(second());
+  conclusion.later = [first = std::move(conclusion.later), second = std::move(work)](const std::stop_token& stop) {
+    Conclusion both = completed(first(stop), stop);
+    Conclusion rest = completed(second(stop), stop);
     std::ranges::move(rest.outputs, std::back_inserter(both.outputs));
     std::ranges::move(rest.consumed, std::back_inserter(both.consumed));
     return both;
@@ -182,7 +184,8 @@ bool DiscrepancyWatch::due() {
   return unseen == kTestsOfAnalysis || (analysed.size() < kTestsOfAnalysis && unseen >= kTestsOfFirstAnalysis);
 }
 
-std::function<Conclusion()> DiscrepancyWatch::analysis(const AssetConfig& asset, const Explainer& explainer) {
+std::function<Conclusion(const std::stop_token&)> DiscrepancyWatch::analysis(const AssetConfig& asset,
+                                                                             const Explainer& explainer) {
   Era& era = era_of_row();
   era.analysed.clear();
   std::vector<Window> windows;
@@ -199,21 +202,22 @@ std::function<Conclusion()> DiscrepancyWatch::analysis(const AssetConfig& asset,
     era.analysed.insert(test.report.header.pst_id);
     windows.push_back(test.window);
   }
-  return [windows = std::move(windows), known = std::move(known), asset, fitted, &explainer] {
-    std::vector<Recording> recordings;
-    for (const Window& window : windows) recordings.push_back(recording_of(*window));
-    const std::span<const Recording> all(recordings);
-    ModelDiscrepancy found = explainer.explain(asset, all.first(fitted), all.subspan(fitted));
-    found.asset_id = known.asset_id;
-    found.header = known.header;
-    found.version = known.version;
-    found.reasons = known.reasons;
-    found.fit_tests = known.fit_tests;
-    found.holdout_tests = known.holdout_tests;
-    Conclusion conclusion;
-    conclusion.outputs.emplace_back(std::move(found));
-    return conclusion;
-  };
+  return
+      [windows = std::move(windows), known = std::move(known), asset, fitted, &explainer](const std::stop_token& stop) {
+        std::vector<Recording> recordings;
+        for (const Window& window : windows) recordings.push_back(recording_of(*window));
+        const std::span<const Recording> all(recordings);
+        ModelDiscrepancy found = explainer.explain(asset, all.first(fitted), all.subspan(fitted), stop);
+        found.asset_id = known.asset_id;
+        found.header = known.header;
+        found.version = known.version;
+        found.reasons = known.reasons;
+        found.fit_tests = known.fit_tests;
+        found.holdout_tests = known.holdout_tests;
+        Conclusion conclusion;
+        conclusion.outputs.emplace_back(std::move(found));
+        return conclusion;
+      };
 }
 
 /// Behind the analyses that are still running, so that they can be made again until they are stored.
@@ -224,7 +228,8 @@ void DiscrepancyWatch::release(Conclusion& conclusion) {
     std::ranges::move(ids, std::back_inserter(conclusion.consumed));
     return;
   }
-  add_later(conclusion, [ids = std::move(ids)] { return Conclusion{.outputs = {}, .consumed = ids}; });
+  add_later(conclusion,
+            [ids = std::move(ids)](const std::stop_token&) { return Conclusion{.outputs = {}, .consumed = ids}; });
 }
 
 }  // namespace sealwatch

@@ -77,7 +77,8 @@ class DiscrepancyWatch {
   void keep_complete_tests(const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion);
   [[nodiscard]] Era& era_of_row() { return eras_[concluded_.at(row_.back().report.header.pst_id).era]; }
   [[nodiscard]] bool due();
-  [[nodiscard]] std::function<Conclusion()> analysis(const AssetConfig& asset, const Explainer& explainer);
+  [[nodiscard]] std::function<Conclusion(const std::stop_token&)> analysis(const AssetConfig& asset,
+                                                                           const Explainer& explainer);
   void release(Conclusion& conclusion);
 
   std::map<std::string, Concluded> concluded_;  ///< by pst_id

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "sealwatch/forecast/condition_history.hpp"
 #include "sealwatch/message/prognostic_assessment.hpp"
+#include "sealwatch/message/retraction.hpp"
 
 namespace sealwatch::prognostic_assessment {
 
@@ -21,6 +23,7 @@ struct HistoryEntry {
   std::string estimate_id;  ///< message id of its leakage_estimate
   forecast::ConditionSample sample;
   bool eligible = false;  ///< its estimate may take part in forecasts (an isolated outlier may too, once confirmed)
+  std::set<std::string> retractions = {};  ///< ids of those in force: while there is one, the test does not count
 };
 
 class AssetHistory {
@@ -28,6 +31,8 @@ class AssetHistory {
   /// Takes an own output. Tests without event time are only remembered as concluded.
   void add(const LeakageEstimate& estimate);
   void add_replacement(UtcTime time);
+  /// From now on the tests that it means do not count, or count again.
+  void apply(const Retraction& retraction);
 
   [[nodiscard]] bool has_estimate(const std::string& estimate_id) const;
   /// The latest replacement of all.
@@ -36,13 +41,16 @@ class AssetHistory {
   [[nodiscard]] std::optional<UtcTime> replaced_before(UtcTime now) const;
   /// Tests after the last replacement up to and including `now`, in the order of time.
   [[nodiscard]] std::vector<HistoryEntry> until(UtcTime now) const;
-  /// Whether a later test than `time` is known.
+  /// The latest test that counts, a replacement or not; nullptr when none does.
+  [[nodiscard]] const HistoryEntry* last_counted() const;
+  /// Whether a later test than `time` is known, and counts.
   [[nodiscard]] bool has_later_than(UtcTime time) const;
 
  private:
   std::vector<std::string> concluded_;
   std::vector<HistoryEntry> entries_;  ///< in the order of time; equal times by id
   std::set<UtcTime> replacements_;
+  std::map<std::string, std::string> retracted_;  ///< single tests: estimate id by the retraction's id
 };
 
 }  // namespace sealwatch::prognostic_assessment

@@ -80,6 +80,7 @@ std::span<const Topic> PrognosticAssessment::outputs() const { return kOutputs; 
 
 void PrognosticAssessment::restore(const Message& own_output) {
   if (const auto* estimate = std::get_if<LeakageEstimate>(&own_output)) remember(*estimate);
+  if (const auto* life = std::get_if<RemainingLife>(&own_output)) learn_retractions(life->asset_id, life->header);
   if (const auto* life = std::get_if<RemainingLife>(&own_output); life && life->replacement_known) {
     history_[life->asset_id].add_replacement({life->replaced_ns});
     learn_replacements(life->asset_id, life->header);
@@ -98,7 +99,8 @@ void PrognosticAssessment::remember(const LeakageEstimate& estimate) {
 Conclusion PrognosticAssessment::receive(const Message& input) {
   if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health);
   if (const auto* window = std::get_if<TestWindow>(&input)) return join(*window, &Pending::window);
-  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) return replaced(*event);
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input))
+    return is_replacement(*event) ? replaced(*event) : retracted(*event);
   if (const auto* acceptance = std::get_if<ModelAcceptance>(&input))
     return {.outputs = {}, .consumed = accepted_[acceptance->asset_id].take(*acceptance)};
   return {.outputs = {}, .consumed = {header_of(input).message_id}};

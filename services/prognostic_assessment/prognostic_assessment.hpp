@@ -3,7 +3,8 @@
 //
 // Driven by health_report, joined with the test_window of the same pst_id, in whatever order they come. A
 // maintenance_event is answered at once by a remaining_life that says so, by which the layer finds the replacement
-// again after a restart, and, where no test since is known, by a new pst_request. Tests that are concluded while a
+// again after a restart, and, where no test since is known, by a new pst_request. So is one that retracts tests
+// (message/retraction.hpp), with the remaining life that the others tell. Tests that are concluded while a
 // model_acceptance is in force are estimated with the accepted model.
 #pragma once
 
@@ -67,6 +68,9 @@ class PrognosticAssessment final : public Layer {
   [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
   void remember(const LeakageEstimate& estimate);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
+  void learn_retractions(const std::string& asset_id, const Header& header);
+  void apply(const std::string& asset_id, const Retraction& retraction);
+  [[nodiscard]] Conclusion retracted(const MaintenanceEvent& event);
   [[nodiscard]] const AcceptedModel& accepted(const std::string& asset_id) const;
   [[nodiscard]] LeakageEstimate estimate(const HealthReport& health, const TestWindow& window) const;
   /// Also marks `estimate` when it stands alone.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sealwatch/forecast/forecaster.hpp"
+#include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch::prognostic_assessment {
 

@@ -13,11 +13,10 @@
 //   flow_gain           (q_+ - q_- - G (dp_+ - dp_-)) / (A (v_+ - v_-))               flow sensor against position
 //   delivery_ratio      (q_+ - q_h) / (alpha_P (omega_+ - omega_h))                   flow sensor against shaft speed
 //   velocity_gain       (velocity_+ - velocity_-) / (v_+ - v_-)                       velocity sensor against position
-//   closing_time        x_C / |v_-|, v_- the velocity's mean where the position is not OK   [s] extrapolated to the
-//   full
-//                       stroke
-//   fluid_temperature_deviation   fluid_temperature - 277.15 K, drive_saturation, missing_share: quality of the
-//   recording
+//   closing_time        x_C / |v_-|, v_- the velocity's mean where the position is not OK   [s]
+//                       extrapolated to the full stroke
+//   fluid_temperature_deviation   fluid_temperature - 277.15 K                        [K]           the recording
+//   drive_saturation, missing_share   features                                        [1]           the recording
 //
 // An indicator whose features, channels, phases or parameters are not there is absent. Drag and emf use the motion
 // against the load alone: with the load, the pilot-operated valves and not the load set the port pressures.

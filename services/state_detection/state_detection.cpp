@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "sealwatch/message/retraction.hpp"
 #include "services/state_detection/indicators.hpp"
 #include "services/state_detection/judgements.hpp"
 #include "services/state_detection/residual.hpp"
@@ -96,8 +97,12 @@ Conclusion StateDetection::receive(const Message& input) {
   state.history.last_was_replay = header_of(input).replay;
   if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.push_back(*features);
   if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.emplace(window->header.pst_id, *window);
-  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.events.push_back(*event);
   Conclusion conclusion;
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input); event && !is_replacement(*event)) {
+    conclusion.consumed = {event->header.message_id};  // no replacement: it parts no history
+    return conclusion;
+  }
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.events.push_back(*event);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) conclusion.consumed = state.accepted.take(*event);
   if (const auto* acceptance = std::get_if<ModelAcceptance>(&input))
     conclusion.consumed = state.accepted.take(*acceptance);

@@ -1,9 +1,8 @@
 // The verdict on one partial stroke test, with its reasons in words.
 //
 //   aborted     the test was given up, by the sender's word
-//   not_judged  what was recorded does not tell: begun inside the stroke, cut before its end, no partial stroke test,
-//   or neither position nor
-//               velocity in order
+//   not_judged  what was recorded does not tell: begun inside the stroke, cut before its end, no partial stroke
+//               test, or neither position nor velocity in order
 //   failed      less than 95 % of the stroke was reached, the piston did not come back to within 5 % of the stroke, or
 //               the full stroke extrapolated from the speed in the closing direction takes longer than allowed
 //   passed      none of these

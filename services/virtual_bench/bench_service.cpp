@@ -4,6 +4,9 @@
 #include <array>
 #include <variant>
 
+#include "sealwatch/message/retraction.hpp"
+#include "sealwatch/port/patient_publish.hpp"
+
 namespace sealwatch::bench {
 
 BenchService::BenchService(Bus& bus, const Clock& clock, const std::vector<AssetConfig>& assets,
@@ -26,7 +29,7 @@ Status BenchService::step(std::chrono::milliseconds timeout) {
     if (!blocks) return fail(blocks.error());
     for (RawSamples& block : *blocks) {
       block.header.publishing_time_ns = clock_.now().nanoseconds;
-      if (Status status = bus_.publish(Message(std::move(block))); !status) return status;
+      if (Status status = publish_patiently(bus_, Message(std::move(block))); !status) return status;
     }
   }
   return {};
@@ -38,7 +41,8 @@ void BenchService::take(const Message& message) {
       [&message](const SimulatedActuator& candidate) { return candidate.asset().asset_id == asset_of(message); });
   if (actuator == actuators_.end()) return;
   if (const auto* request = std::get_if<PstRequest>(&message)) actuator->request(*request, clock_.now());
-  if (const auto* event = std::get_if<MaintenanceEvent>(&message)) actuator->maintain(*event);
+  if (const auto* event = std::get_if<MaintenanceEvent>(&message); event && is_replacement(*event))
+    actuator->maintain(*event);
 }
 
 }  // namespace sealwatch::bench

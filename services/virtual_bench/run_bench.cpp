@@ -6,6 +6,7 @@
 
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/common/runtime/process_end.hpp"
 #include "services/common/runtime/service_manager.hpp"
 #include "services/common/runtime/system_clock.hpp"
 #include "services/virtual_bench/bench_service.hpp"
@@ -88,11 +89,17 @@ int run_bench(int argc, const char* const* argv,
     return complain(logging.error(), kBadUsage);
   auto bus = make_bus(*configuration);
   if (!bus) return complain(bus.error(), kInternalFailure);
-  for (const int signal : {SIGTERM, SIGINT}) std::signal(signal, [](int) { stop = 1; });
+  prepare_process_end();
+  for (const int signal : {SIGTERM, SIGINT})
+    std::signal(signal, [](int) {
+      stop = 1;
+      end_process_in(kServiceStops, kOk);
+    });
   arguments->actuator.installed = *start;
   const AcceleratedClock clock(real, *start, arguments->acceleration);
   const Status served = serve(**bus, clock, *configuration, arguments->actuator);
   stop_logging();
+  keep_process();
   return served ? kOk : complain(served.error(), kInternalFailure);
 }
 

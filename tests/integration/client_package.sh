@@ -45,6 +45,7 @@ for idl in "$source_dir"/idl/*.idl; do
 done
 build_example advisory_subscriber
 build_example control_system
+build_example sender
 
 "$services" >"$scratch/received" &
 started+=($!)

@@ -1,9 +1,14 @@
 // `sealwatch` as scripts use it: machine-readable results, exit status, errors that name file and place.
 #include <gmock/gmock.h>
 
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "sealwatch/core/time.hpp"
 #include "tests/integration/six_services.hpp"
@@ -427,6 +432,38 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
                               write("empty.yaml", "assets: []\nstate_directory: " + folder_.string() + "\n")});
   EXPECT_EQ(empty.status, 0);
   EXPECT_THAT(empty.output, HasSubstr("no asset is configured"));
+}
+
+/// Those that would run for minutes end when they are told to; what they had to save is saved at once.
+TEST_F(Commands, EndAtSigterm) {
+  const auto [recording, truth] = worn_test();
+  const std::string out = (folder_ / "out").string();
+  const std::vector<std::vector<std::string>> endless = {
+      {"sealwatch", "verify", "rul", "--asset", asset(), "--lives", "100000", "--out", out + "1"},
+      {"sealwatch", "verify", "mismatch", "--sets", "1000", "--out", out + "2"},
+      {"sealwatch", "simulate", "--asset", asset(), "--months", "600", "--rate", "5000", "--out", out + "3"},
+      {"sealwatch", "explain", "--asset", asset(), "--fit", recording, recording, "--out", out + "4"},
+      {"sealwatch", "watch", "--config", config()},
+      {"sealwatch", "up", "--config", config(), "--state", out + "5"}};
+  for (const std::vector<std::string>& arguments : endless) {
+    SCOPED_TRACE(arguments[1] + " " + arguments[2]);
+    const pid_t command = start(arguments, folder_ / "endless.log");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    int status = 0;
+    if (waitpid(command, &status, WNOHANG) == command) {
+      EXPECT_EQ(arguments[1], "explain") << "ended by itself, status " << status;
+      continue;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    kill(command, SIGTERM);
+    const auto patience = std::chrono::seconds(20);  // of a busy machine; two of a quiet one
+    while (waitpid(command, &status, WNOHANG) == 0 && std::chrono::steady_clock::now() - begin < patience)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    std::cout << arguments[1] << " " << arguments[2] << " ended after " << took.count() << " s\n";
+    EXPECT_LT(took, patience);
+    if (took >= patience) kill(command, SIGKILL);
+  }
 }
 
 }  // namespace

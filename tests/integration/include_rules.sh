@@ -30,7 +30,7 @@ owner() {  # owner WHAT FOLDERS...: only these folders may include it
 rules() {
   local failed=0
   forbid '^include/' '^services/' 'headers in include/ know nothing of services/' || failed=1
-  forbid '^include/' '^(dds|yaml-cpp|soci|ceres|spdlog|nlohmann|CLI|matio|boost|sqlite3)' 'mathematics and plain types stand alone' || failed=1
+  forbid '^include/' '^(dds|yaml-cpp|soci|ceres|spdlog|nlohmann|CLI|matio|boost|sqlite3|zip|pugixml)' 'mathematics and plain types stand alone' || failed=1
   forbid '^include/sealwatch/core/' '^sealwatch/[^c]|^sealwatch/config' 'core includes core only' || failed=1
   forbid '^include/sealwatch/(model|ode|signal)/' '^sealwatch/(estimation|mismatch|forecast|port)/' 'model, ode and signal stand below estimation and forecast' || failed=1
   local layers='data_acquisition|data_manipulation|state_detection|health_assessment|prognostic_assessment|advisory_generation'
@@ -39,28 +39,39 @@ rules() {
     forbid "^services/$layer/" "^services/($others)/" 'a layer never includes another layer' || failed=1
     forbid "^services/$layer/([^m]|m[^a])[^/]*$" '^services/common/(transport|runtime|store|estimation)/' 'a layer reaches transport, runtime, journal and estimation through ports that main injects' || failed=1
   done
+  forbid '^services/common/' '^services/([^c]|c[^o]|co[^m])' 'nothing under services/common knows a service' || failed=1
+  forbid '^services/([^v]|v[^e])' '^services/verification/([^c]|command/[^ao])' 'the product knows nothing of the laboratory but its arguments' || failed=1
   owner '^ceres/' services/common/estimation/ || failed=1
   owner '^dds/' services/common/transport/ || failed=1
   owner '^yaml-cpp/' services/common/runtime/ services/common/recording/ || failed=1
+  owner '^(zip\.h|pugixml\.hpp|dlfcn\.h)' services/common/fmi/ || failed=1
   owner '^spdlog/' services/common/runtime/ || failed=1
   owner '^soci/' services/common/store/ || failed=1
   owner '^matio' services/common/recording/ || failed=1
+  owner '^udunits' services/common/units/ || failed=1
   # Each has a command line of its own; the bench's has nothing in common with that of the layers.
-  owner '^CLI/' services/cli/ services/common/runtime/ services/virtual_bench/run_bench || failed=1
-  owner '^nlohmann/' services/common/message/ services/common/report/ services/cli/ || failed=1
+  owner '^CLI/' services/cli/ services/common/runtime/ services/virtual_bench/run_bench services/verification/ || failed=1
+  owner '^nlohmann/' services/common/message/ services/common/report/ services/cli/ services/verification/ || failed=1
   return $failed
 }
 
 mapfile -t files < <(find include services -name '*.hpp' -o -name '*.cpp' | sort)
 [ ${#files[@]} -gt 50 ] || { echo "only ${#files[@]} files found under $1: wrong folder?"; exit 1; }
 
-# A rule that cannot fail is no rule: a forbidden include must be seen.
+# A rule that cannot fail is no rule: each of these forbidden includes must be seen.
 trap 'rm -rf "$bad"' EXIT
 bad=$(mktemp -d)
-mkdir -p "$bad/include/sealwatch/core"
-echo '#include <ceres/ceres.h>' >"$bad/include/sealwatch/core/bad.hpp"
 good_files=("${files[@]}")
-(cd "$bad"; files=(include/sealwatch/core/bad.hpp); ! rules >/dev/null) || { echo "the rules do not see a forbidden include"; exit 1; }
+must_see() {  # must_see FILE INCLUDE
+  mkdir -p "$bad/${1%/*}"
+  echo "#include $2" >"$bad/$1"
+  (cd "$bad"; files=("$1"); ! rules >/dev/null) || { echo "the rules do not see that $1 includes $2"; exit 1; }
+}
+must_see include/sealwatch/core/bad.hpp '<ceres/ceres.h>'
+must_see services/common/mismatch/bad.cpp '"services/cli/terminal.hpp"'
+must_see services/common/estimation/bad.cpp '"services/virtual_bench/sensors.hpp"'
+must_see services/cli/bad.cpp '"services/verification/trial/mismatch_trial.hpp"'
+must_see services/state_detection/bad.cpp '"services/health_assessment/grade.hpp"'
 files=("${good_files[@]}")
 
 rules && echo "${#files[@]} files keep the include rules"

@@ -81,17 +81,20 @@ check_page() {
   grep -q 'sealwatch replay' "$scratch/page" || fail "the manual page does not tell of replay" "$scratch/page"
 }
 
+# The commands that begin with these letters, as --help lists them.
 check_completion() {
-  local completed
+  local completed listed
+  listed=$("${as_user[@]}" "$root/usr/bin/sealwatch" --help | awk '/^Subcommands:/ { on = 1 } on && /^  re/ { print $1 }' | paste -sd' ')
+  [[ " $listed " == *" replay "* ]] || fail "--help lists '$listed' for 're'"
   completed=$(bash -c 'source "$1"; COMP_WORDS=(sealwatch re); COMP_CWORD=1; _sealwatch; echo "${COMPREPLY[@]}"' bash \
     "$root/usr/share/bash-completion/completions/sealwatch")
-  [ "$completed" = "replay replaced" ] || fail "'sealwatch re' completes to '$completed'"
+  [ "$completed" = "$listed" ] || fail "'sealwatch re' completes to '$completed' and not to '$listed'"
 }
 
 check_programs() {
   local version service
   version=$(dpkg-deb -f "$scratch"/packages/sealwatch_*.deb Version)
-  [ "$("${as_user[@]}" "$root/usr/bin/sealwatch" --version)" = "sealwatch $version" ] || fail "the program has another version"
+  [[ "$("${as_user[@]}" "$root/usr/bin/sealwatch" --version)" == "sealwatch $version (commit "* ]] || fail "the program has another version"
   "${as_user[@]}" "$root/usr/bin/sealwatch" config check --config "$root/etc/sealwatch" || fail "the default configuration is faulty"
   for service in "${services[@]}" virtual-bench; do
     "${as_user[@]}" "$root/usr/bin/sealwatch-$service" --help | grep -e --config >/dev/null || fail "sealwatch-$service gives no help"

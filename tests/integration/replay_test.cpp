@@ -145,5 +145,43 @@ TEST_F(Replay, KilledAtRandomMomentsEachServiceEndsWithTheSameResults) {
   expect_same(stored_results("undisturbed"), stored_results("killed"));
 }
 
+/// Processes whose command line names this state directory.
+std::size_t processes_with(const std::string& state) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "cmdline");
+    const std::string line{std::istreambuf_iterator<char>(file), {}};
+    if (line.find(state) != std::string::npos) ++count;
+  }
+  return count;
+}
+
+TEST_F(Replay, ToldToStopOrKilledItLeavesNoServiceBehind) {
+  for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
+    const std::string state = state_directory("left " + std::to_string(signal)).string();
+    const pid_t replay = start(with({"sealwatch", "replay", "--with-services", "--state", state, "--config", config(),
+                                     "--speed", "1", "--quiet"},
+                                    recordings()),
+                               folder_ / "replay.log");
+    const auto wait_until = [&](std::size_t least, std::size_t most) {
+      const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+      while (std::chrono::steady_clock::now() < end) {
+        const std::size_t count = processes_with(state);
+        if (count >= least && count <= most) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+      return false;
+    };
+    ASSERT_TRUE(wait_until(7, 7)) << "replay and its six services";
+    const auto begin = std::chrono::steady_clock::now();
+    kill(replay, signal);
+    int status = 0;
+    waitpid(replay, &status, 0);
+    EXPECT_TRUE(wait_until(0, 0)) << "signal " << signal;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    std::cout << "signal " << signal << ": all gone after " << took.count() << " s\n";
+  }
+}
+
 }  // namespace
 }  // namespace sealwatch::testing

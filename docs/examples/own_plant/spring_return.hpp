@@ -1,4 +1,5 @@
-// A plant of one's own, complete: a valve positioner with a return spring. docs/tutorial-plant.md goes through it.
+// A plant of one's own, complete: a valve positioner with a return spring. Documented in
+// docs/reference/plant-in-cpp.md.
 //
 //   drive   F = k_F u                                u  command to the drive [V]
 //   piston  M dv/dt = F - F_v v - k_s x              v  velocity of the stem [m/s]

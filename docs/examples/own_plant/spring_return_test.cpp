@@ -1,4 +1,4 @@
-// The plant of docs/tutorial-plant.md against the whole of sealwatch: an asset file, recordings made by other code with
+// The plant of docs/reference/plant-in-cpp.md against the whole of sealwatch: an asset file, recordings made by other code with
 // dry friction that the model lacks, and the analysis that has to find it.
 #include "docs/examples/own_plant/spring_return.hpp"
 

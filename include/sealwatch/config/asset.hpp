@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/config/channel_map.hpp"
 #include "sealwatch/core/time.hpp"
 
 namespace sealwatch {
@@ -17,6 +18,9 @@ struct ParameterSetting {
   double min = 0.0;
   double max = 0.0;
   bool estimate = false;
+  /// Standard deviation of a value that is not estimated about what the plant really has, same unit; 0: the plant
+  /// table's (ParameterDescription::tolerance).
+  double tolerance = 0.0;
   bool operator==(const ParameterSetting&) const = default;
 };
 
@@ -84,6 +88,7 @@ struct AssetConfig {
   PstSetting pst;
   std::vector<PhysicsTerm> physics;
   std::map<std::string, AlertLimits> alert_limits;  ///< by quantity (config/judged_quantities.hpp); missing: defaults
+  ChannelMap channel_map;                           ///< how its recordings are written; empty: as INTERFACES section 1
 
   /// Value of a parameter that the model has (asserts that it has it).
   [[nodiscard]] double parameter(const std::string& name) const { return parameters.at(name).value; }

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sealwatch/config/advice.hpp"
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/config/site_decision.hpp"
+#include "sealwatch/core/fields.hpp"
 
 namespace sealwatch {
 
@@ -39,6 +41,19 @@ struct ForecasterConfig {
   std::vector<ForecasterConfig> members = {};  ///< of method average; none: its default members
 };
 
+/// Ageing constants of a site's own fleet (forecast/fleet_population.hpp says what each is), as `sealwatch fleet fit`
+/// gives them.
+struct FleetConstants {
+  double initial_rate = 0.0;
+  double initial_rate_std = 0.0;
+  double steepening = 0.0;
+  double steepening_std = 0.0;
+  double rate_steepening_correlation = 0.0;
+  double irregularity_std = 0.0;
+  SEALWATCH_FIELDS(FleetConstants, initial_rate, initial_rate_std, steepening, steepening_std,
+                   rate_steepening_correlation, irregularity_std)
+};
+
 struct Configuration {
   std::int32_t domain = 0;
   std::string state_directory = "state";
@@ -46,11 +61,13 @@ struct Configuration {
   LoggingConfig logging;
   std::map<std::string, ServiceConfig> services;  ///< by service name
   std::vector<ForecasterConfig> forecasters;      ///< the one in charge first; none: the default ones
+  std::optional<FleetConstants> fleet;            ///< of all forecasters; none: the reference's
   AdviceOptions advice;
   std::map<std::string, TopicQos> topics;  ///< by topic name
   std::vector<SiteConfig> sites;
   std::map<std::string, SiteDecision> decisions;  ///< by site; none: neither costs nor proof tests are known
   std::vector<AssetConfig> assets;
+  std::map<std::string, UtcTime> commissioned;  ///< by asset id, where it is known: no test is older
 
   [[nodiscard]] const AssetConfig* find_asset(const std::string& asset_id) const {
     for (const AssetConfig& asset : assets)

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/core/time_series.hpp"
@@ -20,7 +21,8 @@ struct Recording {
   std::optional<UtcTime> start_time;  ///< unknown when the sidecar gives none
   std::string content_hash;           ///< of the file's bytes (16 hex digits)
   std::string note;
-  TimeSeries samples;  ///< channel noise_std set where the sidecar gives it
+  std::vector<std::string> left_aside = {};  ///< header cells of columns that the plant does not know
+  TimeSeries samples;                        ///< channel noise_std set where the sidecar gives it
 };
 
 }  // namespace sealwatch

@@ -21,7 +21,7 @@
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/time_series.hpp"
 #include "sealwatch/estimation/admissibility.hpp"
-#include "sealwatch/message/prognostic_assessment.hpp"
+#include "sealwatch/estimation/fit_report.hpp"
 
 namespace sealwatch {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sealwatch/core/result.hpp"
-#include "sealwatch/message/prognostic_assessment.hpp"
+#include "sealwatch/estimation/fit_report.hpp"
 
 namespace sealwatch {
 

@@ -3,8 +3,8 @@
 //   NRMSE fit            100 (1 - |y - y_hat| / |y - mean(y)|)  percent; 100 is perfect, 0 no better than the mean
 //   noise-normalised rms sqrt(mean(((y - y_hat) / sigma)^2)); 1 is the floor
 //   whiteness            Ljung and Box, Q = n (n + 2) sum_{k=1}^{m} rho_k^2 / (n - k) ~ chi^2(m) for white residuals
-//   independence         n R^2 of the residual regressed on past input u(t - tau_1), ..., u(t - tau_m) ~ chi^2(rank)
-//   for
+//   independence         n R^2 of the residual regressed on past input u(t - tau_1), ..., u(t - tau_m)
+//                        ~ chi^2(rank) for
 //                        residuals that are white and owe nothing to the input (Ljung, System Identification, 16.6)
 //
 // p-values near 0 mean: not white, not independent.

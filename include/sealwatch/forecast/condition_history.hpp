@@ -10,7 +10,7 @@ namespace sealwatch::forecast {
 
 struct ConditionSample {
   UtcTime time;
-  double condition = 0.0;      ///< theta: share of the nominal elastic modulus [1]
+  double condition = 0.0;      ///< theta, the leakage-derived index [1]
   double condition_std = 0.0;  ///< PEM's standard error of theta [1]; 0 when not known
   friend bool operator==(const ConditionSample&, const ConditionSample&) = default;
 };

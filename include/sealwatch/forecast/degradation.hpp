@@ -1,10 +1,10 @@
-// Degradation of the piston seal over the months, as a random recursion (docs/model.md, section 5).
+// Degradation of the piston seal over the months, as a random recursion (docs/model.md).
 //
 //   theta(n) = theta(n-1) - (gamma(n) + Upsilon(n)) ln((n + n_0) / (n - 1 + n_0))
 //   gamma(n) = gamma(n-1) + Gamma(n)
 //
-//   n       months since installation [1]                theta    elastic modulus as a share of nominal [1], theta(0) =
-//   1 gamma   ageing by the medium, steepened by seawater ingress [1]; gamma(0) is one actuator's own, U(0.02, 0.04)
+//   theta   seal condition, leakage-derived index [1], theta(0) = 1;   n   months since installation [1]
+//   gamma   ageing by the medium, steepened by seawater ingress [1]; gamma(0) is one actuator's own, U(0.02, 0.04)
 //   Gamma   monthly steepening [1], U(0, Gamma_max); Gamma_max is one actuator's own, U(0.0016, 0.003)
 //   Upsilon irregularity of the month [1], U(Upsilon_min, Upsilon_max)
 //   n_0     month that the logarithm starts from [1]

@@ -3,7 +3,7 @@
 //
 //   theta_i = theta_bar + b (y_i - y_bar) + e_i,   Var(e_i) = sigma^2        i = 1 .. n
 //
-//   theta  seal condition, share of the nominal elastic modulus [1]
+//   theta  seal condition, leakage-derived index [1]
 //   y      degradation time: t [months] or ln t [1]; a test's date is exact, all scatter is theta's
 //   sigma^2   = max(residual variance with n - 2 degrees of freedom, s^2)     scatter of one estimate
 //   s^2       = mean of PEM's own squared standard errors of theta            measuring error, which moves no seal
@@ -11,8 +11,8 @@
 //
 // Time as a function of the estimate, t_hat(theta) = y_bar + (theta - theta_bar) / b, is the least-squares regression
 // of y on theta with errors in the variable theta: ordinary least squares of y on theta gives the slope r^2 / b, too
-// flat by the squared correlation r^2, because it takes theta for exact; dividing by the reliability ratio r^2 gives 1
-// / b (W. A. Fuller, Measurement Error Models, 1987, section 1.2, with the error variance of theta taken from the
+// flat by the squared correlation r^2, because it takes theta for exact; dividing by the reliability ratio r^2 gives
+// 1/b (W. A. Fuller, Measurement Error Models, 1987, section 1.2, with the error variance of theta taken from the
 // scatter about the line).
 //
 // Distribution of the crossing time (inverse prediction, E. C. Fieller 1954): the end of life Y is before y when the

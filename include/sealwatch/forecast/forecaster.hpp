@@ -18,8 +18,8 @@
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/forecast/condition_history.hpp"
 #include "sealwatch/forecast/fleet_population.hpp"
+#include "sealwatch/forecast/forecast.hpp"
 #include "sealwatch/forecast/predictive_distribution.hpp"
-#include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch::forecast {
 

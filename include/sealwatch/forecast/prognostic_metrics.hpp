@@ -1,4 +1,4 @@
-// How good the forecasts of one life were, once its end is known. Formulas with sources: docs/metrics.md.
+// How good the forecasts of one life were, once its end is known. Formulas with sources: docs/reference/metrics.md.
 //
 //   r*(t)  true remaining life at month t [months];  r(t) forecast;  e(t) = r(t) - r*(t), positive: too late
 //
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/forecast/forecast.hpp"
 #include "sealwatch/forecast/predictive_distribution.hpp"
-#include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch::forecast {
 

@@ -1,4 +1,4 @@
-// Scores of probabilistic forecasts, and intervals of shares and means from simulated lives. Formulas: docs/metrics.md.
+// Scores of probabilistic forecasts; intervals of shares and means from simulated lives. See docs/reference/metrics.md.
 //
 // Forecasts of one life share its noise and its irregularity: they are one cluster, not so many independent trials.
 // Means over forecasts therefore have their standard error from the lives (ratio estimator):

@@ -2,7 +2,8 @@
 // seal:
 //
 //   member    its constants are those of the population
-//   relative  they spread three times as widely                     stranger  they may be anything of that order
+//   relative  they spread three times as widely
+//   stranger  they may be anything of that order
 //   age       where the installation is not known: how old it was at its first test
 //   rate      from one month on it ages faster, by all of the law (contaminated fluid, another temperature)
 //   level     from one month on the estimates stand at another level (another load, a repaired sensor)

@@ -14,7 +14,7 @@ namespace sealwatch::forecast {
 [[nodiscard]] std::string in_percent(double share);
 /// 0.72345 -> "0.723": theta and its standard errors.
 [[nodiscard]] std::string as_condition(double condition);
-/// 0.667 -> "66.7 %": the seal condition as on operators' screens, of the elastic modulus when new.
+/// 0.667 -> "66.7 %": the seal condition as on operators' screens.
 [[nodiscard]] std::string condition_in_percent(double condition);
 /// Seal condition and its standard error: "72.35 +- 0.2 %".
 [[nodiscard]] std::string condition_with_std(double condition, double condition_std);

@@ -2,54 +2,11 @@
 // life, and the request for a test.
 #pragma once
 
+#include "sealwatch/estimation/fit_report.hpp"
+#include "sealwatch/forecast/forecast.hpp"
 #include "sealwatch/message/common.hpp"
 
 namespace sealwatch {
-
-SEALWATCH_ENUM(ForecastState, ok, no_significant_trend, insufficient_history, past_threshold)
-
-/// Fit quality of one channel.
-struct ChannelFit {
-  std::string channel;
-  double noise_normalised_rms = 0.0;
-  double nrmse_percent = 0.0;
-  double whiteness_p = 0.0;     ///< Ljung-Box on the residual
-  double independence_p = 0.0;  ///< residual against past input
-  SEALWATCH_FIELDS(ChannelFit, channel, noise_normalised_rms, nrmse_percent, whiteness_p, independence_p)
-  friend bool operator==(const ChannelFit&, const ChannelFit&) = default;
-};
-
-/// An estimated parameter with its bounds psi_min <= psi <= psi_max.
-struct EstimatedParameter {
-  std::string name;
-  std::string unit;
-  double value = 0.0;
-  double std_error = 0.0;
-  double min = 0.0;
-  double max = 0.0;
-  bool free = true;
-  bool at_bound = false;
-  SEALWATCH_FIELDS(EstimatedParameter, name, unit, value, std_error, min, max, free, at_bound)
-  friend bool operator==(const EstimatedParameter&, const EstimatedParameter&) = default;
-};
-
-/// Result of one PEM run.
-struct FitReport {
-  std::string model;        ///< "cylinder_circuit", "eha", "eha_switched"
-  std::string termination;  ///< why the optimiser stopped, in words
-  bool converged = false;
-  std::int32_t iterations = 0;
-  double cost = 0.0;         ///< 1/2 sum of squared whitened residuals
-  double load_factor = 0.0;  ///< Phi of this test
-  std::vector<EstimatedParameter> parameters;
-  std::vector<double> covariance;  ///< row-major, free parameters in the order of `parameters`
-  std::vector<ChannelFit> channels;
-  bool admissible = false;
-  std::vector<std::string> reasons;  ///< why not admissible
-  SEALWATCH_FIELDS(FitReport, model, termination, converged, iterations, cost, load_factor, parameters, covariance,
-                   channels, admissible, reasons)
-  friend bool operator==(const FitReport&, const FitReport&) = default;
-};
 
 /// Topic leakage_estimate: one per test, also for tests that were left out (with the reason).
 struct LeakageEstimate {
@@ -59,7 +16,7 @@ struct LeakageEstimate {
   double resistance_Pa_s_m3 = 0.0;  ///< R_CL
   double resistance_std_Pa_s_m3 = 0.0;
   bool condition_known = false;  ///< theta is defined (the asset has seal resistances)
-  double condition = 0.0;        ///< theta: share of the nominal elastic modulus
+  double condition = 0.0;        ///< theta: leakage-derived condition index
   double condition_std = 0.0;
   bool used_for_forecast = false;
   std::vector<std::string> reasons;  ///< why it was left out
@@ -70,36 +27,6 @@ struct LeakageEstimate {
                    condition_known, condition, condition_std, used_for_forecast, reasons, fits, chosen_model,
                    accepted_discrepancy)
   friend bool operator==(const LeakageEstimate&, const LeakageEstimate&) = default;
-};
-
-/// Probability of failure before a date.
-struct FailureProbability {
-  std::int64_t before_ns = 0;
-  std::string label;  ///< "campaign 2031"
-  double probability = 0.0;
-  SEALWATCH_FIELDS(FailureProbability, before_ns, label, probability)
-  friend bool operator==(const FailureProbability&, const FailureProbability&) = default;
-};
-
-/// One forecaster's answer. Numbers are valid only in state ok (and past_threshold: all zero).
-struct Forecast {
-  std::string method;  ///< "ols", "ols_log_time", ...
-  std::int32_t window_months = 0;
-  ForecastState state = ForecastState::insufficient_history;
-  std::string explanation;  ///< "12 of 24 tests so far"
-  std::int32_t tests_used = 0;
-  double rul_months = 0.0;  ///< t_RUL, the point forecast
-  double rul_p10_months = 0.0;
-  double rul_p50_months = 0.0;
-  double rul_p90_months = 0.0;
-  double interval_95_low_months = 0.0;
-  double interval_95_high_months = 0.0;
-  std::int64_t end_of_life_ns = 0;
-  std::vector<FailureProbability> failure_probability;
-  SEALWATCH_FIELDS(Forecast, method, window_months, state, explanation, tests_used, rul_months, rul_p10_months,
-                   rul_p50_months, rul_p90_months, interval_95_low_months, interval_95_high_months, end_of_life_ns,
-                   failure_probability)
-  friend bool operator==(const Forecast&, const Forecast&) = default;
 };
 
 /// One row of the decision table: replacing the seal at a date, or waiting for its failure.

@@ -17,6 +17,18 @@ struct StreamPosition {
   friend bool operator==(const StreamPosition&, const StreamPosition&) = default;
 };
 
+/// Something that a service cannot mend by itself, for as long as it stands.
+struct ServiceAlarm {
+  std::string kind;      ///< "set_aside": the layer failed on a message twice; "unknown_writer"; "rival"
+  std::string asset_id;  ///< "" where it is about none
+  std::string subject;   ///< message id, writer id, ...
+  std::string pst_id;    ///< "" where it is about no test
+  std::string text;      ///< what happened
+  std::int64_t since_ns = 0;
+  SEALWATCH_FIELDS(ServiceAlarm, kind, asset_id, subject, pst_id, text, since_ns)
+  friend bool operator==(const ServiceAlarm&, const ServiceAlarm&) = default;
+};
+
 /// Topic service_status: about once a second from each service.
 struct ServiceStatus {
   std::string service;  // key: "data_acquisition", ...
@@ -28,10 +40,12 @@ struct ServiceStatus {
   std::uint64_t pending_inputs = 0;  ///< received, not yet concluded from
   std::vector<StreamPosition> written;
   std::vector<StreamPosition> received;
-  std::string state;       ///< "running", "stopping"
-  std::string last_error;  ///< "" if none
+  std::string state;                 ///< "running", "stopping"
+  std::string last_error;            ///< "" if none
+  std::vector<ServiceAlarm> alarms;  ///< those that stand, the newest few
+  std::uint64_t alarm_count = 0;     ///< all that stand
   SEALWATCH_FIELDS(ServiceStatus, service, writer_id, version, started_ns, publishing_time_ns, process_id,
-                   pending_inputs, written, received, state, last_error)
+                   pending_inputs, written, received, state, last_error, alarms, alarm_count)
   friend bool operator==(const ServiceStatus&, const ServiceStatus&) = default;
 };
 

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
+#include <stop_token>
 
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/mismatch/explanation.hpp"
@@ -16,6 +18,10 @@ struct ExplainOptions {
   int maximum_laws = 3;
   int threads = 2;
   std::uint64_t seed = 1;  ///< of the bootstrap: the same seed gives the same report
+  /// The search ends there with the best that it has, and says what it did not ask; a few simulations that the report
+  /// needs come behind it. Where it did not cut the search it changes nothing.
+  double time_limit_s = std::numeric_limits<double>::infinity();
+  std::stop_token cancel = {};  ///< calls the analysis off, within a second: an Error
   [[nodiscard]] Status validate() const;
 };
 

@@ -149,6 +149,20 @@ struct PooledFit {
   std::vector<ChannelComparison> channels;
 };
 
+/// A model that was fitted on the way, in the order of the search.
+struct Asked {
+  std::vector<LawAt> laws;               ///< added to the model as it is
+  std::vector<std::string> values = {};  ///< of the asset file, set free: "A_C"
+  double score = 0.0;  ///< criterion of the model as it is less that of this one, on one scale: larger is better
+};
+
+/// What was seen beside the claimed effects.
+struct CandidateCause {
+  LawAt what;
+  double share = 0.0;        ///< of the excess misfit that it would take by itself, 0..1
+  double probability = 0.0;  ///< that it is the cause of what it would take
+};
+
 struct Explanation {
   std::string asset_id;
   std::string model;
@@ -165,14 +179,17 @@ struct Explanation {
   std::vector<ParameterShift> parameters;
   std::vector<Power> power;
   std::vector<Rejected> rejected;
-  /// Each entry, of one value or two, would explain the recordings by itself, without any law; the best first.
+  /// Each entry, of one value to three, would explain the recordings as well as the laws found; the best first.
   std::vector<std::vector<AssetValue>> asset_values;
   std::vector<LawAt> beside_asset_values;  ///< laws that are needed beside the first entry: no names of what is there
   PrognosisShift prognosis;
-  std::string next_test;           ///< what to record to settle what is still open, or empty
-  std::string summary;             ///< two or three sentences for a maintenance engineer
-  std::vector<std::string> notes;  ///< noise model, what was tried, limits of the data
-  AssetConfig explained;           ///< the asset with fitted parameters and the found physics
+  std::string next_test;                   ///< what to record to settle what is still open, or empty
+  std::string summary;                     ///< two or three sentences for a maintenance engineer
+  std::vector<CandidateCause> candidates;  ///< most probable first
+  std::vector<Asked> trace;
+  std::vector<std::string> not_asked;  ///< what the time limit cut off; empty where it cut nothing
+  std::vector<std::string> notes;      ///< noise model, what was tried, limits of the data
+  AssetConfig explained;               ///< the asset with fitted parameters and the found physics
 
   /// Whether a model after differs from that before: by laws, or by a value of the asset file in their place.
   [[nodiscard]] bool changed() const {

@@ -2,9 +2,9 @@
 // valve per side, double-acting cylinder. Positive u turns the pump so that oil flows into chamber A, the piston moves
 // in +x; the load opposes +x when positive.
 //
-//   driver     dz/dt = (u - z) / (R_M C_M)                                         z      voltage behind the driver
-//   filter [V] winding    L_M di/dt = z - R_M i - Omega_M omega                               i      winding current
-//   [A] shaft      J_M domega/dt = T_M i - (f_M + d_P) omega - alpha_P (p_1 - p_2)     omega  shaft speed [rad/s]
+//   driver     dz/dt = (u - z) / (R_M C_M)                                         z      filtered driver voltage [V]
+//   winding    L_M di/dt = z - R_M i - Omega_M omega                               i      winding current [A]
+//   shaft      J_M domega/dt = T_M i - (f_M + d_P) omega - alpha_P (p_1 - p_2)     omega  shaft speed [rad/s]
 //   port_1     (V_P/beta) dp_1/dt =  alpha_P omega - q_PL - q_V1 + q_C1            p_1, p_2  pump port pressures [Pa]
 //   port_2     (V_P/beta) dp_2/dt = -alpha_P omega + q_PL - q_V2 + q_C2
 //   chamber_a  (V_A/beta) dp_A/dt = q_V1 - A_A v - q_CL,  V_A = V_0 + A_A x        p_A, p_B  chamber pressures [Pa]

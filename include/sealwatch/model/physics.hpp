@@ -15,6 +15,8 @@
 
 #include <array>
 #include <cstddef>
+#include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,10 +43,11 @@ namespace sealwatch {
 ///   inverse_modulus  1/Pa       absolute pressure                          (added to 1/beta)
 ///   viscosity        1          dissipated power |z i|                     (relative change of viscosity)
 ///   tank_flow        V/s        level                                      (of the tank that the flow leaves)
+///   own              plant's    the plant's (a balance of none of these kinds, for laws of the plant's own)
 ///   sensor_*         channel    the simulated channel
 SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_slip, line_drop, valve_crack, outflow,
-               compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, sensor_bias, sensor_gain,
-               sensor_lag, sensor_saturation)
+               compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, own, sensor_bias,
+               sensor_gain, sensor_lag, sensor_saturation)
 
 /// Laws of one measurement, which the simulation applies itself.
 [[nodiscard]] constexpr bool is_sensor(SiteKind kind) { return kind >= SiteKind::sensor_bias; }
@@ -98,18 +101,31 @@ struct Law {
   bool closed_form = false;  ///< searched only where the other laws leave something beyond the noise
   std::vector<LawParameter> parameters;
   std::optional<HiddenState> hidden = {};
-  LawOutput (*evaluate)(const LawInput& input) = nullptr;  ///< null for sensors, which the simulation applies itself
+  std::function<LawOutput(const LawInput&)> evaluate = {};  ///< empty for sensors, which the simulation applies itself
   /// Elements that the law fits beside its kind; empty: all of that kind.
   std::vector<std::string_view> elements = {};
   /// Id of the plainer law that it comes to where its way is too short or its extra strength too small to be seen.
   std::string_view limit = {};
+  std::string_view plant = {};  ///< that brings the law and alone has it; "": all
 };
 
-/// All laws, in the order of their files (services/common/model/laws).
-[[nodiscard]] std::span<const Law> all_laws();
+/// All laws, in the order of their files (services/common/model/laws), then those that plants bring.
+[[nodiscard]] const std::deque<Law>& all_laws();
 
-/// The law of that id whose parameters have these names; an Error with the nearest id or name otherwise.
-[[nodiscard]] Result<const Law*> find_law(std::string_view id, const std::vector<std::string>& parameter_names);
+/// The law of that id whose parameters have these names, for a plant; an Error with the nearest id or name otherwise.
+[[nodiscard]] Result<const Law*> find_law(std::string_view id, const std::vector<std::string>& parameter_names,
+                                          std::string_view plant = {});
+
+/// Whether a plant has the law: the catalogue's are all plants'.
+[[nodiscard]] inline bool is_of_plant(const Law& law, std::string_view plant) {
+  return law.plant.empty() || law.plant == plant;
+}
+
+/// Makes a law known, before other threads run.
+void add_law(Law law);
+
+/// The same text, kept for the program's life: names of laws and sites that are read from files.
+[[nodiscard]] std::string_view kept(std::string_view text);
 
 /// Contribution alone, of plain numbers: for drawings and for the sensitivity pass. `strength` scales all strengths.
 [[nodiscard]] LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters);

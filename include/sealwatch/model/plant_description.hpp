@@ -24,6 +24,9 @@ struct ChannelDescription {
   bool hold = false;  ///< an input that is held between samples, whatever the recording says
 };
 
+/// What drawings and datasheets give, machined and catalogue parts alike, is seldom off by more than twice this.
+inline constexpr double kUsualTolerance = 0.005;
+
 struct ParameterDescription {
   std::string name;
   std::string unit;    ///< SI
@@ -33,6 +36,8 @@ struct ParameterDescription {
   std::string meaning;
   bool positive = true;   ///< a positive scale: estimated as its logarithm
   bool estimate = false;  ///< estimated by default where the channels allow it
+  /// Standard deviation of a datasheet's value about the plant's, as a share of it.
+  double tolerance = kUsualTolerance;
 };
 
 struct StateDescription {
@@ -65,14 +70,18 @@ struct PlantDescription {
   /// Where nothing pulls the plant back to its place, what its model lacks adds up and a whole recording ends anywhere:
   /// the mismatch analysis then looks at pieces of this length, each from an initial state of its own. 0: at the whole.
   double window_s = 0.0;
+  /// The mean load phi where recordings differ in a load: phi (1 + Phi), Phi each recording's own; "": no load.
+  std::string load_parameter = {};
+  /// The parameter by which the plant wears, so that its change from test to test is no missing physics; "": none.
+  std::string wear_parameter = {};
+  std::string file = {};  ///< that it was read from; "": it is built in
 
   [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
   [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;
   [[nodiscard]] const StateDescription* find_state(std::string_view state) const;
   /// By what a law's start values of that unit are multiplied in this plant.
   [[nodiscard]] double law_size(std::string_view unit) const;
-  /// Whether recordings differ in a load: phi (1 + Phi), with a load factor Phi of each recording's own.
-  [[nodiscard]] bool has_load() const { return find_parameter("phi") != nullptr; }
+  [[nodiscard]] bool has_load() const { return !load_parameter.empty(); }
 };
 
 /// The plants that sealwatch knows, in a fixed order; one's own come last (docs/tutorial-plant.md).

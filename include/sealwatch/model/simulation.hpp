@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/deadline.hpp"
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time_series.hpp"
 #include "sealwatch/model/plant_description.hpp"
@@ -40,7 +41,7 @@ struct ModelValues {
 struct FreeQuantity {
   enum class Kind { parameter, load_factor, initial_state };
   Kind kind = Kind::parameter;
-  std::size_t index = 0;  ///< into ModelValues::parameters or ::initial_state
+  std::size_t index = 0;  ///< into ModelValues::parameters or ModelValues::initial_state
   [[nodiscard]] double& in(ModelValues& values) const;
   [[nodiscard]] double in(const ModelValues& values) const;
 };
@@ -49,6 +50,7 @@ struct SimulationOptions {
   double relative_tolerance = 5e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
   double maximum_step_s = 0.25;      ///< so that no event of the input is stepped over
   std::size_t maximum_steps = 200000;
+  const Deadline* deadline = nullptr;  ///< when it passes the run ends, as an Error
 };
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

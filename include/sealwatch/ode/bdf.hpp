@@ -14,7 +14,7 @@
 // psi_S. The local error is controlled for y; S follows with the same steps.
 //
 // System is a class with
-//   static constexpr int kStates;
+//   static constexpr int kStates;   or kDynamicSize, with  int states() const;  beside it
 //   void evaluate(double t, const double* y, double* f) const;                       f(t, y)
 //   void linearise(double t, const double* y, double* f, Matrix& J) const;            f and J
 //   void add_parameter_derivatives(double t, const double* y, double factor, double* X, std::size_t stride) const;
@@ -45,12 +45,21 @@ struct BdfStatistics {
 };
 
 template <class System>
+[[nodiscard]] int state_count(const System& system) {
+  if constexpr (System::kStates == kDynamicSize)
+    return system.states();
+  else
+    return System::kStates;
+}
+
+template <class System>
 class Bdf {
  public:
   static constexpr int kStates = System::kStates;
   static constexpr int kMaximumOrder = 5;
-  using Matrix = typename LuFactorisation<kStates>::Matrix;
-  using Vector = std::array<double, kStates>;
+  using Sizes = SquareSystem<kStates>;
+  using Matrix = typename Sizes::Matrix;
+  using Vector = typename Sizes::Vector;
 
   /// `parameters`: number of columns of S. `scale`: allowed local error of each state per step.
   Bdf(const System& system, int parameters, const Vector& scale, BdfOptions options = {})
@@ -63,10 +72,13 @@ class Bdf {
     prediction_.assign(size(), 0.0);
     constants_.assign(size(), 0.0);
     work_.assign(size(), 0.0);
+    for (Vector* rows : {&state_, &correction_, &rate_, &change_}) *rows = Sizes::vector(states());
+    matrix_ = Sizes::matrix(states());
   }
 
   [[nodiscard]] std::size_t stride() const { return stride_; }
-  [[nodiscard]] std::size_t size() const { return kStates * stride_; }
+  [[nodiscard]] int states() const { return state_count(system_); }
+  [[nodiscard]] std::size_t size() const { return states() * stride_; }
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double step_size() const { return step_; }
   [[nodiscard]] int order() const { return order_; }
@@ -92,7 +104,7 @@ class Bdf {
   [[nodiscard]] bool attempt();
   [[nodiscard]] bool solve_states(double c);
   void solve_sensitivities(double c);
-  [[nodiscard]] bool factorise(double c, const double* state, double* f);
+  [[nodiscard]] bool factorise(double c);
   void predict();
   void accept();
   void choose_order_and_step();
@@ -113,7 +125,8 @@ class Bdf {
   double error_ = 0.0;
   std::array<std::vector<double>, kMaximumOrder + 3> differences_;
   std::vector<double> prediction_, constants_, work_;
-  Vector state_{}, correction_{};
+  Vector state_{}, correction_{}, rate_{}, change_{};
+  Matrix matrix_{};
   LuFactorisation<kStates> lu_;
 };
 

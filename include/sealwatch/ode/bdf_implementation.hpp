@@ -22,7 +22,7 @@ const typename Bdf<System>::Coefficients& Bdf<System>::coefficients() {
 template <class System>
 double Bdf<System>::norm(const double* values, std::size_t stride) const {
   double largest = 0.0;
-  for (int row = 0; row < kStates; ++row) {
+  for (int row = 0; row < states(); ++row) {
     const double ratio = std::abs(values[row * stride]) / scale_[row];
     if (!(ratio <= largest)) largest = ratio;  // keeps NaN
   }
@@ -36,20 +36,18 @@ bool Bdf<System>::start(double time, const double* values) {
   equal_steps_ = 0;
   for (auto& difference : differences_) std::fill(difference.begin(), difference.end(), 0.0);
   std::copy(values, values + size(), differences_[0].begin());
-  Matrix jacobian;
-  Vector f;
-  for (int row = 0; row < kStates; ++row) state_[row] = values[row * stride_];
-  system_.linearise(time, state_.data(), f.data(), jacobian);
-  const double rate = norm(f.data(), 1);
+  for (int row = 0; row < states(); ++row) state_[row] = values[row * stride_];
+  system_.linearise(time, state_.data(), rate_.data(), matrix_);
+  const double rate = norm(rate_.data(), 1);
   if (!std::isfinite(rate)) return false;
   step_ = std::min({options_.maximum_step, 1e-3, 10.0 / std::max(rate, 1e-6)});
   double* slope = differences_[1].data();
-  for (int row = 0; row < kStates; ++row)
-    for (int other = 0; other < kStates; ++other)
+  for (int row = 0; row < states(); ++row)
+    for (int other = 0; other < states(); ++other)
       for (int k = 1; k <= parameters_; ++k)
-        slope[row * stride_ + k] += jacobian[row][other] * values[other * stride_ + k];
+        slope[row * stride_ + k] += matrix_[row][other] * values[other * stride_ + k];
   system_.add_parameter_derivatives(time, state_.data(), 1.0, slope, stride_);
-  for (int row = 0; row < kStates; ++row) slope[row * stride_] = f[row];
+  for (int row = 0; row < states(); ++row) slope[row * stride_] = rate_[row];
   for (double& value : differences_[1]) value *= step_;
   return true;
 }
@@ -97,22 +95,21 @@ void Bdf<System>::predict() {
 }
 
 template <class System>
-bool Bdf<System>::factorise(double c, const double* state, double* f) {
-  Matrix matrix;
-  system_.linearise(time_ + step_, state, f, matrix);
+bool Bdf<System>::factorise(double c) {
+  system_.linearise(time_ + step_, state_.data(), rate_.data(), matrix_);
   ++statistics_.linearisations;
-  for (int row = 0; row < kStates; ++row) {
-    for (int column = 0; column < kStates; ++column) matrix[row][column] *= -c;
-    matrix[row][row] += 1.0;
+  for (int row = 0; row < states(); ++row) {
+    for (int column = 0; column < states(); ++column) matrix_[row][column] *= -c;
+    matrix_[row][row] += 1.0;
   }
-  return lu_.factorise(matrix);
+  return lu_.factorise(matrix_);
 }
 
 template <class System>
 bool Bdf<System>::attempt() {
   predict();
-  for (int row = 0; row < kStates; ++row) state_[row] = prediction_[row * stride_];
-  correction_.fill(0.0);
+  for (int row = 0; row < states(); ++row) state_[row] = prediction_[row * stride_];
+  std::fill(correction_.begin(), correction_.end(), 0.0);
   if (!solve_states(step_ / coefficients().alpha[order_])) return false;
   error_ = coefficients().error[order_] * norm(correction_.data(), 1);
   return std::isfinite(error_);
@@ -126,18 +123,18 @@ bool Bdf<System>::solve_states(double c) {
   constexpr int kIterations = 8;
   constexpr double kConverged = 0.02;  // of the allowed local error
   constexpr double kSlow = 0.2;
-  Vector f, change;
   bool fresh = true;
   double last = 0.0;
-  if (!factorise(c, state_.data(), f.data())) return false;
+  if (!factorise(c)) return false;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    for (int row = 0; row < kStates; ++row) change[row] = c * f[row] - constants_[row * stride_] - correction_[row];
-    lu_.solve(change.data(), 1, 1);
-    const double size_of_change = norm(change.data(), 1);
+    for (int row = 0; row < states(); ++row)
+      change_[row] = c * rate_[row] - constants_[row * stride_] - correction_[row];
+    lu_.solve(change_.data(), 1, 1);
+    const double size_of_change = norm(change_.data(), 1);
     if (!std::isfinite(size_of_change)) return false;
-    for (int row = 0; row < kStates; ++row) {
-      state_[row] += change[row];
-      correction_[row] += change[row];
+    for (int row = 0; row < states(); ++row) {
+      state_[row] += change_[row];
+      correction_[row] += change_[row];
     }
     double contraction = curvature_ * size_of_change;
     if (iteration > 0 && last > 0.0) {
@@ -148,9 +145,9 @@ bool Bdf<System>::solve_states(double c) {
     if (contraction < 1.0 && contraction * size_of_change < kConverged) return true;
     fresh = iteration > 0 && contraction > kSlow;
     if (fresh) {
-      if (!factorise(c, state_.data(), f.data())) return false;
+      if (!factorise(c)) return false;
     } else {
-      system_.evaluate(time_ + step_, state_.data(), f.data());
+      system_.evaluate(time_ + step_, state_.data(), rate_.data());
     }
     last = size_of_change;
   }
@@ -160,14 +157,14 @@ bool Bdf<System>::solve_states(double c) {
 // (I - c J) S = S^0 + c df/dp - psi_S, all columns at once; work_ <- S - S^0 beside the states' correction.
 template <class System>
 void Bdf<System>::solve_sensitivities(double c) {
-  for (int row = 0; row < kStates; ++row) work_[row * stride_] = correction_[row];
+  for (int row = 0; row < states(); ++row) work_[row * stride_] = correction_[row];
   if (parameters_ == 0) return;
   const std::size_t count = size();
   for (std::size_t j = 0; j < count; ++j) work_[j] = prediction_[j] - constants_[j];
   system_.add_parameter_derivatives(time_ + step_, state_.data(), c, work_.data(), stride_);
   lu_.solve(work_.data(), static_cast<int>(stride_), stride_);
   for (std::size_t j = 0; j < count; ++j) work_[j] -= prediction_[j];
-  for (int row = 0; row < kStates; ++row) work_[row * stride_] = correction_[row];
+  for (int row = 0; row < states(); ++row) work_[row * stride_] = correction_[row];
 }
 
 template <class System>

@@ -18,9 +18,12 @@ using BusItem = std::variant<Message, ServiceStatus, ResendRequest>;
 /// One participant's view of the bus. Not thread-safe but for wake(): one thread publishes and receives (the heartbeat
 /// thread of a daemon owns a second Bus).
 ///
-/// Contract: messages of one publisher on one topic arrive in order; nothing is lost between publishers and subscribers
-/// that are connected, however fast the burst; a late subscriber gets the last message of every asset of every
-/// publisher still alive; a publisher's end removes nothing that was delivered.
+/// Contract: messages of one publisher on one topic arrive in order; between publishers and subscribers that are
+/// connected nothing is lost of what is not numbered, and of what is numbered (Header::stream_sequence) and of service
+/// topics only what a subscriber that does not call receive cannot hold; a late subscriber gets the last message of
+/// every asset of every publisher still alive; a publisher's end removes nothing that was delivered. A publish never
+/// waits for longer than 20 ms. An Error says that the bus did not take the message now: it may have reached some of
+/// its readers; publish it again.
 class Bus {
  public:
   virtual ~Bus() = default;

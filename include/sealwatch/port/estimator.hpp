@@ -7,8 +7,8 @@
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time_series.hpp"
+#include "sealwatch/estimation/fit_report.hpp"
 #include "sealwatch/message/data_manipulation.hpp"
-#include "sealwatch/message/prognostic_assessment.hpp"
 
 namespace sealwatch {
 

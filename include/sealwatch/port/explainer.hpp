@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <stop_token>
 
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/recording.hpp"
@@ -14,10 +15,11 @@ class Explainer {
  public:
   virtual ~Explainer() = default;
   /// Verdict, location, physics and the explained model. What cannot be analysed comes back with analysed = false and
-  /// the reason. Header, version, reasons and the tests' names are left to the caller. Deterministic; may take a
-  /// minute; called by one thread at a time, not always the same.
+  /// the reason. Header, version, reasons and the tests' names are left to the caller. Deterministic where its time
+  /// limit does not cut it; `cancel` ends it within a second, not analysed; called by several threads at once.
   [[nodiscard]] virtual ModelDiscrepancy explain(const AssetConfig& asset, std::span<const Recording> fit,
-                                                 std::span<const Recording> holdout) const = 0;
+                                                 std::span<const Recording> holdout,
+                                                 const std::stop_token& cancel) const = 0;
 };
 
 }  // namespace sealwatch

@@ -12,13 +12,19 @@
 //
 // For that a layer keeps no state but (a) what it can rebuild from its own outputs in restore and (b) inputs that it
 // has not consumed yet.
+//
+// Each asset has a layer object of its own: one that computes for long, waits for something or fails holds up no other
+// asset. An object is called by one thread at a time, not always the same; several objects are called at once, so what
+// they share must bear that. An object that raised an exception is thrown away and made anew by 1 and 2.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,14 +38,15 @@ namespace sealwatch {
 struct Conclusion {
   std::vector<Message> outputs;       ///< headers complete but for writer_id, stream_sequence, publishing_time_ns
   std::vector<std::string> consumed;  ///< message ids of inputs that are not needed again
-  /// What takes long to conclude: owns all that it needs and shares nothing of the layer that changes.
-  std::function<Conclusion()> later = {};
+  /// What takes long to conclude: owns all that it needs and shares nothing of the layer that changes. Asked to stop, it
+  /// ends soon, whatever it then returns or raises.
+  std::function<Conclusion(const std::stop_token&)> later = {};
 };
 
 /// The conclusion with what it left for later, done here and now.
-[[nodiscard]] inline Conclusion completed(Conclusion conclusion) {
+[[nodiscard]] inline Conclusion completed(Conclusion conclusion, const std::stop_token& stop = {}) {
   while (const auto later = std::exchange(conclusion.later, {})) {
-    Conclusion rest = later();
+    Conclusion rest = later(stop);
     std::ranges::move(rest.outputs, std::back_inserter(conclusion.outputs));
     std::ranges::move(rest.consumed, std::back_inserter(conclusion.consumed));
     conclusion.later = std::move(rest.later);
@@ -66,5 +73,8 @@ class Layer {
     return {};
   }
 };
+
+/// Makes the layer object of an asset, also of one that is not in the configuration.
+using LayerMaker = std::function<std::unique_ptr<Layer>(const std::string& asset_id)>;
 
 }  // namespace sealwatch

@@ -1,5 +1,5 @@
 // The features of one partial stroke test: one table of names, units and meanings for code, messages, screens and
-// docs/features.md.
+// docs/reference/features.md.
 //
 //   p_L = p_A - r p_B            load pressure [Pa]; r = A_B / A_A, 1 for a piston of equal areas; where only the
 //                                differential pressure is recorded, p_L is that

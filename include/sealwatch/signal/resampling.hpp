@@ -21,7 +21,8 @@ struct SamplingGrid {
   [[nodiscard]] double time_s(std::size_t index) const { return begin_s + interval_s * static_cast<double>(index); }
 };
 
-/// Grid for at least two strictly increasing times.
+/// Grid for at least two strictly increasing times. Its count is no promise that it fits into memory: look before
+/// resampling (core/test_limits.hpp).
 [[nodiscard]] SamplingGrid find_grid(std::span<const double> times_s);
 
 enum class Interpolation {

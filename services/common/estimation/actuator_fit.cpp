@@ -108,6 +108,7 @@ Result<PemOptimum> search_from_asset(PemProblem& problem, const AssetConfig& ass
 Status ActuatorFitOptions::validate() const {
   if (maximum_iterations < 1)
     return fail("maximum_iterations must be at least 1, is " + std::to_string(maximum_iterations));
+  if (threads < 1) return fail("threads must be at least 1, is " + std::to_string(threads));
   if (!(cost_tolerance > 0.0)) return fail("cost_tolerance must be positive, is " + in_words(cost_tolerance));
   if (!(relative_tolerance > 0.0 && relative_tolerance <= 1e-3))
     return fail("relative_tolerance must be positive and at most 1e-3, is " + in_words(relative_tolerance));

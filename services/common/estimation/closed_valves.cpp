@@ -76,6 +76,7 @@ std::optional<ClosedValveLeakage> closed_valve_leakage(const AssetConfig& asset,
   Sum sum;
   const std::vector<double>& time_s = samples.time_s;
   for (std::size_t begin = 0, end = 0; begin < time_s.size(); begin = end) {
+    ++end;  // a stretch has one sample at least, whatever it compares like
     while (end < time_s.size() && valves->values[end] == valves->values[begin]) ++end;
     std::size_t first = begin;
     while (begin > 0 && first < end && time_s[first] < time_s[begin] + kSettling_s) ++first;

@@ -34,6 +34,7 @@ Eigen::Index bartlett_bandwidth(const Eigen::MatrixXd& scores) {
 
 Covariance covariance_of(const Eigen::MatrixXd& root) {
   const Eigen::Index n = root.cols();
+  if (n == 0) return {};
   Eigen::VectorXd scale = root.colwise().norm();
   for (double& value : scale)
     if (!(value > 0.0)) value = 1.0;
@@ -76,6 +77,7 @@ Eigen::MatrixXd long_run_variance(const Eigen::MatrixXd& scores) {
 
 double inflate_for_coloured_residuals(Covariance& covariance, const Eigen::MatrixXd& scores) {
   const Eigen::Index n = covariance.matrix.rows();
+  if (n == 0) return 1.0;
   Eigen::MatrixXd finite = covariance.matrix;
   for (Eigen::Index j = 0; j < n; ++j)
     if (!covariance.identified[static_cast<std::size_t>(j)]) finite(j, j) = 0.0;

@@ -49,17 +49,31 @@ Unknown law_unknown(const PhysicsParameter& parameter, FreeQuantity quantity) {
           .max = setting.max};
 }
 
+Unknown known_unknown(const ParameterDescription& parameter, ParameterSetting setting, const KnownValue& known,
+                      FreeQuantity quantity) {
+  setting.min = known.value - kWithinTolerance * known.standard_deviation;
+  setting.max = known.value + kWithinTolerance * known.standard_deviation;
+  setting.value = std::clamp(setting.value, setting.min, setting.max);
+  Unknown unknown = shared_unknown(parameter, setting, quantity);
+  unknown.prior_mean = unknown.to_unknown(known.value);
+  unknown.prior_std = known.standard_deviation / unknown.slope(unknown.prior_mean);
+  return unknown;
+}
+
 Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const PlantSimulation& simulation,
-                                             std::string_view own_parameter) {
+                                             std::string_view own_parameter, std::span<const KnownValue> known) {
   std::vector<Unknown> unknowns;
   for (const ParameterDescription& parameter : simulation.plant().parameters) {
     const auto setting = asset.parameters.find(parameter.name);
-    if (setting == asset.parameters.end() || !setting->second.estimate || parameter.name == "phi" ||
+    if (setting == asset.parameters.end() || parameter.name == simulation.plant().load_parameter ||
         parameter.name == own_parameter)
       continue;
+    const auto prior = std::ranges::find(known, parameter.name, &KnownValue::name);
+    if (!setting->second.estimate && prior == known.end()) continue;
     const Result<FreeQuantity> quantity = simulation.find(parameter.name);
     if (!quantity) return fail(quantity.error());
-    unknowns.push_back(shared_unknown(parameter, setting->second, *quantity));
+    unknowns.push_back(setting->second.estimate ? shared_unknown(parameter, setting->second, *quantity)
+                                                : known_unknown(parameter, setting->second, *prior, *quantity));
   }
   for (const PhysicsParameter& parameter : simulation.physics_parameters()) {
     if (!parameter.setting.estimate) continue;
@@ -101,15 +115,16 @@ Unknown own_unknown(std::string name, std::string unit, FreeQuantity quantity, d
 
 // A load factor needs a mean load to be a factor of.
 Result<Unknown> load_unknown(const PlantSimulation& simulation) {
-  const Result<FreeQuantity> mean_load = simulation.find("phi");
+  const std::string& name = simulation.plant().load_parameter;
+  const Result<FreeQuantity> mean_load = simulation.find(name);
   if (!mean_load) return fail(mean_load.error());
   if (mean_load->in(simulation.start()) != 0.0) {
     Unknown load = own_unknown("load_factor", "1", *simulation.find("load_factor"), simulation.start().load_factor);
     load.scale = 1.0;
     return load;
   }
-  Unknown load = own_unknown("phi", "N", *mean_load, 0.0);
-  const ParameterDescription& description = *simulation.plant().find_parameter("phi");
+  const ParameterDescription& description = *simulation.plant().find_parameter(name);
+  Unknown load = own_unknown(name, description.unit, *mean_load, 0.0);
   load.scale = 0.01 * (description.max - description.min);
   return load;
 }
@@ -161,7 +176,8 @@ double Unknown::to_value(double unknown) const { return logarithmic ? scale * st
 double Unknown::slope(double unknown) const { return logarithmic ? to_value(unknown) : scale; }
 
 Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
-                                    std::span<const int> groups, std::string_view own_parameter) {
+                                    std::span<const int> groups, std::string_view own_parameter,
+                                    std::span<const KnownValue> known) {
   PemProblem problem;
   for (const TimeSeries& recorded : recordings) {
     Result<PemRecording> recording = make_recording(asset, recorded, !groups.empty());
@@ -169,7 +185,8 @@ Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const Ti
     problem.recordings.push_back(std::move(*recording));
   }
   if (problem.recordings.empty()) return fail("there is no recording");
-  Result<std::vector<Unknown>> shared = shared_unknowns(asset, *problem.recordings.front().simulation, own_parameter);
+  Result<std::vector<Unknown>> shared =
+      shared_unknowns(asset, *problem.recordings.front().simulation, own_parameter, known);
   if (!shared) return fail(shared.error());
   problem.shared = std::move(*shared);
   if (!own_parameter.empty() && groups.empty())

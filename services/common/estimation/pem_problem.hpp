@@ -11,15 +11,29 @@
 
 namespace sealwatch {
 
+/// A known value lies within so many standard deviations: one in two thousand does not. Further off it is not what it is
+/// known to be, and that wants a reason.
+inline constexpr double kWithinTolerance = 3.5;
+
+/// What is known of a value before anything is recorded: N(value, standard_deviation^2), in its own unit.
+struct KnownValue {
+  std::string name;
+  double value = 0.0, standard_deviation = 0.0;
+};
+
 /// An unknown of the search: value = scale exp(unknown) for positive parameters, scale * unknown otherwise.
 struct Unknown {
   std::string name, unit;
   FreeQuantity quantity;
   bool logarithmic = false;
   double scale = 1.0;
-  double start = 0.0;           ///< of the quantity
-  double min = 0.0, max = 0.0;  ///< of the quantity
-  int group = -1;               ///< recordings that it belongs to; -1: all
+  double start = 0.0;                        ///< of the quantity
+  double min = 0.0, max = 0.0;               ///< of the quantity
+  int group = -1;                            ///< recordings that it belongs to; -1: all
+  double prior_mean = 0.0, prior_std = 0.0;  ///< of the unknown, where the value is known beforehand; 0: it is not
+  [[nodiscard]] bool is_known() const { return prior_std > 0.0; }
+  /// What it adds to the residuals: whitened like them, recorded - simulated.
+  [[nodiscard]] double prior_residual(double unknown) const { return (prior_mean - unknown) / prior_std; }
   [[nodiscard]] bool belongs_to(int recordings_group) const { return group < 0 || group == recordings_group; }
   [[nodiscard]] double to_unknown(double value) const;
   [[nodiscard]] double to_value(double unknown) const;
@@ -61,9 +75,10 @@ struct Linearisation {
 /// `groups`: for windows cut from longer recordings, which recording each comes from; its load is then one unknown for
 /// all of them. Empty: each is a recording by itself. `own_parameter`: a parameter of the asset that differs from
 /// recording to recording ("" for none): an unknown for each of them, whether the asset has it estimated or not.
+/// `known`: of the asset's parameters that are not estimated, those that may be off within what is known of them.
 [[nodiscard]] Result<PemProblem> make_pem_problem(const AssetConfig& asset, std::span<const TimeSeries> recordings,
-                                                  std::span<const int> groups = {},
-                                                  std::string_view own_parameter = {});
+                                                  std::span<const int> groups = {}, std::string_view own_parameter = {},
+                                                  std::span<const KnownValue> known = {});
 
 /// Name of the unknown of `parameter` in one recording, and the parameter that an unknown is of: "R_CL@2", "R_CL".
 [[nodiscard]] std::string name_in_recording(std::string_view parameter, std::size_t recording);

@@ -26,11 +26,12 @@ class RecordingCost final : public ceres::CostFunction {
     own_.resize(problem.recordings[recording].own.size());
     set_num_residuals(static_cast<int>(shared_.size() + own_.size()) + 1);
     if (!shared_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(shared_.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(own_.size()));
+    if (!own_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(own_.size()));
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    if (point_failed_ || !update(shared_.empty() ? nullptr : parameters[0], parameters[shared_.empty() ? 0 : 1]))
+    if (point_failed_ || !update(shared_.empty() ? nullptr : parameters[0],
+                                 own_.empty() ? nullptr : parameters[shared_.empty() ? 0 : 1]))
       return false;
     const auto n = static_cast<Eigen::Index>(shared_.size() + own_.size());
     Eigen::Map<Eigen::VectorXd>(residuals, n + 1) = compressed_.col(n);
@@ -39,7 +40,7 @@ class RecordingCost final : public ceres::CostFunction {
     std::size_t block = 0;
     if (shared > 0 && jacobians[block++] != nullptr)
       Eigen::Map<Matrix>(jacobians[0], n + 1, shared) = compressed_.leftCols(shared);
-    if (jacobians[block] != nullptr)
+    if (own > 0 && jacobians[block] != nullptr)
       Eigen::Map<Matrix>(jacobians[block], n + 1, own) = compressed_.middleCols(shared, own);
     return true;
   }
@@ -83,6 +84,33 @@ class RecordingCost final : public ceres::CostFunction {
   mutable Linearisation linearisation_;
   mutable Eigen::MatrixXd compressed_;
   mutable bool known_ = false;  ///< at that point
+};
+
+// What is known of the shared unknowns beforehand, one residual each.
+class PriorCost final : public ceres::CostFunction {
+ public:
+  explicit PriorCost(const std::vector<Unknown>& unknowns) : unknowns_(unknowns) {
+    set_num_residuals(static_cast<int>(std::ranges::count_if(unknowns, &Unknown::is_known)));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(unknowns.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Index row = 0;
+    const auto columns = static_cast<Eigen::Index>(unknowns_.size());
+    double* jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+    if (jacobian != nullptr) Eigen::Map<Matrix>(jacobian, num_residuals(), columns).setZero();
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const Unknown& unknown = unknowns_[static_cast<std::size_t>(k)];
+      if (!unknown.is_known()) continue;
+      residuals[row] = unknown.prior_residual(parameters[0][k]);
+      if (jacobian != nullptr) jacobian[row * columns + k] = -1.0 / unknown.prior_std;
+      ++row;
+    }
+    return true;
+  }
+
+ private:
+  const std::vector<Unknown>& unknowns_;
 };
 
 // Recordings are simulated side by side before Ceres asks for any of them. Ceres itself runs in one thread: in several
@@ -144,12 +172,13 @@ ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
 // Ends the search when an iteration changes the cost, or a rejected one promised to change it, by no more than
 // `tolerance`; gives it up when after several iterations the cost is still above `hopeless_cost`. Where the misfit is
 // above the noise, standard errors grow with it and so does the tolerance: cost / noise_cost is the misfit's mean
-// square.
+// square. Ends it, too, when its time is up.
 class CostResolved final : public ceres::IterationCallback {
  public:
-  CostResolved(double tolerance, double noise_cost, double hopeless_cost)
-      : tolerance_(tolerance), noise_cost_(noise_cost), hopeless_cost_(hopeless_cost) {}
+  CostResolved(double tolerance, double noise_cost, double hopeless_cost, const Deadline* deadline)
+      : tolerance_(tolerance), noise_cost_(noise_cost), hopeless_cost_(hopeless_cost), deadline_(deadline) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (passed(deadline_)) return ceres::SOLVER_ABORT;
     // A step to where nothing can be simulated says nothing of the cost: Ceres tries a shorter one.
     const bool simulated = iteration.step_is_valid && iteration.cost_change > -std::numeric_limits<double>::max() / 2.0;
     if (iteration.iteration == 0 || !simulated) return ceres::SOLVER_CONTINUE;
@@ -164,6 +193,7 @@ class CostResolved final : public ceres::IterationCallback {
  private:
   static constexpr int kIterationsForHope = 6;  // fits that come to something are there by then
   double tolerance_, noise_cost_, hopeless_cost_;
+  const Deadline* deadline_;
   int successful_ = 0;
 };
 
@@ -179,7 +209,8 @@ void silence_ceres() {
 PemPoint start_point(const PemProblem& problem, double factor) {
   PemPoint point;
   for (const Unknown& unknown : problem.shared)
-    point.shared.push_back(unknown.to_unknown(unknown.logarithmic ? unknown.start * factor : unknown.start));
+    point.shared.push_back(
+        unknown.to_unknown(unknown.logarithmic && !unknown.is_known() ? unknown.start * factor : unknown.start));
   for (const PemRecording& recording : problem.recordings) {
     std::vector<double>& own = point.own.emplace_back();
     for (const Unknown& unknown : recording.own) own.push_back(unknown.to_unknown(unknown.start));
@@ -187,9 +218,27 @@ PemPoint start_point(const PemProblem& problem, double factor) {
   return point;
 }
 
+namespace {
+
+// A plant without states whose parameters are all fixed leaves nothing to search for.
+Result<PemOptimum> as_it_is(const PemProblem& problem, PemPoint point) {
+  PemOptimum optimum{.point = std::move(point), .at_optimum = {}, .termination = "nothing is free"};
+  optimum.converged = true;
+  for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
+    Result<Linearisation> at = linearise(problem, k, optimum.point.shared, optimum.point.own[k]);
+    if (!at) return fail(at.error());
+    optimum.cost += 0.5 * at->residual.squaredNorm();
+    optimum.at_optimum.push_back(std::move(*at));
+  }
+  return optimum;
+}
+
+}  // namespace
+
 Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options,
                           std::vector<Linearisation> at_start) {
   silence_ceres();
+  if (problem.shared.empty() && start.own.front().empty()) return as_it_is(problem, std::move(start));
   PemOptimum optimum{.point = std::move(start), .at_optimum = {}, .termination = {}};
   SideBySide side_by_side(optimum.point, options.threads);
   ceres::Problem::Options problem_options;
@@ -202,14 +251,17 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
     if (k < at_start.size()) costs.back()->remember(optimum.point.shared, optimum.point.own[k], std::move(at_start[k]));
     std::vector<double*> blocks;
     if (!problem.shared.empty()) blocks.push_back(optimum.point.shared.data());
-    blocks.push_back(optimum.point.own[k].data());
+    if (!optimum.point.own[k].empty()) blocks.push_back(optimum.point.own[k].data());
     ceres_problem.AddResidualBlock(costs.back(), nullptr, blocks);
   }
+  if (std::ranges::any_of(problem.shared, &Unknown::is_known))
+    ceres_problem.AddResidualBlock(new PriorCost(problem.shared), nullptr, optimum.point.shared.data());
   double residuals = 0.0;
   for (const PemRecording& recording : problem.recordings)
     residuals += static_cast<double>(recording.simulation->recorded().size());
   CostResolved resolved(options.cost_tolerance * static_cast<double>(problem.recordings.size()), 0.5 * residuals,
-                        0.5 * residuals * options.hopeless_rms * options.hopeless_rms);
+                        0.5 * residuals * options.hopeless_rms * options.hopeless_rms,
+                        problem.simulation_options.deadline);
   ceres::Solver::Options solver = solver_options(options);
   solver.callbacks.push_back(&resolved);
   ceres::Solver::Summary summary;

@@ -25,7 +25,8 @@ struct PemOptimum {
   std::string termination;
 };
 
-/// The shared unknowns at `factor` times the asset's values, the recordings' own where their simulations say.
+/// The shared unknowns at `factor` times the asset's values, but for what is known beforehand; the recordings' own where
+/// their simulations say.
 [[nodiscard]] PemPoint start_point(const PemProblem& problem, double factor);
 
 /// Integrator settings for recordings of this length.

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sealwatch/message/prognostic_assessment.hpp"
+#include "sealwatch/estimation/fit_report.hpp"
 
 namespace sealwatch {
 

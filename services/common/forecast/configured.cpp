@@ -1,6 +1,18 @@
 #include "sealwatch/forecast/configured.hpp"
 
+#include "sealwatch/forecast/fleet_uncertainty.hpp"
+
 namespace sealwatch::forecast {
+namespace {
+
+void take_population(std::vector<ForecasterSettings>& settings, const FleetPopulation& population) {
+  for (ForecasterSettings& one : settings) {
+    one.population = population;
+    take_population(one.members, population);
+  }
+}
+
+}  // namespace
 
 ForecasterSettings configured_forecaster(const ForecasterConfig& config) {
   ForecasterSettings settings{.method = config.method, .window_months = config.window_months};
@@ -9,9 +21,10 @@ ForecasterSettings configured_forecaster(const ForecasterConfig& config) {
 }
 
 std::vector<ForecasterSettings> configured_forecasters(const Configuration& configuration) {
-  if (configuration.forecasters.empty()) return default_forecasters();
   std::vector<ForecasterSettings> settings;
   for (const ForecasterConfig& config : configuration.forecasters) settings.push_back(configured_forecaster(config));
+  if (settings.empty()) settings = default_forecasters();
+  if (configuration.fleet) take_population(settings, population_of(*configuration.fleet));
   return settings;
 }
 

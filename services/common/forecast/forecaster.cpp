@@ -77,7 +77,7 @@ Status ForecastRequest::validate() const {
                     .place = "threshold",
                     .value = std::to_string(threshold),
                     .rule = "must be above 0, at most 1",
-                    .advice = "0.6 for a seal that has failed at 60 % of its elastic modulus"});
+                    .advice = "0.6 for a seal that has failed at a condition of 60 %"});
 }
 
 Result<PredictiveForecast> Forecaster::predict(const ForecastRequest& request) const {

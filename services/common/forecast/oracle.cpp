@@ -3,13 +3,9 @@
 #include <cmath>
 
 #include "sealwatch/forecast/degradation_filter.hpp"
+#include "services/common/forecast/forecast_parts.hpp"
 
 namespace sealwatch::forecast {
-namespace {
-
-constexpr double kLongestMonths = 1200.0;
-
-}  // namespace
 
 Result<PredictiveDistribution> oracle_distribution(const TrueState& state, double threshold,
                                                    const DegradationSetting& setting) {

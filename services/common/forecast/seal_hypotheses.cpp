@@ -31,7 +31,7 @@ constexpr double kShortest_months = 0.5;    // between two tests, as far as prio
 constexpr double kLevelPerMonth = 1e-3;     // prior probability of another level
 constexpr double kReplacedPerMonth = 1e-4;  // without anybody saying so
 // What changes a seal's medium mostly harms it. Both chosen, with the prior probability of a change, on calibration
-// lives (docs/verification.md, "When things happen").
+// lives (docs/records/verification.md, "When things happen").
 constexpr double kFasterAgeing = 1.75;
 constexpr double kFasterAgeingSpread = 0.3;  // of the factor
 constexpr double kLevelChange = 0.03;        // standard deviation of a step of theta

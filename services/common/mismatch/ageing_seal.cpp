@@ -12,11 +12,14 @@ namespace {
 constexpr double kFalls = 3.0;  // standard errors by which a value may lie above the one before it
 constexpr const char* kSealLeakage = "R_CL";
 
-// Within one day a seal does not age.
+}  // namespace
+
 bool may_age(const AssetConfig& asset, const Data& fit) {
   const auto leakage = asset.parameters.find(kSealLeakage);
   return leakage != asset.parameters.end() && leakage->second.estimate && are_of_several_days(fit);
 }
+
+namespace {
 
 Course seal_course(const FittedModel& model, const Data& fit) {
   const std::vector<double> errors = standard_errors(model);
@@ -47,13 +50,40 @@ bool is_preferred(const Trial& ageing, const Trial& common) {
   return ahead > (fewer > 0.0 ? -fewer * kWorthAnother : kWorthAnother);
 }
 
+// R_CL differs from test to test by far more than its standard errors, each of which is known.
+bool changes(const Course& course) {
+  const bool known = std::ranges::all_of(course.values, [](const auto& one) { return std::isfinite(one.std_error); });
+  return known && course.standard_errors() >= kChanged;
+}
+
+// The fitted recordings, each with its own R_CL.
+Data each_with_its_own(Data fit) {
+  fit.own_parameter = kSealLeakage;
+  return fit;
+}
+
 }  // namespace
+
+std::optional<AgeingSeal> nothing_but_ageing(const Data& fit, const std::shared_ptr<const FittedModel>& baseline,
+                                             const ExplainOptions& options) {
+  AgeingSeal seal{.fit = each_with_its_own(fit), .baseline = nullptr, .naming = {}};
+  Result<FittedModel> model = fit_model(baseline->asset, seal.fit, baseline.get(), options.threads);
+  if (!model) return std::nullopt;
+  seal.baseline = std::make_shared<const FittedModel>(std::move(*model));
+  const Course course = seal_course(*seal.baseline, seal.fit);
+  seal.wears = wears(course);
+  const Trial common{{}, baseline}, ageing{{}, seal.baseline};
+  if (!seal.wears || !changes(course) || !is_preferred(ageing, common)) return std::nullopt;
+  const auto left = screen(*seal.baseline, seal.fit, {.seed = options.seed, .threads = options.threads});
+  if (!left || differs(left->p_value, *seal.baseline, options.false_alarm_rate)) return std::nullopt;
+  seal.naming = {.baseline = seal.baseline, .best = ageing, .trials = {common, ageing}, .first = *left, .last = *left};
+  return seal;
+}
 
 std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const FittedModel& baseline, const Trial& common,
                                            const ExplainOptions& options, const Progress& progress) {
   if (!may_age(baseline.asset, fit)) return std::nullopt;
-  AgeingSeal seal{.fit = fit, .baseline = nullptr, .naming = {}};
-  seal.fit.own_parameter = kSealLeakage;
+  AgeingSeal seal{.fit = each_with_its_own(fit), .baseline = nullptr, .naming = {}};
   Result<FittedModel> with_laws = fit_model(common.model->asset, seal.fit, common.model.get(), options.threads);
   Result<FittedModel> without = fit_model(baseline.asset, seal.fit, &baseline, options.threads);
   if (!with_laws || !without) return std::nullopt;
@@ -63,8 +93,7 @@ std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const FittedModel& b
   Result<Naming> naming = name_effects(seal.baseline, seal.fit, options, progress, from);
   if (!naming || !is_preferred(naming->best, common)) return std::nullopt;
   const Course course = seal_course(*naming->best.model, seal.fit);
-  const bool known = std::ranges::all_of(course.values, [](const auto& one) { return std::isfinite(one.std_error); });
-  if (!known || course.standard_errors() < kChanged) return std::nullopt;
+  if (!changes(course)) return std::nullopt;
   seal.wears = wears(course);
   seal.naming = std::move(*naming);
   return seal;

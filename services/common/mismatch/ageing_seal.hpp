@@ -25,6 +25,15 @@ struct AgeingSeal {
   bool wears = false;  ///< R_CL falls from test to test, as wear does not heal; else something else changed
 };
 
+/// Whether the tests are of different days, and the asset's R_CL is estimated: within one day a seal does not age.
+[[nodiscard]] bool may_age(const AssetConfig& asset, const Data& fit);
+
+/// The fitted recordings, each with its own R_CL, where that alone explains everything: R_CL falls from test to test and nothing differs beyond the noise any
+/// more. Asked before any law: tests of different months differ by wear, laws in common would bend to it.
+[[nodiscard]] std::optional<AgeingSeal> nothing_but_ageing(const Data& fit,
+                                                           const std::shared_ptr<const FittedModel>& baseline,
+                                                           const ExplainOptions& options);
+
 /// Nothing where `common`, the best that was found with one R_CL for all of them, is preferred, or where R_CL does not
 /// differ by far more than its standard errors. `baseline`: the model without any law, likewise.
 [[nodiscard]] std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const FittedModel& baseline,

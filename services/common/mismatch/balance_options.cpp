@@ -13,8 +13,8 @@ BalanceUnknown datasheet_unknown(const AssetConfig& asset, const DatasheetValue&
   return {.name = std::string(value.name),
           .element = std::string(value.element),
           .logarithmic = true,
-          .min = bounded ? setting.min : setting.value / 10.0,
-          .max = bounded ? setting.max : setting.value * 10.0};
+          .min = bounded ? setting.min : setting.value / value.off_by_at_most,
+          .max = bounded ? setting.max : setting.value * value.off_by_at_most};
 }
 
 bool tried_with_balances(const Law& law, const PlantDescription& plant) {

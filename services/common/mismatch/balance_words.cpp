@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kCannotTell = 6.0;         // of the criterion, as for laws
 constexpr double kDatasheetMatters = 0.05;  // of a datasheet value: what an engineer would care about
 
 bool is_datasheet(const BalanceFinding& finding) { return finding.what.law == nullptr; }

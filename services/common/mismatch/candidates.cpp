@@ -104,7 +104,7 @@ std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const 
                                        bool closed_forms) {
   std::vector<Candidate> candidates;
   for (const Law& law : all_laws()) {
-    if (law.closed_form != closed_forms) continue;
+    if (law.closed_form != closed_forms || !is_of_plant(law, simulation.plant().name)) continue;
     if (law.evaluate == nullptr)
       add_at_sensors(law, simulation, present, candidates);
     else

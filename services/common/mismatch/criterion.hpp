@@ -16,6 +16,8 @@ namespace sealwatch::mismatch {
 inline constexpr double kGross = 2.0;
 /// Criterion by which another law must improve: it then is e^6 times likelier.
 inline constexpr double kWorthAnother = 12.0;
+/// Criterion within which two explanations are not told apart.
+inline constexpr double kCannotTell = 6.0;
 
 /// Misfit over the noise's share of it, at least 1.
 [[nodiscard]] double excess(const FittedModel& model);

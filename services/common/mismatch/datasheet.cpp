@@ -3,27 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <limits>
 
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
+#include "services/common/mismatch/normal_equations.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/tolerance.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kMostValues = 3;
-constexpr std::size_t kAsked = 4;     // values that are fitted: those that promise most
-constexpr double kOffByAtMost = 1.5;  // times: further off a datasheet is not wrong but another's
-constexpr double kCannotTell = 6.0;   // criterion
-
-std::vector<std::string> fixed_values(const AssetConfig& asset, const PlantDescription& plant) {
-  std::vector<std::string> names;
-  for (const auto& [name, setting] : asset.parameters)
-    if (plant.find_parameter(name) != nullptr && !setting.estimate && setting.value != 0.0 && name != "phi")
-      names.push_back(name);
-  return names;
-}
+constexpr std::size_t kAsked = 6;  // values that are fitted: those that promise most
+constexpr int kFirstRound = 10;    // iterations of each
+// Of its share of what the laws explain: a value that promises less, on the linearised model, cannot stand for them.
+constexpr double kPromising = 0.1;
 
 const PlantDescription& plant_of(const FittedModel& model) {
   return model.problem.recordings.front().simulation->plant();
@@ -40,73 +36,83 @@ AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
 // An asset with some values set free, and a model near it.
 struct Attempt {
   AssetConfig asset;
-  std::vector<std::string> values;
+  std::vector<KnownValue> values;  ///< as they were known
   std::shared_ptr<const FittedModel> near;
 };
 
-// From the asset's values, and from the model near it where that leads further; nothing where it cannot be fitted or
-// a value ends at a bound.
-std::shared_ptr<const FittedModel> fitted(const Attempt& attempt, const Data& fit) {
-  Result<FittedModel> model = fit_model(attempt.asset, fit, nullptr, 1);
+// A first round from the asset's values, and from the model near it where that leads further; nothing where it cannot be
+// fitted.
+std::shared_ptr<const FittedModel> begun(const Attempt& attempt, const Data& fit) {
+  const FittedModel nowhere;
+  Result<FittedModel> model = fit_model(attempt.asset, fit, &nowhere, 1, kFirstRound);
   if (!model || model->misfit >= attempt.near->misfit) {
-    Result<FittedModel> other = fit_model(attempt.asset, fit, attempt.near.get(), 1);
+    Result<FittedModel> other = fit_model(attempt.asset, fit, attempt.near.get(), 1, kFirstRound);
     if (other && (!model || other->misfit < model->misfit)) model = std::move(other);
   }
-  if (!model) return nullptr;
-  for (std::size_t k = 0; k < model->problem.shared.size(); ++k) {
-    const Unknown& unknown = model->problem.shared[k];
-    const bool is_value = std::ranges::find(attempt.values, unknown.name) != attempt.values.end();
-    if (is_value && at_bound(unknown, model->optimum.point.shared[k])) return nullptr;
-  }
-  return std::make_shared<const FittedModel>(std::move(*model));
+  return model ? std::make_shared<const FittedModel>(std::move(*model)) : nullptr;
 }
 
-// Side by side; in the order of the attempts.
+// Not where a value ended at a bound, or within its tolerance, where it needs no explanation.
+bool is_a_cause(const FittedModel& model, const std::vector<KnownValue>& values) {
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const Unknown& unknown = model.problem.shared[k];
+    const auto value = std::ranges::find(values, unknown.name, &KnownValue::name);
+    if (value == values.end()) continue;
+    const double off = unknown.to_value(model.optimum.point.shared[k]) - value->value;
+    const bool within = std::abs(off) < kWithinTolerance * value->standard_deviation;
+    if (within || at_bound(unknown, model.optimum.point.shared[k])) return false;
+  }
+  return true;
+}
+
+// In the order of the attempts: the first rounds side by side, then those go on that are not far from the best.
 std::vector<std::shared_ptr<const FittedModel>> all_fitted(const std::vector<Attempt>& attempts, const Data& fit,
                                                            int threads) {
+  constexpr double kNear = 1.5;  // times the best misfit
   std::vector<std::shared_ptr<const FittedModel>> models;
   const auto together = static_cast<std::size_t>(threads);
   for (std::size_t first = 0; first < attempts.size(); first += together) {
     std::vector<std::future<std::shared_ptr<const FittedModel>>> running;
     for (std::size_t k = first; k < std::min(attempts.size(), first + together); ++k)
-      running.push_back(std::async(std::launch::async, [&, k] { return fitted(attempts[k], fit); }));
+      running.push_back(std::async(std::launch::async, [&, k] { return begun(attempts[k], fit); }));
     for (auto& one : running) models.push_back(one.get());
+  }
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& model : models)
+    if (model != nullptr) best = std::min(best, model->misfit);
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    if (models[k] != nullptr && models[k]->misfit < kNear * best)
+      models[k] = polished({{}, models[k]}, fit, threads).model;
+    if (models[k] != nullptr && !is_a_cause(*models[k], attempts[k].values)) models[k] = nullptr;
   }
   return models;
 }
 
-// Normal equations of all recordings together: shared unknowns, then each recording's own.
-struct NormalEquations {
-  Eigen::MatrixXd gram;
-  Eigen::VectorXd gradient;
-};
-
-NormalEquations normal_equations(const FittedModel& model) {
-  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  Eigen::Index unknowns = shared;
-  for (const PemRecording& part : model.problem.recordings) unknowns += static_cast<Eigen::Index>(part.own.size());
-  NormalEquations all{.gram = Eigen::MatrixXd::Zero(unknowns, unknowns), .gradient = Eigen::VectorXd::Zero(unknowns)};
-  Eigen::Index own = shared;
-  for (const Linearisation& at : model.optimum.at_optimum) {
-    std::vector<Eigen::Index> place(static_cast<std::size_t>(at.jacobian.cols()));
-    for (std::size_t k = 0; k < place.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      place[k] = column < shared ? column : own + column - shared;
-    }
-    all.gram(place, place) += at.jacobian.transpose() * at.jacobian;
-    all.gradient(place) += at.jacobian.transpose() * at.residual;
-    own += at.jacobian.cols() - shared;
-  }
-  return all;
+// Which of them fits best; their number where none could be fitted.
+std::size_t best_of(const std::vector<std::shared_ptr<const FittedModel>>& models) {
+  std::size_t best = models.size();
+  for (std::size_t k = 0; k < models.size(); ++k)
+    if (models[k] != nullptr && (best == models.size() || models[k]->misfit < models[best]->misfit)) best = k;
+  return best;
 }
 
 // What the misfit would fall by, were the model linear in the values and these not more than kOffByAtMost off:
 //
 //   gain = 2 d h - d^2 s,   d = h / s,   h = g_c - G_cb G_bb^-1 g_b,   s = G_cc - G_cb G_bb^-1 G_bc
 //
-// c: the value, b: everything that is estimated already.
-double promised_gain(const NormalEquations& all, const std::vector<Eigen::Index>& estimated, Eigen::Index value) {
-  constexpr double kNotShown = 1e-9;  // of its column: the estimated ones do the same
+// c: the value, b: everything else, known values with their priors in G and g.
+double promised_gain(NormalEquations all, const FittedModel& model, Eigen::Index value) {
+  constexpr double kNotShown = 1e-9;  // of its column: the others do the same
+  std::vector<Eigen::Index> estimated;
+  for (Eigen::Index k = 0; k < all.gradient.size(); ++k) {
+    if (k == value) continue;
+    estimated.push_back(k);
+    const auto at = static_cast<std::size_t>(k);
+    if (at >= model.problem.shared.size() || !model.problem.shared[at].is_known()) continue;
+    const Unknown& unknown = model.problem.shared[at];
+    all.gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
+    all.gradient(k) -= unknown.prior_residual(model.optimum.point.shared[at]) / unknown.prior_std;
+  }
   const Eigen::VectorXd scale = all.gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd gram = scale.asDiagonal() * all.gram * scale.asDiagonal();
   const Eigen::VectorXd gradient = scale.cwiseProduct(all.gradient);
@@ -123,29 +129,25 @@ double promised_gain(const NormalEquations& all, const std::vector<Eigen::Index>
 }
 
 struct Promise {
-  std::string name;
+  KnownValue value;
   double misfit = 0.0;  ///< that would be left
 };
 
 // Of each fixed value of `asset`, the most promising first.
 std::vector<Promise> promises_of(const AssetConfig& asset, const FittedModel& model, const Data& fit, int threads) {
-  const std::vector<std::string> names = fixed_values(asset, plant_of(model));
-  AssetConfig all_free = model.asset;
-  for (const std::string& name : names) all_free = with_free_value(std::move(all_free), name);
-  const Result<FittedModel> all = fit_model(all_free, fit, &model, threads, 0);
+  Data with_all = fit;
+  with_all.known = known_values(asset, plant_of(model));
+  const Result<FittedModel> all = fit_model(model.asset, with_all, &model, threads, 0);
   if (!all) return {};
   const NormalEquations equations = normal_equations(*all);
   const std::vector<Unknown>& shared = all->problem.shared;
-  std::vector<Eigen::Index> estimated, values;
-  for (Eigen::Index k = 0; k < equations.gradient.size(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const bool is_value = at < shared.size() && std::ranges::find(names, shared[at].name) != names.end();
-    (is_value ? values : estimated).push_back(k);
-  }
   std::vector<Promise> promises;
-  for (const Eigen::Index value : values)
-    promises.push_back({.name = shared[static_cast<std::size_t>(value)].name,
-                        .misfit = model.misfit - promised_gain(equations, estimated, value)});
+  for (std::size_t k = 0; k < shared.size(); ++k) {
+    const auto value = std::ranges::find(with_all.known, shared[k].name, &KnownValue::name);
+    if (value == with_all.known.end() || !shared[k].is_known()) continue;
+    promises.push_back(
+        {.value = *value, .misfit = model.misfit - promised_gain(equations, *all, static_cast<Eigen::Index>(k))});
+  }
   std::ranges::stable_sort(promises, {}, &Promise::misfit);
   return promises;
 }
@@ -155,6 +157,7 @@ std::vector<AssetValue> values_of(const FittedModel& model, const AssetConfig& a
   const std::vector<double> errors = standard_errors(model);
   std::vector<AssetValue> values;
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    if (model.problem.shared[k].is_known()) continue;  // within its tolerance
     const std::string& name = model.problem.shared[k].name;
     const auto sheet = asset.parameters.find(name);
     if (sheet == asset.parameters.end() || sheet->second.estimate || plant.find_parameter(name) == nullptr) continue;
@@ -186,7 +189,7 @@ std::vector<std::size_t> without(std::vector<std::size_t> kept, std::size_t left
 
 // The best value in place of one law.
 struct Replaced {
-  std::string name;
+  KnownValue value;
   std::vector<std::size_t> kept;
   std::shared_ptr<const FittedModel> model;
 };
@@ -205,23 +208,22 @@ std::optional<Replaced> one_law_replaced(const DatasheetQuestion& of) {
         fit_model(with_laws(of.asset, of.found, without(all, law)), of.fit, of.found.model.get(), of.threads);
     if (!fewer) continue;
     const auto near = std::make_shared<const FittedModel>(std::move(*fewer));
+    const double least = kPromising * (near->misfit - of.found.model->misfit);
     for (Promise& promise : promises_of(of.asset, *near, of.fit, of.threads))
-      places.push_back({std::move(promise), law, near});
+      if (near->misfit - promise.misfit >= least) places.push_back({std::move(promise), law, near});
   }
   std::ranges::stable_sort(places, {}, [](const Place& place) { return place.promise.misfit; });
   if (places.size() > kAsked) places.resize(kAsked);
   std::vector<Attempt> attempts;
   for (const Place& place : places)
     attempts.push_back(
-        {.asset = with_free_value(with_laws(of.asset, of.found, without(all, place.law)), place.promise.name),
-         .values = {place.promise.name},
+        {.asset = with_free_value(with_laws(of.asset, of.found, without(all, place.law)), place.promise.value.name),
+         .values = {place.promise.value},
          .near = place.near});
   const auto models = all_fitted(attempts, of.fit, of.threads);
-  std::optional<Replaced> best;
-  for (std::size_t k = 0; k < models.size(); ++k)
-    if (models[k] != nullptr && (!best || models[k]->misfit < best->model->misfit))
-      best = Replaced{places[k].promise.name, without(all, places[k].law), models[k]};
-  return best;
+  const std::size_t best = best_of(models);
+  if (best == models.size()) return std::nullopt;
+  return Replaced{places[best].promise.value, without(all, places[best].law), models[best]};
 }
 
 // Laws that are not needed beside the value are taken out, one at a time.
@@ -230,13 +232,11 @@ void drop_what_is_not_needed(const DatasheetQuestion& of, Replaced& replaced) {
     std::vector<Attempt> attempts;
     for (const std::size_t law : replaced.kept)
       attempts.push_back(
-          {.asset = with_free_value(with_laws(of.asset, of.found, without(replaced.kept, law)), replaced.name),
-           .values = {replaced.name},
+          {.asset = with_free_value(with_laws(of.asset, of.found, without(replaced.kept, law)), replaced.value.name),
+           .values = {replaced.value},
            .near = replaced.model});
     const auto models = all_fitted(attempts, of.fit, of.threads);
-    std::size_t best = models.size();
-    for (std::size_t k = 0; k < models.size(); ++k)
-      if (models[k] != nullptr && (best == models.size() || models[k]->misfit < models[best]->misfit)) best = k;
+    const std::size_t best = best_of(models);
     if (best == models.size() || behind(*models[best], *replaced.model) > kWorthAnother) return;
     replaced.kept = without(replaced.kept, replaced.kept[best]);
     replaced.model = models[best];
@@ -262,17 +262,20 @@ std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) 
 
 std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::size_t most) {
   AssetConfig asset = of.asset;
-  std::vector<std::string> free;
+  const std::vector<KnownValue> known = known_values(asset, plant_of(of.baseline));
+  std::vector<KnownValue> free;
   auto from = std::make_shared<const FittedModel>();
   for (std::size_t count = 1; count <= std::min(most, kMostValues); ++count) {
     const FittedModel& near = count == 1 ? of.baseline : *from;
     std::vector<Attempt> attempts;
+    const auto share = static_cast<double>(std::min(most, kMostValues) - count + 1);
+    const double least = kPromising * (near.misfit - of.found.model->misfit) / share;
     for (const Promise& promise : promises_of(asset, near, of.fit, of.threads)) {
-      if (attempts.size() == kAsked) break;
-      attempts.push_back({.asset = with_free_value(asset, promise.name),
+      if (attempts.size() == kAsked || near.misfit - promise.misfit < least) break;
+      attempts.push_back({.asset = with_free_value(asset, promise.value.name),
                           .values = free,
                           .near = std::shared_ptr<const FittedModel>(from, &near)});
-      attempts.back().values.push_back(promise.name);
+      attempts.back().values.push_back(promise.value);
     }
     auto models = all_fitted(attempts, of.fit, of.threads);
     std::erase(models, nullptr);
@@ -288,7 +291,10 @@ std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::siz
     for (const AssetValue& value : values_of(*models.front(), of.asset)) {
       if (asset.parameters.at(value.name).estimate) continue;
       asset = with_free_value(std::move(asset), value.name);
-      free.push_back(value.name);
+      free.push_back(
+          {.name = value.name,
+           .value = value.in_asset_file,
+           .standard_deviation = std::ranges::find(known, value.name, &KnownValue::name)->standard_deviation});
     }
     from = models.front();
   }

@@ -1,15 +1,16 @@
-// Values of the asset file that are not estimated, and may be wrong: a piston area that is 2 % off comes out as a
-// sensor's gain, a slip of the pump and an offset.
+// Values of the asset file that are not estimated, and may be further off than their tolerance allows (tolerance.hpp):
+// a piston area that is 3 % off comes out as a sensor's gain, a slip of the pump and an offset.
 //
 //   alone            values are freed without any law: of those that the linearised model promises most of, the best;
 //                    where that does not do, the best beside it, and so on
 //   in place of one  a value takes the place of one of the laws found, then the others go that are not needed with it:
-//   a
-//                    wrong value and missing physics together come out as more laws than there are
+//                    a wrong value and missing physics together come out as more laws than there are
 //
 // Each fit starts from the asset file's values, as the fit without laws may be bent too far; models are compared by the
 // criterion of the fitted recordings (criterion.hpp). Values that are 0, the mean load (each recording's own load is
-// free) and what the recordings leave at a bound (1.5 times off, or that of the asset file) are not asked.
+// free) and what the recordings leave at a bound (1.5 times off, or that of the asset file) are not asked; a value that
+// comes out within its tolerance is no cause. Nor is one fitted that promises, on the linearised model, less than a
+// tenth of its share of what the laws explain.
 #pragma once
 
 #include <optional>

@@ -8,6 +8,7 @@
 
 #include "sealwatch/forecast/fleet_population.hpp"
 #include "sealwatch/forecast/words.hpp"
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
@@ -16,7 +17,6 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kCannotTell = 6.0;       // criterion within which two laws are not told apart
 constexpr std::size_t kAlternatives = 5;  // refits in the place of an effect
 
 bool same(const Effect& a, const Effect& b) { return a.law == b.law && a.element == b.element; }
@@ -316,6 +316,7 @@ std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const
   std::vector<ParameterShift> shifts;
   for (std::size_t j = 0; j < before.problem.shared.size(); ++j) {
     const Unknown& unknown = before.problem.shared[j];
+    if (unknown.is_known()) continue;
     const std::string name = parameter_of(unknown);
     const auto sheet = datasheet.parameters.find(name);
     std::erase_if(shifts, [&](const ParameterShift& one) { return one.name == name; });  // of an earlier recording

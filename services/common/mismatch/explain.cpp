@@ -1,7 +1,10 @@
 #include "sealwatch/mismatch/explain.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -15,11 +18,14 @@
 #include "services/common/mismatch/held_out.hpp"
 #include "services/common/mismatch/naming.hpp"
 #include "services/common/mismatch/noise.hpp"
+#include "services/common/mismatch/pieces.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/remarks.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/trace.hpp"
 #include "services/common/mismatch/unrecorded_input.hpp"
 #include "services/common/mismatch/why_none.hpp"
 #include "services/common/mismatch/windows.hpp"
@@ -30,6 +36,7 @@ namespace {
 constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
 constexpr double kSmallestP = 1e-300;      // that is told: the tail's own digits end there
 constexpr double kHeldOutAgrees = 1.5;     // noise-normalised rms of a channel: the noise's own estimate is off by less
+constexpr double kSearchShare = 0.75;      // of the time limit, before what was found is proven and told
 constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model, or so much left
 
 // -ln p, to the smallest p that a double holds.
@@ -39,44 +46,95 @@ double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)
 class Analysis {
  public:
   Analysis(const AssetConfig& asset, Data fit, Data holdout, const ExplainOptions& options, const Progress& progress)
-      : asset_(asset), fit_(std::move(fit)), holdout_(std::move(holdout)), options_(options), progress_(progress) {}
+      : asset_(asset),
+        fit_(std::move(fit)),
+        holdout_(std::move(holdout)),
+        options_(options),
+        progress_(progress),
+        deadline_(options.cancel) {
+    fit_.deadline = holdout_.deadline = &deadline_;
+  }
 
   [[nodiscard]] Result<Explanation> run() {
+    Result<Explanation> result = analyse();
+    if (deadline_.cancelled()) return fail("the analysis was called off");
+    if (result && deadline_.was_met()) say_what_was_cut(*result);
+    return result;
+  }
+
+ private:
+  [[nodiscard]] Result<Explanation> analyse() {
+    allow(kSearchShare);
     result_.asset_id = asset_.asset_id;
     result_.model = asset_.model;
     result_.fit_recordings = fit_.names;
     result_.holdout_recordings = holdout_.names;
     if (auto gross = explain_gross_mismatch(asset_, fit_, holdout_, options_, progress_)) return std::move(*gross);
     if (const Status status = fit_baseline(); !status) return fail(status.error());
-    tell("looking for what is missing", 0.15);
-    ExplainOptions options = options_;
-    if (lacks_a_pressure()) options.maximum_laws = 0;
-    Result<Naming> naming = name_effects(baseline_, prepared(fit_), options, progress_);
-    if (!naming) return cannot_look(naming.error());
-    naming_ = std::move(*naming);
-    best_ = naming_.best;
-    result_.p_value = excess(*baseline_) > kGross ? kSmallestP : std::max(naming_.first.p_value, kSmallestP);
-    result_.statistically_significant = differs(naming_.first.p_value, *baseline_, options_.false_alarm_rate);
+    if (!only_the_seal_aged()) {
+      if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
+      say_how_likely_by_noise(naming_.first);
+    }
     if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
-    if (!why_none_) look_for_a_change();
-    if (!why_none_) let_the_seal_age();
-    if (!why_none_) ask_the_datasheet();
+    if (!why_none_ && in_time("whether something changed between the tests")) look_for_a_change();
+    if (!why_none_ && in_time("whether the seal aged between the tests")) let_the_seal_age();
+    if (!why_none_ && in_time("the values that the asset file fixes")) ask_the_datasheet();
+    allow(1.0);
     if (why_none_) best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_};
     if (!best_.effects.empty()) {
       tell("proving on recordings that took no part", 0.75);
       prove();
     }
-    if (!lacks_a_pressure() && !why_none_) look_again();
+    if (!lacks_a_pressure() && !why_none_ && was_all_asked()) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
-    draw_missing_terms(*baseline_, tried_.effects.empty() ? best_ : tried_, prepared(fit_), !windowed(), result_);
+    allow(1.0);
+    if (in_time("a picture of what is missing"))
+      draw_missing_terms(*baseline_, tried_.effects.empty() ? best_ : tried_, prepared(fit_), !windowed(), result_);
     tell("done", 1.0);
     return std::move(result_);
   }
 
- private:
+  // Work may go on until this share of the time limit is over.
+  void allow(double share) {
+    const std::chrono::duration<double> elapsed = Deadline::Clock::now() - begin_;
+    deadline_.set_in(share * options_.time_limit_s - elapsed.count());
+  }
+  // What the report rests on is done whatever time it takes.
+  void allow_what_is_needed() { deadline_.set_in(std::numeric_limits<double>::infinity()); }
+
+  [[nodiscard]] bool was_all_asked() const { return result_.not_asked.empty(); }
+  bool in_time(std::string step) {
+    if (!deadline_.passed()) return true;
+    result_.not_asked.push_back(std::move(step));
+    return false;
+  }
+
+  Status look_for_what_is_missing() {
+    tell("looking for what is missing", 0.15);
+    ExplainOptions options = options_;
+    if (lacks_a_pressure()) options.maximum_laws = 0;
+    Result<Naming> naming = name_effects(baseline_, prepared(fit_), options, progress_);
+    if (!naming) return fail(naming.error());
+    naming_ = std::move(*naming);
+    std::ranges::copy(naming_.not_asked, std::back_inserter(result_.not_asked));
+    // The best of a search that was cut: what it leaves has not been looked at.
+    if (!naming_.not_asked.empty() && !naming_.best.effects.empty()) {
+      allow(1.0);
+      auto last = screen(*naming_.best.model, prepared(fit_), {.seed = options_.seed, .threads = options_.threads});
+      if (last)
+        naming_.last = std::move(*last);
+      else
+        naming_.best = {{}, baseline_};
+      allow(kSearchShare);
+    }
+    best_ = naming_.best;
+    return {};
+  }
+
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
   Result<Explanation> cannot_look(const Error& why) {
-    why_none_ = cannot_be_asked(why);
+    why_none_ = in_time("what is missing") ? cannot_be_asked(why) : time_was_up();
+    allow_what_is_needed();
     result_.statistically_significant = excess(*baseline_) > kGross;  // seen without any law
     if (result_.statistically_significant) result_.p_value = kSmallestP;
     naming_ = {.baseline = baseline_, .best = {{}, baseline_}, .trials = {{{}, baseline_}}, .first = {}, .last = {}};
@@ -84,6 +142,31 @@ class Analysis {
     if (const Status status = finish(); !status) return fail(status.error());
     tell("done", 1.0);
     return std::move(result_);
+  }
+
+  void say_how_likely_by_noise(const Screening& screening) {
+    result_.p_value = excess(*baseline_) > kGross ? kSmallestP : std::max(screening.p_value, kSmallestP);
+    result_.statistically_significant = differs(screening.p_value, *baseline_, options_.false_alarm_rate);
+  }
+
+  // Whether the model follows every test once each has its own seal.
+  bool only_the_seal_aged() {
+    if (windowed() || !may_age(asset_, fit_)) return false;
+    const auto screening = screen(*baseline_, fit_, {.seed = options_.seed, .threads = options_.threads});
+    if (!screening || !differs(screening->p_value, *baseline_, options_.false_alarm_rate)) return false;
+    std::optional<AgeingSeal> seal = nothing_but_ageing(fit_, baseline_, options_);
+    if (!seal) return false;
+    say_how_likely_by_noise(*screening);
+    take_over(std::move(*seal));
+    why_none_ = seal_aged_and_no_more(ageing_in_words(*best_.model, fit_));
+    return true;
+  }
+
+  void take_over(AgeingSeal seal) {
+    fit_ = std::move(seal.fit);
+    baseline_ = std::move(seal.baseline);
+    naming_ = std::move(seal.naming);
+    best_ = naming_.best;
   }
 
   // Why the recordings differ though no physics is missing: something changed from test to test.
@@ -103,14 +186,12 @@ class Analysis {
       if (wrong && wrong->behind <= 0.0) blame_the_asset_file(*wrong, "another seal in each test");
       if (why_none_) return;
     }
-    fit_ = std::move(seal->fit);
-    baseline_ = std::move(seal->baseline);
-    naming_ = std::move(seal->naming);
-    best_ = naming_.best;
+    const bool wears = seal->wears;
+    take_over(std::move(*seal));
     const std::string course = ageing_in_words(*best_.model, fit_);
     const bool nothing_else =
         best_.effects.empty() && !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
-    if (!seal->wears)
+    if (!wears)
       why_none_ = seal_changed_but_not_by_wear(course);
     else if (nothing_else)
       why_none_ = seal_aged_and_no_more(course);
@@ -127,11 +208,8 @@ class Analysis {
     auto wrong = values_alone(question, best_.effects.size());
     if (!wrong) wrong = value_in_place_of_laws(question);
     if (!wrong) return;
-    // Fewer causes, or one with a name, have to be as good; as many have to be better.
-    const std::size_t causes = wrong->values.front().size() + wrong->with.effects.size();
-    const bool unlisted = best_.effects.front().law->id == "unlisted";
-    const bool fewer = causes < best_.effects.size() || unlisted;
-    if (wrong->behind <= (fewer ? 0.0 : -kWorthAnother)) blame_the_asset_file(*wrong, joined(laws, " and "));
+    asked_values_.push_back(asked(*wrong, naming_));
+    if (wrong->behind < -kCannotTell) blame_the_asset_file(*wrong, joined(laws, " and "));
     if (why_none_) return;
     result_.asset_values = wrong->values;
     instead_of_ = best_.effects.size();
@@ -215,6 +293,12 @@ class Analysis {
       add_input_noise(fit_, *model, prepared(fit_), options_.seed);
       model = fit_model(model->asset, prepared(fit_), &*model, options_.threads);
     }
+    if (!model && !deadline_.cancelled() && !in_time("the model's parameters: they stay as the asset file has them")) {
+      allow_what_is_needed();
+      const FittedModel nowhere;
+      model = fit_model(asset_, prepared(fit_), &nowhere, options_.threads, 0);
+      allow(0.0);
+    }
     if (!model) {
       Error error = model.error();
       if (error.file.empty()) error.file = first_not_simulated();
@@ -222,10 +306,22 @@ class Analysis {
           "the model cannot be simulated at the start values: check the asset's parameters against the recording";
       return fail(std::move(error));
     }
-    if (!windowed()) model = weighed_by_what_is_recorded(std::move(*model));
+    if (!windowed() && !deadline_.passed()) model = weighed_by_what_is_recorded(std::move(*model));
     if (!model) return fail(model.error());
+    if (!deadline_.passed()) model = with_tolerances(std::move(*model));
     baseline_ = std::make_shared<const FittedModel>(std::move(*model));
     return {};
+  }
+
+  // Fitted again with every fixed value that shows as an unknown within its tolerance.
+  FittedModel with_tolerances(FittedModel model) {
+    const PlantDescription& plant = model.problem.recordings.front().simulation->plant();
+    fit_.known = that_show(known_values(asset_, plant), model, prepared(fit_), options_.threads);
+    if (fit_.known.empty()) return model;
+    Result<FittedModel> again = fit_model(model.asset, prepared(fit_), &model, options_.threads);
+    if (again) return std::move(*again);
+    fit_.known.clear();
+    return model;
   }
 
   // The recording on which the model fails by itself, at the start values or while it is fitted; "" where none does.
@@ -330,6 +426,8 @@ class Analysis {
   Status finish() {
     tell("writing down what was found", 0.9);
     describe_what_was_found();
+    if (!best_.effects.empty()) static_cast<void>(in_time("every alternative to the laws found"));
+    allow_what_is_needed();
     const Trial before{{}, baseline_};
     for (std::size_t k = 0; k < fit_.samples.size(); ++k) {
       if (!windowed()) {
@@ -351,7 +449,9 @@ class Analysis {
     note_not_compared(*blocks);
     result_.fit = pool(result_.recordings, false);
     result_.holdout = pool(result_.recordings, true);
-    if (takes_back_what_comes_nowhere_near() || takes_back_what_does_not_explain()) return finish();
+    if (takes_back_what_comes_nowhere_near() || takes_back_what_does_not_carry_over() ||
+        takes_back_what_does_not_explain())
+      return finish();
     result_.explained_share = explained_share();
     result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last, plant());
     if (!best_.effects.empty()) {
@@ -371,6 +471,11 @@ class Analysis {
         const ParameterSetting& given = asset_.parameters.at(value.name);
         setting = {.value = setting.value, .min = given.min, .max = given.max, .estimate = false};
       }
+    if (!naming_.trials.empty()) result_.trace = trace_of(naming_);
+    std::ranges::copy(asked_values_, std::back_inserter(result_.trace));
+    if (result_.statistically_significant && !naming_.last.variants.empty())
+      result_.candidates =
+          candidate_causes(best_.effects.empty() ? naming_.first : naming_.last, *best_.model, *baseline_);
     compare_with_what_was_kept_aside();
     decide();
     for (FoundEffect& effect : result_.effects)
@@ -384,6 +489,12 @@ class Analysis {
     result_.summary = summary_of(result_);
     say_what_else_is_known();
     return {};
+  }
+
+  static void say_what_was_cut(Explanation& result) {
+    if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of what was being fitted");
+    result.summary += " The time limit cut the search: not everything was asked.";
+    result.notes.push_back("The time limit cut the search. Not asked: " + joined(result.not_asked, "; and ") + ".");
   }
 
   void take_all_laws_back() {
@@ -403,6 +514,16 @@ class Analysis {
     if (far == nullptr && fit_.own_parameter.empty()) far = farthest_off(result_.holdout);
     if (far == nullptr) return false;
     why_none_ = nowhere_near(*far, fit_, result_.fit);
+    take_all_laws_back();
+    return true;
+  }
+
+  // Nor where a channel of recordings that took no part comes out worse: other loads and speeds do not bear it out.
+  bool takes_back_what_does_not_carry_over() {
+    const ChannelComparison* worse = best_.effects.empty() ? nullptr : made_worse(result_.holdout);
+    if (worse == nullptr) return false;
+    result_.notes.push_back(does_not_carry_over(*worse));
+    tried_ = best_;
     take_all_laws_back();
     return true;
   }
@@ -493,6 +614,8 @@ class Analysis {
   Data fit_, holdout_;
   const ExplainOptions& options_;
   const Progress& progress_;
+  Deadline deadline_;
+  Deadline::Clock::time_point begin_ = Deadline::Clock::now();
   std::shared_ptr<const FittedModel> baseline_;
   Naming naming_;
   Trial best_;
@@ -502,10 +625,19 @@ class Analysis {
   bool input_swings_ = false;                              ///< between its samples, through much of the tests
   std::optional<WhyNone> why_none_;                        ///< set: no law is named
   std::shared_ptr<const FittedModel> with_another_value_;  ///< of the asset file, where that explains it
+  std::vector<Asked> asked_values_;                        ///< of the asset file, the best only
   std::size_t instead_of_ = 0;                             ///< laws, for which a value would do as well
   double window_s_ = 0.0;
   Explanation result_;
 };
+
+// One recording alone, in two where it is long; nothing otherwise.
+std::vector<Recording> halves_of_one(const AssetConfig& asset, std::span<const Recording> fit,
+                                     std::span<const Recording> holdout) {
+  if (fit.size() != 1 || !holdout.empty()) return {};
+  const auto simulation = PlantSimulation::create(asset, fit.front().samples);
+  return simulation ? in_halves(fit.front(), (*simulation)->channels()) : std::vector<Recording>{};
+}
 
 }  // namespace
 
@@ -514,6 +646,7 @@ Status ExplainOptions::validate() const {
     return fail("false_alarm_rate must be between 0 and 0.5, is " + number(false_alarm_rate));
   if (maximum_laws < 1 || maximum_laws > 3)
     return fail("maximum_laws must be 1 to 3, is " + std::to_string(maximum_laws));
+  if (!(time_limit_s > 0.0)) return fail("time_limit_s must be positive, is " + number(time_limit_s));
   if (threads < 1) return fail("threads must be at least 1, is " + std::to_string(threads));
   return {};
 }
@@ -523,7 +656,22 @@ Result<Explanation> explain(const AssetConfig& asset, std::span<const Recording>
                             const Progress& progress) {
   if (const Status status = options.validate(); !status) return fail(status.error());
   if (const Status status = check(asset, fit, holdout); !status) return fail(status.error());
-  return Analysis(asset, data_of(fit, holdout), data_of(holdout, fit), options, progress).run();
+  const auto analyse = [&](std::span<const Recording> fitted) {
+    return Analysis(asset, data_of(fitted, holdout), data_of(holdout, fitted), options, progress).run();
+  };
+  const std::vector<Recording> halves = halves_of_one(asset, fit, holdout);
+  Result<Explanation> found = halves.empty() ? analyse(fit) : analyse(halves);
+  if (!found) return found;
+  if (!halves.empty())
+    found->notes.push_back(
+        "The one recording is long enough to be two, a correlation time apart: each half is left out "
+        "in turn.");
+  for (const auto& list : {fit, holdout})
+    for (const Recording& recording : list)
+      if (!recording.left_aside.empty())
+        found->notes.push_back(recording.file + ": columns that the plant does not know were left aside: " +
+                               joined(recording.left_aside, " and ") + ".");
+  return found;
 }
 
 }  // namespace sealwatch::mismatch

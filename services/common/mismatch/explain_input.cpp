@@ -146,7 +146,9 @@ Data only(const Data& data, std::size_t one) {
               .colour = {},
               .groups = {},
               .resolution = data.resolution,
-              .own_parameter = data.own_parameter};
+              .own_parameter = data.own_parameter,
+              .known = data.known,
+              .deadline = data.deadline};
   if (!data.start_time.empty()) single.start_time = {data.start_time[one]};
   if (!data.colour.empty()) single.colour = {data.colour[one]};
   if (!data.weight.empty()) single.weight = {data.weight[one]};
@@ -169,10 +171,10 @@ Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span
         if (error.file.empty()) error.file = recording.file;
         return fail(std::move(error));
       }
+      if (const Status sensors = check_sensors(**simulation, recording); !sensors) return fail(sensors.error());
       if (const std::string unit = another_unit((*simulation)->plant(), recording.samples); !unit.empty())
         return fail(Error{
             .file = recording.file, .place = {}, .value = {}, .rule = unit, .advice = "check the units in its header"});
-      if (const Status sensors = check_sensors(**simulation, recording); !sensors) return fail(sensors.error());
     }
   for (const Recording& one : holdout)
     for (const Recording& other : fit)

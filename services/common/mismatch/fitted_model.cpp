@@ -50,7 +50,7 @@ void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording
 }
 
 Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const ActuatorFitOptions& options) {
-  Result<PemProblem> problem = make_pem_problem(asset, data.samples, data.groups, data.own_parameter);
+  Result<PemProblem> problem = make_pem_problem(asset, data.samples, data.groups, data.own_parameter, data.known);
   if (!problem) return problem;
   for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
@@ -59,6 +59,7 @@ Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const 
     leave_out(samples_after_jumps(data.samples[k]), recording);
   }
   problem->simulation_options = simulation_options(data.samples, options);
+  problem->simulation_options.deadline = data.deadline;
   return problem;
 }
 
@@ -67,7 +68,10 @@ FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum op
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
     const Unknown& unknown = model.problem.shared[k];
     set_value(model.asset, parameter_of(unknown), unknown.to_value(model.optimum.point.shared[k]));
-    if (!at_bound(unknown, model.optimum.point.shared[k])) ++model.free_shared;
+    if (unknown.is_known())
+      model.misfit += std::pow(unknown.prior_residual(model.optimum.point.shared[k]), 2);
+    else if (!at_bound(unknown, model.optimum.point.shared[k]))
+      ++model.free_shared;
   }
   for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k) {
     const Linearisation& at = model.optimum.at_optimum[k];

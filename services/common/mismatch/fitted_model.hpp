@@ -25,15 +25,17 @@ struct Data {
   std::vector<Eigen::VectorXd> weight = {};
   std::vector<std::optional<UtcTime>> start_time = {};  ///< per recording; empty in windows
   std::string own_parameter = {};                       ///< that each recording has for itself ("R_CL"); "": none
+  std::vector<KnownValue> known = {};                   ///< fixed values that may be off within their tolerance
+  const Deadline* deadline = nullptr;                   ///< of everything that is simulated
 };
 
 struct FittedModel {
   AssetConfig asset;  ///< parameters and laws at their estimates; a recording's own parameter at that of the last one
   PemProblem problem;
   PemOptimum optimum;
-  double misfit = 0.0;          ///< sum of the squares of all whitened residuals
+  double misfit = 0.0;          ///< sum of the squares of all whitened residuals, those of what is known included
   double residuals = 0.0;       ///< how many
-  std::size_t free_shared = 0;  ///< shared unknowns that are not at a bound
+  std::size_t free_shared = 0;  ///< shared unknowns that are neither known beforehand nor at a bound
 };
 
 /// Fits the asset's free parameters and every recording's own. `start`: a fit of the same data, from whose values the

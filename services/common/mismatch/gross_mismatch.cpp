@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include "services/common/mismatch/error_floor.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/why_none.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -75,6 +75,7 @@ class GrossMismatch {
     }
     std::ranges::stable_sort(order, std::greater<>(), &std::pair<double, std::size_t>::first);
     Data chosen;
+    chosen.deadline = fit_.deadline;
     for (std::size_t k = 0; k < std::min(kPolished, order.size()); ++k) {
       chosen.names.push_back(fit_.names[order[k].second]);
       chosen.samples.push_back(fit_.samples[order[k].second]);
@@ -102,8 +103,8 @@ class GrossMismatch {
   }
 
   // The values that the simulation ended with; their error contains how far it went from the balances'. A law that it
-  // does not want, beside the others, is not claimed.
-  void take_over_values() {
+  // does not want, beside the others, is not claimed. Whether all stay: what goes leaves the others to be fitted anew.
+  bool take_over_values() {
     std::vector<BalanceFinding> kept;
     for (BalanceFinding& finding : found_.findings) {
       const double value = value_of(found_.model, finding.what);
@@ -118,11 +119,18 @@ class GrossMismatch {
         put_back(found_.model, asset_, finding.what);
         continue;
       }
+      if (at_bound(found_.model, finding.what)) {
+        result_.notes.push_back("Once the simulation is fitted, " + finding_in_words(finding) +
+                                " ends at the end of what it may be: it stands in for something else and is not "
+                                "claimed.");
+        put_back(found_.model, asset_, finding.what);
+        continue;
+      }
       finding.std_error = std::hypot(finding.std_error, value - finding.value);
       finding.value = value;
-      if (at_bound(found_.model, finding.what)) finding.std_error = std::numeric_limits<double>::infinity();
       kept.push_back(std::move(finding));
     }
+    const bool all = kept.size() == found_.findings.size();
     found_.findings = std::move(kept);
     for (BalanceParameter& parameter : found_.free) {
       const double value = found_.model.asset.parameters.at(parameter.name).value;
@@ -130,6 +138,7 @@ class GrossMismatch {
       parameter.after = value;
       parameter.before = found_.baseline.asset.parameters.at(parameter.name).value;
     }
+    return all;
   }
 
   // False where the model as it is follows the recordings, or cannot be simulated at all.
@@ -137,8 +146,8 @@ class GrossMismatch {
     polish(found_.baseline);
     const Result<FittedModel> before = simulated(found_.baseline.asset, fit_);
     if (!before || rms_in_noise(*before, asset_, noise_fit_) < kGross) return false;
-    polish(found_.model);
-    take_over_values();
+    do polish(found_.model);
+    while (!take_over_values());
     const Result<FittedModel> after = simulated(found_.model.asset, fit_);
     misfit_before_ = before->misfit / before->residuals;
     misfit_after_ = after ? after->misfit / after->residuals : misfit_before_;
@@ -249,7 +258,10 @@ class GrossMismatch {
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
     result_.explained = found_.model.asset;
     add_notes();
-    const bool explained = proven_ && !result_.effects.empty() && result_.explained_share >= kExplainedAtLeast;
+    const ChannelComparison* worse = made_worse(result_.holdout);
+    if (worse != nullptr) result_.notes.push_back(does_not_carry_over(*worse));
+    const bool explained =
+        proven_ && worse == nullptr && !result_.effects.empty() && result_.explained_share >= kExplainedAtLeast;
     if (!explained) {  // what is not proven, or explains too little, is a place to look at, not an effect
       result_.effects.clear();
       result_.explained = found_.baseline.asset;

@@ -23,6 +23,7 @@ Result<FittedModel> predict(const HeldOut& of, const Trial& trial, const Data& d
   }
   Data one = in_windows(only(data, recording), of.window_s);
   one.own_parameter.clear();  // predicted
+  one.known.clear();          // as fitted
   return fit_model(with_fixed_parameters(asset), one, nullptr, 1);
 }
 
@@ -40,7 +41,9 @@ Result<RecordingComparison> compare_whole(const FittedModel& before, const Fitte
 Data in_windows(const Data& data, double window_s) { return window_s > 0.0 ? cut_into_windows(data, window_s) : data; }
 
 Result<FittedModel> free_run(const AssetConfig& asset, const Data& data, std::size_t recording) {
-  return fit_model(with_fixed_parameters(asset), only(data, recording), nullptr, 1);
+  Data one = only(data, recording);
+  one.known.clear();
+  return fit_model(with_fixed_parameters(asset), one, nullptr, 1);
 }
 
 void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const FittedModel& after, std::uint64_t seed) {

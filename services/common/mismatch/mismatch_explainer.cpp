@@ -47,8 +47,11 @@ class MismatchExplainer final : public Explainer {
       : write_asset_(std::move(write_asset)), options_(options) {}
 
   [[nodiscard]] ModelDiscrepancy explain(const AssetConfig& asset, std::span<const Recording> fit,
-                                         std::span<const Recording> holdout) const override {
-    const auto explanation = mismatch::explain(asset, fit, holdout, options_);
+                                         std::span<const Recording> holdout,
+                                         const std::stop_token& cancel) const override {
+    mismatch::ExplainOptions options = options_;
+    options.cancel = cancel;
+    const auto explanation = mismatch::explain(asset, fit, holdout, options);
     if (!explanation) {
       ModelDiscrepancy impossible;
       impossible.failure = explanation.error().describe();

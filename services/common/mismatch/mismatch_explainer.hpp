@@ -16,7 +16,7 @@ using AssetWriter = std::function<std::string(const AssetConfig&)>;
 /// The typed form of what was found.
 [[nodiscard]] ModelDiscrepancy discrepancy_of(const mismatch::Explanation& explanation);
 
-/// With the analysis' own seed: the same tests give the same answer.
+/// With the analysis' own seed: the same tests give the same answer, as long as the time limit does not cut it.
 [[nodiscard]] std::shared_ptr<const Explainer> make_mismatch_explainer(AssetWriter write_asset,
                                                                        const mismatch::ExplainOptions& options = {});
 

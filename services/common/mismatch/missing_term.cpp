@@ -37,8 +37,8 @@ std::vector<FreeQuantity> own_quantities(const SimulatedPoint& at, const ModelVa
     load = load || unknown.quantity.kind != FreeQuantity::Kind::initial_state;
   }
   if (load || !part.simulation->plant().has_load()) return own;
-  const bool has_mean = part.simulation->find("phi")->in(values) != 0.0;
-  own.push_back(*part.simulation->find(has_mean ? "load_factor" : "phi"));
+  const FreeQuantity mean = *part.simulation->find(part.simulation->plant().load_parameter);
+  own.push_back(mean.in(values) != 0.0 ? *part.simulation->find("load_factor") : mean);
   return own;
 }
 

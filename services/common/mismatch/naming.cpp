@@ -170,10 +170,16 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
   Naming naming{
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
   naming.forbidden = forbidden_by_physics(naming.first, *baseline);
+  const auto in_time = [&](const char* step) {
+    if (!passed(data.deadline)) return true;
+    naming.not_asked.emplace_back(step);
+    return false;
+  };
   if (from.effects.empty()) {
     begin_with_what_shows(naming, data, options);
   } else {
     naming.trials.push_back(naming.best = from);
+    if (!in_time("which of the laws found before are needed")) return naming;
     drop_what_is_not_needed(naming, data, options.threads);
     Result<Screening> last = screen(*naming.best.model, data, screening);
     if (!last) return fail(last.error());
@@ -183,6 +189,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     if (!differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) ||
         !promising(naming.last, *naming.best.model))
       break;
+    if (!in_time("laws beside those found")) break;
     const std::size_t level = naming.best.effects.size();
     const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
@@ -193,14 +200,19 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;
     if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - worth) break;
+    if (!in_time("laws that did not come to be fitted, and what the best of the others leaves")) {
+      naming.best = *best;
+      break;
+    }
     const Screening asked = naming.last;
     if (!take(naming, *best, data, options)) break;
-    from_other_shapes(naming, level, asked, data, options);
-    one_law_for_several(naming, data, options);
+    if (in_time("other shapes of the law found")) from_other_shapes(naming, level, asked, data, options);
+    if (in_time("one law in place of several")) one_law_for_several(naming, data, options);
   }
-  drop_what_is_not_needed(naming, data, options.threads);
-  prefer_plain_laws(naming, data, options.threads);
-  if (naming.last.p_value <= options.false_alarm_rate) try_closed_forms(naming, data, options);
+  if (in_time("whether each law is needed")) drop_what_is_not_needed(naming, data, options.threads);
+  if (in_time("plainer laws")) prefer_plain_laws(naming, data, options.threads);
+  if (naming.last.p_value <= options.false_alarm_rate && in_time("closed forms that no law of the list has"))
+    try_closed_forms(naming, data, options);
   one_shape_for_several(naming, data, options);
   return naming;
 }

@@ -29,7 +29,8 @@ struct Naming {
   Screening first;            ///< of the baseline
   Screening last;             ///< of the best model
   std::vector<Forbidden> forbidden = {};
-  std::vector<std::string> remarks = {};  ///< what was not taken for a reason of computation
+  std::vector<std::string> remarks = {};    ///< what was not taken for a reason of computation
+  std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
 };
 
 /// An Error when nothing can be looked at: the baseline cannot be linearised. A law whose model cannot be is not taken,

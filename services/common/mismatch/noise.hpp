@@ -1,15 +1,13 @@
 // Noise of the recordings from the recordings alone: standard deviation per channel (estimation/noise_floor.hpp, unless
 // the sidecar gives it) and its colour.
 //
-//   quiet pieces     the quarter of all pieces of 64 samples in which least moves (polynomials of degree 3 to 7); what
-//   is
-//                    beyond these polynomials has no part in the choice
+//   quiet pieces     the quarter of all pieces of 64 samples in which least moves (polynomials of degree 3 to 7);
+//                    what is beyond these polynomials has no part in the choice
 //   colour           autocovariance of that rest, pooled over pieces and recordings; AR(3) by Yule and Walker, only
-//   where
-//                    the correlation is significant
+//                    where the correlation is significant
 //   standard deviation   that of the coloured noise, where colour was found: differences do not see slow noise
 //
-// Never from a model's residuals. Source: docs/mismatch.md.
+// Never from a model's residuals. Yule-Walker: G. U. Yule, Phil. Trans. Royal Society A 226 (1927) 267.
 #pragma once
 
 #include "services/common/mismatch/fitted_model.hpp"

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include "services/common/mismatch/criterion.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kRoughly = 2.0;     // factor by which the criterion may be off in a gross misfit
-constexpr double kAsGood = 1.0;      // criterion within which two searches ended at the same
-constexpr double kCannotTell = 6.0;  // criterion within which two laws are not told apart
+constexpr double kRoughly = 2.0;  // factor by which the criterion may be off in a gross misfit
+constexpr double kAsGood = 1.0;   // criterion within which two searches ended at the same
 
 // Whether some law's shape is at the end of its range: there a law is the limit of another one (bristles that bend by
 // nothing are plain dry friction).

@@ -183,6 +183,18 @@ PooledFit pool(const std::vector<RecordingComparison>& recordings, bool holdout)
   return pooled;
 }
 
+const ChannelComparison* made_worse(const PooledFit& fit) {
+  constexpr double kWorse = 1.1;
+  constexpr double kAboveNoise = 1.5;
+  const ChannelComparison* worst = nullptr;
+  for (const ChannelComparison& channel : fit.channels) {
+    const double times = channel.rms_after / channel.rms_before;
+    if (times < kWorse || channel.rms_after < kAboveNoise) continue;
+    if (worst == nullptr || times > worst->rms_after / worst->rms_before) worst = &channel;
+  }
+  return worst;
+}
+
 const ChannelComparison* farthest_off(const PooledFit& fit) {
   constexpr double kHalf_percent = 50.0;
   constexpr double kFarAboveNoise = 10.0;

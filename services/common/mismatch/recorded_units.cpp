@@ -1,13 +1,13 @@
 #include "services/common/mismatch/recorded_units.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <limits>
 
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
-
 namespace {
 
 std::string outside_of_its_range(const PlantDescription& plant, const TimeSeries& samples) {
@@ -28,23 +28,39 @@ std::string outside_of_its_range(const PlantDescription& plant, const TimeSeries
   return {};
 }
 
-double span(const std::vector<double>& values) {
-  const auto [low, high] = std::ranges::minmax(values);
-  return high - low;
+using Course = Eigen::ArrayXd;
+
+// Without its mean and its drift: a velocity's offset adds up to a drift of the way.
+Course without_drift(Course values, const Course& time) {
+  values -= values.mean();
+  return values - (values * time).sum() / time.square().sum() * time;
 }
 
+// Both courses are one and the same but for a factor of more than ten.
 std::string position_and_velocity(const TimeSeries& samples) {
-  constexpr double kFactor = 10.0, kMoves_m = 2e-3;  // less may be drift of what is summed
+  constexpr double kFactor = 10.0, kAlike = 0.95;  // of the ways; their correlation
   const Series* position = samples.find("position");
   const Series* velocity = samples.find("velocity");
-  if (position == nullptr || velocity == nullptr || samples.time_s.size() < 2) return {};
-  std::vector<double> way{0.0};
-  for (std::size_t k = 1; k < samples.time_s.size(); ++k)
-    way.push_back(way.back() +
-                  0.5 * (velocity->values[k] + velocity->values[k - 1]) * (samples.time_s[k] - samples.time_s[k - 1]));
-  const double moved = span(position->values), summed = span(way);
-  if (!(std::max(moved, summed) > kMoves_m) || (moved < kFactor * summed && summed < kFactor * moved)) return {};
-  return "column position moves " + number(moved) + " m while column velocity adds up to " + number(summed) + " m";
+  const auto rows = static_cast<Eigen::Index>(samples.time_s.size());
+  if (position == nullptr || velocity == nullptr || rows < 3) return {};
+  Course time = Eigen::Map<const Course>(samples.time_s.data(), rows), way(rows);
+  way(0) = 0.0;
+  for (Eigen::Index k = 1; k < rows; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    way(k) = way(k - 1) + 0.5 * (velocity->values[at] + velocity->values[at - 1]) * (time(k) - time(k - 1));
+  }
+  time -= time.mean();
+  // What is left of the two by rounding alone says nothing.
+  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(rows);
+  const double least_way = rounding * way.abs().maxCoeff(),
+               least_position = rounding * Eigen::Map<const Course>(position->values.data(), rows).abs().maxCoeff();
+  const Course x = without_drift(Eigen::Map<const Course>(position->values.data(), rows), time);
+  way = without_drift(way, time);
+  const double moved = std::sqrt(x.square().mean()), summed = std::sqrt(way.square().mean());
+  if (moved <= least_position || summed <= least_way) return {};
+  const bool alike = (x * way).mean() > kAlike * moved * summed;
+  if (!alike || (moved < kFactor * summed && summed < kFactor * moved)) return {};
+  return "column position moves " + number(moved / summed, 2) + " times as far as column velocity adds up to";
 }
 
 }  // namespace

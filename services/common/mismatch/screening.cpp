@@ -17,20 +17,26 @@ struct Reduced {
   RowMatrix shared, laws;
   Eigen::VectorXd residual;
   Eigen::VectorXd raw_norm;  ///< |s_j|^2 before anything was taken off
-  Eigen::Index channels = 0;
+  Eigen::Index rows_per_block = 1;
 };
 
+Eigen::Index rows_per_block(const std::vector<double>& time_s, Eigen::Index channels, double block_s) {
+  const double rate = static_cast<double>(time_s.size()) / (time_s.back() - time_s.front());
+  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(block_s * rate)) * channels;
+}
+
 Result<Reduced> reduce(const FittedModel& model, std::size_t recording, const std::vector<Candidate>& candidates,
-                       const std::vector<PassColumn>& columns) {
+                       const std::vector<PassColumn>& columns, double block_s) {
   Result<Pass> pass = sensitivity_pass(model, recording, candidates, columns);
   if (!pass) return fail(pass.error());
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
   const RowMatrix own = pass->free.rightCols(pass->free.cols() - shared);
-  Reduced reduced{.shared = pass->free.leftCols(shared),
-                  .laws = std::move(pass->laws),
-                  .residual = std::move(pass->residual),
-                  .raw_norm = {},
-                  .channels = pass->channels};
+  Reduced reduced{
+      .shared = pass->free.leftCols(shared),
+      .laws = std::move(pass->laws),
+      .residual = std::move(pass->residual),
+      .raw_norm = {},
+      .rows_per_block = rows_per_block(model.problem.recordings[recording].time_s, pass->channels, block_s)};
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {  // what is held at a bound does not swallow anything
     const Unknown& unknown = model.problem.shared[k];
     const double at = model.optimum.point.shared[k];
@@ -43,6 +49,24 @@ Result<Reduced> reduce(const FittedModel& model, std::size_t recording, const st
   projection.remove_from(reduced.laws);
   projection.remove_from(reduced.residual);
   return reduced;
+}
+
+// What is known beforehand of shared unknowns, as rows of their own: no law acts on them.
+Reduced known_beforehand(const FittedModel& model, Eigen::Index laws) {
+  const std::vector<Unknown>& unknowns = model.problem.shared;
+  const Eigen::Index rows = std::ranges::count_if(unknowns, &Unknown::is_known);
+  Reduced known{.shared = RowMatrix::Zero(rows, static_cast<Eigen::Index>(unknowns.size())),
+                .laws = RowMatrix::Zero(rows, laws),
+                .residual = Eigen::VectorXd(rows),
+                .raw_norm = Eigen::VectorXd::Zero(laws),
+                .rows_per_block = std::max<Eigen::Index>(rows, 1)};
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < unknowns.size(); ++k) {
+    if (!unknowns[k].is_known()) continue;
+    known.shared(row, static_cast<Eigen::Index>(k)) = -1.0 / unknowns[k].prior_std;
+    known.residual(row++) = unknowns[k].prior_residual(model.optimum.point.shared[k]);
+  }
+  return known;
 }
 
 // Columns of all recordings: those of a recording's own come once for each.
@@ -121,13 +145,15 @@ Eigen::MatrixXd stacked(const std::vector<Eigen::MatrixXd>& parts, Eigen::Index 
 }
 
 Result<std::vector<Reduced>> reduce_all(const FittedModel& model, const std::vector<Candidate>& candidates,
-                                        const std::vector<PassColumn>& columns, int threads) {
+                                        const std::vector<PassColumn>& columns, const ScreeningOptions& options) {
+  const int threads = options.threads;
   std::vector<Reduced> all;
   const std::size_t count = model.problem.recordings.size();
   for (std::size_t first = 0; first < count; first += static_cast<std::size_t>(threads)) {
     std::vector<std::future<Result<Reduced>>> running;
     for (std::size_t k = first; k < std::min(count, first + static_cast<std::size_t>(threads)); ++k)
-      running.push_back(std::async(std::launch::async, [&, k] { return reduce(model, k, candidates, columns); }));
+      running.push_back(
+          std::async(std::launch::async, [&, k] { return reduce(model, k, candidates, columns, options.block_s); }));
     for (auto& one : running) {
       Result<Reduced> reduced = one.get();
       if (!reduced) return fail(reduced.error());
@@ -149,15 +175,18 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
   for (std::size_t k = 0; k < columns.size(); ++k)
     for (const Eigen::Index index : layout.of_pass[k])
       screening.unit[static_cast<std::size_t>(index)] = columns[k].unit;
-  Result<std::vector<Reduced>> parts = reduce_all(model, screening.candidates, columns, options.threads);
+  Result<std::vector<Reduced>> parts = reduce_all(model, screening.candidates, columns, options);
   if (!parts) return fail(parts.error());
+  const std::size_t recordings = parts->size();
+  if (std::ranges::any_of(model.problem.shared, &Unknown::is_known))
+    parts->push_back(known_beforehand(model, static_cast<Eigen::Index>(columns.size())));
 
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(shared, shared), cross = Eigen::MatrixXd::Zero(shared, layout.size);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(shared), raw_norm = Eigen::VectorXd::Zero(layout.size);
   for (std::size_t k = 0; k < parts->size(); ++k) {
     Reduced& part = (*parts)[k];
-    part.laws = spread(part.laws, layout, k);
+    part.laws = k < recordings ? spread(part.laws, layout, k) : RowMatrix::Zero(part.laws.rows(), layout.size);
     gram += part.shared.transpose() * part.shared;
     cross += part.shared.transpose() * part.laws;
     right += part.shared.transpose() * part.residual;
@@ -177,11 +206,8 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
       part.residual.noalias() -= part.shared * projection.coefficients(right);
     }
     screening.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.laws.transpose());
-    const double rate = static_cast<double>(data.samples[k].time_s.size()) /
-                        (data.samples[k].time_s.back() - data.samples[k].time_s.front());
-    const auto rows = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(options.block_s * rate)) * part.channels;
-    sums.push_back(block_sums(part.laws, part.residual, rows));
-    grams.push_back(block_grams(part.laws, screening.variants, rows));
+    sums.push_back(block_sums(part.laws, part.residual, part.rows_per_block));
+    grams.push_back(block_grams(part.laws, screening.variants, part.rows_per_block));
     blocks += sums.back().rows();
     part.laws.resize(0, 0);
   }

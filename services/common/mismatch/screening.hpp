@@ -14,7 +14,7 @@
 //
 // p-value: the largest of all scores against its distribution when g is noise alone, N(0, G), which keeps the laws'
 // correlation; expressed as an effective number of independent laws.
-// Source: docs/mismatch.md.
+// Score test: C. R. Rao, Proc. Cambridge Philosophical Society 44 (1948) 50. Method in words: docs/mismatch.md.
 #pragma once
 
 #include <Eigen/Core>

@@ -138,7 +138,8 @@ void calibrate(Screening& screening, const ScreeningOptions& options) {
 
 void find_leakage_shifts(Screening& screening, const FittedModel& model, const Eigen::MatrixXd& gram,
                          const Eigen::MatrixXd& cross) {
-  const auto leakage = std::ranges::find(model.problem.shared, "R_CL", parameter_of);
+  const std::string& wears = model.problem.recordings.front().simulation->plant().wear_parameter;
+  const auto leakage = std::ranges::find(model.problem.shared, wears, parameter_of);
   if (leakage == model.problem.shared.end()) return;
   const auto row = static_cast<Eigen::Index>(leakage - model.problem.shared.begin());
   const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();

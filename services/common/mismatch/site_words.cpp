@@ -34,6 +34,7 @@ constexpr SiteWords kModulus{
 constexpr SiteWords kViscosity{
     "relative change of viscosity", "1", {SignalWords{"dissipated power", "W"}, kNone, kNone, kNone}};
 constexpr SiteWords kTank{"flow out of the tank", "V/s", {SignalWords{"level", "V"}, kNone, kNone, kNone}};
+constexpr SiteWords kOwn{"what is lost", "", {SignalWords{"first signal", ""}, kNone, kNone, kNone}};
 constexpr SiteWords kSensor{"shift of the reading", "", {kNone, kNone, kNone, kNone}};
 
 }  // namespace
@@ -66,6 +67,8 @@ const SiteWords& words_of(SiteKind kind) {
       return kViscosity;
     case SiteKind::tank_flow:
       return kTank;
+    case SiteKind::own:
+      return kOwn;
     case SiteKind::sensor_bias:
     case SiteKind::sensor_gain:
     case SiteKind::sensor_lag:

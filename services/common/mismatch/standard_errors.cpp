@@ -60,6 +60,13 @@ std::vector<double> standard_errors(const FittedModel& model) {
     else if (const auto again = linearise(model.problem, k, model.optimum.point.shared, model.optimum.point.own[k]))
       add_recording(*again, model.problem.recordings[k].time_s, normal);
   }
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const Unknown& unknown = model.problem.shared[k];
+    if (!unknown.is_known()) continue;
+    const auto j = static_cast<Eigen::Index>(k);
+    normal.information(j, j) += 1.0 / (unknown.prior_std * unknown.prior_std);
+    normal.scores(j, j) += std::pow(unknown.prior_residual(model.optimum.point.shared[k]) / unknown.prior_std, 2);
+  }
   if (normal.blocks > 1) normal.scores *= normal.blocks / (normal.blocks - 1.0);
 
   const std::vector<Eigen::Index> told = told_by_data(model, normal.information);

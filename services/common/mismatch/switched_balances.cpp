@@ -51,7 +51,7 @@ struct Terms {
     for (const PhysicsTerm& physics : asset.physics) {
       std::vector<std::string> names;
       for (const auto& [name, setting] : physics.parameters) names.push_back(name);
-      const auto law = find_law(physics.id, names);
+      const auto law = find_law(physics.id, names, asset.model);
       if (!law) continue;
       if ((*law)->evaluate == nullptr) {
         add_sensor(**law, physics);
@@ -137,6 +137,7 @@ void SwitchedBalances::add_rows(const TimeSeries& samples, std::size_t recording
   const auto values = [&](const char* channel) -> const std::vector<double>& { return samples.find(channel)->values; };
   const std::vector<double>& valves = values("valve_state");
   for (std::size_t begin = 0, end = 0; begin < time_s.size(); begin = end) {
+    ++end;  // a stretch has one sample at least, whatever it compares like
     while (end < time_s.size() && time_s[end] < time_s[begin] + kBlock_s && valves[end] == valves[begin]) ++end;
     const int way = Plant::direction({0.0, valves[begin]});
     if (time_s[end - 1] - time_s[begin] < kShortest * kBlock_s) continue;

@@ -19,6 +19,11 @@ WhyNone cannot_be_asked(const Error& why) {
           .next_test = "Check the recorded input around that time, or analyse without this recording."};
 }
 
+WhyNone time_was_up() {
+  return {.summary = "The time limit ended the analysis before it could be asked what is missing.",
+          .next_test = "Give the analysis more time, or fewer and shorter recordings."};
+}
+
 WhyNone nothing_moves() {
   return {.summary = "The actuator does not move in these recordings: there is nothing to see.",
           .next_test =
@@ -77,13 +82,18 @@ WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const Pooled
                                 : check};
 }
 
+std::string does_not_carry_over(const ChannelComparison& worse) {
+  return "What fits better does not carry over: on recordings that took no part it takes " + in_words(worse.channel) +
+         " from " + number(worse.rms_before) + " to " + number(worse.rms_after) +
+         " times its noise. It is not claimed.";
+}
+
 WhyNone those_kept_aside_differ(const ChannelComparison& worst) {
-  return {.summary = "The fitted recordings agree with the model, those that were kept aside do not: " +
-                     in_words(worst.channel) + " misses by " + number(worst.rms_after) +
-                     " times the noise. The asset changed between them, or what is missing acts in these alone.",
-          .next_test =
-              "Fit some of the recordings that were kept aside together with the others, and keep "
-              "others of each kind aside."};
+  return {
+      .summary = "The fitted recordings agree with the model, those that were held out do not: " +
+                 in_words(worst.channel) + " misses by " + number(worst.rms_after) +
+                 " times the noise. The asset changed between them, or what is missing acts in these alone.",
+      .next_test = "Fit some of the held-out recordings together with the others, and hold out others of each kind."};
 }
 
 }  // namespace sealwatch::mismatch

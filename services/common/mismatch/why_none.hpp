@@ -17,6 +17,8 @@ struct WhyNone {
 
 /// The model follows the recordings, but its sensitivities cannot be simulated.
 [[nodiscard]] WhyNone cannot_be_asked(const Error& why);
+/// The time limit came before the first question.
+[[nodiscard]] WhyNone time_was_up();
 [[nodiscard]] WhyNone nothing_moves();
 [[nodiscard]] WhyNone something_changed(const ChangeBetweenTests& change);
 
@@ -33,6 +35,9 @@ struct WhyNone {
 /// `far`: the channel that is missed most with the laws, `before`: without. Tests of different days may also differ
 /// from one another.
 [[nodiscard]] WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before);
+
+/// In one sentence; `worse`: a channel of recordings that took no part.
+[[nodiscard]] std::string does_not_carry_over(const ChannelComparison& worse);
 
 /// The fitted recordings agree with the model; `worst`: of the held-out ones.
 [[nodiscard]] WhyNone those_kept_aside_differ(const ChannelComparison& worst);

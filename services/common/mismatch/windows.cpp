@@ -12,17 +12,6 @@ namespace {
 
 constexpr double kShortest = 0.5;  // of a window: a shorter rest goes to the window before
 
-TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end) {
-  const auto cut = [&](const std::vector<double>& values) {
-    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                               values.begin() + static_cast<std::ptrdiff_t>(end));
-  };
-  TimeSeries piece{.time_s = cut(samples.time_s), .channels = {}, .input_hold = samples.input_hold};
-  for (const Series& channel : samples.channels)
-    piece.channels.push_back({channel.name, channel.unit, channel.noise_std, cut(channel.values)});
-  return piece;
-}
-
 // The flow and the other chamber's pressure drive the cylinder circuit.
 TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
@@ -36,6 +25,17 @@ TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt
 
 }  // namespace
 
+TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end) {
+  const auto cut = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                               values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  TimeSeries piece{.time_s = cut(samples.time_s), .channels = {}, .input_hold = samples.input_hold};
+  for (const Series& channel : samples.channels)
+    piece.channels.push_back({channel.name, channel.unit, channel.noise_std, cut(channel.values)});
+  return piece;
+}
+
 double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
   if (asset.model == "eha" && !recorded.has("motor_voltage")) return kFlowWindow_s;
   const auto plant = find_plant(asset.model);
@@ -45,6 +45,8 @@ double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
 Data cut_into_windows(const Data& data, double window_s) {
   Data windows;
   windows.resolution = data.resolution;
+  windows.known = data.known;
+  windows.deadline = data.deadline;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const TimeSeries& samples = data.samples[k];
     std::size_t begin = 0;

@@ -165,7 +165,9 @@ PlantDescription describe_eha() {
                          .parameters = parameters(),
                          .states = states(),
                          .elements = elements(),
-                         .sites = {Eha::kSites.begin(), Eha::kSites.end()}};
+                         .sites = {Eha::kSites.begin(), Eha::kSites.end()},
+                         .load_parameter = "phi",
+                         .wear_parameter = "R_CL"};
   add_sensor_elements(plant);
   return plant;
 }

@@ -141,7 +141,9 @@ PlantDescription describe_eha_switched() {
                          .states = states(),
                          .elements = elements(),
                          .sites = {EhaSwitched::kSites.begin(), EhaSwitched::kSites.end()},
-                         .window_s = 2.0};
+                         .window_s = 2.0,
+                         .load_parameter = "phi",
+                         .wear_parameter = "R_CL"};
   add_sensor_elements(plant);
   return plant;
 }

@@ -31,19 +31,55 @@ LocalFit parabola(const std::vector<double>& values, std::size_t at, std::ptrdif
 
 }  // namespace
 
-std::vector<double> undo_sensor(const std::vector<double>& time_s, const std::vector<double>& values,
-                                double time_constant_s) {
+SmoothedInput smoothed_input(const std::vector<double>& time_s, const std::vector<double>& values, double reach_s) {
   const std::size_t count = values.size();
-  if (count < 3) return values;
+  SmoothedInput smoothed{.values = values, .slopes = std::vector<double>(count, 0.0)};
+  if (count < 3) return smoothed;
   const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(count - 1);
-  const auto reach = static_cast<std::ptrdiff_t>(std::lround(kReach_s / step_s));
-  std::vector<double> input(count);
+  const auto reach = static_cast<std::ptrdiff_t>(std::lround(reach_s / step_s));
   for (std::size_t k = 0; k < count; ++k) {
     const auto m = std::min({reach, static_cast<std::ptrdiff_t>(k), static_cast<std::ptrdiff_t>(count - 1 - k)});
     const LocalFit local = parabola(values, k, m);
-    input[k] = local.value + time_constant_s * local.slope / step_s;
+    smoothed.values[k] = local.value;
+    smoothed.slopes[k] = local.slope / step_s;
   }
-  return input;
+  return smoothed;
+}
+
+// Continuous curvature at every sample: a tridiagonal system, solved by elimination.
+std::vector<double> spline_slopes(const std::vector<double>& time_s, const std::vector<double>& values) {
+  const std::size_t last = values.size() - 1;
+  std::vector<double> diagonal(last + 1), right(last + 1), beyond(last + 1, 0.0);
+  const auto step = [&](std::size_t k) { return time_s[k + 1] - time_s[k]; };
+  const auto secant = [&](std::size_t k) { return (values[k + 1] - values[k]) / step(k); };
+  diagonal[0] = 2.0, beyond[0] = 1.0, right[0] = 3.0 * secant(0);
+  for (std::size_t k = 1; k <= last; ++k) {
+    const bool end = k == last;
+    const double before = end ? 1.0 : 1.0 / step(k - 1), after = end ? 0.0 : 1.0 / step(k);
+    diagonal[k] = 2.0 * (before + after);
+    beyond[k] = after;
+    right[k] = 3.0 * (before * secant(k - 1) + (end ? 0.0 : after * secant(k)));
+    const double factor = before / diagonal[k - 1];
+    diagonal[k] -= factor * beyond[k - 1];
+    right[k] -= factor * right[k - 1];
+  }
+  std::vector<double> slopes(last + 1);
+  for (std::size_t k = last + 1; k-- > 0;)
+    slopes[k] = (right[k] - (k == last ? 0.0 : beyond[k] * slopes[k + 1])) / diagonal[k];
+  return slopes;
+}
+
+std::vector<double> means_of_neighbours(const std::vector<double>& held) {
+  std::vector<double> means = held;
+  for (std::size_t row = 1; row < held.size(); ++row) means[row] = 0.5 * (held[row - 1] + held[row]);
+  return means;
+}
+
+std::vector<double> undo_sensor(const std::vector<double>& time_s, const std::vector<double>& values,
+                                double time_constant_s) {
+  SmoothedInput input = smoothed_input(time_s, values, kReach_s);
+  for (std::size_t k = 0; k < values.size(); ++k) input.values[k] += time_constant_s * input.slopes[k];
+  return std::move(input.values);
 }
 
 }  // namespace sealwatch

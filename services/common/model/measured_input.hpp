@@ -10,6 +10,21 @@
 
 namespace sealwatch {
 
+struct SmoothedInput {
+  std::vector<double> values;
+  std::vector<double> slopes;  ///< per second
+};
+/// Value and slope at each sample of the parabola fitted to the samples within `reach_s` on both sides.
+[[nodiscard]] SmoothedInput smoothed_input(const std::vector<double>& time_s, const std::vector<double>& values,
+                                           double reach_s);
+
+/// Slopes at the samples of the cubic spline through them, whose ends are straight.
+[[nodiscard]] std::vector<double> spline_slopes(const std::vector<double>& time_s, const std::vector<double>& values);
+
+/// A controller holds its output from one sample to the next. A course that is linear between the means of neighbours
+/// has the same delay and the same area, and an integrator need not start anew at every sample.
+[[nodiscard]] std::vector<double> means_of_neighbours(const std::vector<double>& held);
+
 [[nodiscard]] std::vector<double> undo_sensor(const std::vector<double>& time_s, const std::vector<double>& values,
                                               double time_constant_s);
 

@@ -1,4 +1,4 @@
-// A plant of one's own beside those that come with sealwatch (docs/tutorial-plant.md): its table and its equations are
+// A plant of one's own beside those that come with sealwatch (docs/reference/plant-in-cpp.md): its table and its equations are
 // made known once, at the start of the program, before other threads run. From then on every module takes it by name.
 #pragma once
 

@@ -1,6 +1,8 @@
 #include "sealwatch/model/physics.hpp"
 
 #include <algorithm>
+#include <mutex>
+#include <set>
 
 #include "sealwatch/core/text.hpp"
 
@@ -24,10 +26,26 @@ std::string parameter_list(const Law& law) {
 
 }  // namespace
 
-Result<const Law*> find_law(std::string_view id, const std::vector<std::string>& parameter_names) {
+std::deque<Law>& law_catalogue();  // made by the build
+
+const std::deque<Law>& all_laws() { return law_catalogue(); }
+
+void add_law(Law law) { law_catalogue().push_back(std::move(law)); }
+
+std::string_view kept(std::string_view text) {
+  static std::mutex mutex;
+  static std::set<std::string, std::less<>> texts;
+  const std::scoped_lock lock(mutex);
+  const auto known = texts.find(text);
+  return known != texts.end() ? *known : *texts.emplace(text).first;
+}
+
+Result<const Law*> find_law(std::string_view id, const std::vector<std::string>& parameter_names,
+                            std::string_view plant) {
   std::vector<std::string> ids;
   std::string forms;
   for (const Law& law : all_laws()) {
+    if (!law.plant.empty() && law.plant != plant) continue;
     ids.emplace_back(law.id);
     if (law.id != id) continue;
     if (has_parameters(law, parameter_names)) return &law;

@@ -38,7 +38,7 @@ Result<PhysicsTerms> resolve_physics(const PlantDescription& plant, std::span<co
   for (const PhysicsTerm& term : asset.physics) {
     std::vector<std::string> names;
     for (const auto& [name, setting] : term.parameters) names.push_back(name);
-    const Result<const Law*> law = find_law(term.id, names);
+    const Result<const Law*> law = find_law(term.id, names, plant.name);
     if (!law) return misplaced(asset, term, law.error().rule, law.error().advice);
     const std::size_t first = plant.parameters.size() + terms.parameters.size();
     if (is_sensor((*law)->kind)) {

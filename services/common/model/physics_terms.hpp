@@ -13,6 +13,8 @@ namespace sealwatch {
 
 /// How many laws with a hidden state a simulation can carry.
 inline constexpr int kMaximumHiddenStates = 2;
+/// Allowed local error of a hidden state, at the relative tolerance 1e-6, as a share of its usual size.
+inline constexpr double kHiddenShare = 1e-5;
 
 /// A law that adds to balances of the plant.
 struct ActiveTerm {

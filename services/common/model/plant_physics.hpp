@@ -14,8 +14,8 @@ Result<SimulatedOutputs> PlantSimulationOf<Model>::run_with_physics(const ModelV
                                                                     const SimulationOptions& options,
                                                                     InjectedColumns* injected) const {
   if constexpr (requires { Model::Equations::kSites; })
-    return Run<kPhysicsWidth, true>(*this, values, free, options, injected).simulate(values);
-  return fail("plant " + plant_.name + " has no sites for laws");
+    return run_with<kPhysicsWidth, true>(values, free, options, injected);
+  return fail("plant " + plant().name + " has no sites for laws");
 }
 
 }  // namespace sealwatch

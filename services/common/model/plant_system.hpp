@@ -119,7 +119,7 @@ class PlantSystem {
     std::array<double, Model::kInputs.size()> values, slopes;
     for (std::size_t channel = 0; channel < values.size(); ++channel) {
       values[channel] = input_.value(channel, t, segment_, cursor_);
-      slopes[channel] = WithPhysics ? input_.slope(channel, cursor_) : 0.0;
+      slopes[channel] = WithPhysics ? input_.slope(channel, t, cursor_) : 0.0;
     }
     if constexpr (requires { Model::input(values, slopes); })
       return Model::input(values, slopes);

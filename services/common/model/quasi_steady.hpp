@@ -6,7 +6,7 @@
 // S_F = J_FH S_H + df_F/dp
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -18,9 +18,10 @@ template <class System>
 class QuasiSteadyState {
  public:
   static constexpr int kStates = System::kStates;
-  using Mask = std::array<bool, kStates>;
-  using Vector = std::array<double, kStates>;
-  using Matrix = typename LuFactorisation<kStates>::Matrix;
+  using Sizes = SquareSystem<kStates>;
+  using Mask = typename Sizes::Mask;
+  using Vector = typename Sizes::Vector;
+  using Matrix = typename Sizes::Matrix;
 
   /// `scale`: size of each state's allowed error.
   QuasiSteadyState(const System& system, double time, const Mask& fast, const Vector& scale)
@@ -31,20 +32,20 @@ class QuasiSteadyState {
 
   /// Completes the fast rows of [y | S], whose held rows are seeded.
   [[nodiscard]] bool differentiate(const Vector& state, double* values, std::size_t stride) {
-    Vector f;
-    Matrix jacobian;
+    Vector f = Sizes::vector(states());
+    Matrix jacobian = Sizes::matrix(states());
     frozen_.system.linearise(frozen_.time, state.data(), f.data(), jacobian);
-    std::vector<double> right(kStates * stride, 0.0);
+    std::vector<double> right(states() * stride, 0.0);
     frozen_.system.add_parameter_derivatives(frozen_.time, state.data(), 1.0, right.data(), stride);
-    for (int row = 0; row < kStates; ++row)
+    for (int row = 0; row < states(); ++row)
       for (std::size_t k = 1; k < stride; ++k) {
         if (!frozen_.fast[row]) right[row * stride + k] = values[row * stride + k];
-        for (int held = 0; frozen_.fast[row] && held < kStates; ++held)
+        for (int held = 0; frozen_.fast[row] && held < states(); ++held)
           if (!frozen_.fast[held]) right[row * stride + k] += jacobian[row][held] * values[held * stride + k];
       }
     if (!lu_.factorise(reduced(jacobian))) return false;
     lu_.solve(right.data(), static_cast<int>(stride), stride);
-    for (int row = 0; row < kStates; ++row)
+    for (int row = 0; row < states(); ++row)
       for (std::size_t k = 1; k < stride; ++k) values[row * stride + k] = right[row * stride + k];
     return true;
   }
@@ -53,21 +54,24 @@ class QuasiSteadyState {
   /// The system at a fixed time whose held states do not move.
   struct Frozen {
     static constexpr int kStates = System::kStates;
+    [[nodiscard]] int states() const { return state_count(system); }
     const System& system;
     double time;
     Mask fast;
     void evaluate(double, const double* y, double* f) const {
       system.evaluate(time, y, f);
-      for (int row = 0; row < kStates; ++row)
+      for (int row = 0; row < states(); ++row)
         if (!fast[row]) f[row] = 0.0;
     }
     void linearise(double, const double* y, double* f, Matrix& jacobian) const {
       system.linearise(time, y, f, jacobian);
-      for (int row = 0; row < kStates; ++row)
-        if (!fast[row]) f[row] = 0.0, jacobian[row].fill(0.0);
+      for (int row = 0; row < states(); ++row)
+        if (!fast[row]) f[row] = 0.0, std::ranges::fill(jacobian[row], 0.0);
     }
     void add_parameter_derivatives(double, const double*, double, double*, std::size_t) const {}
   };
+
+  [[nodiscard]] int states() const { return state_count(frozen_.system); }
 
   [[nodiscard]] bool relax(Vector& state) const {
     constexpr double kPseudoTime_s = 100.0;  // many times the slowest leakage of a closed volume
@@ -78,7 +82,7 @@ class QuasiSteadyState {
     if (!bdf.start(0.0, state.data())) return false;
     while (bdf.time() < kPseudoTime_s)
       if (!bdf.step()) return false;
-    for (int k = 0; k < kStates; ++k) state[k] = bdf.values()[k];
+    for (int k = 0; k < states(); ++k) state[k] = bdf.values()[k];
     return true;
   }
 
@@ -86,13 +90,13 @@ class QuasiSteadyState {
     constexpr int kIterations = 30;
     constexpr double kConverged = 1e-3;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
-      Vector change;
-      Matrix jacobian;
+      Vector change = Sizes::vector(states());
+      Matrix jacobian = Sizes::matrix(states());
       frozen_.linearise(0.0, state.data(), change.data(), jacobian);
       if (!lu_.factorise(reduced(jacobian))) return false;
       lu_.solve(change.data(), 1, 1);
       double largest = 0.0;
-      for (int k = 0; k < kStates; ++k) {
+      for (int k = 0; k < states(); ++k) {
         state[k] += change[k];
         largest = std::max(largest, std::abs(change[k]) / scale_[k]);
       }
@@ -103,9 +107,9 @@ class QuasiSteadyState {
 
   // -J on the fast states, I on the held ones.
   [[nodiscard]] Matrix reduced(const Matrix& jacobian) const {
-    Matrix matrix{};
-    for (int row = 0; row < kStates; ++row) {
-      for (int column = 0; column < kStates; ++column)
+    Matrix matrix = Sizes::matrix(states());
+    for (int row = 0; row < states(); ++row) {
+      for (int column = 0; column < states(); ++column)
         if (frozen_.fast[row] && frozen_.fast[column]) matrix[row][column] = -jacobian[row][column];
       if (!frozen_.fast[row]) matrix[row][row] = 1.0;
     }

@@ -1,6 +1,7 @@
 // Makes the simulation of a recording, one function per plant, each with its heavy templates in a file of its own.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "sealwatch/model/simulation.hpp"
@@ -23,8 +24,8 @@ namespace sealwatch {
                                                                        const AssetConfig& asset,
                                                                        const TimeSeries& recorded, PhysicsTerms terms);
 
-using SimulatePlant = std::unique_ptr<PlantSimulation> (*)(const PlantDescription&, const AssetConfig&,
-                                                           const TimeSeries&, PhysicsTerms);
+using SimulatePlant = std::function<Result<std::unique_ptr<PlantSimulation>>(
+    const PlantDescription&, const AssetConfig&, const TimeSeries&, PhysicsTerms)>;
 
 struct PlantSimulator {
   std::string model;                ///< name of the plant

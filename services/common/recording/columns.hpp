@@ -14,15 +14,17 @@
 namespace sealwatch {
 
 struct Column {
-  std::string name;
+  std::string name;  ///< of an unknown one: its header cell
   std::string si_unit;
   UnitConversion to_si;
+  bool known = true;  ///< to the plant; what is not is left aside, and its cells may be anything
 };
 
 /// Samples and, one for each of their channels, the columns that they came from.
 struct ColumnarSamples {
   TimeSeries samples;
   std::vector<Column> columns;
+  std::vector<std::string> left_aside = {};  ///< header cells of unknown columns
   std::string content_hash;
 };
 
@@ -35,14 +37,15 @@ struct ColumnarSamples {
 /// An error at a place of a file that the caller names.
 [[nodiscard]] Error error_at(std::string place, std::string_view value, std::string rule, std::string advice = {});
 
-/// The column of a header cell "channel[unit]" (no unit: SI). Errors name no place.
+/// The column of a header cell "channel[unit]" (no unit: SI). An Error, which names no place, where it is nearly a
+/// known name (nearest() in core/text.hpp): a typing error would otherwise lose a channel.
 [[nodiscard]] Result<Column> find_column(std::string_view cell, const PlantDescription& plant);
 
-/// All columns of a header; an Error in row 1 when one is unknown or there twice, or time is missing.
+/// All columns of a header; an Error in row 1 when one is mistyped or there twice, or time is missing.
 [[nodiscard]] Result<std::vector<Column>> find_columns(std::span<const std::string_view> cells,
                                                        const PlantDescription& plant);
 
-/// Splits `values`, one vector per column, into time and channels in the order of the file.
+/// Splits `values`, one vector per column, into time and known channels in the order of the file.
 [[nodiscard]] ColumnarSamples assemble(std::vector<Column> columns, std::vector<std::vector<double>> values);
 
 }  // namespace sealwatch

@@ -2,35 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "services/common/recording/cells.hpp"
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch {
 namespace {
-
-std::string_view trim(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-/// The finite number that `text` is, or the rule that it breaks.
-Result<double> parse_number(std::string_view text) {
-  text = trim(text);
-  if (text.empty()) return fail("the cell is empty", "leave out the whole row of a missing sample");
-  if (text.front() == '+') text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range) return fail("is out of a double's range");
-  if (error != std::errc{} || end != text.data() + text.size()) return fail("must be a number");
-  if (!std::isfinite(value)) return fail("must be a finite number", "leave out the whole row of a missing sample");
-  return value;
-}
 
 /// Number of characters after the decimal point, exponent included.
 std::size_t decimals(std::string_view number) {
@@ -57,7 +38,7 @@ class CsvReader {
       if (!*more) break;
       if (const Status row = read_row(); !row) return fail(row.error());
     }
-    if (values_.front().empty()) return fail(error_at("row 2, column time", {}, "no samples follow the header"));
+    if (values_[time_].empty()) return fail(error_at("row 2, column time", {}, "no samples follow the header"));
     ColumnarSamples out = assemble(std::move(columns_), std::move(values_));
     out.content_hash = rows_.content_hash();
     return out;
@@ -75,7 +56,7 @@ class CsvReader {
     if (!columns) return fail(columns.error());
     columns_ = std::move(*columns);
     values_.resize(columns_.size());
-    const auto is_time = [](const Column& column) { return column.name == "time"; };
+    const auto is_time = [](const Column& column) { return column.known && column.name == "time"; };
     time_ = static_cast<std::size_t>(std::find_if(columns_.begin(), columns_.end(), is_time) - columns_.begin());
     return {};
   }
@@ -88,8 +69,9 @@ class CsvReader {
     if (blank_row_ > 0)
       return fail(error_in("1", {}, "follows a blank row", "take out row " + std::to_string(blank_row_)));
     if (cells_.size() != columns_.size()) return fail(wrong_cell_count());
-    if ((values_.front().size() + 1) * columns_.size() > kMostNumbers) return fail(too_many());
+    if ((values_[time_].size() + 1) * columns_.size() > kMostNumbers) return fail(too_many());
     for (std::size_t index = 0; index < cells_.size(); ++index) {
+      if (!columns_[index].known) continue;
       const Result<double> number = parse_number(cells_[index]);
       if (!number) return fail(bad_number(index, number.error()));
       const double value = columns_[index].to_si.to_si(*number);
@@ -115,7 +97,7 @@ class CsvReader {
   /// Tells a cut-off number from a missing last line break (see the header).
   Status check_last_row() {
     const std::string_view number = trim(cells_.back());
-    if (!rows_.has_line_break() && values_.front().size() > 1 && decimals(number) < fewest_decimals_)
+    if (!rows_.has_line_break() && values_[time_].size() > 1 && decimals(number) < fewest_decimals_)
       return fail(error_in(columns_.back().name, number, "the last line is cut off inside this number",
                            "the file must end with a whole row"));
     fewest_decimals_ = std::min(fewest_decimals_, decimals(number));

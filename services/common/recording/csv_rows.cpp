@@ -33,6 +33,17 @@ char* unquote(char* begin, char* end, std::string_view& cell) {
   return nullptr;
 }
 
+/// Runs of blanks and tabs become one blank, those at the ends none. Returns the new end.
+char* single_blanks(char* begin, char* end) {
+  char* write = begin;
+  for (char* read = begin; read != end; ++read) {
+    const bool blank = *read == ' ' || *read == '\t';
+    if (blank && (write == begin || write[-1] == ' ')) continue;
+    *write++ = blank ? ' ' : *read;
+  }
+  return write != begin && write[-1] == ' ' ? write - 1 : write;
+}
+
 }  // namespace
 
 /// Reads one more block behind what no row has taken yet; false at the end of the file.
@@ -51,7 +62,7 @@ bool CsvRows::fill() {
 
 /// Position of the line feed that ends the row at begin_, or end_ when the file ends first. Line feeds inside quotes
 /// do not count: the row has an even number of quotes before its end.
-Result<std::size_t> CsvRows::find_row_end() {
+Result<std::size_t> CsvRows::find_row_end(bool quotes_count) {
   has_quotes_ = false;
   bool inside = false;
   std::size_t scanned = 0;  // bytes after begin_ that were looked at
@@ -60,7 +71,7 @@ Result<std::size_t> CsvRows::find_row_end() {
     const std::size_t count = end_ - begin_ - scanned;
     const auto* const feed = count > 0 ? static_cast<const char*>(std::memchr(start, '\n', count)) : nullptr;
     const std::size_t line = feed != nullptr ? static_cast<std::size_t>(feed - start) : count;
-    const auto quotes = std::count(start, start + line, '"');
+    const auto quotes = quotes_count ? std::count(start, start + line, '"') : 0;
     has_quotes_ = has_quotes_ || quotes > 0;
     inside = inside != (quotes % 2 == 1);
     scanned += line;
@@ -81,12 +92,12 @@ Status CsvRows::split_row(char* begin, char* end, std::vector<std::string_view>&
       if (stop == nullptr)
         return fail(cell_error(row_, cells.size() + 1, {at, static_cast<std::size_t>(end - at)},
                                "the quoted cell is cut off: it has no closing quote"));
-      if (stop != end && *stop != ',')
+      if (stop != end && *stop != delimiter_)
         return fail(cell_error(row_, cells.size() + 1, cell, "text follows the closing quote"));
     } else {
       const auto count = static_cast<std::size_t>(end - at);
-      auto* const comma = count > 0 ? static_cast<char*>(std::memchr(at, ',', count)) : nullptr;
-      stop = comma != nullptr ? comma : end;
+      auto* const next = count > 0 ? static_cast<char*>(std::memchr(at, delimiter_, count)) : nullptr;
+      stop = next != nullptr ? next : end;
       cell = std::string_view(at, static_cast<std::size_t>(stop - at));
       if (has_quotes_ && cell.find('"') != std::string_view::npos)
         return fail(cell_error(row_, cells.size() + 1, cell, "a quote stands inside an unquoted cell"));
@@ -102,14 +113,26 @@ Result<bool> CsvRows::next(std::vector<std::string_view>& cells) {
   while (begin_ == end_)
     if (!fill()) return false;
   ++row_;
-  const Result<std::size_t> row_end = find_row_end();
+  const Result<std::size_t> row_end = find_row_end(true);
   if (!row_end) return fail(row_end.error());
   char* const begin = buffer_.data() + begin_;
   char* end = buffer_.data() + *row_end;
   has_line_break_ = *row_end != end_;
   begin_ = *row_end + (has_line_break_ ? 1 : 0);
   if (end != begin && end[-1] == '\r') --end;
+  if (delimiter_ == ' ') end = single_blanks(begin, end);
   if (const Status split = split_row(begin, end, cells); !split) return fail(split.error());
+  return true;
+}
+
+Result<bool> CsvRows::skip_line() {
+  while (begin_ == end_)
+    if (!fill()) return false;
+  ++row_;
+  const Result<std::size_t> row_end = find_row_end(false);
+  if (!row_end) return fail(row_end.error());
+  has_line_break_ = *row_end != end_;
+  begin_ = *row_end + (has_line_break_ ? 1 : 0);
   return true;
 }
 

@@ -2,7 +2,8 @@
 //
 //   row  = cell *("," cell) line-break         line-break = [CR] LF, may be missing after the last row
 //   cell = plain text | '"' *(text | '""') '"'
-// A UTF-8 byte order mark before the first row is skipped.
+// A UTF-8 byte order mark before the first row is skipped. Other delimiters than the comma serve foreign logs; blanks as
+// delimiters stand in runs of any length, tabs among them.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +19,13 @@ namespace sealwatch {
 
 class CsvRows {
  public:
-  explicit CsvRows(std::istream& in) : in_(in) {}
+  explicit CsvRows(std::istream& in, char delimiter = ',') : in_(in), delimiter_(delimiter) {}
 
   /// Takes the next row; false at the end of the file. `cells` stay valid until the next call.
   [[nodiscard]] Result<bool> next(std::vector<std::string_view>& cells);
+
+  /// Passes over a line of any text, quotes or not; false at the end of the file.
+  [[nodiscard]] Result<bool> skip_line();
 
   [[nodiscard]] std::size_t row() const { return row_; }                    ///< of the last row taken, 1 for the first
   [[nodiscard]] bool has_line_break() const { return has_line_break_; }     ///< of the last row taken
@@ -29,10 +33,11 @@ class CsvRows {
 
  private:
   [[nodiscard]] bool fill();
-  [[nodiscard]] Result<std::size_t> find_row_end();
+  [[nodiscard]] Result<std::size_t> find_row_end(bool quotes_count);
   [[nodiscard]] Status split_row(char* begin, char* end, std::vector<std::string_view>& cells) const;
 
   std::istream& in_;
+  char delimiter_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  ///< first byte in buffer_ that no row has taken
   std::size_t end_ = 0;    ///< past the last byte in buffer_

@@ -56,7 +56,8 @@ void put_answer(std::FILE* to, const Result<Variables>& answer) {
   put(to, static_cast<std::uint64_t>(answer.has_value()));
   if (answer) {
     put(to, static_cast<std::uint64_t>(answer->size()));
-    for (const MatVariable& variable : *answer) put(to, variable.name), put(to, variable.values);
+    for (const MatVariable& variable : *answer)
+      put(to, variable.name), put(to, variable.values), put(to, variable.unit);
   } else {
     const Error& error = answer.error();
     for (const std::string* text : {&error.file, &error.place, &error.value, &error.rule, &error.advice})
@@ -77,7 +78,7 @@ std::optional<Result<Variables>> get_answer(std::FILE* from) {
   Variables variables;
   for (std::uint64_t k = 0; k < count; ++k) {
     MatVariable& variable = variables.emplace_back();
-    if (!get(from, variable.name) || !get(from, variable.values)) return std::nullopt;
+    if (!get(from, variable.name) || !get(from, variable.values) || !get(from, variable.unit)) return std::nullopt;
   }
   return variables;
 }
@@ -120,7 +121,7 @@ Error no_answer(int status) {
       .file = {},
       .place = {},
       .value = {},
-      .rule = "is damaged: the library that reads MATLAB 7.3 files " + how,
+      .rule = "is damaged: the library that reads HDF5 and MATLAB 7.3 files " + how,
       .advice = "record or export it again; save(..., '-v7') writes a format that can be checked before it is read"};
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string_view>
@@ -68,15 +69,7 @@ std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
   }
 }
 
-/// A text or a single number that is no mistyped channel is what somebody wanted to say with the measurement.
-Error no_channel(const matvar_t& variable, const std::string& name, const Error& why) {
-  const bool single = variable.rank == 2 && variable.dims[0] == 1 && variable.dims[1] == 1;
-  const bool remark = single || variable.class_type < MAT_C_DOUBLE || variable.class_type > MAT_C_UINT64;
-  const bool take_out = remark && !why.advice.starts_with("did you mean");
-  return variable_error(
-      name, why.rule,
-      take_out ? "take it out: what is no channel belongs into the sidecar, as its note for instance" : why.advice);
-}
+Error no_channel(const std::string& name, const Error& why) { return variable_error(name, why.rule, why.advice); }
 
 Result<std::size_t> vector_length(const matvar_t& variable, const std::string& name) {
   const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
@@ -106,8 +99,12 @@ Result<std::vector<MatVariable>> read_variables(const std::string& path, const P
   std::size_t total = 0;
   while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
     std::string name = variable->name != nullptr ? variable->name : "";
-    if (const Result<Column> known = find_column(name, plant); !known)
-      return fail(no_channel(*variable, name, known.error()));
+    const Result<Column> column = find_column(name, plant);
+    if (!column) return fail(no_channel(name, column.error()));
+    if (!column->known) {
+      variables.push_back({std::move(name), {}});
+      continue;
+    }
     Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name);
     if (!samples) return fail(samples.error());
     total += samples->size();
@@ -115,6 +112,34 @@ Result<std::vector<MatVariable>> read_variables(const std::string& path, const P
     variables.push_back({std::move(name), std::move(*samples)});
   }
   return variables;
+}
+
+Result<std::vector<MatVariable>> read_all_vectors(const std::string& path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  if (!file) return fail("is damaged: neither MATLAB version 5 nor 7.3 can be read from it");
+  std::vector<MatVariable> vectors;
+  std::size_t total = 0;
+  while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
+    const std::string name = variable->name != nullptr ? variable->name : "";
+    if (!vector_length(*variable, name)) continue;
+    Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name);
+    if (!samples) return fail(samples.error());
+    total += samples->size();
+    if (total > kMostNumbers) return fail(variable_error(name, kTooMany));
+    vectors.push_back({name, std::move(*samples)});
+  }
+  return vectors;
+}
+
+/// HDF5 as Debian builds it is not safe for threads; version 7.3 is HDF5, which is read in a child process.
+Result<std::vector<MatVariable>> read_container(const std::string& path,
+                                                const std::function<Result<std::vector<MatVariable>>()>& read) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  const Result<MatFormat> format = check_mat_container(path);
+  if (!format) return fail(format.error());
+  return *format == MatFormat::version_7_3 ? in_child(read) : read();
 }
 
 Error sample_error(const std::string& name, std::size_t row, double value, std::string rule) {
@@ -147,12 +172,7 @@ Status check(const ColumnarSamples& read) {
 }  // namespace
 
 Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant) {
-  static std::mutex one_at_a_time;
-  const std::lock_guard<std::mutex> lock(one_at_a_time);
-  const Result<MatFormat> format = check_mat_container(path);
-  if (!format) return fail(format.error());
-  const auto read = [&] { return read_variables(path, plant); };
-  Result<std::vector<MatVariable>> variables = *format == MatFormat::version_7_3 ? in_child(read) : read();
+  Result<std::vector<MatVariable>> variables = read_container(path, [&] { return read_variables(path, plant); });
   if (!variables) return fail(variables.error());
   std::vector<std::string_view> cells;
   std::vector<std::vector<double>> values;
@@ -165,6 +185,10 @@ Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription
   ColumnarSamples out = assemble(std::move(*columns), std::move(values));
   if (const Status status = check(out); !status) return fail(status.error());
   return out;
+}
+
+Result<std::vector<MatVariable>> read_mat_vectors(const std::string& path) {
+  return read_container(path, [&path] { return read_all_vectors(path); });
 }
 
 }  // namespace sealwatch

@@ -3,13 +3,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "services/common/recording/columns.hpp"
+#include "services/common/recording/hdf5_child.hpp"
 
 namespace sealwatch {
 
 /// Reads `path`. Errors name row and column, not the file. One file is read at a time, whatever the thread: HDF5 as
 /// Debian builds it allows no more.
 [[nodiscard]] Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant);
+
+/// All vectors of real numbers in `path`; other variables are passed over.
+[[nodiscard]] Result<std::vector<MatVariable>> read_mat_vectors(const std::string& path);
 
 }  // namespace sealwatch

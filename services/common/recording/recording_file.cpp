@@ -9,9 +9,15 @@
 #include <fstream>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/recording/csv_reader.hpp"
+#include "services/common/recording/hdf5_reader.hpp"
+#include "services/common/recording/joined_tests.hpp"
+#include "services/common/recording/log_reader.hpp"
 #include "services/common/recording/mat_reader.hpp"
+#include "services/common/recording/plausible_samples.hpp"
 #include "services/common/recording/sidecar.hpp"
+#include "services/common/recording/vector_file.hpp"
 
 namespace sealwatch {
 namespace {
@@ -43,16 +49,55 @@ Result<std::string> hash_file(const std::string& path) {
   return hasher.hex();
 }
 
-Result<ColumnarSamples> read_samples(const std::string& path, const PlantDescription& plant) {
-  if (suffix_of(path) != ".mat") {
-    Result<std::ifstream> in = open(path);
-    return in ? read_csv(*in, plant) : fail(in.error());
-  }
+/// One test, of a file in the project's own format.
+Result<Log> one_test(Result<ColumnarSamples> samples, std::size_t first_row) {
+  if (!samples) return fail(samples.error());
+  Log log;
+  log.left_aside = std::move(samples->left_aside);
+  log.tests.push_back({.read = std::move(*samples), .start_time = {}, .first_row = first_row});
+  return log;
+}
+
+Result<Log> read_vectors(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
   const Result<std::string> hash = hash_file(path);
   if (!hash) return fail(hash.error());
-  Result<ColumnarSamples> samples = read_mat(path, plant);
-  if (samples) samples->content_hash = *hash;
-  return samples;
+  const bool matlab = suffix_of(path) == ".mat";
+  Result<Log> log;
+  if (matlab && map.columns.empty()) {
+    log = one_test(read_mat(path, plant), 1);
+  } else {
+    Result<std::vector<MatVariable>> vectors = matlab ? read_mat_vectors(path) : read_hdf5_vectors(path);
+    if (!vectors) return fail(vectors.error());
+    log = log_of_vectors(std::move(*vectors), plant, map);
+  }
+  if (log) log->tests.front().read.content_hash = *hash;
+  return log;
+}
+
+/// A file with none of the map's columns and with the header of INTERFACES section 1: what this program wrote for an
+/// asset whose own logs look otherwise.
+bool is_in_own_format(const FoundLayout& layout, const ChannelMap& map) {
+  const auto is_time = [](const std::string& cell) { return cell == "time" || cell.starts_with("time["); };
+  return layout.delimiter == ',' && layout.header_row == 1 && layout.units_row == 0 && !has_a_column_of(layout, map) &&
+         std::ranges::any_of(layout.header, is_time);
+}
+
+Result<Log> read_text(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
+  Result<std::ifstream> in = open(path);
+  if (!in) return fail(in.error());
+  if (map.empty()) return one_test(read_csv(*in, plant), 2);
+  const Result<FoundLayout> layout = layout_of(*in, map.log);
+  if (layout && is_in_own_format(*layout, map)) return one_test(read_csv(*in, plant), 2);
+  return read_log(*in, plant, map);
+}
+
+/// What is in one file, by its suffix.
+Result<Log> read_file(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
+  const std::string suffix = suffix_of(path);
+  if (suffix == ".parquet" || suffix == ".feather" || suffix == ".xlsx" || suffix == ".tdms")
+    return fail(error_at({}, {}, suffix + " files are not read", "export it as CSV, HDF5 or MATLAB"));
+  const bool vectors = suffix == ".mat" || suffix == ".h5" || suffix == ".hdf5";
+  return vectors ? read_vectors(path, plant, map) : read_text(path, plant, map);
 }
 
 std::string sidecar_path(const std::string& path) { return fs::path(path).replace_extension(".yaml").string(); }
@@ -108,20 +153,56 @@ std::optional<UtcTime> recorded_start_time(const std::string& path) {
   return time ? std::optional(*time) : std::nullopt;
 }
 
-Result<Recording> read_recording(const std::string& path, const PlantDescription& plant) {
-  Result<ColumnarSamples> read = read_samples(path, plant);
-  if (!read) return fail_in(path, read.error());
-  const Result<Sidecar> sidecar = read_sidecar(path, plant);
-  if (!sidecar) return fail(sidecar.error());
+namespace {
+
+Result<Recording> recording_of(const std::string& path, LogTest test, const Sidecar& sidecar,
+                               const PlantDescription& plant, std::vector<std::string> left_aside) {
+  if (const Status checked = check_plausible(test.read.samples, plant, test.first_row); !checked)
+    return fail_in(path, checked.error());
   Recording recording;
   recording.file = path;
   recording.recording_id = fs::path(path).stem().string();
-  if (!is_utf8(recording.recording_id)) recording.recording_id = printable(recording.recording_id);
-  recording.content_hash = std::move(read->content_hash);
-  recording.samples = std::move(read->samples);
-  if (const Status applied = apply_sidecar(*sidecar, read->columns, recording); !applied)
+  if (!is_visible(recording.recording_id)) recording.recording_id = printable(recording.recording_id);
+  recording.content_hash = std::move(test.read.content_hash);
+  recording.left_aside = std::move(left_aside);
+  recording.samples = std::move(test.read.samples);
+  if (const Status applied = apply_sidecar(sidecar, test.read.columns, recording); !applied)
     return fail_in(sidecar_path(path), applied.error());
+  if (!recording.start_time) recording.start_time = test.start_time;
   return recording;
+}
+
+}  // namespace
+
+Result<std::vector<Recording>> read_recordings(const std::string& path, const PlantDescription& plant,
+                                               const ChannelMap& map) {
+  const std::vector<std::string> parts = parts_of(path);
+  Result<Log> log = read_file(parts.front(), plant, map);
+  if (!log) return fail_in(parts.front(), log.error());
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    Result<Log> next = read_file(parts[k], plant, map);
+    if (!next) return fail_in(parts[k], next.error());
+    if (const Status appended = append(log->tests, std::move(next->tests)); !appended)
+      return fail_in(parts[k], appended.error());
+  }
+  const Result<Sidecar> sidecar = read_sidecar(parts.front(), plant);
+  if (!sidecar) return fail(sidecar.error());
+  std::vector<Recording> recordings;
+  for (LogTest& test : log->tests) {
+    Result<Recording> recording = recording_of(parts.front(), std::move(test), *sidecar, plant, log->left_aside);
+    if (!recording) return fail(recording.error());
+    if (log->tests.size() > 1) recording->recording_id.append("#").append(std::to_string(recordings.size() + 1));
+    recordings.push_back(std::move(*recording));
+  }
+  return recordings;
+}
+
+Result<Recording> read_recording(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
+  Result<std::vector<Recording>> all = read_recordings(path, plant, map);
+  if (!all) return fail(all.error());
+  if (all->size() > 1)
+    return fail_in(path, error_at({}, {}, "holds " + std::to_string(all->size()) + " tests where one is wanted"));
+  return std::move(all->front());
 }
 
 }  // namespace sealwatch

@@ -1,4 +1,5 @@
-// Recordings on disk (INTERFACES section 1): NAME.csv or NAME.mat, with an optional sidecar NAME.yaml.
+// Recordings on disk (INTERFACES section 1): NAME.csv or NAME.mat, with an optional sidecar NAME.yaml; or somebody's own
+// log, read by a channel map (docs/logs.md).
 //
 // Rows are counted as an editor shows them: row 1 is the header, row 2 the first sample (in a MAT file row 1 is the
 // first element of a vector). Whatever breaks a rule is an Error that names file, row and column, or the sidecar's
@@ -8,26 +9,35 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "sealwatch/config/channel_map.hpp"
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {
 
-/// A recording of more numbers (samples times channels) than this is refused while it is being read: 160 MB in memory,
-/// about nine hours of all channels at 50 Hz, while a partial stroke test has some 10^5.
-inline constexpr std::size_t kMostNumbers = 20'000'000;
+/// A recording of more numbers (samples times channels) than one test may have is refused while it is being read.
+inline constexpr std::size_t kMostNumbers = kTestLimits.most_numbers;
 /// A row longer than this is refused: it is no row of numbers.
 inline constexpr std::size_t kLongestRow_bytes = std::size_t{1} << 20U;
 /// A sidecar longer than this is refused.
 inline constexpr std::size_t kLongestSidecar_bytes = std::size_t{1} << 16U;
 
-/// Reads `path`, a .mat file by its suffix and else CSV, and its sidecar where there is one.
+/// Reads the tests in `path`, by its suffix a .mat or .h5 file and else text, with its sidecar where there is one. `map`
+/// says how somebody's own log is written; a file of the project's own format needs none. "A.csv+B.csv": files of one
+/// test, one after the other; the sidecar is the first's.
 ///
-/// `content_hash` covers the bytes of the data file alone: mending a note or a start time in the sidecar does not make
+/// `content_hash` covers the bytes of the data files alone: mending a note or a start time in the sidecar does not make
 /// another recording of it.
-[[nodiscard]] Result<Recording> read_recording(const std::string& path, const PlantDescription& plant);
+[[nodiscard]] Result<std::vector<Recording>> read_recordings(const std::string& path, const PlantDescription& plant,
+                                                             const ChannelMap& map = {});
+
+/// The one test in `path`; an Error where there are several.
+[[nodiscard]] Result<Recording> read_recording(const std::string& path, const PlantDescription& plant,
+                                               const ChannelMap& map = {});
 
 /// ".csv" or ".mat" in small letters, as `path` ends: Windows writes them in capitals, too.
 [[nodiscard]] std::string suffix_of(const std::string& path);

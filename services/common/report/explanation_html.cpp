@@ -48,22 +48,37 @@ std::string list_of(const std::vector<std::string>& names) {
   return text;
 }
 
+/// What to look at for one effect, and how soon.
+std::string step_for(const mismatch::FoundEffect& effect) {
+  const std::string& element = effect.what.element;
+  const bool sensor = element.starts_with("sensor:");
+  std::string step = (sensor ? "Check the " : "Inspect the ") + element_name(element) +
+                     (sensor ? " against a reference: " : " for ") + law_name(effect.what);
+  if (!effect.what.meaning.empty()) step += " (" + effect.what.meaning + ")";
+  step += ". ";
+  if (effect.engineering_share >= 1.0)
+    step += "It is " + number_text(effect.engineering_share, 2) +
+            " times the size that matters: do it before the seal's condition is judged. If it belongs there, keep it "
+            "in the asset file.";
+  else if (effect.engineering_share > 0.0)
+    step += "At " + number_text(effect.engineering_share, 2) +
+            " of the size that matters it can wait for the next planned work; follow it in the next tests.";
+  else
+    step += "It belongs there, or it is a fault.";
+  std::vector<std::string> others;
+  for (const std::string& other : effect.same_elements) others.push_back(element_name(other));
+  if (!others.empty()) step += " It may as well sit in: " + list_of(others) + ".";
+  return step;
+}
+
 // Once the physics is known: look there, calculate with it, settle what is open.
 std::string steps_after(const Explanation& explanation) {
   std::string html = "<ol>\n";
   const auto add = [&html](const std::string& step) { html.append("<li>").append(escaped(step)).append("</li>\n"); };
-  for (const mismatch::FoundEffect& effect : explanation.effects) {
-    std::string step = "Inspect the " + element_name(effect.what.element) + " for " + law_name(effect.what) +
-                       ": it belongs there, or it is a fault.";
-    std::vector<std::string> others;
-    for (const std::string& other : effect.same_elements) others.push_back(element_name(other));
-    if (!others.empty()) step += " It may as well sit in: " + list_of(others) + ".";
-    add(step);
-  }
-  add("Calculate with it: asset.explained.yaml of this analysis, in place of the asset's file, for fit, forecast, "
-      "simulate and the next explain; in the services, accept this discrepancy (sealwatch accept), which can be "
-      "revoked.");
-  add(explanation.next_test.empty() ? "Nothing more has to be recorded to settle this." : explanation.next_test);
+  for (const mismatch::FoundEffect& effect : explanation.effects) add(step_for(effect));
+  add("Calculate with asset.explained.yaml in place of the asset file (fit, forecast, simulate, explain). In the "
+      "services, accept this discrepancy (sealwatch accept), which can be revoked.");
+  if (!explanation.next_test.empty()) add(explanation.next_test);
   return html.append("</ol>\n");
 }
 
@@ -81,7 +96,7 @@ std::string figures(const Explanation& explanation) {
       add_figure(changed ? arrow(misfit.before, misfit.after) : number_text(misfit.before, 3),
                  std::string("misfit over noise, ").append(where), html);
   };
-  add_misfit(explanation.holdout, "kept aside");
+  add_misfit(explanation.holdout, explanation.holdout_recordings.empty() ? "left out in turn" : "held out");
   add_misfit(explanation.fit, "fitted");
   if (changed) add_figure(percent_text(explanation.explained_share), "of the misfit explained", html);
   return html.append("</div>\n");
@@ -118,59 +133,64 @@ std::string element_name(const std::string& element) {
 
 std::string banner(const Explanation& explanation) {
   const VerdictWords verdict = words_of(explanation);
-  std::string html = "<p class=\"muted small\">";
-  html.append(escaped("Asset " + explanation.asset_id + ", model " + explanation.model +
-                      ". Fitted: " + list_of(explanation.fit_recordings) + ". "));
-  std::string aside = "Kept aside: " + list_of(explanation.holdout_recordings) + ".";
+  std::string aside = std::to_string(explanation.holdout_recordings.size()) + " held out.";
   if (explanation.holdout_recordings.empty())
-    aside = explanation.fit_recordings.size() > 1 ? "No recording was kept aside: each was left out in turn."
-                                                  : "No recording was kept aside.";
-  html.append(escaped(aside));
-  html.append("</p>\n<div class=\"banner ").append(verdict.css_class).append("\">\n");
+    aside = explanation.fit_recordings.size() > 1 ? "each left out in turn." : "none held out.";
+  std::string html = paragraph("Asset " + explanation.asset_id + ", model " + explanation.model + ". " +
+                                   std::to_string(explanation.fit_recordings.size()) + " recordings fitted, " + aside,
+                               "muted small");
+  html.append("<div class=\"banner ").append(verdict.css_class).append("\">\n");
   html.append(paragraph(verdict.words, "verdict")).append(paragraph(explanation.summary));
-  if (!explanation.next_test.empty()) html.append(paragraph("Next: " + explanation.next_test, "small"));
   return html.append("</div>\n").append(figures(explanation));
 }
 
-std::string next_section(const Explanation& explanation) {
-  if (explanation.verdict == Verdict::mismatch) return section("What to do next", steps_after(explanation));
-  if (explanation.next_test.empty()) return {};
-  return section(explanation.asset_values.empty() ? "What to record next" : "What to do next",
-                 paragraph(explanation.next_test));
+std::string next_steps(const Explanation& explanation) {
+  const bool found = explanation.verdict == Verdict::mismatch;
+  if (!found && explanation.next_test.empty()) return {};
+  const bool record = !found && explanation.asset_values.empty();
+  return std::string("<div class=\"steps\">\n<h2>")
+      .append(record ? "What to record next" : "What to do next")
+      .append("</h2>\n")
+      .append(found ? steps_after(explanation) : paragraph(explanation.next_test))
+      .append("</div>\n");
 }
 
 std::string notes_section(const Explanation& explanation) {
-  std::string html = "<ul>\n";
+  std::string html = "<ul>\n<li>";
+  html.append(escaped("Fitted: " + list_of(explanation.fit_recordings) + ".")).append("</li>\n");
+  if (!explanation.holdout_recordings.empty())
+    html.append("<li>").append(escaped("Held out: " + list_of(explanation.holdout_recordings) + ".")).append("</li>\n");
   for (const std::string& note : explanation.notes) html.append("<li>").append(escaped(note)).append("</li>\n");
   html +=
       "<li>Misfit over noise: root mean square of (recording - simulation) / noise of the sensor; 1 is the floor. "
       "Fit: 100 % is perfect, 0 % no better than a constant.</li>\n"
       "<li>p, white: how likely noise alone leaves residuals as smooth as these; p, independent of input: as much like "
       "the input. Below 0.01 a residual has a course of its own that the model does not explain.</li>\n"
-      "<li>A recording that was kept aside took no part in any fit or choice, but for its own starting state and "
+      "<li>A recording that was held out took no part in any fit or choice, but for its own starting state and "
       "load.</li>\n</ul>\n";
-  return section("Notes", html);
+  return folded_section("Notes", "recordings, noise, what was tried", html);
 }
 
 std::string explanation_to_html(const Explanation& explanation) {
   std::string body = "<h1>Simulation and recordings of ";
   body.append(escaped(explanation.asset_id)).append("</h1>\n");
   const bool nothing_found = explanation.effects.empty();
-  body += banner(explanation);
+  body.append(banner(explanation)).append(first_screen(explanation));
   if (nothing_found) body += asset_values_section(explanation);
+  body += next_steps(explanation);
   if (nothing_found) body += power_section(explanation);  // what the silence is worth
-  body.append(where_section(explanation))
-      .append(effects_section(explanation))
+  body.append(effects_section(explanation))
       .append(nothing_found ? std::string() : asset_values_section(explanation))
       .append(missing_section(explanation))
       .append(overlays_section(explanation))
       .append(comparison_section(explanation))
       .append(parameters_section(explanation))
       .append(prognosis_section(explanation))
+      .append(where_section(explanation))
+      .append(candidates_section(explanation))
       .append(alternatives_section(explanation));
   if (!nothing_found) body += power_section(explanation);
-  body.append(next_section(explanation)).append(notes_section(explanation));
-  return html_page("Mismatch report, " + explanation.asset_id, body);
+  return html_page("Mismatch report, " + explanation.asset_id, body.append(notes_section(explanation)));
 }
 
 }  // namespace sealwatch::report

@@ -179,11 +179,25 @@ Json prognosis_json(const mismatch::PrognosisShift& prognosis) {
           {"sentence", prognosis.sentence}};
 }
 
+Json asked_json(const mismatch::Asked& asked) {
+  return {{"laws", list(asked.laws, law_at)}, {"values", asked.values}, {"score", number(asked.score)}};
+}
+
+Json candidate_json(const mismatch::CandidateCause& cause) {
+  Json json = law_at(cause.what);
+  json["share"] = number(cause.share);
+  json["probability"] = number(cause.probability);
+  return json;
+}
+
 /// Keys beyond those of the schema.
 void add_details(const Explanation& explanation, Json& json) {
   json["model"] = explanation.model;
   json["statistically_significant"] = explanation.statistically_significant;
   json["explained_share"] = number(explanation.explained_share);
+  json["candidates"] = list(explanation.candidates, candidate_json);
+  json["trace"] = list(explanation.trace, asked_json);
+  json["not_asked"] = explanation.not_asked;
   json["recording_details"] = list(explanation.recordings, recording_json);
   json["missing"] = list(explanation.missing, missing_json);
   json["rejected"] = list(explanation.rejected, [](const mismatch::Rejected& rejected) {

@@ -173,6 +173,14 @@ Power read_power(const Json& json) {
           .significant = number(json, "significant")};
 }
 
+CandidateCause read_candidate(const Json& json) {
+  return {.what = read_law(json), .share = number(json, "share"), .probability = number(json, "probability")};
+}
+
+Asked read_asked(const Json& json) {
+  return {.laws = list(json, "laws", read_law), .values = texts(json, "values"), .score = number(json, "score")};
+}
+
 ParameterShift read_shift(const Json& json) {
   return {.name = text(json, "name"),
           .unit = text(json, "unit"),
@@ -244,6 +252,9 @@ Explanation read(const Json& json) {
   explanation.asset_values = read_asset_values(json);
   if (json.contains("asset_values_beside"))
     explanation.beside_asset_values = list(json, "asset_values_beside", read_law);
+  if (json.contains("candidates")) explanation.candidates = list(json, "candidates", read_candidate);
+  if (json.contains("trace")) explanation.trace = list(json, "trace", read_asked);
+  if (json.contains("not_asked")) explanation.not_asked = texts(json, "not_asked");
   explanation.prognosis = read_prognosis(member(json, "prognosis"));
   explanation.next_test = text(json, "next_test");
   explanation.summary = text(json, "summary");

@@ -21,7 +21,12 @@ struct Misfit {
 };
 [[nodiscard]] Misfit overall(const mismatch::PooledFit& fit);
 
+/// The first screen: verdict and figures; then what was found beside the drawing of where it sits; then what to do next.
 [[nodiscard]] std::string banner(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string first_screen(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string next_steps(const mismatch::Explanation& explanation);
+
+/// Below it, closed until they are opened or printed.
 [[nodiscard]] std::string where_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string effects_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string asset_values_section(const mismatch::Explanation& explanation);
@@ -31,8 +36,8 @@ struct Misfit {
 [[nodiscard]] std::string parameters_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string prognosis_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string alternatives_section(const mismatch::Explanation& explanation);
+[[nodiscard]] std::string candidates_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string power_section(const mismatch::Explanation& explanation);
-[[nodiscard]] std::string next_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string notes_section(const mismatch::Explanation& explanation);
 
 }  // namespace sealwatch::report

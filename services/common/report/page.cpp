@@ -34,7 +34,7 @@ constexpr std::string_view kStyle = R"css(
 @media (prefers-color-scheme:dark){:root{--page:#14181c;--text:#e4e8ec;--muted:#9aa5b0;--line:#39424b;--soft:#1d2329;
 --first:#63b8f2;--second:#f0954e;--third:#45c79b;--fourth:#dd95d6;--bad:#ff8a80;--good:#5fce8c;--warn:#e5b75a;--metal:#2a323a}}
 *{box-sizing:border-box}
-body{margin:0 auto;padding:1.2rem 1.4rem 3rem;max-width:1080px;background:var(--page);color:var(--text);
+body{margin:0 auto;padding:1.2rem 1.4rem 3rem;max-width:1180px;background:var(--page);color:var(--text);
 font:15px/1.5 system-ui,"Segoe UI","DejaVu Sans",sans-serif}
 h1{font-size:1.5rem;line-height:1.25;margin:.2rem 0 .1rem}h2{font-size:1.15rem;margin:2.2rem 0 .5rem;padding-bottom:.25rem;
 border-bottom:1px solid var(--line)}h3{font-size:1rem;margin:1.3rem 0 .3rem}
@@ -46,7 +46,7 @@ code,.law{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.92em}
 .banner p{font-size:1.08rem;margin:.2rem 0}.banner.good{border-color:var(--good)}.banner.bad{border-color:var(--second)}
 .banner.warn{border-color:var(--warn)}.verdict{font-weight:700;font-size:1.15rem}
 .figures{display:flex;flex-wrap:wrap;gap:.6rem 2.2rem;margin:.7rem 0}.figures div{min-width:8rem}
-.figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}
+.figures b{display:block;font-size:1.2rem}.figures span{color:var(--muted);font-size:.86rem}.figures b span{color:inherit;font-size:inherit}
 .scroll{overflow-x:auto}table{border-collapse:collapse;margin:.5rem 0 1rem;font-size:.9rem;font-variant-numeric:tabular-nums}
 td.prose{min-width:12rem}tr.strong td.prose{font-weight:400}th,td{padding:.28rem .7rem .28rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
 th{color:var(--muted);font-weight:600;vertical-align:bottom}th.n,td.n{text-align:right}.whole{white-space:nowrap}
@@ -69,11 +69,23 @@ background-repeat:no-repeat;background-attachment:local,local,scroll,scroll}
 @media (min-width:1001px){table:has(td.prose) td:not(.prose){white-space:nowrap}}
 @media (max-width:1000px){table{font-size:.8rem}th,td{padding-right:.5rem}td.prose{min-width:9rem}}
 details{margin:.5rem 0}summary{cursor:pointer;color:var(--first)}
+.part{margin:0}.part>summary{padding:.35rem 0;border-bottom:1px solid var(--line)}.part>summary h2{display:inline;border:0;
+margin:0;font-size:1.02rem;color:var(--text)}.part>summary span{margin-left:.7rem;color:var(--muted);font-size:.86rem}
+.screen{display:grid;grid-template-columns:minmax(0,5fr) minmax(0,7fr);gap:.4rem 1.6rem;align-items:start;margin:.2rem 0 .6rem}
+.screen h2,.steps h2{margin:.2rem 0 .4rem;font-size:1.02rem}.screen h3{margin:.5rem 0 .2rem}.screen p{margin:.25rem 0}
+.screen .drawing text{font-size:15px}.screen .drawing .letters{font-size:13px}
+.steps{border-left:.45rem solid var(--first);background:var(--soft);padding:.5rem 1.1rem;margin:.6rem 0 1.2rem;border-radius:.2rem}
+.steps h2{border:0;padding:0}.steps ol,.steps p{max-width:none;margin:.2rem 0}
+@media (max-width:800px){.screen{grid-template-columns:1fr}}
 @media print{:root{color-scheme:light;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
 --second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
-body{max-width:none;padding:0;font-size:10.5pt}section,.plots>div,tr,.banner{break-inside:avoid}section.long{break-inside:auto}
+@page{size:A4;margin:14mm}body{max-width:none;padding:0;font-size:10pt}section,.plots>div,tr,.banner,.steps,.screen>div{break-inside:avoid}
+section.long{break-inside:auto}summary{break-after:avoid}.part>summary{list-style:none}
 h2,h3{break-after:avoid}.plots{gap:.2rem .8rem}.plots>div{width:48%}}
 )css";
+
+/// What a drawing as a file of its own needs.
+constexpr std::string_view kOnScreen = kStyle.substr(0, kStyle.find("@media print"));
 
 /// Closed parts would be missing on paper.
 constexpr std::string_view kScript =
@@ -139,12 +151,30 @@ std::string html_page(std::string_view title, std::string_view body) {
   return page;
 }
 
+std::string standalone_svg(std::string_view title, int width, int height, std::string_view body) {
+  const std::string size = std::to_string(width) + " " + std::to_string(height);
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(width) + "\" height=\"" +
+         std::to_string(height) + "\" viewBox=\"0 0 " + size + "\">\n<title>" + escaped(title) + "</title>\n<style>" +
+         std::string(kOnScreen) + "</style>\n<rect width=\"100%\" height=\"100%\" style=\"fill:var(--page)\"/>\n" +
+         std::string(body) + "</svg>\n";
+}
+
 std::string section(std::string_view title, std::string_view body) {
   return std::string("<section class=\"long\">\n<h2>")
       .append(escaped(title))
       .append("</h2>\n")
       .append(body)
       .append("</section>\n");
+}
+
+std::string folded_section(std::string_view title, std::string_view inside, std::string_view body) {
+  return std::string("<section class=\"long\">\n<details class=\"part\"><summary><h2>")
+      .append(escaped(title))
+      .append("</h2><span>")
+      .append(escaped(inside))
+      .append("</span></summary>\n")
+      .append(body)
+      .append("</details>\n</section>\n");
 }
 
 std::string paragraph(std::string_view text, std::string_view css_class) {

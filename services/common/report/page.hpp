@@ -17,8 +17,15 @@ namespace sealwatch::report {
 /// A whole page: <!DOCTYPE html> to </html>. `title` is escaped, `body` is HTML.
 [[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
 
+/// A drawing as a file of its own: `body` is SVG of that many pixels; the page's style sheet goes with it, so that it is
+/// legible in light and dark.
+[[nodiscard]] std::string standalone_svg(std::string_view title, int width, int height, std::string_view body);
+
 /// "<section><h2>title</h2>body</section>", the title escaped.
 [[nodiscard]] std::string section(std::string_view title, std::string_view body);
+
+/// A section that is closed at first: its title, and in a few words what is inside, open it (and printing does).
+[[nodiscard]] std::string folded_section(std::string_view title, std::string_view inside, std::string_view body);
 
 /// "<p>" with escaped text.
 [[nodiscard]] std::string paragraph(std::string_view text, std::string_view css_class = {});

@@ -38,7 +38,7 @@ std::string with_error(double value, double error) {
 std::string told(double value, double error, bool at_bound) {
   std::string text = with_error(value, error);
   if (at_bound) return text.append(", at its bound");
-  return std::isfinite(error) ? text : text.append(", not told");
+  return std::isfinite(error) ? text : text.append(", cannot be told");
 }
 
 /// What a reader has to see first: those at a bound, then those that moved most over their error.
@@ -114,8 +114,10 @@ std::string parameters_section(const Explanation& explanation) {
   const bool any_at_bound = std::ranges::any_of(explanation.parameters, [](const ParameterShift& shift) {
     return shift.before_at_bound || shift.after_at_bound;
   });
-  return section(changed ? "What had absorbed the effect" : "Fitted parameters",
-                 paragraph(std::string(words).append(any_at_bound ? bound : ""), "small muted").append(table.html()));
+  return folded_section(
+      changed ? "What had absorbed the effect" : "Fitted parameters",
+      changed ? "parameters before and after" : "with standard errors",
+      paragraph(std::string(words).append(any_at_bound ? bound : ""), "small muted").append(table.html()));
 }
 
 std::string asset_values_section(const Explanation& explanation) {
@@ -161,7 +163,8 @@ std::string prognosis_section(const Explanation& explanation) {
   const auto months = [](double value) { return std::isfinite(value) ? std::to_string(std::lround(value)) : "–"; };
   table.row({"months left of a mean seal", months(prognosis.months_before), months(prognosis.months_after),
              change_text(prognosis.months_before, prognosis.months_after)});
-  return section("What it does to the remaining life", paragraph(prognosis.sentence).append(table.html()));
+  return folded_section("What it does to the remaining life", "R_CL and seal condition before and after",
+                        paragraph(prognosis.sentence).append(table.html()));
 }
 
 std::string power_section(const Explanation& explanation) {
@@ -184,11 +187,15 @@ std::string power_section(const Explanation& explanation) {
   words.append(std::to_string(seen_count)).append(" of ").append(std::to_string(explanation.power.size()));
   words.append(
       " effects would be seen from the size at which they matter. Absorbed: the share of an effect that the "
-      "fitted parameters would swallow.");
+      "fitted parameters would absorb.");
   std::string html = paragraph(words, "small muted");
   if (blind_count > 0) html += blind.html();
   if (seen_count > 0) html += folded("The " + std::to_string(seen_count) + " effects that would be seen", seen.html());
-  return section("What could have been seen", html);
+  return folded_section("What could have been seen",
+                        std::to_string(seen_count) + " of " + std::to_string(explanation.power.size()) +
+                            " effects would be seen at the size that matters" +
+                            (blind_count > 0 ? ", " + std::to_string(blind_count) + " could hide" : ""),
+                        html);
 }
 
 }  // namespace sealwatch::report

@@ -80,11 +80,32 @@ std::string size_words(double share) {
       .append(" times what an engineer would care about (about 1 % of what the element carries).");
 }
 
-std::string effect_html(const FoundEffect& effect) {
+/// "External leakage (laminar) of the chamber A"
+std::string title_of(const FoundEffect& effect) {
   std::string title = law_name(effect.what);
   if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  title.append(" of the ").append(element_name(effect.what.element));
-  std::string html = std::string("<h3>").append(escaped(title)).append("</h3>\n");
+  return title.append(" of the ").append(element_name(effect.what.element));
+}
+
+/// The law, its figures and what it may be taken for, in a few lines.
+std::string effect_in_short(const FoundEffect& effect) {
+  std::string html = std::string("<h3>").append(escaped(title_of(effect))).append("</h3>\n");
+  html += law_line(effect.what.law);
+  for (const mismatch::FoundParameter& parameter : effect.parameters)
+    html +=
+        paragraph(parameter.name + " = " + readable_with_error(parameter.value, parameter.std_error, parameter.unit));
+  html += paragraph("Probability " + percent_text(effect.probability) + ", in this element " +
+                        percent_text(effect.element_probability) + ".",
+                    "small muted");
+  std::string others;
+  for (const mismatch::LawAt& other : effect.indistinguishable)
+    others += (others.empty() ? "" : "; ") + law_name(other) + " of the " + element_name(other.element);
+  if (!others.empty()) html += paragraph("Cannot be told apart from: " + others + ".", "small muted");
+  return html;
+}
+
+std::string effect_html(const FoundEffect& effect) {
+  std::string html = std::string("<h3>").append(escaped(title_of(effect))).append("</h3>\n");
   if (!effect.what.meaning.empty()) html += paragraph(effect.what.meaning);
   html += law_line(effect.what.law);
   html += parameter_table(effect);
@@ -119,8 +140,8 @@ void add_alternative(const mismatch::Alternative& alternative, Table& table) {
 /// The nearest ones open, the rest folded.
 std::string alternatives_to(const FoundEffect& effect) {
   constexpr std::size_t kOpen = 5;
-  const std::vector<std::string> columns = {"~instead of " + law_name(effect.what), "element", ">stands behind by",
-                                            "~why not"};
+  const std::vector<std::string> columns = {"~instead of " + law_name(effect.what), "element",
+                                            ">criterion behind the best", "~why not"};
   Table near(columns);
   Table far(columns);
   for (std::size_t k = 0; k < effect.alternatives.size(); ++k)
@@ -155,26 +176,52 @@ std::string rejected_html(const std::vector<mismatch::Rejected>& list) {
 
 }  // namespace
 
-std::string where_section(const Explanation& explanation) {
+std::string first_screen(const Explanation& explanation) {
   const Result<const PlantDescription*> plant = find_plant(explanation.model);
   if (!plant) return {};
-  std::string html = "<div class=\"scroll\">\n";
-  html.append(actuator_drawing(**plant, explanation.location, recorded_channels(explanation))).append("</div>\n");
-  if (explanation.location.empty())
-    return section("The plant", html.append(paragraph("No element stands out.", "muted")));
-  Table table({"element", ">probability", "cannot be told from", "~evidence"});
+  std::string found;
+  for (const FoundEffect& effect : explanation.effects) found += effect_in_short(effect);
+  if (found.empty()) {
+    for (const mismatch::Location& place : explanation.location)
+      found += paragraph(element_name(place.element) + ", " + percent_text(place.probability) + ": " + place.evidence);
+    found += paragraph(explanation.location.empty() ? "No element stands out." : "No law is claimed there.", "muted");
+  }
+  return std::string("<div class=\"screen\">\n<div>\n<h2>")
+      .append(explanation.effects.empty() ? "What stands out" : "What the model lacks")
+      .append("</h2>\n")
+      .append(found)
+      .append("</div>\n<div>\n")
+      .append(actuator_drawing(**plant, explanation.location, recorded_channels(explanation)))
+      .append("</div>\n</div>\n");
+}
+
+std::string where_section(const Explanation& explanation) {
+  if (explanation.location.empty()) return {};
+  Table table({"element", ">probability", "cannot be told apart from", "~evidence"});
   for (const mismatch::Location& place : explanation.location) {
     const std::string element = element_name(place.element);
     table.row({element, percent_text(place.probability), joined(place.indistinguishable_from), place.evidence});
   }
-  return section("Where it sits", html.append(table.html()));
+  return folded_section("Where it sits", "probability and evidence of each element", table.html());
 }
 
 std::string effects_section(const Explanation& explanation) {
   if (explanation.effects.empty()) return {};
   std::string html;
   for (const FoundEffect& effect : explanation.effects) html += effect_html(effect);
-  return section("What the model lacked", html);
+  return folded_section("What the model lacked", "each law in full: parameters, size, where it acts", html);
+}
+
+std::string candidates_section(const Explanation& explanation) {
+  if (explanation.candidates.empty()) return {};
+  Table table({"law", "element", ">share of the excess misfit", ">probability"});
+  for (const mismatch::CandidateCause& cause : explanation.candidates)
+    table.row({law_name(cause.what), element_name(cause.what.element), percent_text(cause.share),
+               percent_text(cause.probability)});
+  return folded_section(
+      "What else was seen", "candidates beside the claimed effects; none of them is claimed",
+      paragraph("What each would take of what the model still misses, by itself and to first order.", "small muted")
+          .append(table.html()));
 }
 
 std::string alternatives_section(const Explanation& explanation) {
@@ -183,7 +230,7 @@ std::string alternatives_section(const Explanation& explanation) {
   if (!explanation.rejected.empty()) {
     html += rejected_html(explanation.rejected);
   }
-  return html.empty() ? std::string() : section("The alternatives, and why not", html);
+  return html.empty() ? std::string() : folded_section("The alternatives, and why not", "laws that fit worse", html);
 }
 
 }  // namespace sealwatch::report

@@ -207,7 +207,7 @@ std::string missing_section(const mismatch::Explanation& explanation) {
     else
       html += folded(label, plots_of(term));
   }
-  return section("The missing term", html);
+  return folded_section("The missing term", "what the data demand without any law, and the law", html);
 }
 
 }  // namespace sealwatch::report

@@ -20,7 +20,7 @@ constexpr std::size_t kMostBytesOfPlots = 2'300'000;
 bool kept_aside(const RecordingComparison& recording) { return recording.holdout || recording.left_out; }
 
 std::string kind_of(const RecordingComparison& recording) {
-  return recording.holdout ? "kept aside" : recording.left_out ? "left out in turn" : "fitted";
+  return recording.holdout ? "held out" : recording.left_out ? "left out in turn" : "fitted";
 }
 
 std::vector<const RecordingComparison*> kept_aside_first(const Explanation& explanation) {
@@ -127,7 +127,7 @@ std::string gains(const Explanation& explanation) {
                number_text(recording.gain_low).append(" to ").append(number_text(recording.gain_high)),
                sure                        ? "improves"
                : recording.gain_high < 0.0 ? "gets worse"
-                                           : "cannot be told from no change"});
+                                           : "no clear change"});
   }
   return table.empty() ? std::string() : std::string("<h3>Gain of each recording</h3>\n").append(table.html());
 }
@@ -155,7 +155,8 @@ std::string overlays_section(const Explanation& explanation) {
   if (left_out > 0)
     html += paragraph("Plots of " + std::to_string(left_out) + " more recordings are left out to keep this page small.",
                       "muted small");
-  return html.empty() ? std::string() : section("Recording and simulation", html);
+  return html.empty() ? html
+                      : folded_section("Recording and simulation", "traces over each other, and what is left", html);
 }
 
 std::string comparison_section(const Explanation& explanation) {
@@ -163,7 +164,8 @@ std::string comparison_section(const Explanation& explanation) {
   const std::vector<std::string> columns = {
       "recording", "", "channel", ">misfit / noise", ">fit, %", ">p, white", ">p, independent of input"};
   Table pooled(columns);
-  add_rows("all kept aside", "", explanation.holdout.channels, changed, pooled);
+  add_rows(explanation.holdout_recordings.empty() ? "all left out in turn" : "all held out", "",
+           explanation.holdout.channels, changed, pooled);
   add_rows("all fitted", "", explanation.fit.channels, changed, pooled);
   Table each(columns);
   for (const RecordingComparison* recording : kept_aside_first(explanation))
@@ -173,7 +175,8 @@ std::string comparison_section(const Explanation& explanation) {
   if (!each.empty()) html += folded("Each recording", each.html());
   if (html.empty()) return {};
   if (changed) html += gains(explanation);
-  return section(changed ? "Before and after, in figures" : "The fit, in figures", html);
+  return folded_section(changed ? "Before and after, in figures" : "The fit, in figures",
+                        "misfit of each channel and recording", html);
 }
 
 }  // namespace sealwatch::report

@@ -2,15 +2,27 @@
 
 #include <algorithm>
 
+#include "sealwatch/core/test_limits.hpp"
+#include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/made_up.hpp"
+#include "sealwatch/message/retraction.hpp"
+#include "sealwatch/message/texts.hpp"
+
 namespace sealwatch {
 namespace {
 
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 constexpr std::int64_t kYear_ns = 366 * kDay_ns;
+/// 1970 to 2260: the difference of any two of these times can be counted in nanoseconds.
+constexpr std::int64_t kLatest_ns = 290 * kYear_ns;
+/// A test has fewer rows.
+constexpr std::uint64_t kMostBlocks = kTestLimits.most_numbers;
 
 bool is_report(const Message& message) {
   return topic_of(message) == Topic::maintenance_event || topic_of(message) == Topic::acknowledgement;
 }
+
+bool is_time(std::int64_t time_ns) { return time_ns >= 0 && time_ns <= kLatest_ns; }
 
 /// When the test was made that the message is about.
 std::optional<std::int64_t> time_of_test(const Message& message) {
@@ -21,9 +33,59 @@ std::optional<std::int64_t> time_of_test(const Message& message) {
   return known ? std::optional(header.event_time_ns) : std::nullopt;
 }
 
+std::optional<std::string> refusal_of_texts(const Message& message) {
+  std::optional<std::string> why;
+  std::visit(
+      [&why](const auto& content) {
+        for_each_text("", content, [&why](std::string_view field, const std::string& text) {
+          if (why) return;
+          const bool id = names_something(field);
+          if (!is_valid_utf8(text))
+            why = "its " + std::string(field) + " is not UTF-8";
+          else if (id && !is_visible(text))
+            why = "its " + std::string(field) + ", '" + visible(text) + "', has control characters";
+          else if (id && text.size() > kLongestId)
+            why = "its " + std::string(field) + " is longer than " + std::to_string(kLongestId) + " bytes";
+        });
+      },
+      message);
+  return why ? *why + "; send it with a plain name" : why;
+}
+
+std::optional<std::string> refusal_of_samples(const Message& message) {
+  std::optional<std::string> why;
+  if (const auto* block = std::get_if<SampleBlock>(&message)) why = malformed(block->samples, true);
+  if (const auto* window = std::get_if<TestWindow>(&message)) {
+    why = malformed(window->samples, false);
+    if (!why) why = beyond_limits(window->samples.time_s, window->samples.channels.size());
+  }
+  return why ? "its samples have " + *why : why;
+}
+
+/// An event of an unknown kind would be taken for a replacement by nobody, and missed by everybody.
+std::optional<std::string> refusal_of_kind(const Message& message) {
+  const auto* event = std::get_if<MaintenanceEvent>(&message);
+  if (event == nullptr || event->kind == "actuator_replaced" || event->kind == "seal_replaced") return std::nullopt;
+  if (event->kind != kTestRetracted && event->kind != kTestsRetracted && event->kind != kRetractionWithdrawn)
+    return "its kind, '" + event->kind + "', is none of actuator_replaced, seal_replaced, " +
+           std::string(kTestRetracted) + ", " + std::string(kTestsRetracted) + ", " + std::string(kRetractionWithdrawn);
+  const auto retraction = retraction_of(event->asset_id, event->header.message_id);
+  const bool same = retraction && (event->kind == kTestRetracted    ? !retraction->pst_id.empty()
+                                   : event->kind == kTestsRetracted ? retraction->since.has_value()
+                                                                    : !retraction->withdrawn_id.empty());
+  if (same) return std::nullopt;
+  return "its message_id, '" + event->header.message_id + "', does not say what is retracted; use sealwatch retract";
+}
+
+std::string name_of_test(const RawSamples& raw) {
+  return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) + " of " + raw.asset_id;
+}
+
 }  // namespace
 
 void Admission::note(const Message& message) {
+  if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
+    recorded_.insert(block->asset_id);
   const std::optional<std::int64_t> time_ns = time_of_test(message);
   if (!time_ns) return;
   std::int64_t& newest = newest_ns_.try_emplace(asset_of(message), *time_ns).first->second;
@@ -31,11 +93,21 @@ void Admission::note(const Message& message) {
 }
 
 std::optional<std::string> Admission::refusal(const Message& message, UtcTime now) const {
+  if (auto why = refusal_of_texts(message)) return why;
+  const Header& header = header_of(message);
+  if (header.event_time_known && !is_time(header.event_time_ns))
+    return "its time, " + std::to_string(header.event_time_ns) + " ns since 1970, is none from 1970 to 2260";
+  if (auto why = refusal_of_samples(message)) return why;
+  if (const auto* raw = std::get_if<RawSamples>(&message)) return refusal_of_test(*raw, now);
+  return is_report(message) ? refusal_of_report(message, now) : std::nullopt;
+}
+
+std::optional<std::string> Admission::refusal_of_report(const Message& message, UtcTime now) const {
   const Header& header = header_of(message);
   if (topic_of(message) == Topic::maintenance_event && !header.event_time_known)
     return "its time is not known, so it cannot part a history; report it again, with the time at which it happened";
-  if (topic_of(message) == Topic::raw_samples) return refusal_of_test(message, now);
-  if (!is_report(message) || !header.event_time_known) return std::nullopt;
+  if (auto why = refusal_of_kind(message)) return why;
+  if (!header.event_time_known) return std::nullopt;
   std::int64_t latest = now.nanoseconds;
   if (const auto newest = newest_ns_.find(asset_of(message)); newest != newest_ns_.end())
     latest = std::max(latest, newest->second);
@@ -44,15 +116,31 @@ std::optional<std::string> Admission::refusal(const Message& message, UtcTime no
          "; report it again, with the time at which it happened";
 }
 
-std::optional<std::string> Admission::refusal_of_test(const Message& message, UtcTime now) const {
-  const auto newest = newest_ns_.find(asset_of(message));
-  const std::optional<std::int64_t> time_ns = time_of_test(message);
-  if (!time_ns || newest == newest_ns_.end()) return std::nullopt;
-  if (*time_ns <= now.nanoseconds + kDay_ns || *time_ns <= newest->second + kYear_ns) return std::nullopt;
-  const RawSamples& raw = std::get<RawSamples>(message);
-  return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) + " of " + raw.asset_id +
-         ": its start time, " + format_utc({*time_ns}) + ", lies in the future (it is now " + format_utc(now) +
-         ") and more than a year after the asset's newest test, " + format_utc({newest->second}) +
+std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw, UtcTime now) const {
+  if (raw.block_number > kMostBlocks)
+    return name_of_test(raw) + ": block " + std::to_string(raw.block_number) + " is none of a test: they count from 0";
+  if (is_made_up(raw.source_id) && recorded_.contains(raw.asset_id))
+    return name_of_test(raw) + ": made up by the virtual bench, it does not belong into the history of an asset with " +
+           "recorded tests; give the bench a configuration with assets and a state directory of its own";
+  return raw.start_time_known ? refusal_of_time(raw, now) : std::nullopt;
+}
+
+std::optional<std::string> Admission::refusal_of_time(const RawSamples& raw, UtcTime now) const {
+  const std::string test = name_of_test(raw) + ": its start time, ";
+  if (!is_time(raw.start_time_ns))
+    return test + std::to_string(raw.start_time_ns) + " ns since 1970, is none from 1970 to 2260; correct it";
+  const std::string what = test + format_utc({raw.start_time_ns});
+  const auto commissioned = commissioned_.find(raw.asset_id);
+  if (commissioned != commissioned_.end() && raw.start_time_ns < commissioned->second.nanoseconds)
+    return what + ", lies before the asset was commissioned, " + format_utc(commissioned->second) +
+           "; correct the start time, or 'commissioned' in the configuration";
+  if (raw.start_time_ns <= now.nanoseconds + kDay_ns) return std::nullopt;
+  const std::string ahead = what + ", lies in the future (it is now " + format_utc(now) + ")";
+  if (!raw.header.replay && !is_made_up(raw.source_id))
+    return ahead + "; set the sender's clock, or correct the start time, and give it again";
+  const auto newest = newest_ns_.find(raw.asset_id);
+  if (newest == newest_ns_.end() || raw.start_time_ns <= newest->second + kYear_ns) return std::nullopt;
+  return ahead + " and more than a year after the asset's newest test, " + format_utc({newest->second}) +
          "; correct the start time, and give it again";
 }
 

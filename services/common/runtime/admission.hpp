@@ -1,15 +1,23 @@
-// Which messages a service takes in at all: what people or other systems report must have happened.
+// Which messages a service takes in at all. What it does not take is refused with what would mend it.
 //
-// A slip in the year of a replacement would set aside every test until then. A report may lie a day ahead of now, as
-// clocks differ, or of the newest test of its asset: old or simulated lives are played back under a clock of their own.
-// So would a test whose clock was wrong: one in the future is refused where it also lies more than a year after the
-// newest test; nothing is kept of it, so that it is taken in once its start time is corrected. A simulated life may go
-// on into the future month by month, or lie there as a whole.
+// Texts. Ids stand in logs, on terminals, in file names and in commands that people paste: on one line, without control
+// characters, at most kLongestId bytes. All else is UTF-8.
+//
+// Samples. What another process sends as a block or window of a test keeps the limits of one test
+// (core/test_limits.hpp); raw samples data acquisition cleans itself.
+//
+// Times. A slip in the year of a replacement would set aside every test until then; so would a test whose clock was
+// wrong. A live test may lie a day ahead of now, as clocks differ, and so may a report, or a day ahead of its asset's
+// newest test. What is played back, and what the virtual bench makes up, may be of another time: month by month into
+// the future, or as a whole, but not more than a year after the asset's newest test. No test is older than its asset.
+//
+// Makings. A test that the virtual bench made up is not taken into the history of an asset with recorded tests.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "sealwatch/core/time.hpp"
@@ -17,17 +25,25 @@
 
 namespace sealwatch {
 
+inline constexpr std::size_t kLongestId = 500;  ///< bytes
+
 class Admission {
  public:
+  /// When assets were commissioned, where it is known.
+  explicit Admission(std::map<std::string, UtcTime> commissioned = {}) : commissioned_(std::move(commissioned)) {}
   /// Takes note of when a test was made.
   void note(const Message& message);
   /// Why the message is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
 
  private:
-  [[nodiscard]] std::optional<std::string> refusal_of_test(const Message& message, UtcTime now) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw, UtcTime now) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_time(const RawSamples& raw, UtcTime now) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
 
+  std::map<std::string, UtcTime> commissioned_;
   std::map<std::string, std::int64_t> newest_ns_;  ///< event time of the newest test, by asset
+  std::set<std::string> recorded_;                 ///< assets with tests that no bench made up
 };
 
 }  // namespace sealwatch

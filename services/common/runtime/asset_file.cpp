@@ -3,20 +3,41 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/runtime/asset_sections.hpp"
+#include "services/common/runtime/channel_map_file.hpp"
+#include "services/common/runtime/plant_file.hpp"
 #include "services/common/runtime/yaml_map.hpp"
 
 namespace sealwatch {
 namespace {
 
-const PlantDescription* read_plant(YamlMap& asset, std::string& model) {
+/// A plant that is built in, by its name, or one in a file beside the asset's; null: there is none.
+const PlantDescription* read_plant(YamlMap& asset, std::string& model, std::vector<Error>& errors) {
   std::vector<std::string> plants;
-  for (const PlantDescription& plant : all_plants()) plants.push_back(plant.name);
-  asset.read("model", model, plants);
-  return *find_plant(model);
+  for (const PlantDescription& plant : all_plants())
+    if (plant.file.empty()) plants.push_back(plant.name);
+  const auto node = asset.take("model");
+  if (!node || !node->IsScalar() || !is_plant_file(node->Scalar())) {
+    asset.read("model", model, plants);
+    return *find_plant(model);
+  }
+  const std::filesystem::path file = std::filesystem::path(asset.file()).parent_path() / node->Scalar();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    asset.fault("model", node->Scalar(), "is no file", "give the plant's file as seen from this one's folder");
+    return nullptr;
+  }
+  const auto plant = load_plant(file.string());
+  if (!plant) {
+    errors.insert(errors.end(), plant.error().begin(), plant.error().end());
+    return nullptr;
+  }
+  model = (*plant)->name;
+  return *plant;
 }
 
 void read_parameters(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
@@ -145,13 +166,16 @@ Checked<AssetConfig> check_asset(const std::string& file, const std::vector<std:
   if (map.read("site", config.site) && sites && std::ranges::find(*sites, config.site) == sites->end())
     map.fault("site", config.site, "is not one of the configuration's sites", suggest(config.site, *sites));
   map.read("segment", config.segment);
-  const PlantDescription& plant = *read_plant(map, config.model);
+  const PlantDescription* known = read_plant(map, config.model, errors);
+  if (known == nullptr) return tl::unexpected(errors);
+  const PlantDescription& plant = *known;
   read_parameters(map, plant, config);
   read_sensors(map, plant, config);
   read_seal(map, config);
   read_pst(map, config);
   read_physics(map, plant, config);
   read_alert_limits(map, plant, config);
+  read_channel_map(map, &plant, config.channel_map);
   map.finish();
   if (!errors.empty()) return tl::unexpected(errors);
   return config;

@@ -7,6 +7,7 @@
 //   seal: {resistance_100: 2.6e13, resistance_60: 4.64e12, threshold: 0.60}
 //   pst: {start: 0.060, stroke: -0.016, speed: 1.33e-3, hold: 3.0, interval_months: 1}
 //   alert_limits: {friction_pressure: {advisory: 5.0e5, warning: 7.0e5, alarm: 9.0e5}}
+//   channels: {pressure_a: {column: PT-101, unit: psig}}   log: {delimiter: semicolon}   (channel_map_file.hpp)
 //   physics: [{id: stribeck_friction, element: piston, parameters: {F_s: 4000}}]
 //
 // Everything but asset_id may be left out and then takes the plant table's defaults. A parameter whose value lies

@@ -56,10 +56,10 @@ void read_law_parameter(YamlMap& parameters, const ParameterDescription& row, Pa
   check_bounds(parameters, row, setting);
 }
 
-void read_law_parameters(YamlMap& map, PhysicsTerm& term) {
+void read_law_parameters(YamlMap& map, const PlantDescription& plant, PhysicsTerm& term) {
   auto parameters = map.map("parameters");
   const std::vector<std::string> names = parameters ? parameters->keys() : std::vector<std::string>();
-  const Result<const Law*> law = find_law(term.id, names);
+  const Result<const Law*> law = find_law(term.id, names, plant.name);
   if (!law && !term.id.empty()) map.fault("id", term.id, law.error().rule, law.error().advice);
   for (const std::string& name : names) {
     const ParameterDescription row = describe(law ? *law : nullptr, name);
@@ -98,6 +98,7 @@ void read_parameter(YamlMap& parameters, const ParameterDescription& description
   for (auto [key, target] : {std::pair{"value", &setting.value}, {"min", &setting.min}, {"max", &setting.max}})
     sound = (map.read(key, *target, rule) || !map.has(key)) && sound;
   map.read("estimate", setting.estimate);
+  map.read("tolerance", setting.tolerance, kNotNegative);
   map.finish();
   if (!sound) return;
   if (!has_bounds) widen(setting, description);
@@ -119,7 +120,7 @@ void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& co
     PhysicsTerm term;
     if (!map.read("id", term.id) && !map.has("id")) map.fault("id", {}, "must be given");
     if (!map.read("element", term.element, elements) && !map.has("element")) map.fault("element", {}, "must be given");
-    read_law_parameters(map, term);
+    read_law_parameters(map, plant, term);
     map.finish();
     config.physics.push_back(std::move(term));
   }

@@ -4,6 +4,7 @@
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/channel_map_file.hpp"
 #include "services/common/runtime/yaml_map.hpp"
 
 namespace sealwatch {
@@ -16,6 +17,12 @@ std::string exact(double number) {
   return {text, end};
 }
 
+/// The plant's file where it has one, as the asset may be written anywhere.
+std::string model_of(const AssetConfig& asset) {
+  const auto plant = find_plant(asset.model);
+  return plant && !(*plant)->file.empty() ? (*plant)->file : asset.model;
+}
+
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
 void write_flow(YAML::Emitter& out, const std::string& key, const Entries& entries) {
@@ -25,11 +32,12 @@ void write_flow(YAML::Emitter& out, const std::string& key, const Entries& entri
 }
 
 void write_setting(YAML::Emitter& out, const std::string& name, const ParameterSetting& setting) {
-  write_flow(out, name,
-             {{"value", exact(setting.value)},
-              {"min", exact(setting.min)},
-              {"max", exact(setting.max)},
-              {"estimate", setting.estimate ? "true" : "false"}});
+  Entries entries = {{"value", exact(setting.value)},
+                     {"min", exact(setting.min)},
+                     {"max", exact(setting.max)},
+                     {"estimate", setting.estimate ? "true" : "false"}};
+  if (setting.tolerance > 0.0) entries.emplace_back("tolerance", exact(setting.tolerance));
+  write_flow(out, name, entries);
 }
 
 void write_parameters(YAML::Emitter& out, const AssetConfig& asset) {
@@ -96,7 +104,7 @@ std::string asset_to_yaml(const AssetConfig& asset) {
   for (const auto& [key, value] : {std::pair{"asset_id", asset.asset_id},
                                    {"site", asset.site},
                                    {"segment", asset.segment},
-                                   {"model", asset.model}})
+                                   {"model", model_of(asset)}})
     if (!value.empty()) out << YAML::Key << key << YAML::Value << value;
   write_parameters(out, asset);
   write_sensors(out, asset);
@@ -110,7 +118,7 @@ std::string asset_to_yaml(const AssetConfig& asset) {
   write_limits(out, asset);
   write_physics(out, asset);
   out << YAML::EndMap;
-  return std::string(out.c_str()) + "\n";
+  return std::string(out.c_str()) + "\n" + channel_map_to_yaml(asset.channel_map);
 }
 
 Status save_asset(const AssetConfig& asset, const std::string& file) {

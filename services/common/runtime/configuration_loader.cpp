@@ -202,6 +202,13 @@ void read_assets(const std::vector<std::string>& files, Configuration& configura
   }
 }
 
+/// Dates by asset id; a key that is no asset is a fault.
+void read_commissioned(YamlMap& dates, Configuration& configuration) {
+  for (const AssetConfig& asset : configuration.assets)
+    if (UtcTime date; dates.read(asset.asset_id, date)) configuration.commissioned[asset.asset_id] = date;
+  dates.finish();
+}
+
 /// Journals, logs and recordings are in the state directory unless the file says otherwise.
 void place_in_state_directory(Configuration& configuration) {
   const fs::path state = configuration.state_directory;
@@ -257,8 +264,10 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   read_topics(map, configuration);
   read_sites(map, overrides.now, configuration);
   const std::vector<std::string> files = asset_files(map, file.parent_path());
+  auto commissioned = map.map("commissioned");
   map.finish();
   read_assets(files, configuration, errors);
+  if (commissioned) read_commissioned(*commissioned, configuration);
   if (!errors.empty()) return tl::unexpected(errors);
   if (overrides.state_directory) configuration.state_directory = *overrides.state_directory;
   if (overrides.domain) configuration.domain = *overrides.domain;
@@ -266,6 +275,12 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   check_journals(file.string(), configuration, errors);
   if (!errors.empty()) return tl::unexpected(errors);
   return configuration;
+}
+
+Configuration configuration_of(const std::string& asset_id, const Configuration& configuration) {
+  Configuration of_asset = configuration;
+  std::erase_if(of_asset.assets, [&](const AssetConfig& asset) { return asset.asset_id != asset_id; });
+  return of_asset;
 }
 
 }  // namespace sealwatch

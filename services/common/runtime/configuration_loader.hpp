@@ -30,4 +30,7 @@ struct ConfigurationOverrides {
 /// The six services, in the order of the layers.
 [[nodiscard]] const std::vector<std::string>& service_names();
 
+/// The same without any asset but this.
+[[nodiscard]] Configuration configuration_of(const std::string& asset_id, const Configuration& configuration);
+
 }  // namespace sealwatch

@@ -9,13 +9,16 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <thread>
 
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/common/runtime/process_end.hpp"
 #include "services/common/runtime/service_manager.hpp"
 #include "services/common/runtime/system_clock.hpp"
 
@@ -28,9 +31,11 @@ constexpr int kOk = 0;
 constexpr int kBadUsage = 2;
 constexpr int kInternalFailure = 3;
 
-/// A main thread that has computed for longer than this hangs: the watchdog is no longer fed. The longest honest
-/// computation, the estimates of one test, takes seconds.
-constexpr std::chrono::milliseconds kHangs{120'000};
+/// A main thread that has stored for longer than this hangs: the watchdog is no longer fed. What computes, the threads
+/// of the lanes, it looks after itself.
+constexpr std::chrono::milliseconds kHangs{60'000};
+/// What still computes so long after a stop is cut: it is done again from the journal.
+constexpr std::chrono::milliseconds kPatienceAtEnd{500};
 
 struct Arguments {
   std::string config = "config";
@@ -62,6 +67,14 @@ int complain(const std::string& service, const Error& error, int exit_status) {
   return exit_status;
 }
 
+/// Ends the process though something in it still computes and cannot be stopped; all that counts is in the journal.
+[[noreturn]] void end_now(const std::string& service, const Status& served) {
+  const int status = served ? kOk : complain(service, served.error(), kInternalFailure);
+  if (served) log_event(LogLevel::info, "stopped");
+  stop_logging();
+  ::_exit(status);
+}
+
 sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -71,25 +84,43 @@ sigset_t stop_signals() {
 }
 
 /// Waits for SIGTERM or SIGINT in a thread of its own, so that a stop may take locks and wake the bus. The signals must
-/// have been blocked before any thread was started.
+/// have been blocked before any thread was started. What has not stopped then (an endless computation, a past that takes
+/// long to restore, a database that does not answer) is ended: the journal has all that was concluded.
 class StopListener {
  public:
-  explicit StopListener(std::function<void()> on_stop) {
-    thread_ = std::thread([on_stop = std::move(on_stop)] {
+  StopListener() {
+    prepare_process_end();
+    thread_ = std::thread([this] {
       const sigset_t signals = stop_signals();
       int signal = 0;
       sigwait(&signals, &signal);
-      on_stop();
+      if (over_) return;
+      end_process_in(kServiceStops, kOk);
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+      if (bus_ != nullptr) bus_->wake();
     });
   }
   ~StopListener() {
+    over_ = true;
     pthread_kill(thread_.native_handle(), SIGTERM);
     thread_.join();
   }
   StopListener(const StopListener&) = delete;
   StopListener& operator=(const StopListener&) = delete;
 
+  /// Who waits on `bus` is woken at a stop; nullptr before the bus ends.
+  void wake_at_stop(Bus* bus) {
+    const std::lock_guard lock(mutex_);
+    bus_ = bus;
+  }
+  [[nodiscard]] const std::atomic<bool>& stop() const { return stop_; }
+
  private:
+  std::mutex mutex_;
+  Bus* bus_ = nullptr;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> over_{false};
   std::thread thread_;
 };
 
@@ -104,15 +135,26 @@ void end_with_supervisor() {
 RunnerOptions runner_options(const DaemonParts& parts, const Configuration& configuration) {
   RunnerOptions options;
   options.version = kVersion;
+  options.commissioned = configuration.commissioned;
   if (parts.make_local_inputs) options.local_inputs = parts.make_local_inputs(configuration);
+  for (const AssetConfig& asset : configuration.assets) options.assets.push_back(asset.asset_id);
+  options.lanes.try_record =
+      (std::filesystem::path(configuration.state_directory) / (parts.service + ".tries")).string();
   options.heartbeat.on_beat = [](std::chrono::milliseconds since_main_thread) {
     if (since_main_thread < kHangs) notify_service_manager("WATCHDOG=1");
   };
   return options;
 }
 
+LayerMaker layer_maker(const DaemonParts& parts, const Configuration& configuration, const Clock& clock) {
+  return [&parts, &configuration, &clock](const std::string& asset_id) {
+    return parts.make_layer(configuration_of(asset_id, configuration), clock);
+  };
+}
+
 /// Everything from the bus on; the configuration is valid, the lock is held.
 Status serve(const DaemonParts& parts, const Configuration& configuration) {
+  StopListener listener;
   const SystemClock clock;
   auto journal = Journal::open(configuration.services.at(parts.service).journal, parts.service);
   if (!journal) return fail(journal.error());
@@ -120,18 +162,16 @@ Status serve(const DaemonParts& parts, const Configuration& configuration) {
   if (!bus) return fail(bus.error());
   auto heartbeat_bus = parts.make_bus(configuration);
   if (!heartbeat_bus) return fail(heartbeat_bus.error());
-  const std::unique_ptr<Layer> layer = parts.make_layer(configuration, clock);
-  LayerRunner runner(*layer, **bus, **heartbeat_bus, *journal, clock, runner_options(parts, configuration));
-  std::atomic<bool> stop{false};
-  const StopListener listener([&stop, &bus = **bus] {
-    stop = true;
-    bus.wake();
-  });
+  LayerRunner runner(layer_maker(parts, configuration, clock), **bus, **heartbeat_bus, *journal, clock,
+                     runner_options(parts, configuration));
+  listener.wake_at_stop(bus->get());
+  const auto bus_ends = std::shared_ptr<void>(nullptr, [&](void*) { listener.wake_at_stop(nullptr); });
   if (const Status started = runner.start(); !started) return started;
   ::malloc_trim(0);  // restoring the past took memory that is not needed again
   notify_service_manager("READY=1");
-  const Status ran = runner.run(stop);
+  const Status ran = runner.run(listener.stop());
   notify_service_manager("STOPPING=1");
+  if (!runner.stop(kPatienceAtEnd)) end_now(parts.service, ran);
   return ran;
 }
 
@@ -167,6 +207,7 @@ int run_daemon(int argc, const char* const* argv, const DaemonParts& parts) {
              kInternalFailure);
   }
   stop_logging();
+  keep_process();
   return status;
 }
 

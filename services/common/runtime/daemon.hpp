@@ -18,6 +18,7 @@
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/port/bus.hpp"
 #include "sealwatch/port/layer.hpp"
+#include "services/common/runtime/layer_runner.hpp"
 
 namespace sealwatch {
 
@@ -26,10 +27,11 @@ inline constexpr const char* kSupervisor = "SEALWATCH_SUPERVISOR";
 
 struct DaemonParts {
   std::string service;  ///< "state_detection"
+  /// Makes the layer of one asset, from a configuration that has no other.
   std::function<std::unique_ptr<Layer>(const Configuration&, const Clock&)> make_layer;
   std::function<Result<std::unique_ptr<Bus>>(const Configuration&)> make_bus;
   /// Optional: inputs that come from no bus, see RunnerOptions::local_inputs.
-  std::function<std::function<std::vector<Message>()>(const Configuration&)> make_local_inputs = {};
+  std::function<decltype(RunnerOptions::local_inputs)(const Configuration&)> make_local_inputs = {};
 };
 
 [[nodiscard]] int run_daemon(int argc, const char* const* argv, const DaemonParts& parts);

@@ -35,6 +35,14 @@ void Heartbeat::update(const std::function<void(ServiceStatus&)>& change) {
   if (changed) changed_.notify_all();
 }
 
+void Heartbeat::beat_soon() {
+  {
+    const std::lock_guard lock(mutex_);
+    dirty_ = true;
+  }
+  changed_.notify_all();
+}
+
 void Heartbeat::touch() {
   const std::lock_guard lock(mutex_);
   main_thread_seen_ = std::chrono::steady_clock::now();

@@ -32,6 +32,8 @@ class Heartbeat {
 
   /// Changes the status (`change` is called once, now); it is published soon if that changed anything.
   void update(const std::function<void(ServiceStatus&)>& change);
+  /// Beats again as after progress.
+  void beat_soon();
   /// The main thread is alive.
   void touch();
 

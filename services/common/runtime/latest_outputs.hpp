@@ -24,8 +24,6 @@ class LatestOutputs {
   void published(const Message& output);
   /// Sequence numbers of the latest outputs that were not the last published of their topic and asset.
   [[nodiscard]] std::map<Key, std::uint64_t> to_publish() const;
-  /// A reader takes nothing: there is nothing to publish until something else goes out.
-  void give_up() { hidden_.clear(); }
 
  private:
   struct Latest {

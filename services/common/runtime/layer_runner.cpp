@@ -16,43 +16,44 @@ using std::chrono::steady_clock;
 
 /// Items taken from the bus at once.
 constexpr std::size_t kBatch = 64;
-/// Tests that may wait to be concluded from: each holds its samples, some hundred kilobytes.
-constexpr std::size_t kMostLater = 4;
 constexpr std::chrono::milliseconds kSecond{1000};
-
-/// Samples come many times a second; a test begins and ends, and is concluded from, once a month.
-LogLevel level_of(const Message& message) {
-  if (const auto* block = std::get_if<SampleBlock>(&message))
-    return block->boundary == BlockBoundary::inside ? LogLevel::debug : LogLevel::info;
-  return topic_of(message) == Topic::raw_samples ? LogLevel::debug : LogLevel::info;
-}
+/// How often a trial in another process is looked at.
+constexpr std::chrono::milliseconds kTrialLook{20};
 
 }  // namespace
 
-LayerRunner::LayerRunner(Layer& layer, Bus& bus, Bus& heartbeat_bus, Journal& journal, const Clock& clock,
-                         RunnerOptions options)
-    : layer_(layer),
+LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_bus, Journal& journal,
+                         const Clock& clock, RunnerOptions options)
+    : kind_(make_layer({})),
       bus_(bus),
       heartbeat_bus_(heartbeat_bus),
       journal_(journal),
       clock_(clock),
       options_(std::move(options)),
-      later_([&bus] { bus.wake(); }) {}
+      admission_(options_.commissioned),
+      lanes_(
+          make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
+          [&bus] { bus.wake(); }, options_.lanes) {}
 
 Status LayerRunner::start() {
   // Subscribed first: what comes while the past is restored waits on the bus.
   if (Status status = bus_.subscribe_service_topics(); !status) return status;
-  if (Status status = bus_.subscribe(layer_.inputs()); !status) return status;
+  if (Status status = bus_.subscribe(kind_->inputs()); !status) return status;
   const auto positions = journal_.positions();
   if (!positions) return fail(positions.error());
   for (const StreamPosition& known : *positions) committed_[{known.topic, known.writer_id}] = known.sequence;
   reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
+  // Nothing is missing yet; from now on it knows the time, by which it forgets whom it does not hear.
+  (void)reader_->requests(std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count());
 
+  if (Status status = lanes_.prepare(); !status) return status;
+  for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);
+  if (Status status = restore_quarantine(); !status) return status;
   if (Status status = restore_past(); !status) return status;
   if (Status status = publish_latest(); !status) return status;
   started_ = steady_clock::now();
   ServiceStatus status;
-  status.service = layer_.name();
+  status.service = kind_->name();
   status.writer_id = journal_.writer_id();
   status.version = options_.version;
   status.started_ns = clock_.now().nanoseconds;
@@ -67,21 +68,20 @@ Status LayerRunner::restore_past() {
   std::size_t restored = 0;
   std::map<Topic, std::uint64_t> sequence;  // outputs of a topic are numbered from 1 without a gap
   Status outputs = journal_.for_each_output([&](const Message& output) {
-    layer_.restore(output);
+    lanes_.restore(output);
     admission_.note(output);
     latest_.concluded(output, ++sequence[topic_of(output)]);
-    replaying_ = header_of(output).replay;
+    replaying_[asset_of(output)] = header_of(output).replay;
     ++restored;
     return Status();
   });
   if (!outputs) return outputs;
   const std::uint64_t open = journal_.open_inputs();
-  Status inputs = in_batch([&] {
-    return journal_.for_each_open_input([&](const Message& input) {
-      replaying_ = header_of(input).replay;
-      admission_.note(input);
-      return keep(completed(layer_.receive(without_stamps(input))), {});
-    });
+  Status inputs = journal_.for_each_open_input([&](const Message& input) {
+    replaying_[asset_of(input)] = header_of(input).replay;
+    admission_.note(input);
+    lanes_.add(asset_of(input), header_of(input).message_id, nullptr);
+    return Status();
   });
   if (!inputs) return inputs;
   log_event(LogLevel::info, "started",
@@ -102,25 +102,22 @@ Status LayerRunner::run(const std::atomic<bool>& stop) {
 }
 
 Status LayerRunner::step(std::chrono::milliseconds timeout) {
-  // A slow layer takes no more from the bus than it can soon conclude from, so that the bus holds the writers back.
   std::this_thread::sleep_until(last_work_ + options_.batch_pause);
-  drained_ = false;
-  if (later_.open() >= kMostLater) {
-    later_.wait(timeout);
-  } else if (ready_.size() < kBatch) {
-    const bool work_waits = !ready_.empty() || !resends_.empty();
-    std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);
-    drained_ = items.size() < kBatch;
-    for (BusItem& item : items) sort_in(std::move(item));
-  }
-  if (Status status = keep_what_is_done(); !status) return status;
-  if (!ready_.empty() && later_.open() < kMostLater)
-    if (Status status = in_batch([this] { return take_ready(); }); !status) return status;
+  if (lanes_.on_trial()) timeout = std::min(timeout, kTrialLook);
+  if (!outbox_.empty() || !resends_.empty()) timeout = std::min(timeout, Outbox::kShortestPause);
+  const bool may_resend = !resends_.empty() && resends_.may_send(steady_clock::now());
+  const bool work_waits = !ready_.empty() || may_resend;
+  std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);
+  drained_ = items.size() < kBatch;
+  for (BusItem& item : items) sort_in(std::move(item));
+  if (Status status = take_ready(); !status) return status;
+  send_outbox();
   if (Status status = serve_resends(); !status) return status;
   send_requests();
   if (steady_clock::now() - last_second_ >= kSecond) {
     last_second_ = steady_clock::now();
     give_memory_back();
+    if (Status status = try_again_what_was_asked(); !status) return status;
     if (Status status = let_time_pass(); !status) return status;
     if (resends_.empty())
       if (Status status = publish_latest(); !status) return status;
@@ -141,90 +138,132 @@ Status LayerRunner::in_batch(const std::function<Status()>& work) {
   uncommitted_.clear();
   // Told before it is sent: a reader must never see a message that the heartbeat does not know yet.
   report_progress();
-  for (const Message& message : std::exchange(outbox_, {}))
-    if (!publish(message, "concluded")) break;
+  send_outbox();
   return {};
 }
 
 Status LayerRunner::take_ready() {
-  const auto begin = steady_clock::now();
-  last_work_ = begin;
-  holds_memory_ = true;
-  do {
-    Message message = std::move(ready_.front());
-    ready_.pop_front();
-    if (Status status = take(std::move(message)); !status) return status;
-  } while (!ready_.empty() && later_.open() < kMostLater && steady_clock::now() - begin < options_.batch_time);
-  return {};
+  if (!ready_.empty()) {
+    last_work_ = steady_clock::now();
+    holds_memory_ = true;
+  }
+  for (; !ready_.empty(); ready_.pop_front())
+    if (Status status = take(std::move(ready_.front())); !status) return status;
+  if (Status status = let_lanes_work(); !status) return status;
+  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty())
+    if (Status status = in_batch([this] { return store_batch(); }); !status) return status;
+  lanes_.save_memory();
+  return take_failures();
 }
 
-Status LayerRunner::take(Message message) {
+/// Its id when it is to be taken, none when it came before.
+Result<std::optional<std::string>> LayerRunner::identify_input(const Message& message) {
   Error problem;
   const auto value_of_result = [&problem]<class T>(Result<T> result) {
     if (!result) problem = result.error();
     return std::move(result).value_or(T());
   };
-  const EarlierInputs earlier = {
-      .has = [&](const std::string& known) { return value_of_result(journal_.has_input(known)); },
-      .last_unnumbered =
-          [&](Topic topic, const std::string& asset) {
-            return value_of_result(journal_.last_unnumbered_input(topic, asset));
-          }};
-  const auto id = identify(message, earlier);
+  const EarlierInputs earlier = {.has =
+                                     [&](const std::string& known) {
+                                       return taken_ids_.contains(known) || value_of_result(journal_.has_input(known));
+                                     },
+                                 .last_unnumbered =
+                                     [&](Topic topic, const std::string& asset) {
+                                       const auto last = last_unnumbered_.find({topic, asset});
+                                       return last != last_unnumbered_.end()
+                                                  ? last->second
+                                                  : value_of_result(journal_.last_unnumbered_input(topic, asset));
+                                     }};
+  auto id = identify(message, earlier);
   if (!problem.rule.empty()) return fail(problem);
+  return id;
+}
+
+Status LayerRunner::take(Message message) {
+  const auto id = identify_input(message);
+  if (!id) return fail(id.error());
+  const Header& header = header_of(message);
+  StreamPosition stream;
   if (is_numbered(message)) {
-    const Header& header = header_of(message);
-    const StreamPosition position{std::string(name_of(topic_of(message))), header.writer_id, header.stream_sequence};
-    if (Status status = journal_.set_position(position); !status) return status;
-    uncommitted_[{position.topic, position.writer_id}] = position.sequence;
+    stream = {std::string(name_of(topic_of(message))), header.writer_id, header.stream_sequence};
+    uncommitted_[{stream.topic, stream.writer_id}] = stream.sequence;
   }
-  if (!id) return {};
-  header_of(message).message_id = *id;
+  if (!*id) {
+    if (is_numbered(message)) renumbered_.push_back(std::move(message));
+    return {};
+  }
+  header_of(message).message_id = **id;
+  InputState state = is_set_aside(message) ? InputState::set_aside : InputState::open;
   if (const auto refused = admission_.refusal(message, clock_.now())) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
     if (topic_of(message) == Topic::raw_samples) return {};
-    return journal_.add_input(message, clock_.now(), true);
+    state = InputState::consumed;
   }
-  admission_.note(message);
-  replaying_ = header_of(message).replay;
-  log_message(LogLevel::debug, "received", message);
-  const Header stamped = header_of(message);
-  message = without_stamps(std::move(message));
-  Conclusion conclusion = layer_.receive(message);
-  header_of(message) = stamped;
-  const bool consumed = std::ranges::find(conclusion.consumed, *id) != conclusion.consumed.end();
-  if (Status status = journal_.add_input(message, clock_.now(), consumed); !status) return status;
-  return keep(std::move(conclusion), *id);
+  const std::string asset_id = asset_of(message);
+  taken_ids_[**id] = taken_.size();
+  if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;
+  const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
+  taken_.push_back({input, stream, state});
+  if (state != InputState::open) return {};
+  admission_.note(*input);
+  replaying_[asset_id] = header_of(*input).replay;
+  log_message(LogLevel::debug, "received", *input);
+  lanes_.add(asset_id, **id, input);
+  return {};
 }
 
-Status LayerRunner::keep(Conclusion conclusion, const std::string& input_id) {
+Status LayerRunner::let_lanes_work() {
+  const auto end = steady_clock::now() + options_.batch_time;
+  const auto goes_on = [this] {
+    return std::ranges::any_of(taken_,
+                               [this](const Taken& one) { return lanes_.is_receiving(asset_of(*one.message)); });
+  };
+  for (;;) {
+    if (Status status = lanes_.advance(); !status) return status;
+    for (LaneResult& result : lanes_.take_results()) results_.push_back(std::move(result));
+    if (Status status = lanes_.advance(); !status) return status;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - steady_clock::now());
+    if (left.count() <= 0 || !goes_on()) return {};
+    lanes_.wait(left);
+  }
+}
+
+Status LayerRunner::store_batch() {
+  for (const LaneResult& result : results_)
+    for (const std::string& id : result.conclusion.consumed)
+      if (const auto taken = taken_ids_.find(id); taken != taken_ids_.end())
+        taken_[taken->second].state = InputState::consumed;
+  for (const Taken& one : taken_)
+    if (Status status = journal_.add_input(*one.message, one.stream, clock_.now(), one.state); !status) return status;
+  for (const auto& [stream, sequence] : uncommitted_)
+    if (Status status = journal_.set_position({stream.first, stream.second, sequence}); !status) return status;
+  for (LaneResult& result : results_)
+    if (Status status = keep(std::move(result.conclusion)); !status) return status;
+  for (const Message& message : std::exchange(renumbered_, {}))
+    if (Status status = journal_.renumber_input(message); !status) return status;
+  taken_.clear();
+  taken_ids_.clear();
+  last_unnumbered_.clear();
+  return {};
+}
+
+Status LayerRunner::keep(Conclusion conclusion) {
+  last_work_ = steady_clock::now();
+  holds_memory_ = true;
   for (Message& output : conclusion.outputs) {
     auto kept = journal_.add_output(std::move(output), clock_.now());
     if (!kept) return fail(kept.error());
     if (!*kept) continue;
     latest_.concluded(**kept, header_of(**kept).stream_sequence);
-    outbox_.push_back(std::move(**kept));
+    outbox_.add(std::move(**kept));
   }
   for (const std::string& id : conclusion.consumed) {
-    if (id == input_id) continue;
+    if (taken_ids_.contains(id)) continue;
     if (Status status = journal_.consume(id); !status) return status;
   }
-  if (conclusion.later) later_.add(std::move(conclusion.later));
   return {};
-}
-
-Status LayerRunner::keep_what_is_done() {
-  std::vector<Conclusion> done = later_.take_done();
-  if (done.empty()) return {};
-  last_work_ = steady_clock::now();
-  holds_memory_ = true;
-  return in_batch([&]() -> Status {
-    for (Conclusion& conclusion : done)
-      if (Status status = keep(std::move(conclusion), {}); !status) return status;
-    return {};
-  });
 }
 
 /// After a burst of work an idle service is as small as before it.
@@ -235,28 +274,20 @@ void LayerRunner::give_memory_back() {
 }
 
 Status LayerRunner::let_time_pass() {
+  const auto at_rest = [this](const std::string& asset_id) { return lanes_.at_rest(asset_id); };
   if (options_.local_inputs)
-    for (Message& message : options_.local_inputs()) ready_.push_back(std::move(message));
+    for (Message& message : options_.local_inputs(at_rest)) ready_.push_back(std::move(message));
   // A test is not overdue or lost while messages about it may be on their way.
-  const bool up_to_date = drained_ && ready_.empty() && later_.open() == 0 && !reader_->is_behind();
-  if (replaying_ || !up_to_date || steady_clock::now() - started_ < options_.settling) return {};
-  Conclusion conclusion = layer_.tick(clock_.now());
-  if (conclusion.outputs.empty() && conclusion.consumed.empty()) return {};
-  return in_batch([&] { return keep(std::move(conclusion), {}); });
-}
-
-bool LayerRunner::publish(const Message& message, std::string_view event) {
-  log_message(event == "concluded" ? level_of(message) : LogLevel::debug, event, message);
-  const Status published = bus_.publish(message);
-  if (published) {
-    latest_.published(message);
-    return true;
+  const bool up_to_date = drained_ && ready_.empty() && !reader_->is_behind();
+  if (!up_to_date || steady_clock::now() - started_ < options_.settling) return {};
+  for (const std::string& asset_id : lanes_.assets()) {
+    Layer* const layer = lanes_.at_rest(asset_id);
+    if (layer == nullptr || replaying_[asset_id]) continue;
+    Conclusion conclusion = layer->tick(clock_.now());
+    if (conclusion.outputs.empty() && conclusion.consumed.empty()) continue;
+    if (Status status = in_batch([&] { return keep(std::move(conclusion)); }); !status) return status;
   }
-  // Its readers will miss it, and what would have followed it, and ask for it: it is in the journal.
-  latest_.give_up();
-  note_error(published.error().describe());
-  log_message(LogLevel::warn, "not published", message, {{"error", published.error().describe()}});
-  return false;
+  return {};
 }
 
 // With its time: it stays in the status until another one comes.
@@ -273,13 +304,14 @@ void LayerRunner::report_progress() {
     received.push_back({stream.first, stream.second, position == committed_.end() ? 0 : position->second});
   }
   heartbeat_->update([&](ServiceStatus& status) {
-    // What the layer keeps as its memory waits for nothing; what runs in the other thread does.
+    // What a layer keeps as its memory waits for nothing; nor does what belongs to a test that is set aside elsewhere.
     const std::uint64_t open = journal_.open_inputs();
-    status.pending_inputs = std::max<std::uint64_t>(open - std::min<std::uint64_t>(layer_.held(), open), later_.open());
-    status.pending_inputs += ready_.size();
+    const std::uint64_t idle = std::min<std::uint64_t>(lanes_.held() + waiting_in_vain_, open);
+    status.pending_inputs = std::max<std::uint64_t>(open - idle, lanes_.open()) + ready_.size();
     status.written = std::move(written);
     status.received = std::move(received);
     status.last_error = last_error_;
+    alarms_.tell(status);
   });
 }
 

@@ -1,7 +1,11 @@
 // Runs one layer over a bus with a journal, by the contract of port/layer.hpp and the stream protocol of
 // message/service.hpp.
 //
-//   receive -> put streams in order -> [journal: inputs, conclusions, positions: one transaction] -> publish
+//   receive -> put streams in order -> layers conclude -> [journal: inputs, conclusions, positions: one transaction]
+//           -> publish
+//
+// Each asset's layer concludes in a lane of its own (asset_lanes.hpp). What is not concluded from at once waits in the
+// journal, so that a slow asset neither holds up the others nor fills the memory.
 //
 // What is published was committed before; what was committed and not published, because the process was killed in
 // between, is asked for by its readers, as the heartbeat says how far each stream goes. A layer that was stopped at any
@@ -14,6 +18,8 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,9 +27,11 @@
 #include "sealwatch/port/bus.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/common/runtime/admission.hpp"
+#include "services/common/runtime/alarms.hpp"
+#include "services/common/runtime/asset_lanes.hpp"
 #include "services/common/runtime/heartbeat.hpp"
-#include "services/common/runtime/later_work.hpp"
 #include "services/common/runtime/latest_outputs.hpp"
+#include "services/common/runtime/outbox.hpp"
 #include "services/common/runtime/resend_queue.hpp"
 #include "services/common/runtime/stream_reader.hpp"
 #include "services/common/store/journal.hpp"
@@ -36,32 +44,46 @@ struct RunnerOptions {
   /// Batches begin so far apart at least: of a thousand messages a second, two or three share a transaction, which
   /// nearly halves what is written to the journal.
   std::chrono::milliseconds batch_pause{2};
-  /// A batch is committed when the layer has computed for this long.
-  std::chrono::milliseconds batch_time{100};
+  /// A batch is committed when all layers have concluded from it, or after so long: the rest is then kept as it came.
+  std::chrono::milliseconds batch_time{20};
   /// Time does not pass for the layer until the writers have had so long to say what it missed while it was dead.
   std::chrono::milliseconds settling{3000};
+  /// The layer of an asset, where nothing is under way in it.
+  using LayerAtRest = std::function<const Layer*(const std::string& asset_id)>;
   /// Inputs that come from no bus (recordings dropped into a directory), asked for about once a second. A message that
   /// comes twice is taken once, by its id.
-  std::function<std::vector<Message>()> local_inputs = {};
+  std::function<std::vector<Message>(const LayerAtRest&)> local_inputs = {};
+  /// Assets for which time passes also where nothing has been heard of them.
+  std::vector<std::string> assets = {};
+  AssetLanes::Options lanes = {};
   StreamReader::Limits streams = {};
+  std::map<std::string, UtcTime> commissioned = {};  ///< by asset; no test is older
 };
 
 class LayerRunner {
  public:
   /// Everything must outlive the runner. `heartbeat_bus` is used by a thread of the runner's own.
-  LayerRunner(Layer& layer, Bus& bus, Bus& heartbeat_bus, Journal& journal, const Clock& clock,
+  LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_bus, Journal& journal, const Clock& clock,
               RunnerOptions options = {});
 
-  /// Subscribes, gives the layer its past back, publishes the last state of every asset.
+  /// Subscribes, gives the layers their past back, publishes the last state of every asset.
   [[nodiscard]] Status start();
   /// One round: takes what the bus has (waiting at most `timeout`), concludes, commits, publishes, serves requests.
-  /// After an Error the runner cannot go on: the layer may be ahead of the journal. Start again from the journal.
+  /// After an Error the runner cannot go on: layers may be ahead of the journal. Start again from the journal.
   [[nodiscard]] Status step(std::chrono::milliseconds timeout);
   /// Steps until `stop` is set (then wake the bus).
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
+  /// Stops all computing. False when some of it goes on after `patience`: then only the end of the process stops it.
+  [[nodiscard]] bool stop(std::chrono::milliseconds patience) { return lanes_.stop(patience); }
 
  private:
   using Key = std::pair<std::string, std::string>;  // topic, writer id
+  /// An input of the running batch.
+  struct Taken {
+    std::shared_ptr<const Message> message;
+    StreamPosition stream;
+    InputState state = InputState::open;
+  };
 
   [[nodiscard]] Status restore_past();
   void sort_in(BusItem item);
@@ -69,24 +91,41 @@ class LayerRunner {
   void sort_in(const ServiceStatus& status);
   void sort_in(const ResendRequest& request);
   void note_rival(const ServiceStatus& rival);
+  void note_reused_number(const Message& message);
+  void start_anew(const Key& stream);
   /// Runs `work` inside a transaction and publishes what it concluded.
   [[nodiscard]] Status in_batch(const std::function<Status()>& work);
   [[nodiscard]] Status take_ready();
   [[nodiscard]] Status take(Message message);
+  [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
+  /// Gives the lanes a moment to conclude from what was taken.
+  [[nodiscard]] Status let_lanes_work();
+  [[nodiscard]] Status store_batch();
   void give_memory_back();
-  [[nodiscard]] Status keep(Conclusion conclusion, const std::string& input_id);
-  [[nodiscard]] Status keep_what_is_done();
+  [[nodiscard]] Status keep(Conclusion conclusion);
   [[nodiscard]] Status let_time_pass();
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest();
   void send_requests();
-  /// False when the bus did not take it: then what follows is left to be asked for, so that one reader that does not
-  /// take its messages cannot hold up this service for long.
+  /// False when the bus did not take it now.
   bool publish(const Message& message, std::string_view event);
+  void send_outbox();
   void note_error(const std::string& text);
   void report_progress();
 
-  Layer& layer_;
+  // What is set aside (layer_runner_quarantine.cpp).
+  [[nodiscard]] Status restore_quarantine();
+  [[nodiscard]] bool is_set_aside(const Message& message) const;
+  [[nodiscard]] Status take_failures();
+  [[nodiscard]] Status set_aside(const LaneResult& failure);
+  void raise_alarm(const SetAside& message);
+  /// Gives the asset a new layer, its past and its open inputs.
+  [[nodiscard]] Status begin_anew(const std::string& asset_id);
+  [[nodiscard]] Status try_again_what_was_asked();
+  void note_set_aside_elsewhere(const ServiceStatus& other);
+  [[nodiscard]] Status count_what_waits_in_vain();
+
+  const std::unique_ptr<Layer> kind_;  ///< of no asset: says what all of them are called and read
   Bus& bus_;
   Bus& heartbeat_bus_;
   Journal& journal_;
@@ -94,21 +133,29 @@ class LayerRunner {
   RunnerOptions options_;
   std::unique_ptr<StreamReader> reader_;
   std::deque<Message> ready_;  ///< inputs in order, not yet taken
-  std::vector<Message> outbox_;
+  std::vector<Taken> taken_;   ///< the running batch, in order
+  std::map<std::string, std::size_t> taken_ids_;
+  std::vector<Message> renumbered_;  ///< known inputs that came under another number
+  std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
+  std::vector<LaneResult> results_;                                       ///< not yet in the journal
+  Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch
   LatestOutputs latest_;
   ResendQueue resends_;
   Admission admission_;
-  bool drained_ = false;    ///< the bus had nothing more at the last look
-  bool replaying_ = false;  ///< the last input was a recording played back: time does not pass
-  std::string last_error_;  ///< with its time
-  std::string rival_;       ///< writer id of another service of this kind, heard last
+  bool drained_ = false;                   ///< the bus had nothing more at the last look
+  std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
+  std::string last_error_;                 ///< with its time
+  Alarms alarms_;
+  std::vector<SetAside> set_aside_;
+  std::map<std::string, std::set<std::string>> set_aside_elsewhere_;  ///< tests, by the service that did so
+  std::uint64_t waiting_in_vain_ = 0;                                 ///< open inputs of those tests
   std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};
   std::chrono::steady_clock::time_point last_work_{};  ///< when the last batch began
   bool holds_memory_ = false;                          ///< of work done since memory was given back
-  LaterWork later_;
+  AssetLanes lanes_;
   std::unique_ptr<Heartbeat> heartbeat_;
 };
 

@@ -10,6 +10,15 @@ namespace {
 
 /// Messages sent again at once, before new ones are looked at.
 constexpr std::size_t kPiece = 64;
+/// A topic that the bus has not taken for so long is worth a line: a reader is stuck, not only slow.
+constexpr std::chrono::seconds kStuck{2};
+
+/// Samples come many times a second; a test begins and ends, and is concluded from, once a month.
+LogLevel level_of(const Message& message) {
+  if (const auto* block = std::get_if<SampleBlock>(&message))
+    return block->boundary == BlockBoundary::inside ? LogLevel::debug : LogLevel::info;
+  return topic_of(message) == Topic::raw_samples ? LogLevel::debug : LogLevel::info;
+}
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -24,33 +33,70 @@ void LayerRunner::sort_in(BusItem item) {
 }
 
 void LayerRunner::sort_in(Message message) {
-  if (!contains(layer_.inputs(), topic_of(message))) return;
+  if (!contains(kind_->inputs(), topic_of(message))) return;
   if (!is_numbered(message)) {
     ready_.push_back(std::move(message));
     return;
   }
+  note_reused_number(message);
   for (Message& next : reader_->accept(std::move(message))) ready_.push_back(std::move(next));
+}
+
+/// A number that was read and committed, with another message: the writer's journal was restored from a
+/// backup, and its numbers count anew. (Of raw samples a refused one is not kept; who sends them is no journal.)
+void LayerRunner::note_reused_number(const Message& message) {
+  const Header& header = header_of(message);
+  const Key stream{name_of(topic_of(message)), header.writer_id};
+  const auto committed = committed_.find(stream);
+  if (topic_of(message) == Topic::raw_samples || committed == committed_.end()) return;
+  if (header.stream_sequence > committed->second || header.message_id.empty()) return;
+  const auto known = journal_.known_input(message);
+  if (!known) return;
+  if (*known == KnownInput::same)
+    reader_->note_known(stream, header.stream_sequence);
+  else if (reader_->read_again(stream, steady_seconds()))
+    start_anew(stream);
 }
 
 void LayerRunner::sort_in(const ServiceStatus& status) {
   if (status.writer_id == journal_.writer_id()) return;
-  if (status.service == layer_.name()) note_rival(status);
+  if (status.service == kind_->name()) note_rival(status);
+  note_set_aside_elsewhere(status);
+  for (Message& next : reader_->note_start(status.writer_id, status.started_ns, steady_seconds()))
+    ready_.push_back(std::move(next));
   for (const StreamPosition& written : status.written) {
     const auto topic = value_of<Topic>(written.topic);
-    if (!topic || !contains(layer_.inputs(), *topic)) continue;
-    if (reader_->note_written(written, steady_seconds()))
-      log_event(LogLevel::warn, "writer was set back, reading its stream again from the start",
-                {{"service", status.service}, {"writer", written.writer_id}, {"topic", written.topic}});
+    if (!topic || !contains(kind_->inputs(), *topic)) continue;
+    if (reader_->note_written(written, steady_seconds())) start_anew({written.topic, written.writer_id});
   }
+}
+
+/// What was received of the stream and not committed is read again as well: its position must not count.
+void LayerRunner::start_anew(const Key& stream) {
+  committed_.erase(stream);
+  std::erase_if(ready_, [&](const Message& message) {
+    return is_numbered(message) && header_of(message).writer_id == stream.second &&
+           name_of(topic_of(message)) == stream.first;
+  });
+  log_event(LogLevel::warn, "writer was set back, reading its stream again from the start",
+            {{"writer", stream.second}, {"topic", stream.first}});
 }
 
 /// Both conclude from the same messages, each under its own name: readers take what comes first, people see both.
 void LayerRunner::note_rival(const ServiceStatus& rival) {
-  if (rival.state != "running" || rival.writer_id == rival_) return;
-  rival_ = rival.writer_id;
-  last_error_ = "another " + rival.service + ", process " + std::to_string(rival.process_id) +
-                ", runs in this domain; stop one of the two, or give it another domain";
-  log_event(LogLevel::error, "not alone", {{"error", last_error_}, {"writer", rival.writer_id}});
+  constexpr const char* kRival = "rival";
+  if (rival.state != "running") return alarms_.clear(kRival, rival.writer_id);
+  const std::string text = "another " + rival.service + ", process " + std::to_string(rival.process_id) +
+                           ", runs in this domain; stop one of the two, or give it another domain";
+  const bool is_new = alarms_.raise({.kind = kRival,
+                                     .asset_id = {},
+                                     .subject = rival.writer_id,
+                                     .pst_id = {},
+                                     .text = text,
+                                     .since_ns = clock_.now().nanoseconds});
+  if (!is_new) return;
+  last_error_ = text;
+  log_event(LogLevel::error, "not alone", {{"error", text}, {"writer", rival.writer_id}});
 }
 
 void LayerRunner::sort_in(const ResendRequest& request) {
@@ -61,30 +107,55 @@ void LayerRunner::sort_in(const ResendRequest& request) {
              {"first", std::to_string(request.first_sequence)},
              {"last", std::to_string(request.last_sequence)},
              {"for", request.requested_by}});
-  resends_.add({*topic, std::max<std::uint64_t>(request.first_sequence, 1),
-                std::min(request.last_sequence, journal_.written().at(*topic))});
+  // What waits in the outbox comes anyhow.
+  const std::uint64_t sent = outbox_.first(*topic).value_or(journal_.written().at(*topic) + 1) - 1;
+  resends_.add({*topic, request.first_sequence, request.last_sequence}, sent);
+}
+
+bool LayerRunner::publish(const Message& message, std::string_view event) {
+  const Topic topic = topic_of(message);
+  const auto now = std::chrono::steady_clock::now();
+  const auto refused_since = outbox_.refused_since(topic);
+  const Status published = bus_.publish(message);
+  outbox_.note(topic, published.has_value(), now);
+  if (published) {
+    log_message(event == "concluded" ? level_of(message) : LogLevel::debug, event, message);
+    latest_.published(message);
+    return true;
+  }
+  if (refused_since && now - *refused_since > kStuck) {
+    note_error(published.error().describe());
+    log_message(LogLevel::warn, "not published", message, {{"error", published.error().describe()}});
+  }
+  return false;
+}
+
+void LayerRunner::send_outbox() {
+  outbox_.send(std::chrono::steady_clock::now(),
+               [this](const Message& message) { return publish(message, "concluded"); });
 }
 
 Status LayerRunner::serve_resends() {
-  const auto range = resends_.take(kPiece);
-  if (!range) return {};
+  const auto begin = std::chrono::steady_clock::now();
+  const auto range = resends_.may_send(begin) ? resends_.take(kPiece) : std::nullopt;
+  if (!range || outbox_.pauses(range->topic, begin)) return {};
   const auto messages = journal_.outputs(range->topic, range->first, range->last, kPiece);
   if (!messages) return fail(messages.error());
-  for (const Message& message : *messages) {
-    if (publish(message, "sent again")) continue;
-    resends_.clear();
-    return {};
-  }
+  for (const Message& message : *messages)
+    if (!publish(message, "sent again")) break;  // who misses the rest asks again
+  resends_.note_sent(begin, std::chrono::steady_clock::now());
+  if (heartbeat_) heartbeat_->beat_soon();  // readers wait for it after half a window
   return resends_.empty() ? publish_latest() : Status();
 }
 
 /// At the start, after older messages were sent again, and after tests that came late.
 Status LayerRunner::publish_latest() {
   for (const auto& [key, sequence] : latest_.to_publish()) {
+    const bool comes_anyhow = outbox_.first(key.first).value_or(sequence + 1) <= sequence;
+    if (comes_anyhow || outbox_.pauses(key.first, std::chrono::steady_clock::now())) continue;
     const auto latest = journal_.outputs(key.first, sequence, sequence, 1);
     if (!latest) return fail(latest.error());
-    for (const Message& message : *latest)
-      if (!publish(message, "published again")) return {};
+    for (const Message& message : *latest) (void)publish(message, "published again");  // again a second later, if not
   }
   return {};
 }

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "sealwatch/core/visible_text.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -34,7 +36,8 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
 }
 
 /// The value as it stands, or in quotes where a reader could not tell where it ends.
-std::string quoted(const std::string& value) {
+std::string quoted(const std::string& given) {
+  const std::string value = visible(given);
   if (!value.empty() && value.find_first_of(" \"\n\t=") == std::string::npos) return value;
   std::string text = "\"";
   for (const char letter : value) {

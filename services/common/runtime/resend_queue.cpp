@@ -2,12 +2,24 @@
 
 #include <algorithm>
 
+#include "services/common/runtime/stream_window.hpp"
+
 namespace sealwatch {
 
-void ResendQueue::add(Range wanted) {
+std::uint64_t ResendQueue::waiting() const {
+  std::uint64_t count = 0;
+  for (const Range& range : waiting_) count += range.last - range.first + 1;
+  return count;
+}
+
+void ResendQueue::add(Range wanted, std::uint64_t sent) {
+  wanted.first = std::max<std::uint64_t>(wanted.first, 1);
+  wanted.last = std::min(wanted.last, sent);
   if (wanted.first > wanted.last) return;
-  const auto touches = [&wanted](const Range& range) {
-    return range.topic == wanted.topic && range.first <= wanted.last + 1 && wanted.first <= range.last + 1;
+  wanted.last = wanted.first + std::min(wanted.last - wanted.first, stream_window(name_of(wanted.topic)) - 1);
+  if (waiting() + (wanted.last - wanted.first + 1) > kMostWaiting) return;
+  const auto touches = [&wanted](const Range& range) {  // numbers begin at 1
+    return range.topic == wanted.topic && range.first - 1 <= wanted.last && wanted.first - 1 <= range.last;
   };
   for (auto range = waiting_.begin(); range != waiting_.end();) {
     if (touches(*range)) {

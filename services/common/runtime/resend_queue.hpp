@@ -1,6 +1,8 @@
-// The writing side of the stream protocol: what others asked to have again, served a bounded number at a time.
+// The writing side of the stream protocol: what others asked to have again, served a bounded number at a time, and at
+// most for half of the time, whoever asks for whatever.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -11,23 +13,32 @@ namespace sealwatch {
 
 class ResendQueue {
  public:
+  using Time = std::chrono::steady_clock::time_point;
   struct Range {
     Topic topic = Topic::raw_samples;
     std::uint64_t first = 0;
     std::uint64_t last = 0;
     friend bool operator==(const Range&, const Range&) = default;
   };
+  /// A request counts for as many messages as readers ask for at a time (stream_window.hpp), and so many wait in all;
+  /// what is left out is asked for again.
+  static constexpr std::uint64_t kMostWaiting = 2048;
 
-  /// Adds what is not waiting already: several readers that miss the same messages are served once.
-  void add(Range wanted);
+  /// Adds what is not waiting already: several readers that miss the same messages are served once. Of a stream that
+  /// goes up to `sent`, of which there may be less than was asked for.
+  void add(Range wanted, std::uint64_t sent);
   /// The next at most `most` messages to send, topics in turn.
   [[nodiscard]] std::optional<Range> take(std::uint64_t most);
-  /// Forgets what waits; whoever still misses it asks again.
-  void clear() { waiting_.clear(); }
+  /// Whether it is time to send more: sending what was taken last took from `begin` to `end`.
+  [[nodiscard]] bool may_send(Time now) const { return now >= rest_until_; }
+  void note_sent(Time begin, Time end) { rest_until_ = end + (end - begin); }
   [[nodiscard]] bool empty() const { return waiting_.empty(); }
 
  private:
+  [[nodiscard]] std::uint64_t waiting() const;
+
   std::deque<Range> waiting_;
+  Time rest_until_{};
 };
 
 }  // namespace sealwatch

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "sealwatch/forecast/configured.hpp"
+#include "sealwatch/forecast/fleet_uncertainty.hpp"
 
 namespace sealwatch {
 namespace {
@@ -34,6 +35,27 @@ void read_forecasters(YamlMap& service, Configuration& configuration) {
   }
 }
 
+/// All constants, and a population that they make.
+void read_fleet(YamlMap& service, Configuration& configuration) {
+  auto map = service.map("fleet");
+  if (!map) return;
+  FleetConstants constants;
+  bool complete = true;
+  FleetConstants::visit(
+      [&](std::string_view name, double& value) {
+        const std::string key(name);
+        if (map->read(key, value)) return;
+        if (!map->has(key)) map->fault(key, {}, "must be given", "sealwatch fleet fit prints all of them");
+        complete = false;
+      },
+      constants);
+  map->finish();
+  if (!complete) return;
+  if (const Status valid = forecast::population_of(constants).validate(); !valid)
+    map->fault(valid.error().place, valid.error().value, valid.error().rule, valid.error().advice);
+  configuration.fleet = constants;
+}
+
 struct OptionReader {
   YamlMap& map;
   template <class Number>
@@ -61,7 +83,10 @@ void read_advice(YamlMap& service, AdviceOptions& advice) {
 }  // namespace
 
 void read_service_options(const std::string& service, YamlMap& map, Configuration& configuration) {
-  if (service == "prognostic_assessment") read_forecasters(map, configuration);
+  if (service == "prognostic_assessment") {
+    read_forecasters(map, configuration);
+    read_fleet(map, configuration);
+  }
   if (service == "advisory_generation") read_advice(map, configuration.advice);
 }
 

@@ -1,6 +1,8 @@
 #include "services/common/runtime/stream_reader.hpp"
 
-#include <algorithm>
+#include <iterator>
+
+#include "services/common/runtime/stream_window.hpp"
 
 namespace sealwatch {
 
@@ -11,21 +13,48 @@ StreamReader::StreamReader(std::string name, const std::vector<StreamPosition>& 
     : name_(std::move(name)), limits_(limits) {
   for (const StreamPosition& known : positions) {
     Stream& stream = streams_[{known.topic, known.writer_id}];
-    stream.position = stream.last_position = stream.written = known.sequence;
+    stream.position = stream.last_position = known.sequence;
+    if (limits_.compares && is_of_a_service(known.topic)) stream.sure = known.sequence;
   }
+}
+
+StreamReader::Stream* StreamReader::stream_of(const Key& key) {
+  if (const auto known = streams_.find(key); known != streams_.end()) return &known->second;
+  if (streams_.size() >= limits_.streams) forget_strangers();
+  return streams_.size() >= limits_.streams ? nullptr : &streams_[key];
+}
+
+/// Those of whom nothing was read, or nothing heard for long. What comes of them later is known by its ids.
+void StreamReader::forget_strangers() {
+  constexpr double kSweep_s = 1.0;
+  if (now_s_ - swept_s_ < kSweep_s) return;
+  swept_s_ = now_s_;
+  std::erase_if(streams_, [this](const auto& entry) {
+    const Stream& stream = entry.second;
+    const double silent_s = now_s_ - stream.heard_s.value_or(0.0);
+    return silent_s > (stream.position == 0 ? limits_.given_up_s : limits_.forgotten_s);
+  });
 }
 
 std::vector<Message> StreamReader::accept(Message message) {
   const Header& header = header_of(message);
   const std::uint64_t sequence = header.stream_sequence;
-  Stream& stream = streams_[{std::string(name_of(topic_of(message))), header.writer_id}];
-  stream.active = true;
-  stream.written = std::max(stream.written, sequence);
-  if (sequence <= stream.position) return {};
-  if (sequence != stream.position + 1 && stream.held.size() >= limits_.held) return {};
-  stream.held.try_emplace(sequence, std::move(message));
+  const Key key{name_of(topic_of(message)), header.writer_id};
+  Stream* const stream = stream_of(key);
+  if (stream == nullptr) return {};
+  stream->heard_s = now_s_;
+  if (sequence <= stream->position) return {};
+  stream->seen = std::max(stream->seen, sequence);
+  const std::uint64_t most = std::min<std::uint64_t>(limits_.held, stream_window(key.first));
+  if (sequence - stream->position > most + 1) return {};
+  stream->held.try_emplace(sequence, std::move(message));
+  return hand_out(key, *stream);
+}
+
+std::vector<Message> StreamReader::hand_out(const Key& key, Stream& stream) {
   std::vector<Message> in_order;
-  while (!stream.held.empty() && stream.held.begin()->first == stream.position + 1) {
+  const auto goes_on = [&] { return !stream.sure || stream.position - *stream.sure < stream_window(key.first) / 2; };
+  while (!stream.held.empty() && stream.held.begin()->first == stream.position + 1 && goes_on()) {
     in_order.push_back(std::move(stream.held.begin()->second));
     stream.held.erase(stream.held.begin());
     ++stream.position;
@@ -34,63 +63,139 @@ std::vector<Message> StreamReader::accept(Message message) {
 }
 
 bool StreamReader::note_written(const StreamPosition& written, double now_s) {
-  Stream& stream = streams_[{written.topic, written.writer_id}];
-  stream.active = true;
-  stream.wait_s = std::min(stream.wait_s, limits_.retry_s);  // the writer is there: no need to ask rarely
-  if (written.sequence >= stream.position) {
-    stream.set_back_since_s.reset();
-    stream.written = std::max(stream.written, written.sequence);
+  now_s_ = now_s;
+  Stream* const stream = stream_of({written.topic, written.writer_id});
+  if (stream == nullptr) return false;
+  stream->heard_s = now_s;
+  stream->claimed = written.sequence;
+  // The writer is there: no need to ask rarely, unless it is asked in vain.
+  if (!stream->given_up) stream->wait_s = std::min(stream->wait_s, limits_.retry_s);
+  if (written.sequence >= stream->position) {
+    stream->set_back_since_s.reset();
     return false;
   }
   // Heartbeats travel apart from messages, so one may be a little older than what was read already.
-  if (!stream.set_back_since_s) stream.set_back_since_s = now_s;
-  if (now_s - *stream.set_back_since_s < limits_.set_back_s) return false;
-  stream = Stream{.written = written.sequence, .held = {}, .active = true, .set_back_since_s = {}};
+  if (!stream->set_back_since_s) stream->set_back_since_s = now_s;
+  if (now_s - *stream->set_back_since_s < limits_.set_back_s) return false;
+  reread(*stream, now_s);
   return true;
 }
 
+std::vector<Message> StreamReader::note_start(const std::string& writer_id, std::int64_t started_ns, double now_s) {
+  now_s_ = now_s;
+  std::vector<Message> waited;
+  if (!limits_.compares) return waited;
+  for (auto& [key, stream] : streams_) {
+    if (key.second != writer_id || !is_of_a_service(key.first)) continue;
+    if (stream.writer_started_ns != started_ns) {
+      if (stream.start_heard_s && now_s - *stream.start_heard_s < limits_.start_s) continue;
+      stream.writer_started_ns = started_ns;
+      stream.start_heard_s = now_s;
+      stream.held.clear();  // of numbers that the writer may use again
+      stream.check_last = stream.position;
+      stream.check_first = stream.position - std::min(stream.position, stream_window(key.first)) + 1;
+      stream.check_s = now_s_;
+      stream.check_wait_s = limits_.retry_s;
+    }
+    if (!stream.sure || stream.check_first > stream.check_last) stream.sure = stream.position;
+    std::ranges::move(hand_out(key, stream), std::back_inserter(waited));
+  }
+  return waited;
+}
+
+void StreamReader::note_known(const Key& key, std::uint64_t sequence) {
+  const auto known = streams_.find(key);
+  if (known == streams_.end()) return;
+  Stream& stream = known->second;
+  if (sequence == stream.check_first && sequence <= stream.check_last) ++stream.check_first;
+}
+
+bool StreamReader::read_again(const Key& key, double now_s) {
+  const auto known = streams_.find(key);
+  if (known == streams_.end() || known->second.position == 0) return false;
+  Stream& stream = known->second;
+  if (stream.reread_s && now_s - *stream.reread_s < limits_.reread_s) return false;
+  reread(stream, now_s);
+  return true;
+}
+
+void StreamReader::reread(Stream& stream, double now_s) const {
+  Stream fresh;
+  fresh.claimed = stream.claimed;
+  fresh.heard_s = fresh.reread_s = now_s;
+  fresh.writer_started_ns = stream.writer_started_ns;
+  fresh.start_heard_s = stream.start_heard_s;
+  fresh.sure = stream.sure ? std::optional<std::uint64_t>(0) : std::nullopt;
+  stream = std::move(fresh);
+}
+
 bool StreamReader::is_due(Stream& stream, double now_s) const {
-  if (stream.written <= stream.position) {
+  if (stream.end() <= stream.position) {
     stream.wait_s = 0.0;
     stream.last_position = stream.position;
+    stream.given_up = false;
     return false;
   }
   if (stream.position != stream.last_position || stream.wait_s == 0.0) {
     stream.last_position = stream.position;
-    stream.waiting_since_s = now_s;
+    stream.waiting_since_s = stream.moved_s = now_s;
+    stream.given_up = false;
     stream.wait_s = limits_.patience_s;
     // The last request was answered in full and there is more.
     return stream.requested_until != 0 && stream.position >= stream.requested_until;
   }
+  if (!stream.given_up && now_s - stream.moved_s >= limits_.given_up_s) {
+    stream.given_up = true;
+    stream.seen = stream.held.empty() ? stream.position : stream.held.rbegin()->first;
+  }
   return now_s - stream.waiting_since_s >= stream.wait_s;
 }
 
+bool StreamReader::is_check_due(Stream& stream, double now_s) const {
+  if (stream.check_first > stream.check_last || stream.end() < stream.check_first || now_s < stream.check_s)
+    return false;
+  stream.check_s = now_s + stream.check_wait_s;
+  stream.check_wait_s = std::min(2.0 * stream.check_wait_s, limits_.longest_retry_s);
+  return true;
+}
+
+ResendRequest StreamReader::request(const Key& key, std::uint64_t first, std::uint64_t last) const {
+  return {.writer_id = key.second,
+          .topic = key.first,
+          .first_sequence = first,
+          .last_sequence = last,
+          .requested_by = name_};
+}
+
 std::vector<ResendRequest> StreamReader::requests(double now_s) {
+  now_s_ = now_s;
   std::vector<ResendRequest> requests;
   for (auto& [key, stream] : streams_) {
+    if (requests.size() >= limits_.requests) break;
+    if (is_check_due(stream, now_s)) requests.push_back(request(key, stream.check_first, stream.check_last));
     if (!is_due(stream, now_s)) continue;
-    const std::uint64_t gap_end = stream.held.empty() ? stream.written : stream.held.begin()->first - 1;
-    stream.requested_until = std::min(gap_end, stream.position + limits_.window);
+    const bool waits_for_a_heartbeat = !stream.held.empty() && stream.held.begin()->first == stream.position + 1;
+    if (waits_for_a_heartbeat) continue;
+    const std::uint64_t gap_end = stream.held.empty() ? stream.end() : stream.held.begin()->first - 1;
+    const std::uint64_t most = std::min(limits_.window, stream_window(key.first));
+    stream.requested_until = stream.position + std::min(gap_end - stream.position, most);
     stream.waiting_since_s = now_s;
     stream.wait_s =
         stream.wait_s < limits_.retry_s ? limits_.retry_s : std::min(2.0 * stream.wait_s, limits_.longest_retry_s);
-    requests.push_back({.writer_id = key.second,
-                        .topic = key.first,
-                        .first_sequence = stream.position + 1,
-                        .last_sequence = stream.requested_until,
-                        .requested_by = name_});
+    requests.push_back(request(key, stream.position + 1, stream.requested_until));
   }
   return requests;
 }
 
 bool StreamReader::is_behind() const {
-  return std::ranges::any_of(streams_, [](const auto& entry) { return entry.second.written > entry.second.position; });
+  return std::ranges::any_of(
+      streams_, [](const auto& entry) { return entry.second.end() > entry.second.position && !entry.second.given_up; });
 }
 
-std::vector<std::pair<std::string, std::string>> StreamReader::active() const {
+std::vector<StreamReader::Key> StreamReader::active() const {
   std::vector<Key> keys;
   for (const auto& [key, stream] : streams_)
-    if (stream.active) keys.push_back(key);
+    if (stream.position > 0 && stream.heard_s && now_s_ - *stream.heard_s < limits_.forgotten_s) keys.push_back(key);
   return keys;
 }
 

@@ -4,8 +4,14 @@
 // A message beyond a gap is held back until the gap is filled. A gap, or a stream whose writer says that it goes
 // further, is asked for again: after `patience_s` without progress, then every `retry_s`, more and more rarely while
 // the writer is silent, at most `window` messages at a time (so that a slow reader is not flooded).
+//
+// Nothing that is said of a stream is believed for ever: not how far it goes (a forged word, a writer that died in a
+// gap: after `given_up_s` without progress it is asked for, but not waited for), and not that it is the stream that was
+// read before (a writer whose journal was restored uses its numbers again for other messages: whenever a writer starts,
+// the last messages that were read of it are asked for again, and whoever knows ids and numbers compares: read_again).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -26,8 +32,16 @@ class StreamReader {
     double patience_s = 0.3;
     double retry_s = 1.0;
     double longest_retry_s = 16.0;
-    double set_back_s = 5.0;  ///< a writer that stays behind what was read of it for so long lost its journal's end
+    double set_back_s = 5.0;     ///< a writer that stays behind what was read of it for so long lost its journal's end
+    double given_up_s = 60.0;    ///< a stream that has not moved for so long is not waited for
+    double forgotten_s = 600.0;  ///< a writer that was not heard for so long is not spoken of
+    double reread_s = 60.0;      ///< between two times that a stream is read from its start
+    std::size_t streams = 4096;  ///< known at once: strangers' words about more are passed over
+    std::size_t requests = 64;   ///< at a time
+    double start_s = 5.0;        ///< between two starts of a writer that are believed
+    bool compares = true;        ///< whether its owner compares ids: note_known, read_again
   };
+  using Key = std::pair<std::string, std::string>;  // topic, writer id
 
   /// `name` signs the requests; reading continues behind `positions`.
   StreamReader(std::string name, const std::vector<StreamPosition>& positions, Limits limits);
@@ -38,30 +52,61 @@ class StreamReader {
   /// Takes note of how far a writer's stream goes. True when the writer was set back (its journal was restored from a
   /// backup): the stream is then read again from its start, as known messages are recognised by their ids.
   bool note_written(const StreamPosition& written, double now_s);
+  /// Takes note of a heartbeat and of when its writer started: when it is new, the last messages read of each of its
+  /// streams are asked for again, a window's worth. So that these always reach back to what was read before its start,
+  /// not more than half a window is handed out between two heartbeats; returns what waited for this one.
+  [[nodiscard]] std::vector<Message> note_start(const std::string& writer_id, std::int64_t started_ns, double now_s);
+  /// A message came again that is committed, and known under this number.
+  void note_known(const Key& stream, std::uint64_t sequence);
+  /// A number that was read before came with another message: the stream is read again from its start. False
+  /// when it has just been.
+  bool read_again(const Key& stream, double now_s);
   /// What to ask for now. Call it only when nothing is waiting to be received: what waits is not missing.
   [[nodiscard]] std::vector<ResendRequest> requests(double now_s);
-  /// Whether a stream is known to go further than it was read.
+  /// Whether a stream is known to go further than it was read, and moves.
   [[nodiscard]] bool is_behind() const;
-  /// Streams that were heard of since the start.
-  [[nodiscard]] std::vector<std::pair<std::string, std::string>> active() const;
+  /// Streams of which something was read and that were heard of lately.
+  [[nodiscard]] std::vector<Key> active() const;
 
  private:
-  using Key = std::pair<std::string, std::string>;  // topic, writer id
   struct Stream {
     std::uint64_t position = 0;  ///< last one handed out
-    std::uint64_t written = 0;   ///< last one that is known to exist
+    std::uint64_t claimed = 0;   ///< how far it goes by its writer's last word
+    std::uint64_t seen = 0;      ///< the highest number that came
     std::map<std::uint64_t, Message> held;
-    bool active = false;
+    std::optional<double> heard_s;      ///< since the start
     std::uint64_t last_position = 0;    ///< at the last look, to notice progress
+    double moved_s = 0.0;               ///< last progress
+    bool given_up = false;              ///< it has not moved for long
     std::uint64_t requested_until = 0;  ///< end of the last request
     double waiting_since_s = 0.0;       ///< last progress or request
     double wait_s = 0.0;                ///< before the next request; 0: not waiting
     std::optional<double> set_back_since_s;
+    std::optional<double> reread_s;  ///< when it was last read from its start
+    std::int64_t writer_started_ns = 0;
+    std::optional<double> start_heard_s;
+    std::optional<std::uint64_t> sure;  ///< read up to here of a writer that had not started anew
+    /// What had been read last when its writer or this reader was new; it is to come again, in order. Empty: it has.
+    std::uint64_t check_first = 1;
+    std::uint64_t check_last = 0;
+    double check_s = 0.0;  ///< when to ask for it
+    double check_wait_s = 0.0;
+
+    [[nodiscard]] std::uint64_t end() const { return std::max(claimed, seen); }
   };
+  /// Null for a stranger's stream too many.
+  [[nodiscard]] Stream* stream_of(const Key& key);
+  void forget_strangers();
+  void reread(Stream& stream, double now_s) const;
+  [[nodiscard]] static std::vector<Message> hand_out(const Key& key, Stream& stream);
   [[nodiscard]] bool is_due(Stream& stream, double now_s) const;
+  [[nodiscard]] bool is_check_due(Stream& stream, double now_s) const;
+  [[nodiscard]] ResendRequest request(const Key& key, std::uint64_t first, std::uint64_t last) const;
 
   std::string name_;
   Limits limits_;
+  double now_s_ = 0.0;  ///< at the last call that said it
+  double swept_s_ = 0.0;
   std::map<Key, Stream> streams_;
 };
 

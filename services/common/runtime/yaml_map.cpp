@@ -76,11 +76,19 @@ std::string place_in_yaml(const std::string& file, const std::string& key) {
   for (std::string name; node && node->IsMap() && std::getline(names, name, '.');) {
     std::optional<YAML::Node> inside;
     line.clear();
+    const std::size_t bracket = name.ends_with(']') ? name.find('[') : std::string::npos;
     for (const auto& entry : *node)
-      if (entry.first.IsScalar() && entry.first.Scalar() == name) {
+      if (entry.first.IsScalar() && entry.first.Scalar() == name.substr(0, bracket)) {
         line = line_of(entry.first.Mark()) + ", ";
         inside = entry.second;
       }
+    if (inside && bracket != std::string::npos) {
+      const auto item = number_of(name.substr(bracket + 1, name.size() - bracket - 2)).value_or(-1.0);
+      if (!inside->IsSequence() || item < 0.0 || item >= static_cast<double>(inside->size())) return "key " + key;
+      const YAML::Node found = (*inside)[static_cast<std::size_t>(item)];
+      line = line_of(found.Mark()) + ", ";
+      inside = found;
+    }
     node = inside;
   }
   return (node ? line : "") + "key " + key;

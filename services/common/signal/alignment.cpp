@@ -117,22 +117,55 @@ std::optional<Refinement> refine(std::span<const double> reference, std::span<co
 
 }  // namespace
 
+namespace {
+
+/// Lags tried on either side. At a higher rate the search first goes over every n-th row: what is compared is smooth
+/// (a few hertz), so that its correlation cannot have a peak between two of them that neither shows.
+constexpr std::ptrdiff_t kMostLags = 2000;
+
+std::vector<double> every(std::span<const double> values, std::ptrdiff_t step) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(step)) result.push_back(values[i]);
+  return result;
+}
+
+struct BestLag {
+  std::ptrdiff_t lag = 0;
+  double correlation = 0.0;
+};
+
+BestLag best_lag(std::span<const double> reference, std::span<const double> channel, std::ptrdiff_t from,
+                 std::ptrdiff_t to) {
+  BestLag best;
+  const Summed summed_reference(reference);
+  const Summed summed_channel(channel);
+  for (std::ptrdiff_t lag = from; lag <= to; ++lag) {
+    const double correlation = std::abs(correlation_at(summed_reference, summed_channel, lag));
+    if (correlation > best.correlation) best = {lag, correlation};
+  }
+  return best;
+}
+
+/// Over [-largest, largest].
+BestLag best_lag(std::span<const double> reference, std::span<const double> channel, std::ptrdiff_t largest) {
+  const std::ptrdiff_t step = (largest + kMostLags - 1) / kMostLags;
+  if (step <= 1) return best_lag(reference, channel, -largest, largest);
+  const std::ptrdiff_t coarse =
+      step * best_lag(every(reference, step), every(channel, step), -largest / step, largest / step).lag;
+  return best_lag(reference, channel, std::max(-largest, coarse - step), std::min(largest, coarse + step));
+}
+
+}  // namespace
+
 std::optional<OffsetEstimate> estimate_offset(std::span<const double> reference, std::span<const double> channel,
                                               double interval_s, double largest_offset_s) {
   assert(reference.size() == channel.size());
   const auto count = static_cast<std::ptrdiff_t>(channel.size());
   const std::ptrdiff_t largest = std::min(static_cast<std::ptrdiff_t>(largest_offset_s / interval_s), count / 2);
   if (count < 16 || largest < 1) return std::nullopt;
-  std::ptrdiff_t best = 0;
-  double best_correlation = 0.0;
-  const Summed summed_reference(reference);
-  const Summed summed_channel(channel);
-  for (std::ptrdiff_t lag = -largest; lag <= largest; ++lag) {
-    const double correlation = std::abs(correlation_at(summed_reference, summed_channel, lag));
-    if (correlation > best_correlation) best = lag, best_correlation = correlation;
-  }
-  if (best_correlation <= 0.0 || std::abs(best) == largest) return std::nullopt;
-  double offset = static_cast<double>(best);
+  const BestLag best = best_lag(reference, channel, largest);
+  if (best.correlation <= 0.0 || std::abs(best.lag) == largest) return std::nullopt;
+  auto offset = static_cast<double>(best.lag);
   std::optional<Refinement> refinement;
   for (int iteration = 0; iteration < 4; ++iteration) {
     refinement = refine(reference, channel, offset);

@@ -34,6 +34,7 @@ double saturation(const std::vector<double>& drive) {
   if (largest == 0.0) return 0.0;
   std::size_t saturated = 0;
   for (std::size_t i = 0, end = 0; i < drive.size(); i = end) {
+    ++end;  // a run has one sample at least, whatever it compares like
     while (end < drive.size() && drive[end] == drive[i]) ++end;
     if (end - i >= 5 && std::abs(drive[i]) >= largest) saturated += end - i;
   }

@@ -41,14 +41,12 @@ std::vector<Stroke> find_strokes(const Motion& motion, double scale) {
   const double start = std::max(kStart * scale, motion.least_speed_m_s);
   const double stop = std::max(kStop * scale, 0.5 * motion.least_speed_m_s);
   std::vector<Stroke> strokes;
-  for (std::size_t i = 0; i < velocity.size();) {
-    if (std::abs(velocity[i]) < start) {
-      ++i;
-      continue;
-    }
-    Stroke stroke{.begin = i, .end = i, .direction = velocity[i] > 0.0 ? 1 : -1};
-    while (i < velocity.size() && stroke.direction * velocity[i] >= stop) ++i;
-    stroke.end = i;
+  for (std::size_t i = 0, end = 0; i < velocity.size(); i = end) {
+    end = i + 1;  // every pass goes on by a sample at least, whatever it compares like
+    if (!(std::abs(velocity[i]) >= start)) continue;
+    Stroke stroke{.begin = i, .end = end, .direction = velocity[i] > 0.0 ? 1 : -1};
+    while (end < velocity.size() && stroke.direction * velocity[end] >= stop) ++end;
+    stroke.end = end;
     if (travel(motion, stroke) < motion.least_travel_m) continue;
     if (!strokes.empty() && strokes.back().direction == stroke.direction)
       strokes.back().end = stroke.end;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "sealwatch/signal/statistics.hpp"
 
@@ -15,6 +16,8 @@ constexpr double kOnGrid = 1e-3;
 constexpr double kLargestCubicSpan = 4.5;
 // Share of a sample's deviation by which the sampling clock is corrected.
 constexpr double kClockGain = 0.1;
+// A grid of more rows is not counted: nobody could hold it.
+constexpr double kMostRows = 1e15;
 
 struct Points {
   std::vector<double> time_s;
@@ -89,7 +92,7 @@ SamplingGrid find_grid(std::span<const double> times_s) {
   double count = 0.0;
   for (const double step : steps) count += step;
   SamplingGrid grid{.begin_s = times_s.front(), .interval_s = (times_s.back() - times_s.front()) / count};
-  grid.count = static_cast<std::size_t>(count) + 1;
+  grid.count = count < kMostRows ? static_cast<std::size_t>(count) + 1 : std::numeric_limits<std::size_t>::max();
   grid.missing_count = grid.count - times_s.size();
   double square = 0.0;
   for (std::size_t i = 0; i < steps.size(); ++i) {

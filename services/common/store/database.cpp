@@ -22,6 +22,13 @@ constexpr std::array kSchema = {
     " PRIMARY KEY(topic, writer_id))",
 };
 
+/// Beside the tables of version 1, which an older program goes on using without it: to that one an input that is set
+/// aside is consumed. "state" is set_aside, retry (asked for) or released.
+constexpr const char* kQuarantine =
+    "CREATE TABLE IF NOT EXISTS quarantine(message_id VARCHAR(512) PRIMARY KEY, topic VARCHAR(64) NOT NULL,"
+    " asset_id TEXT NOT NULL, pst_id TEXT NOT NULL, since BIGINT NOT NULL, reason TEXT NOT NULL,"
+    " state VARCHAR(16) NOT NULL, asked_by TEXT NOT NULL, asked BIGINT NOT NULL)";
+
 /// "state_detection-9f86d081884c7d65": the service for people, 64 random bits for uniqueness.
 std::string make_writer_id(const std::string& service) {
   std::random_device random;
@@ -79,8 +86,9 @@ void Journal::Database::open(const std::string& connection) {
     sql << "PRAGMA wal_autocheckpoint = 0", soci::into(answer);  // the checkpointer's work
     checkpointer.emplace(connection);
   }
-  if (!has_schema()) create_schema();
+  if (!has_table("meta")) create_schema();
   check_schema();
+  if (!has_table("quarantine")) sql << kQuarantine;
   load_counters();
   statements.emplace(sql);
 }
@@ -100,13 +108,13 @@ void Journal::Database::begin() {
   sql << "BEGIN IMMEDIATE";
 }
 
-bool Journal::Database::has_schema() {
+bool Journal::Database::has_table(const std::string& table) {
   int tables = 0;
   if (sql.get_backend_name() == "sqlite3")
-    sql << "SELECT count(*) FROM sqlite_master WHERE name = 'meta'", soci::into(tables);
+    sql << "SELECT count(*) FROM sqlite_master WHERE name = :table", soci::use(table, "table"), soci::into(tables);
   else
-    sql << "SELECT count(*) FROM pg_tables WHERE tablename = 'meta' AND schemaname = current_schema()",
-        soci::into(tables);
+    sql << "SELECT count(*) FROM pg_tables WHERE tablename = :table AND schemaname = current_schema()",
+        soci::use(table, "table"), soci::into(tables);
   return tables != 0;
 }
 

@@ -55,7 +55,7 @@ struct Journal::Database {
 
  private:
   [[nodiscard]] Error describe(const char* doing, const std::string& what) const;
-  [[nodiscard]] bool has_schema();
+  [[nodiscard]] bool has_table(const std::string& table);
   void create_schema();
   void check_schema();
 };

@@ -46,12 +46,23 @@ Message stamped(Message message, const std::string& writer_id, std::uint64_t seq
   return message;
 }
 
-/// Rows of "SELECT order, topic, payload, sequence, published ...", with :after bound where the query pages.
-std::vector<Row> rows_of(soci::session& sql, const std::string& query, long long after) {
+/// Rows of "SELECT order, topic, payload, sequence, published ...", with :after bound, as the query pages, and :asset
+/// where one is asked for.
+std::vector<Row> rows_of(soci::session& sql, const std::string& query, long long after,
+                         const std::string& asset_id = {}) {
   std::vector<Row> rows;
   Row row;
-  soci::statement statement = (sql.prepare << query, into(row.order), into(row.topic), into(row.payload),
-                               into(row.sequence), into(row.published), use(after, "after"));
+  soci::statement statement(sql);
+  statement.exchange(into(row.order));
+  statement.exchange(into(row.topic));
+  statement.exchange(into(row.payload));
+  statement.exchange(into(row.sequence));
+  statement.exchange(into(row.published));
+  statement.exchange(use(after, "after"));
+  if (!asset_id.empty()) statement.exchange(use(asset_id, "asset"));
+  statement.alloc();
+  statement.prepare(query);
+  statement.define_and_bind();
   statement.execute();
   while (statement.fetch()) rows.push_back(row);
   return rows;
@@ -68,12 +79,12 @@ const std::string& Journal::writer_id() const { return database_->writer_id; }
 const std::map<Topic, std::uint64_t>& Journal::written() const { return database_->written; }
 std::uint64_t Journal::open_inputs() const { return database_->open_inputs; }
 
-Status Journal::for_each_page(const std::string& query, const Visitor& visit) {
+Status Journal::for_each_page(const std::string& query, const std::string& asset_id, const Visitor& visit) {
   long long after = 0;
   for (;;) {
     auto page = database_->guard("reading messages", [&] {
       std::vector<Message> messages;
-      for (const Row& row : rows_of(database_->sql, query + std::to_string(kPage), after)) {
+      for (const Row& row : rows_of(database_->sql, query + std::to_string(kPage), after, asset_id)) {
         messages.push_back(message_of(row, database_->name));
         after = row.order;
       }
@@ -89,14 +100,21 @@ Status Journal::for_each_page(const std::string& query, const Visitor& visit) {
 Status Journal::for_each_output(const Visitor& visit) {
   return for_each_page(
       "SELECT ordinal, topic, payload, sequence, published FROM outputs WHERE ordinal > :after ORDER BY ordinal LIMIT ",
-      visit);
+      {}, visit);
+}
+
+Status Journal::for_each_output_of(const std::string& asset_id, const Visitor& visit) {
+  return for_each_page(
+      "SELECT ordinal, topic, payload, sequence, published FROM outputs WHERE ordinal > :after AND asset_id = :asset"
+      " ORDER BY ordinal LIMIT ",
+      asset_id, visit);
 }
 
 Status Journal::for_each_open_input(const Visitor& visit) {
   return for_each_page(
       "SELECT receipt, topic, payload, sequence, received FROM inputs WHERE consumed = 0 AND receipt > :after"
       " ORDER BY receipt LIMIT ",
-      visit);
+      {}, visit);
 }
 
 Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, std::uint64_t last, std::size_t most) {
@@ -160,10 +178,16 @@ void Journal::rollback() {
 }
 
 Status Journal::add_input(const Message& message, UtcTime received, bool consumed) {
+  const Header& header = header_of(message);
+  return add_input(message, {{}, header.writer_id, header.stream_sequence}, received,
+                   consumed ? InputState::consumed : InputState::open);
+}
+
+Status Journal::add_input(const Message& message, const StreamPosition& stream, UtcTime received, InputState state) {
   return database_->guard("keeping an input", [&] {
-    database_->statements->add_input(++database_->last_receipt, message, received, consumed);
+    database_->statements->add_input(++database_->last_receipt, message, stream, received, state);
     ++database_->batch_rows;
-    if (!consumed) ++database_->open_inputs;
+    if (state == InputState::open) ++database_->open_inputs;
   });
 }
 

@@ -1,7 +1,7 @@
 // The journal of one service: what it received and what it concluded, kept before anything is published.
 //
 // Tables (docs/operations.md): inputs and outputs with their messages as exact JSON, positions of the streams that were
-// read, meta with the schema's version, the service and its writer id. All changes happen between begin and commit, so
+// read, quarantine with what is set aside and why, meta with the schema's version, the service and its writer id. All changes happen between begin and commit, so
 // that a process killed at any instant leaves whole batches only.
 //
 // The connection string is SOCI's: "sqlite3://FILE" (write-ahead log, one file for each service) or
@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,26 @@ namespace sealwatch {
 
 /// A connection string as it may be shown.
 [[nodiscard]] std::string without_password(std::string connection);
+
+/// How a numbered message stands to what was received.
+enum class KnownInput {
+  no,
+  same,            ///< by its id, under this number or from another writer
+  other_sequence,  ///< its writer had sent it under another number
+};
+
+/// A message on which a layer failed. It and all other inputs of its test are set aside: kept, and not given to the
+/// layer again until somebody asks for that.
+struct SetAside {
+  std::string message_id;
+  std::string topic;
+  std::string asset_id;
+  std::string pst_id;  ///< "" for a message that belongs to no test: then it alone is set aside
+  std::int64_t since_ns = 0;
+  std::string reason;
+};
+
+enum class InputState { open, consumed, set_aside };
 
 class Journal {
  public:
@@ -50,12 +71,21 @@ class Journal {
   using Visitor = std::function<Status(const Message&)>;
   /// Every output in the order of conclusion, as the layer made it.
   [[nodiscard]] Status for_each_output(const Visitor& visit);
+  /// Every output about one asset, likewise.
+  [[nodiscard]] Status for_each_output_of(const std::string& asset_id, const Visitor& visit);
   /// Every input that was not consumed, in the order of receipt. `visit` may write to the journal.
   [[nodiscard]] Status for_each_open_input(const Visitor& visit);
+  /// Ids of those about one asset.
+  [[nodiscard]] Result<std::vector<std::string>> open_inputs_of(const std::string& asset_id);
+  /// An input that is kept; none when it was consumed.
+  [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
+  /// How many open inputs are of these tests.
+  [[nodiscard]] Result<std::uint64_t> open_inputs_of_tests(const std::set<std::string>& pst_ids);
   /// Outputs of one topic's stream, first <= sequence <= last, at most `most`, stamped.
   [[nodiscard]] Result<std::vector<Message>> outputs(Topic topic, std::uint64_t first, std::uint64_t last,
                                                      std::size_t most);
   [[nodiscard]] Result<bool> has_input(const std::string& message_id);
+  [[nodiscard]] Result<KnownInput> known_input(const Message& message);
   /// Message id of the last input of this asset that belonged to no stream; "" if there is none.
   [[nodiscard]] Result<std::string> last_unnumbered_input(Topic topic, const std::string& asset_id);
   /// How far each own stream goes, by topic.
@@ -72,16 +102,30 @@ class Journal {
   void rollback();
   /// Keeps an input; its message only where it was not consumed already.
   [[nodiscard]] Status add_input(const Message& message, UtcTime received, bool consumed);
+  /// Likewise, with the stream that it came in.
+  [[nodiscard]] Status add_input(const Message& message, const StreamPosition& stream, UtcTime received,
+                                 InputState state);
   /// Marks an input as not needed again and drops its message; unknown ids are passed over.
   [[nodiscard]] Status consume(const std::string& message_id);
   /// Numbers and keeps an output and returns it stamped, or nothing when this message id was concluded before.
   [[nodiscard]] Result<std::optional<Message>> add_output(Message message, UtcTime publishing_time);
   [[nodiscard]] Status set_position(const StreamPosition& position);
+  /// Notes that its writer now sends a known input under this number.
+  [[nodiscard]] Status renumber_input(const Message& message);
+
+  // The quarantine. It is written between begin and commit; askers write to it from other processes (quarantine_desk.hpp).
+
+  [[nodiscard]] Result<std::vector<SetAside>> quarantine();
+  [[nodiscard]] Status set_aside(const SetAside& message);
+  /// Opens what was set aside again; the row stays as a record of who asked for it.
+  [[nodiscard]] Status release(const SetAside& message);
+  /// Ids of what is to be tried again.
+  [[nodiscard]] Result<std::vector<std::string>> asked_again();
 
  private:
   struct Database;
   explicit Journal(std::unique_ptr<Database> database);
-  [[nodiscard]] Status for_each_page(const std::string& query, const Visitor& visit);
+  [[nodiscard]] Status for_each_page(const std::string& query, const std::string& asset_id, const Visitor& visit);
   std::unique_ptr<Database> database_;
 };
 

@@ -66,15 +66,17 @@ void JournalStatements::bind_message(const Message& message) {
   pst_id_ = header.pst_id;
 }
 
-void JournalStatements::add_input(long long receipt, const Message& message, UtcTime received, bool consumed) {
+void JournalStatements::add_input(long long receipt, const Message& message, const StreamPosition& stream,
+                                  UtcTime received, InputState state) {
   bind_message(message);
   order_ = receipt;
-  writer_id_ = header_of(message).writer_id;
-  sequence_ = static_cast<long long>(header_of(message).stream_sequence);
+  writer_id_ = stream.writer_id;
+  sequence_ = static_cast<long long>(stream.sequence);
   time_ = received.nanoseconds;
-  consumed_ = consumed ? 1 : 0;
-  payload_ = consumed ? std::string() : to_json(message, JsonForm::exact);
-  payload_there_ = consumed ? soci::i_null : soci::i_ok;
+  consumed_ = static_cast<int>(state);
+  const bool kept = state != InputState::consumed;
+  payload_ = kept ? to_json(message, JsonForm::exact) : std::string();
+  payload_there_ = kept ? soci::i_ok : soci::i_null;
   insert_input_.execute(true);
 }
 

@@ -7,6 +7,7 @@
 
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/topics.hpp"
+#include "services/common/store/journal.hpp"
 
 namespace sealwatch {
 
@@ -18,7 +19,8 @@ class JournalStatements {
 
   [[nodiscard]] bool has_input(const std::string& message_id);
   [[nodiscard]] std::string last_unnumbered_input(Topic topic, const std::string& asset_id);
-  void add_input(long long receipt, const Message& message, UtcTime received, bool consumed);
+  void add_input(long long receipt, const Message& message, const StreamPosition& stream, UtcTime received,
+                 InputState state);
   /// Whether an open input of that id was there.
   bool consume(const std::string& message_id);
   /// Whether it was added; false when an output of this message id is there already.

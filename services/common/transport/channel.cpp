@@ -10,9 +10,9 @@
 namespace sealwatch::transport {
 namespace {
 
-/// Longer than the lease of 2 s after which a dead reader no longer counts: only a live reader that does not take makes
-/// a publish fail.
-constexpr dds_duration_t kMaxBlockingTime = DDS_SECS(5);
+/// A publisher that waited here could not take what its own readers have. What DDS does not take is in the journal: it
+/// is sent a little later, or asked for.
+constexpr dds_duration_t kMaxBlockingTime = DDS_MSECS(10);
 /// Writers offer a finite liveliness lease, so that a foreign reader may ask to be told when they die.
 constexpr dds_duration_t kLivelinessLease = DDS_SECS(5);
 /// Messages of one asset that a reader with SlowReader::loses_oldest keeps.
@@ -59,11 +59,7 @@ Qos reader_qos(const TopicQos& settings, SlowReader slow_reader, std::int32_t li
   return qos;
 }
 
-void announce(dds_entity_t /*reader*/, void* argument) {
-  auto& arrivals = *static_cast<Arrivals*>(argument);
-  arrivals.signal.notify();
-  const std::lock_guard gate(arrivals.gate);
-}
+void announce(dds_entity_t reader, void* channel) { static_cast<Channel*>(channel)->arrived(reader); }
 
 }  // namespace
 
@@ -76,38 +72,54 @@ Status Channel::open_topic() {
   return {};
 }
 
-Status Channel::subscribe(Arrivals& arrivals) {
+Status Channel::subscribe(Inbox& inbox) {
   if (subscribed()) return {};
   if (Status opened = open_topic(); !opened) return opened;
   assert(type_->batch <= kLargestBatch);
   buffer_ = std::make_unique<SampleBuffer>(*type_->descriptor, type_->batch);
-  const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(&arrivals),
+  inbox_ = &inbox;
+  const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(this),
                                                                                  &dds_delete_listener);
   dds_lset_data_available(listener.get(), announce);
   const dds_entity_t reader = dds_create_reader(
       participant_, topic_, reader_qos(qos_, slow_reader_, type_->reader_limit).get(), listener.get());
   if (reader < 0) return dds_failure("reader of topic " + type_->name, reader);
+  const std::lock_guard lock(inbox.mutex);
   reader_ = reader;
+  take();  // what came before the call returned
   return {};
+}
+
+void Channel::arrived(dds_entity_t reader) {
+  if (takes_at_once_) {
+    const std::lock_guard lock(inbox_->mutex);
+    reader_ = reader;
+    take();
+  } else {
+    const std::lock_guard gate(inbox_->mutex);  // not while samples are taken
+  }
+  inbox_->signal.notify();
 }
 
 bool Channel::take_batch(std::vector<Stamped>& taken) const {
   std::array<dds_sample_info_t, kLargestBatch> infos;
   const dds_return_t count =
       dds_take(reader_, buffer_->data(), infos.data(), buffer_->size(), static_cast<std::uint32_t>(buffer_->size()));
-  assert(count >= 0);
+  if (count <= 0) return false;  // below 0: called by the listener before dds_create_reader is through
   for (std::size_t k = 0; static_cast<dds_return_t>(k) < count; ++k)
     if (infos[k].valid_data)
       taken.push_back({.published = infos[k].source_timestamp, .item = type_->decode((*buffer_)[k])});
-  return count > 0;
+  return static_cast<std::size_t>(count) == buffer_->size();
 }
 
-void Channel::take(std::deque<BusItem>& items) const {
+void Channel::take() {
+  const auto limit = static_cast<std::size_t>(type_->reader_limit);
+  if (inbox_->is_full(static_cast<std::size_t>(type_ - topic_types().data()), limit)) return;
   std::vector<Stamped> taken;
   while (take_batch(taken)) {
   }
   std::ranges::stable_sort(taken, {}, &Stamped::published);
-  for (Stamped& one : taken) items.push_back(std::move(one.item));
+  for (Stamped& one : taken) inbox_->put(std::move(one.item), limit);
 }
 
 Status Channel::open_writer() {
@@ -124,7 +136,7 @@ Status Channel::write(const DdsSample& sample) {
   last_written_ = std::max(last_written_ + 1, dds_time());  // the system's clock may be set back
   const dds_return_t code = dds_write_ts(writer_, sample.get(), last_written_);
   if (code == DDS_RETCODE_TIMEOUT)
-    return dds_failure("topic " + type_->name, code, "a subscriber does not take its messages; publish again later");
+    return dds_failure("topic " + type_->name, code, "a subscriber does not take its messages now; publish again");
   if (code < 0) return dds_failure("topic " + type_->name, code);
   return {};
 }

@@ -3,9 +3,8 @@
 // IDL lacks, or has with another type, does not compile; nor does a C member that the C++ struct lacks.
 //
 //   LendToDds    C++ -> C without copying: strings and numbers are lent to the C struct; only the arrays of pointers
-//   and of
-//                structs that C needs are made, in a memory resource that must outlive the C struct, like the message
-//                itself. Nothing is to be freed. For dds_write, which copies into its own serialised form.
+//                and of structs that C needs are made, in a memory resource that must outlive the C struct, like the
+//                message itself. Nothing is to be freed. For dds_write, which copies into its own serialised form.
 //   CopyFromDds  C -> C++, into a message that owns its content.
 //
 // A string ends at its first NUL on the wire, as strings in IDL do.

@@ -1,13 +1,11 @@
 #include "services/common/transport/dds_bus.hpp"
 
-#include <algorithm>
-#include <deque>
-#include <iterator>
 #include <mutex>
 #include <thread>
 #include <utility>
 
 #include "services/common/transport/channel.hpp"
+#include "services/common/transport/inbox.hpp"
 #include "services/common/transport/participant.hpp"
 
 namespace sealwatch {
@@ -21,6 +19,7 @@ class CycloneBus final : public DdsBus {
  public:
   CycloneBus(transport::Participant participant, const Configuration& configuration, SlowReader slow_reader)
       : participant_(std::move(participant)) {
+    channels_.reserve(transport::kTopicCount);  // DDS's listeners know them by address
     for (const transport::TopicType& type : transport::topic_types()) {
       const auto overridden = configuration.topics.find(type.name);
       const TopicQos qos = overridden == configuration.topics.end() ? type.qos : overridden->second;
@@ -28,16 +27,16 @@ class CycloneBus final : public DdsBus {
     }
   }
 
-  [[nodiscard]] bool ok() const { return arrivals_.signal.ok(); }
+  [[nodiscard]] bool ok() const { return inbox_.signal.ok(); }
 
   Status subscribe(std::span<const Topic> topics) override {
     for (const Topic topic : topics)
-      if (Status made = channels_[static_cast<std::size_t>(topic)].subscribe(arrivals_); !made) return made;
+      if (Status made = channels_[static_cast<std::size_t>(topic)].subscribe(inbox_); !made) return made;
     return {};
   }
   Status subscribe_service_topics() override {
     for (const std::size_t index : {transport::kServiceStatusIndex, transport::kResendRequestIndex})
-      if (Status made = channels_[index].subscribe(arrivals_); !made) return made;
+      if (Status made = channels_[index].subscribe(inbox_); !made) return made;
     return {};
   }
 
@@ -52,18 +51,14 @@ class CycloneBus final : public DdsBus {
   std::vector<BusItem> receive(std::chrono::milliseconds timeout, std::size_t most) override {
     const auto deadline = Clock::now() + timeout;
     while (true) {
-      const bool woken = arrivals_.signal.clear();  // before the take: what arrives after it notifies again
-      if (arrived_.empty()) take();
-      if (!arrived_.empty() || woken || Clock::now() >= deadline) break;
-      arrivals_.signal.wait_until(deadline);
+      const bool woken = inbox_.signal.clear();  // before the take: what arrives after it notifies again
+      std::vector<BusItem> items = take(most);
+      if (!items.empty() || woken || Clock::now() >= deadline) return items;
+      inbox_.signal.wait_until(deadline);
     }
-    const auto end = std::next(arrived_.begin(), static_cast<std::ptrdiff_t>(std::min(most, arrived_.size())));
-    std::vector<BusItem> items(std::move_iterator(arrived_.begin()), std::move_iterator(end));
-    arrived_.erase(arrived_.begin(), end);
-    return items;
   }
 
-  void wake() override { arrivals_.signal.wake(); }
+  void wake() override { inbox_.signal.wake(); }
 
   Status wait_for_subscribers(Topic topic, std::size_t count, std::chrono::milliseconds timeout) override {
     const auto deadline = Clock::now() + timeout;
@@ -82,16 +77,17 @@ class CycloneBus final : public DdsBus {
   }
 
  private:
-  void take() {
-    const std::lock_guard gate(arrivals_.gate);
-    for (const Channel& channel : channels_)
-      if (channel.subscribed()) channel.take(arrived_);
+  std::vector<BusItem> take(std::size_t most) {
+    const std::lock_guard lock(inbox_.mutex);
+    if (inbox_.empty())
+      for (Channel& channel : channels_)
+        if (channel.subscribed()) channel.take();
+    return inbox_.take(most);
   }
 
-  transport::Arrivals arrivals_;  // outlives the participant, whose listeners use it
+  transport::Inbox inbox_;         // both outlive the participant,
+  std::vector<Channel> channels_;  // whose listeners use them
   transport::Participant participant_;
-  std::vector<Channel> channels_;
-  std::deque<BusItem> arrived_;  ///< taken from DDS, not yet asked for
 };
 
 }  // namespace

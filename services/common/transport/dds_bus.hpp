@@ -13,10 +13,10 @@
 
 namespace sealwatch {
 
-/// What happens when a reader of this bus is full because its owner does not call receive.
+/// What becomes of messages beyond what a bus holds for an owner that does not call receive. Either way nobody waits.
 enum class SlowReader {
-  stops_publishers,  ///< nothing is lost: their publish waits, then fails (services)
-  loses_oldest,      ///< a watcher or a client must not be able to stop the services
+  asks_again,    ///< the newest numbered ones are left out: their writers' journals have them (services)
+  loses_oldest,  ///< only the last of each asset stay (watchers and clients)
 };
 
 class DdsBus : public Bus {
@@ -31,7 +31,7 @@ class DdsBus : public Bus {
 /// from configuration.cyclonedds_uri, else they keep to this machine (loopback, multicast, lease of 2 s); all buses of
 /// a process that share a domain share the first one's settings.
 [[nodiscard]] Result<std::unique_ptr<DdsBus>> open_dds_bus(const Configuration& configuration,
-                                                           SlowReader slow_reader = SlowReader::stops_publishers);
+                                                           SlowReader slow_reader = SlowReader::asks_again);
 
 /// Whether Cyclone DDS takes these settings (configuration.cyclonedds_uri); what it has against them it says on
 /// standard error.

@@ -20,8 +20,8 @@ struct TopicType {
   const dds_topic_descriptor_t* descriptor = nullptr;
   BusItem (*decode)(const void* sample) = nullptr;
   TopicQos qos;  ///< default; a Configuration may override it
-  /// Messages that a reader holds before it stops its publishers, and how many it takes at once. Bulky topics (windows
-  /// of samples, up to about 1 MB each) hold few.
+  /// Messages that wait for a reader's owner (inbox.hpp), and how many are taken from DDS at once. Of bulky topics
+  /// (windows of samples, up to about 1 MB each) few wait.
   std::int32_t reader_limit = 0;
   std::size_t batch = 0;
 };
@@ -29,6 +29,7 @@ struct TopicType {
 /// Index of a topic in topic_types(): static_cast<std::size_t>(Topic), then these.
 inline constexpr std::size_t kServiceStatusIndex = EnumNames<Topic>::kNames.size();
 inline constexpr std::size_t kResendRequestIndex = kServiceStatusIndex + 1;
+inline constexpr std::size_t kTopicCount = kResendRequestIndex + 1;
 
 [[nodiscard]] const std::vector<TopicType>& topic_types();
 

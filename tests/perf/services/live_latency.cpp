@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "sealwatch/model/plant_description.hpp"
+#include "sealwatch/port/patient_publish.hpp"
 #include "services/common/runtime/system_clock.hpp"
 #include "services/common/transport/dds_bus.hpp"
 #include "services/virtual_bench/simulate_test.hpp"
@@ -97,7 +98,7 @@ Status send(DdsBus& bus, const std::string& mode, std::size_t actuators, double 
     block.recording_id = "live-" + std::to_string(next.test);
     block.header.publishing_time_ns = next.next_ns;
     wait_until(clock, next.next_ns);
-    if (Status sent = bus.publish(Message(std::move(block))); !sent) return sent;
+    if (Status sent = publish_patiently(bus, Message(std::move(block))); !sent) return sent;
     next.next_ns += kBlock_ns;
     if (++next.block == blocks.size()) next.block = 0, ++next.test;
   }

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A life's monthly tests through the six services over DDS, all estimates included, and the same layers in one process
-(--offline). Recordings: DIRECTORY's, else a life of 105 tests that the virtual bench records first.
+(--offline). Recordings: DIRECTORY's, else a life of 105 tests at 200 Hz that the virtual bench records first. No topic may
+stand still because a reader does not take it, and the services must not take longer than one process does.
 Usage: replay.py BIN_DIRECTORY [DIRECTORY]
 """
 import pathlib
@@ -12,7 +13,7 @@ import time
 
 from services import DOMAIN, SERVICES, SOURCE, Services, load, memory_MB
 
-GOAL_S, SETTLE_S = 60.0, 4.0
+GOAL_RATIO, SETTLE_S = 1.0, 4.0
 SHARED = SOURCE.parent / "shared/data/pst_life/xt03-mv2"
 
 
@@ -49,18 +50,20 @@ def main():
         print(f"replay: {len(files)} tests, {origin}; {load()}")
         config = configuration(folder)
         replay = [binaries / "sealwatch", "replay", "--config", config, "--quiet"]
-        with Services(binaries, config) as services:
+        with open(folder / "stderr", "w+") as complaints, Services(binaries, config, stderr=complaints) as services:
             live_s, used_s = timed([*replay, *files], services.environment)
             shares = services.cpu_s()
             print(f"  six services over DDS  {live_s:6.1f} s, processor {used_s + sum(shares.values()):.1f} s: replay {used_s:.1f}, "
                   + ", ".join(f"{name} {shares[name]:.1f}" for name in SERVICES))
             time.sleep(SETTLE_S)
+            complaints.seek(0)
+            stalls = complaints.read().count("does not take its messages")
             print("  resident afterwards    " + ", ".join(
                 f"{name} {memory_MB(services.processes[name].pid, 'VmRSS'):.1f}" for name in SERVICES) + " MB")
         offline_s, used_s = timed([*replay, "--offline", *files])
     print(f"  one process, offline   {offline_s:6.1f} s, processor {used_s:.1f} s; the services take {live_s / offline_s:.2f} times as long")
-    met = live_s < GOAL_S
-    print(f"  goal: below {GOAL_S:.0f} s: {'met' if met else 'MISSED'}")
+    met = stalls == 0 and live_s < GOAL_RATIO * offline_s
+    print(f"  topics that stood still: {stalls}; goal: none, and not longer than one process: {'met' if met else 'MISSED'}")
     sys.exit(not met)
 
 

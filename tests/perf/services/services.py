@@ -16,10 +16,10 @@ SERVICES = ["data-acquisition", "data-manipulation", "state-detection", "health-
 class Services:
     """with Services(bin_directory, config, names) as services: ..."""
 
-    def __init__(self, binaries, config=SOURCE / "config", names=SERVICES):
+    def __init__(self, binaries, config=SOURCE / "config", names=SERVICES, stderr=None):
         self.binaries = pathlib.Path(binaries)
         self.config, self.names = config, names
-        self.processes = {}
+        self.stderr, self.processes = stderr, {}
 
     def __enter__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="sealwatch-perf-"))
@@ -27,7 +27,7 @@ class Services:
         self.environment = dict(os.environ, CYCLONEDDS_URI=uri(f"perf-{os.getpid()}-{time.monotonic_ns()}"))
         for name in self.names:
             self.processes[name] = self.start([self.binaries / f"sealwatch-{name}", "--config", self.config,
-                                               "--state", self.state, "--domain", DOMAIN])
+                                               "--state", self.state, "--domain", DOMAIN], stderr=self.stderr)
         return self
 
     def start(self, command, **options):

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <string>
 
+#include "sealwatch/port/patient_publish.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
 namespace {
@@ -33,7 +34,7 @@ Status publish(DdsBus& bus, Clock::duration duration) {
   Message message = block_of_1000_doubles();
   auto& block = std::get<RawSamples>(message);
   for (const auto end = Clock::now() + duration; Clock::now() < end; ++block.block_number)
-    if (Status sent = bus.publish(message); !sent) return sent;
+    if (Status sent = publish_patiently(bus, message); !sent) return sent;
   return {};
 }
 

@@ -14,7 +14,9 @@
 namespace sealwatch::cli {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::internal::CaptureStderr;
 using ::testing::internal::CaptureStdout;
 using ::testing::internal::GetCapturedStderr;
@@ -128,7 +130,7 @@ TEST_F(ExplainCommand, UndeterminedIsTheAnswerNo) {
 TEST_F(ExplainCommand, AHoldoutThatIsAlsoFittedProvesNothing) {
   options_.holdout = {recording("copy_of_b", 2.0)};
   EXPECT_EQ(run(), kBadInput);
-  EXPECT_THAT(err_, HasSubstr("copy_of_b.csv: is kept aside, but has the same content as the fitted "));
+  EXPECT_THAT(err_, HasSubstr("copy_of_b.csv: is held out, but has the same content as the fitted "));
   EXPECT_THAT(err_, HasSubstr("b.csv"));
   EXPECT_EQ(analyses_, 0);
   EXPECT_FALSE(std::filesystem::exists(options_.directory));
@@ -146,11 +148,19 @@ TEST_F(ExplainCommand, RecordingsOfAnotherAssetAreRefused) {
   EXPECT_THAT(err_, HasSubstr("'B': is not the asset A"));
 }
 
-TEST_F(ExplainCommand, ChannelsThatThePlantDoesNotKnowAreNamed) {
+TEST_F(ExplainCommand, ColumnsThatThePlantDoesNotKnowAreListedAndLeftAside) {
   options_.fit = {write("odd.csv", "time,motor_voltage,colour\n0,1,2\n1,1,2\n")};
-  EXPECT_EQ(run(), kBadInput);
-  EXPECT_THAT(err_, HasSubstr("odd.csv"));
+  EXPECT_NE(run(), kBadInput);
+  EXPECT_EQ(analyses_, 1);
   EXPECT_THAT(err_, HasSubstr("colour"));
+}
+
+TEST_F(ExplainCommand, AColumnThatIsNearlyAChannelIsATypingError) {
+  options_.fit = {write("odd.csv", "time,motor_voltag,position\n0,1,2\n1,1,2\n")};
+  EXPECT_EQ(run(), kBadInput);
+  EXPECT_EQ(analyses_, 0);
+  EXPECT_THAT(err_, HasSubstr("odd.csv"));
+  EXPECT_THAT(err_, HasSubstr("motor_voltag"));
 }
 
 TEST_F(ExplainCommand, APlaceThatCannotBeWrittenCostsNoWaiting) {
@@ -170,6 +180,39 @@ TEST_F(ExplainCommand, WhatTheAnalysisRefusesIsBadInput) {
       options_);
   EXPECT_EQ(status, kBadInput);
   EXPECT_THAT(GetCapturedStderr(), HasSubstr("no channel that the plant simulates"));
+  EXPECT_FALSE(std::filesystem::exists(options_.directory)) << "nothing was written";
+}
+
+TEST_F(ExplainCommand, ARefusalSaysThatTheReportThatStandsThereIsOld) {
+  run();
+  ASSERT_TRUE(std::filesystem::exists(options_.directory + "/report.json"));
+  CaptureStderr();
+  const int status = explain_with(
+      [](const AssetConfig&, std::span<const Recording>, std::span<const Recording>, const mismatch::ExplainOptions&,
+         const mismatch::Progress&) -> Result<mismatch::Explanation> { return fail("no"); },
+      options_);
+  EXPECT_EQ(status, kBadInput);
+  EXPECT_THAT(GetCapturedStderr(), HasSubstr("report.json is of an earlier run"));
+  EXPECT_TRUE(std::filesystem::exists(options_.directory + "/report.json"));
+}
+
+TEST_F(ExplainCommand, AValueOfTheAssetFileInPlaceOfLawsIsShownBeforeAndAfter) {
+  found_.verdict = mismatch::Verdict::undetermined;
+  found_.summary = "A value that the asset file fixes may be wrong.";
+  found_.asset_values = {{{.name = "A_C", .unit = "m2", .in_asset_file = 5.89e-3, .fitted = 6e-3, .std_error = 1e-6}}};
+  found_.holdout.channels = {{.channel = "flow", .rms_before = 7.25, .rms_after = 1.5}};
+  EXPECT_EQ(run(), kAnswerIsNo);
+  EXPECT_THAT(out_, ContainsRegex("flow +7.250 +1.500 "));
+  EXPECT_THAT(out_, HasSubstr("the asset with the value that explains as much: "));
+}
+
+TEST_F(ExplainCommand, WhereNothingWasFoundWhatWasFittedIsToldBesideTheAssetFiles) {
+  found_.verdict = mismatch::Verdict::consistent;
+  found_.parameters = {{.name = "A_C", .unit = "m2", .after = 6.0e-3, .after_std = 1e-6, .datasheet = 5.0e-3},
+                       {.name = "R_M", .unit = "ohm", .after = 0.501, .after_std = 1e-4, .datasheet = 0.5}};
+  EXPECT_EQ(run(), kOk);
+  EXPECT_THAT(out_, ContainsRegex("fitted: A_C .*asset file 0.00500 m"));
+  EXPECT_THAT(out_, Not(HasSubstr("R_M")));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/cli/service_alarms.hpp"
+
 namespace sealwatch::cli {
 namespace {
 
@@ -67,6 +69,28 @@ TEST_F(Listening, ListsAServiceThatIsNotExpectedHereWithoutAskingForIt) {
   ASSERT_EQ(heard_.list(now_).size(), 3U);
   EXPECT_FALSE(heard_.list(now_)[2].expected);
   EXPECT_TRUE(heard_.all_well(now_));
+}
+
+TEST_F(Listening, TellsWhatServicesCannotMendByThemselvesWithItsCategory) {
+  ServiceStatus status = beat("data_acquisition", 7);
+  status.alarms = {{.kind = "set_aside",
+                    .asset_id = "A",
+                    .subject = "raw_samples/R/1",
+                    .pst_id = {},
+                    .text = "no such phase",
+                    .since_ns = 1'900'000'000'000'000'000}};
+  status.alarm_count = 4;
+  heard_.take(status, now_);
+  const std::vector<HeardAlarm> alarms = alarms_of(heard_.list(now_));
+  ASSERT_EQ(alarms.size(), 2U);
+  EXPECT_EQ(one_line(alarms[0]),
+            "ALARM (failure)  data_acquisition  A  set aside after two failures since 2030-03-17T17:46:40Z: "
+            "raw_samples/R/1: no such phase (sealwatch quarantine retry raw_samples/R/1 --by NAME); and 3 more: "
+            "sealwatch quarantine list");
+  EXPECT_EQ(one_line(alarms[1]), "ALARM (failure)  health_assessment  is not heard: no heartbeat");
+  heard_.take(beat("data_acquisition", 7), now_);
+  heard_.take(beat("health_assessment", 8), now_);
+  EXPECT_TRUE(alarms_of(heard_.list(now_)).empty()) << "it is over";
 }
 
 }  // namespace

@@ -85,6 +85,13 @@ TEST(CascadedTanksFit, SaysHowFarTheNaiveModelIsFromTheRealTanks) {
   EXPECT_NEAR(fit.report.channels.at(0).nrmse_percent, 72.1, 0.3);
 }
 
+TEST(ActuatorFit, NeedsAThread) {
+  ActuatorFitOptions options;
+  EXPECT_TRUE(options.validate());
+  options.threads = 0;
+  EXPECT_FALSE(options.validate());
+}
+
 TEST(EmpsFit, SaysHowFarTheNaiveModelIsFromTheRealDrive) {
   const auto file = test::shared_data("emps/train.csv");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "sealwatch/forecast/configured.hpp"
+#include "sealwatch/forecast/fleet_uncertainty.hpp"
 #include "sealwatch/forecast/forecaster.hpp"
 #include "tests/unit/forecast/random_life.hpp"
 
@@ -102,6 +104,40 @@ TEST(FleetPopulation, TellsYoungSealsMoreThanTheReferenceDoes) {
         std::abs(make_forecaster({"fleet", kWholeLife_months}).value()->forecast(request).value().rul_months - left);
   }
   EXPECT_LT(error_fitted, 0.5 * error_reference);
+}
+
+// The jackknife's error of the mean rate against the scatter of the fits of many fleets.
+TEST(FleetUncertainty, StandardErrorsAreTheScatterOfManyFleets) {
+  constexpr int kFleets = 20, kLives = 8;
+  const std::vector<FleetLife> all = fleet(kFleets * kLives, "reference");
+  double mean = 0.0, squares = 0.0, claimed = 0.0;
+  for (int k = 0; k < kFleets; ++k) {
+    const std::span<const FleetLife> one(all.data() + k * kLives, kLives);
+    const Result<FleetFit> fit = fit_population(one);
+    ASSERT_TRUE(fit);
+    const FleetErrors errors = fleet_errors(one, *fit);
+    mean += fit->population.initial_rate / kFleets;
+    squares += fit->population.initial_rate * fit->population.initial_rate / kFleets;
+    claimed += errors.initial_rate / kFleets;
+    EXPECT_GT(constants_for_forecasts(fit->population, errors).initial_rate_std, fit->population.initial_rate_std);
+  }
+  const double scatter = std::sqrt(squares - mean * mean);
+  EXPECT_GT(claimed / scatter, 0.6) << "of 20 fleets the scatter is good to a sixth, the jackknife of 8 to a quarter";
+  EXPECT_LT(claimed / scatter, 1.7);
+}
+
+TEST(FleetUncertainty, ForecastersTakeTheConfiguredFleet) {
+  Configuration configuration;
+  configuration.fleet = FleetConstants{.initial_rate = 0.09,
+                                       .initial_rate_std = 0.01,
+                                       .steepening = 0.002,
+                                       .steepening_std = 0.0003,
+                                       .rate_steepening_correlation = 0.1,
+                                       .irregularity_std = 0.02};
+  for (const ForecasterSettings& settings : configured_forecasters(configuration)) {
+    EXPECT_EQ(settings.population.initial_rate, 0.09) << settings.method;
+    EXPECT_EQ(settings.population.n_0, FleetPopulation{}.n_0) << "what a fit does not give stays the reference's";
+  }
 }
 
 }  // namespace

@@ -100,28 +100,26 @@ const ChannelComparison& channel(const PooledFit& fit, const std::string& name) 
   return *std::ranges::find(fit.channels, name, &ChannelComparison::channel);
 }
 
-TEST(BenchEha, FindsWhatIsOffAndFollowsALoadThatTookNoPart) {
+// Under load 3 the motor reaches the limit of its driver, which the lighter loads never show: what improves position,
+// pressures and angle makes the shaft's speed worse there. Then nothing is claimed, and the report says why and where.
+TEST(BenchEha, ClaimsNothingThatMakesAChannelWorseUnderALoadThatTookNoPart) {
   const auto fit = recordings({"load1_stroke2", "load1_stroke4", "load2_stroke2", "load2_stroke4"});
   const auto holdout = recordings({"load3_stroke2", "load3_stroke4"});
   if (fit.empty() || holdout.empty()) GTEST_SKIP() << "the recordings bench_eha are not here";
   const auto explanation = explain(bench(), fit, holdout);
   ASSERT_TRUE(explanation);
-  EXPECT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
-  const auto effect = [&](const std::string& element) {
-    return std::ranges::find_if(explanation->effects,
-                                [&](const FoundEffect& one) { return one.what.element == element; });
-  };
-  ASSERT_FALSE(explanation->effects.empty());
-  EXPECT_EQ(explanation->effects.front().what.element, "sensor:shaft_speed");
-  EXPECT_NEAR(explanation->effects.front().parameters.front().value, 0.14, 0.02);  // against the shaft's encoder
-  EXPECT_TRUE(effect("winding") != explanation->effects.end() || effect("driver") != explanation->effects.end());
-  const auto rod = effect("chamber_b");
-  ASSERT_NE(rod, explanation->effects.end());
-  EXPECT_GT(explanation->explained_share, 0.5);
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_TRUE(explanation->effects.empty());
+  EXPECT_TRUE(explanation->explained.physics.empty());
+  const ChannelComparison& speed = channel(explanation->holdout, "shaft_speed");
+  EXPECT_GT(speed.rms_after, 1.1 * speed.rms_before);
+  EXPECT_TRUE(std::ranges::any_of(explanation->notes, [](const std::string& note) {
+    return note.find("does not carry over") != std::string::npos && note.find("shaft speed") != std::string::npos;
+  }));
   for (const char* name : {"position", "pressure_a", "pressure_b", "pump_angle"})
-    EXPECT_LT(channel(explanation->holdout, name).rms_after, 0.9 * channel(explanation->holdout, name).rms_before)
-        << name;
-  EXPECT_GT(channel(explanation->holdout, "position").nrmse_after, 50.0);
+    EXPECT_LT(channel(explanation->holdout, name).rms_after, channel(explanation->holdout, name).rms_before) << name;
+  ASSERT_FALSE(explanation->location.empty());
+  EXPECT_EQ(explanation->location.front().element, "sensor:shaft_speed");  // against the shaft's encoder
 }
 
 TEST(BenchEha, NamesNothingWhereTooLittleIsExplained) {

@@ -1,5 +1,5 @@
 // Real recordings of two other plants, from their naive models: what is missing there is known from the literature
-// (docs/mismatch-real.md). Skips, saying so, where the shared recordings are absent.
+// (docs/records/mismatch-real.md). Skips, saying so, where the shared recordings are absent.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -104,8 +104,16 @@ TEST(Recorded, AColumnInAnotherUnitIsSuspectedByName) {
 
   fit[0].samples = right;
   for (double& value : values_of(fit[0], "position")) value *= 1e-3;
-  EXPECT_TRUE(another_unit(plant, fit[0].samples).starts_with("column position moves 1.6e-05 m while column velocity"))
+  EXPECT_TRUE(
+      another_unit(plant, fit[0].samples).starts_with("column position moves 0.001 times as far as column velocity"))
       << another_unit(plant, fit[0].samples);
+
+  fit[0].samples = right;  // an offset adds up, a resting piston has a way of noise alone: neither is a unit
+  for (double& value : values_of(fit[0], "velocity")) value += 1e-2;
+  EXPECT_EQ(another_unit(plant, fit[0].samples), "");
+  for (double& value : values_of(fit[0], "position")) value = 0.06 + 1e-9 * value;
+  std::ranges::fill(values_of(fit[0], "velocity"), 1e-3);
+  EXPECT_EQ(another_unit(plant, fit[0].samples), "");
 
   PooledFit pooled{.channels = {{.channel = "pressure_b", .nrmse_before = 40.0},
                                 {.channel = "pressure_a", .nrmse_before = -99900.0}}};

@@ -68,6 +68,7 @@ const std::map<std::string, double> kOneSign = {
 
 /// Forces of position alone: the same work both ways, whatever their sign.
 const std::set<std::string> kOfPositionAlone = {"spring_load",
+                                                "spring_load (power)",
                                                 "position_dependent_load (bump)",
                                                 "position_dependent_load (bell)",
                                                 "position_dependent_load (quadratic)",

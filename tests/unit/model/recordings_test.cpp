@@ -49,7 +49,8 @@ TEST(Recordings, OfTheConsistentBenchAreReproducedToTheNoise) {
   }
 }
 
-// The real bench with its author's parameters, before anything is added: the figures of docs/model.md, measured again.
+// The real bench with its author's parameters, before anything is added: the figures of docs/records/mismatch-real.md,
+// measured again.
 TEST(Recordings, OfTheSwitchedBenchAreSimulatedWithTheAuthorsParameters) {
   const auto folder = kData / "bench_eha";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings at " << folder;

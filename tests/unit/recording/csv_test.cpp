@@ -83,9 +83,21 @@ TEST(Csv, HeaderErrorsNameRowAndColumn) {
 }
 
 TEST(Csv, ErrorsCanBePrintedWhateverTheFileHolds) {
-  const Result<ColumnarSamples> result = read(std::string("time,\x01\xFF\x7F") + std::string(1000, 'x') + "\n0,1\n");
+  const Result<ColumnarSamples> result =
+      read(std::string("time,position[\x01\xFF\x7F") + std::string(1000, 'x') + "]\n0,1\n");
   ASSERT_FALSE(result);
-  EXPECT_EQ(result.error().value, "???" + std::string(57, 'x') + "...");
+  EXPECT_EQ(result.error().value, "position[???" + std::string(48, 'x') + "...");
+}
+
+TEST(Csv, ColumnsThatThePlantDoesNotKnowAreLeftAside) {
+  const Result<ColumnarSamples> result =
+      read("operator,time,position_reference[furlong],position,mood\nAda,0,?,1,\nBob,1,,2,good\n");
+  ASSERT_TRUE(result) << result.error().describe();
+  EXPECT_THAT(result->left_aside, testing::ElementsAre("operator", "position_reference[furlong]", "mood"));
+  EXPECT_EQ(result->samples, samples_of("time,position\n0,1\n1,2\n"));
+  EXPECT_EQ(result->columns.size(), 1U);
+  EXPECT_THAT(error_of("time,posision,mood\n0,1,good\n"), HasSubstr("did you mean 'position'?"));
+  EXPECT_THAT(error_of("mood,reference\n0,1\n"), HasSubstr("row 1, column time: is missing"));
 }
 
 TEST(Text, KnowsUtf8) {

@@ -39,11 +39,8 @@ Recording example() {
   out.samples.input_hold = true;
   out.samples.time_s = {0.0, 0.1, 1.0 / 3.0};
   out.samples.channels = {
-      {.name = "pressure_a", .unit = "Pa", .noise_std = 1.0e4 / 3.0, .values = {1e7 / 3.0, -1e-5, 5e-324}},
-      {.name = "position",
-       .unit = "m",
-       .noise_std = 0.0,
-       .values = {0.06, 0.1 + 0.2, std::numeric_limits<double>::max()}}};
+      {.name = "pressure_a", .unit = "Pa", .noise_std = 1.0e4 / 3.0, .values = {1e7 / 3.0, -1e-5, 1e-99 / 3.0}},
+      {.name = "position", .unit = "m", .noise_std = 0.0, .values = {0.06, 0.1 + 0.2, 1e18 / 3.0}}};
   return out;
 }
 
@@ -148,6 +145,23 @@ TEST(SharedRecordings, AllCanBeRead) {
     ++count;
   }
   EXPECT_GT(count, 100);
+}
+
+using WildNumbers = ScratchFolder;
+
+TEST_F(WildNumbers, AreRefusedByRowAndColumn) {
+  const auto error_of = [this](const std::string& text) {
+    const Result<Recording> result = read_recording(write("wild.csv", text), test_plant());
+    return result ? std::string("was read") : result.error().describe();
+  };
+  EXPECT_THAT(error_of("time,position\n0,1e308\n1,2\n"), HasSubstr("row 2, column position: '1e+308': is no m that"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1,-1e300\n"), HasSubstr("row 3, column position: '-1e+300'"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1e300,2\n"), HasSubstr("row 3, column time: '1e+300': is no s that"));
+  EXPECT_THAT(error_of("time,position\n0,1\n5e-12,2\n1e-11,3\n"), HasSubstr("rows 5e-12 s apart, closer than"));
+  EXPECT_THAT(error_of("time,position\n0,1\n1e6,2\n"), HasSubstr("1e+06 s long, more than the 604800 s"));
+  const Result<Recording> tiny = read_recording(write("tiny.csv", "time,position\n0,5e-324\n1,2\n"), test_plant());
+  ASSERT_TRUE(tiny) << tiny.error().describe();
+  EXPECT_EQ(tiny->samples.channels[0].values, (std::vector<double>{0.0, 2.0}));
 }
 
 }  // namespace

@@ -78,6 +78,16 @@ TEST(ReportHtml, TellsWhatWasFound) {
     EXPECT_THAT(html, HasSubstr(part));
 }
 
+TEST(ReportHtml, ShowsWhatWasSeenBesideTheClaimedEffects) {
+  mismatch::Explanation explanation = example_explanation();
+  EXPECT_THAT(explanation_to_html(explanation), Not(HasSubstr("What else was seen")));
+  explanation.candidates = {{{"line_resistance", "laminar", "valve_1", "R q_f", ""}, 0.12, 0.4}};
+  const std::string html = explanation_to_html(explanation);
+  EXPECT_EQ(what_is_wrong(html), "");
+  for (const char* part : {"What else was seen", "line resistance (laminar)", "12 %", "40 %"})
+    EXPECT_THAT(html, HasSubstr(part));
+}
+
 TEST(ReportHtml, ShowsParametersAtABoundBeforeTheOthers) {
   mismatch::Explanation explanation = example_explanation();
   explanation.parameters.push_back({.name = "R_M",

@@ -255,6 +255,26 @@ services:
   EXPECT_EQ(configuration->advice.confirming_tests, AdviceOptions{}.confirming_tests);
 }
 
+TEST(ConfigurationTest, TheFleetIsReadWholeOrRefused) {
+  const YamlPlace place;
+  const std::string begin =
+      "services:\n  prognostic_assessment:\n    fleet: {initial_rate: 0.05, initial_rate_std: 0.008, "
+      "steepening: 0.0012,\n            steepening_std: ";
+  const std::string end = ", rate_steepening_correlation: 0.3, irregularity_std: 0.03}\n";
+  const auto good = load_configuration(place.write("good.yaml", begin + "0.0002" + end));
+  ASSERT_TRUE(good.has_value()) << combine(good.error()).describe();
+  ASSERT_TRUE(good->fleet.has_value());
+  EXPECT_EQ(good->fleet->steepening_std, 0.0002);
+  EXPECT_FALSE(load_configuration(place.write("none.yaml", "services: {}\n"))->fleet.has_value());
+  const auto negative = load_configuration(place.write("bad.yaml", begin + "-1" + end));
+  ASSERT_FALSE(negative.has_value());
+  EXPECT_NE(combine(negative.error()).describe().find("fleet.steepening_std"), std::string::npos);
+  const auto part = load_configuration(
+      place.write("part.yaml", "services: {prognostic_assessment: {fleet: {initial_rate: 0.05}}}\n"));
+  ASSERT_FALSE(part.has_value());
+  EXPECT_NE(combine(part.error()).describe().find("irregularity_std: must be given"), std::string::npos);
+}
+
 TEST(ConfigurationTest, ASiteThatIsThereTwiceIsSuggestedOnce) {
   const YamlPlace place;
   place.write("assets/a.yaml", "asset_id: A\nsite: quite_another\n");

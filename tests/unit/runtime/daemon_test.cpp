@@ -6,7 +6,10 @@
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <future>
 
 #include "services/common/runtime/log.hpp"
@@ -86,10 +89,15 @@ TEST_F(DaemonTest, RunsUntilSigtermAndTellsTheServiceManager) {
   ServiceManager manager(place_.directory());
   auto daemon = std::async(std::launch::async, [this] { return run(usual()); });
   ASSERT_TRUE(manager.heard("READY=1"));
+  InMemoryBus listener(network_);
+  constexpr std::array kFeatures = {Topic::test_features};
+  ASSERT_TRUE(listener.subscribe(kFeatures));
   Feeder feeder(network_, blocks_of_tests(1, {"A"}));
   feeder.send(2);
   ASSERT_TRUE(step_until([&] { return feeder.beat(), feeder.all_received(); },
                          [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }));
+  // What is received is journaled; what it leads to may be concluded only after the next start.
+  ASSERT_EQ(listener.receive(std::chrono::seconds(20)).size(), 1U);
   EXPECT_TRUE(manager.heard("WATCHDOG=1"));
   ::kill(::getpid(), SIGTERM);
   EXPECT_TRUE(manager.heard("STOPPING=1"));
@@ -100,6 +108,56 @@ TEST_F(DaemonTest, RunsUntilSigtermAndTellsTheServiceManager) {
   std::ifstream log(place_.directory() + "/state/log/data_acquisition.log");
   const std::string text{std::istreambuf_iterator<char>(log), {}};
   EXPECT_THAT(text, HasSubstr("concluded topic=test_features pst=\"A test 0\" asset=A"));
+}
+
+/// Computes for ever, at once or for later, once it has an input.
+class EndlessLayer final : public Layer {
+ public:
+  explicit EndlessLayer(bool later) : later_(later) {}
+  std::string_view name() const override { return "data_acquisition"; }
+  std::span<const Topic> inputs() const override { return kInputs; }
+  std::span<const Topic> outputs() const override { return {}; }
+  void restore(const Message&) override {}
+  Conclusion receive(const Message&) override {
+    const auto endless = [](const std::stop_token&) {
+      for (volatile bool on = true; on;) {
+      }
+      return Conclusion();
+    };
+    if (!later_) return endless({});
+    Conclusion conclusion;
+    conclusion.later = endless;
+    return conclusion;
+  }
+
+ private:
+  static constexpr Topic kInputs[] = {Topic::raw_samples};
+  bool later_;
+};
+
+TEST_F(DaemonTest, EndsAtSigtermWhateverItComputes) {
+  ServiceManager manager(place_.directory());
+  for (const bool later : {false, true}) {
+    parts_.make_layer = [later](const Configuration&, const Clock&) { return std::make_unique<EndlessLayer>(later); };
+    parts_.make_local_inputs = [](const Configuration&) {
+      return [](const RunnerOptions::LayerAtRest&) { return std::vector<Message>{RawSamples()}; };
+    };
+    const pid_t daemon = ::fork();
+    if (daemon == 0) _exit(run(usual()));
+    EXPECT_TRUE(manager.heard("READY=1"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // it looks for local inputs once a second
+    const auto begin = std::chrono::steady_clock::now();
+    ::kill(daemon, SIGTERM);
+    int status = -1;
+    pid_t ended = 0;
+    while (ended == 0 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20)) {
+      ended = ::waitpid(daemon, &status, WNOHANG);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_EQ(ended, daemon) << "runs on, later " << later;
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    if (ended != daemon) ::kill(daemon, SIGKILL), ::waitpid(daemon, &status, 0);
+  }
 }
 
 TEST_F(DaemonTest, RefusesToRunTwiceOnOneState) {

@@ -80,7 +80,7 @@ class PatientLayer : public Layer {
     blocks.push_back(block);
     if (block.boundary != BlockBoundary::end) return {};
     concluded_.insert(block.recording_id);
-    return {{}, {}, [blocks = running_.extract(block.recording_id).mapped(), takes = takes_] {
+    return {{}, {}, [blocks = running_.extract(block.recording_id).mapped(), takes = takes_](const std::stop_token&) {
               std::this_thread::sleep_for(takes);
               Conclusion conclusion;
               TestFeatures features;
@@ -124,10 +124,10 @@ class JoiningLayer : public Layer {
     return {{report}, {features.header.message_id, state.header.message_id}};
   }
   [[nodiscard]] Conclusion tick(UtcTime now) override {
-    ticks.push_back(now);
+    if (ticks) ticks->push_back(now);
     return {};
   }
-  std::vector<UtcTime> ticks;
+  std::vector<UtcTime>* ticks = nullptr;
 
  private:
   static constexpr std::array kInputs = {Topic::test_features, Topic::state_report};

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,20 +21,25 @@ namespace sealwatch::testing {
 /// Raised in place of a SIGKILL: everything of the process is gone but its journal and what it published.
 struct Killed {};
 
-/// Counts the steps of one process and kills it at a chosen one.
+/// Counts the steps of one process and kills it at a chosen one, in whichever of its threads that is.
 class Fate {
  public:
   explicit Fate(int fatal_step = -1) : fatal_step_(fatal_step) {}
+  Fate(const Fate& other) : fatal_step_(other.fatal_step_) {}
   void step() {
-    if (std::this_thread::get_id() != thread_) return;  // the heartbeat's thread ends with its runner
-    if (++steps_ == fatal_step_) throw Killed();
+    if (dead_ || ++steps_ == fatal_step_) die();
   }
   [[nodiscard]] int steps() const { return steps_; }
+  [[nodiscard]] bool is_dead() const { return dead_; }
 
  private:
-  std::thread::id thread_ = std::this_thread::get_id();
+  void die() {
+    dead_ = true;
+    throw Killed();
+  }
   int fatal_step_;
-  int steps_ = 0;
+  std::atomic<int> steps_ = 0;
+  std::atomic<bool> dead_ = false;
 };
 
 class MortalBus final : public Bus {
@@ -49,7 +55,7 @@ class MortalBus final : public Bus {
   Status publish(const ResendRequest& request) override { return bus_.publish(request); }
   std::vector<BusItem> receive(std::chrono::milliseconds timeout, std::size_t most) override {
     auto items = bus_.receive(timeout, most);
-    if (!items.empty()) fate_.step();  // taken from the bus, not journaled
+    if (!items.empty() || fate_.is_dead()) fate_.step();  // taken from the bus, not journaled
     return items;
   }
   void wake() override { bus_.wake(); }
@@ -67,11 +73,13 @@ class MortalLayer final : public Layer {
   std::span<const Topic> outputs() const override { return layer_->outputs(); }
   void restore(const Message& own) override { layer_->restore(own); }
   Conclusion receive(const Message& input) override {
-    fate_.step();  // inside the transaction, before the conclusion
+    fate_.step();  // taken, before the conclusion
     Conclusion conclusion = layer_->receive(input);
     fate_.step();  // concluded, not journaled
     return conclusion;
   }
+  std::size_t held() const override { return layer_->held(); }
+  Conclusion tick(UtcTime now) override { return layer_->tick(now); }
 
  private:
   std::unique_ptr<Layer> layer_;
@@ -95,6 +103,7 @@ inline RunnerOptions fast_options() {
   options.heartbeat.shortest = std::chrono::milliseconds(1);
   options.settling = std::chrono::milliseconds(0);
   options.batch_pause = std::chrono::milliseconds(0);
+  options.batch_time = std::chrono::seconds(5);  // on a busy machine too, a step concludes from what it took
   options.streams.patience_s = 0.003;
   options.streams.retry_s = 0.01;
   return options;
@@ -106,11 +115,12 @@ class Process {
   Process(std::shared_ptr<InMemoryNetwork> network, const LayerFactory& make_layer, const std::string& connection,
           Fate fate = Fate(), RunnerOptions options = fast_options())
       : fate_(fate),
-        layer_(make_layer(), fate_),
         bus_(network, fate_),
         heartbeat_bus_(network),
-        journal_(std::move(*Journal::open(connection, std::string(layer_.name())))),
-        runner_(layer_, bus_, heartbeat_bus_, journal_, clock_, std::move(options)) {}
+        journal_(std::move(*Journal::open(connection, std::string(make_layer()->name())))),
+        runner_([this, make_layer](
+                    const std::string& /*asset_id*/) { return std::make_unique<MortalLayer>(make_layer(), fate_); },
+                bus_, heartbeat_bus_, journal_, clock_, std::move(options)) {}
 
   void start() {
     const Status started = runner_.start();
@@ -133,7 +143,6 @@ class Process {
  private:
   Fate fate_;
   TestClock clock_;
-  MortalLayer layer_;
   MortalBus bus_;
   InMemoryBus heartbeat_bus_;
   Journal journal_;

@@ -58,7 +58,7 @@ TEST(LatestOutputs, WhatWasConcludedAndNotPublishedIsToBePublished) {
   LatestOutputs latest;
   latest.concluded(of_event(1, 10), 1);
   EXPECT_THAT(latest.to_publish(), ElementsAre(Pair(kKey, 1)));
-  latest.give_up();
+  latest.published(of_event(1, 10));
   EXPECT_THAT(latest.to_publish(), IsEmpty());
 }
 

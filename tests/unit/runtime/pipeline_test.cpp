@@ -10,11 +10,10 @@ namespace sealwatch::testing {
 namespace {
 
 std::vector<Message> in_process(const std::vector<RawSamples>& blocks) {
-  std::vector<std::unique_ptr<Layer>> layers;
-  layers.push_back(std::make_unique<CuttingLayer>());
-  layers.push_back(std::make_unique<JoiningLayer>());
+  const std::vector<LayerMaker> layers = {[](const std::string&) { return std::make_unique<CuttingLayer>(); },
+                                          [](const std::string&) { return std::make_unique<JoiningLayer>(); }};
   std::vector<Message> concluded;
-  InProcessPipeline pipeline(std::move(layers), [&](const Message& message) { concluded.push_back(message); });
+  InProcessPipeline pipeline(layers, [&](const Message& message) { concluded.push_back(message); });
   for (const RawSamples& block : blocks) pipeline.push(Message(block));
   return concluded;
 }
@@ -74,6 +73,60 @@ TEST(InProcessPipelineTest, GivesForeignMessagesTheIdsThatServicesGiveThem) {
   for (const Message& message : in_process(blocks))
     if (topic_of(message) != Topic::health_report) concluded.push_back(message);
   EXPECT_EQ(concluded, served) << "the test's content is chained from the blocks' ids";
+}
+
+/// Raises an exception on one test of asset A, which does not end on another.
+class FailingLayer final : public Layer {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "health_assessment"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
+  [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
+  void restore(const Message& /*own*/) override { ++tests_; }
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    ++tests_;
+    const std::string& test = header_of(input).pst_id;
+    if (test == "A test 1") throw std::runtime_error("no such phase");
+    while (test == "A test 2" && !released.load()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    HealthReport report;
+    report.asset_id = asset_of(input);
+    report.header = header("health_report/" + test, test);
+    report.inadmissible_reasons = {"test " + std::to_string(tests_)};
+    return {{report}, {header_of(input).message_id}};
+  }
+  inline static std::atomic<bool> released = false;
+
+ private:
+  static constexpr std::array kInputs = {Topic::test_features};
+  static constexpr std::array kOutputs = {Topic::health_report};
+  int tests_ = 0;
+};
+
+TEST(InProcessPipelineTest, SetsAsideWhatFailsTwiceAndGoesOn) {
+  const std::vector<LayerMaker> layers = {[](const std::string&) { return std::make_unique<CuttingLayer>(); },
+                                          [](const std::string&) { return std::make_unique<FailingLayer>(); }};
+  std::vector<std::string> concluded;
+  std::vector<std::string> set_aside;
+  AssetLanes::Options impatient;
+  impatient.workers.deadline = std::chrono::milliseconds(100);
+  impatient.workers.grace = std::chrono::milliseconds(100);
+  FailingLayer::released = false;
+  InProcessPipeline pipeline(
+      layers,
+      [&](const Message& message) {
+        if (const auto* report = std::get_if<HealthReport>(&message))
+          concluded.push_back(report->header.pst_id + ": " + report->inadmissible_reasons.front());
+      },
+      [&](std::string_view layer, const Message& input, const std::string& why) {
+        set_aside.push_back(std::string(layer) + " " + header_of(input).pst_id + ": " + why);
+      },
+      impatient);
+  for (const RawSamples& block : blocks_of_tests(4, {"A", "B"})) pipeline.push(Message(block));
+  EXPECT_TRUE(pipeline.hangs());
+  FailingLayer::released = true;  // or the end of the pipeline would wait for it
+  EXPECT_THAT(concluded, ::testing::ElementsAre("A test 0: test 1", "B test 0: test 1", "B test 1: test 2",
+                                                "B test 2: test 3", "A test 3: test 2", "B test 3: test 4"));
+  EXPECT_THAT(set_aside, ::testing::ElementsAre("health_assessment A test 1: no such phase",
+                                                ::testing::StartsWith("health_assessment A test 2: it did not end")));
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "services/common/runtime/resend_queue.hpp"
 #include "services/common/runtime/stream_reader.hpp"
+#include "services/common/runtime/stream_window.hpp"
 
 namespace sealwatch {
 namespace {
@@ -154,11 +156,144 @@ TEST_F(StreamReaderTest, AnyDisorderWithRepetitionComesOutInOrderOnce) {
   }
 }
 
+constexpr std::uint64_t kHighest = std::numeric_limits<std::uint64_t>::max();
+
+TEST_F(StreamReaderTest, AForgedWordOnHowFarAStreamGoesIsWaitedForAMinuteAndTakenBack) {
+  note(kHighest, 0.0);
+  EXPECT_TRUE(reader_.is_behind());
+  EXPECT_THAT(asked(0.0), IsEmpty());
+  EXPECT_THAT(asked(0.4), ElementsAre(3, 12));
+  for (double now_s = 1.0; now_s < 70.0; now_s += 0.5) {
+    note(kHighest, now_s);
+    (void)asked(now_s);
+  }
+  EXPECT_FALSE(reader_.is_behind()) << "time stands still for ever";
+  int requests = 0;
+  for (double now_s = 70.0; now_s < 170.0; now_s += 0.5) {
+    note(kHighest, now_s);
+    requests += asked(now_s).empty() ? 0 : 1;
+  }
+  EXPECT_LE(requests, 27) << "at most every 4 s";
+  EXPECT_GE(requests, 20) << "it may be true";
+  note(3, 170.0);
+  EXPECT_THAT(accept(3), ElementsAre(3));
+  EXPECT_THAT(asked(300.0), IsEmpty()) << "the writer's own word counts";
+  note(4, 301.0);
+  EXPECT_TRUE(reader_.is_behind());
+}
+
+TEST_F(StreamReaderTest, AForgedNumberStopsNobody) {
+  EXPECT_THAT(accept(kHighest), IsEmpty());
+  EXPECT_THAT(accept(3), ElementsAre(3));
+  for (double now_s = 0.0; now_s < 70.0; now_s += 0.5) {
+    note(3, now_s);
+    (void)asked(now_s);
+  }
+  EXPECT_FALSE(reader_.is_behind());
+  EXPECT_THAT(asked(1000.0), IsEmpty()) << "forgotten";
+  EXPECT_THAT(accept(4), ElementsAre(4));
+}
+
+TEST_F(StreamReaderTest, AWriterThatDiedInAGapIsAskedForButNotWaitedFor) {
+  EXPECT_THAT(accept(5), IsEmpty());
+  for (double now_s = 0.0; now_s < 70.0; now_s += 0.5) (void)asked(now_s);
+  EXPECT_FALSE(reader_.is_behind());
+  EXPECT_THAT(asked(100.0), ElementsAre(3, 4)) << "it may come back";
+  EXPECT_THAT(accept(3), ElementsAre(3));
+  EXPECT_THAT(accept(4), ElementsAre(4, 5)) << "nothing was lost";
+}
+
+TEST_F(StreamReaderTest, ANumberedSourceThatDiesAfterItsLastBlockLeavesNothingOpen) {
+  EXPECT_THAT(accept(3), ElementsAre(3));
+  EXPECT_FALSE(reader_.is_behind());
+  EXPECT_THAT(asked(1000.0), IsEmpty());
+}
+
+TEST_F(StreamReaderTest, TheHighestNumberThereIsIsANumber) {
+  StreamReader reader("reader", {{"advisory", "w", kHighest - 1}}, limits_);
+  EXPECT_THAT(sequences(reader.accept(numbered(kHighest))), ElementsAre(kHighest));
+  EXPECT_THAT(sequences(reader.accept(numbered(kHighest))), IsEmpty());
+  EXPECT_THAT(sequences(reader.accept(numbered(1))), IsEmpty());
+  reader.note_written({"advisory", "w", kHighest}, 1.0);
+  EXPECT_THAT(reader.requests(2.0), IsEmpty());
+}
+
+TEST_F(StreamReaderTest, StrangersAreBoundedAndForgottenAndTheOwnWritersStay) {
+  const auto stranger = [](int k) { return "stranger " + std::to_string(k); };
+  for (int k = 0; k < 100'000; ++k) reader_.note_written({"advisory", stranger(k), 7}, 0.0);
+  EXPECT_EQ(reader_.active().size(), 0U) << "of nobody anything was read";
+  EXPECT_THAT(accept(3), ElementsAre(3));
+  std::size_t asked_at_once = 0;
+  for (double now_s = 0.0; now_s < 5.0; now_s += 0.1)
+    asked_at_once = std::max(asked_at_once, reader_.requests(now_s).size());
+  EXPECT_LE(asked_at_once, limits_.requests);
+  note(3, 120.0);
+  EXPECT_THAT(sequences(reader_.accept(numbered(1, "newcomer"))), ElementsAre(1));
+  EXPECT_EQ(reader_.active().size(), 2U);
+  note(3, 800.0);
+  EXPECT_EQ(reader_.active().size(), 1U) << "who was not heard for ten minutes is not spoken of";
+}
+
+TEST_F(StreamReaderTest, WhenAWriterStartsTheLastMessagesReadAreAskedForAgain) {
+  const StreamReader::Key kStream = {"advisory", "w"};
+  note(2, 0.0);
+  EXPECT_THAT(asked(0.0), IsEmpty());
+  (void)reader_.note_start("w", 111, 0.0);
+  EXPECT_THAT(asked(0.1), ElementsAre(1, 2));
+  EXPECT_THAT(asked(0.2), IsEmpty());
+  EXPECT_THAT(asked(1.2), ElementsAre(1, 2)) << "no answer";
+  EXPECT_THAT(accept(2), IsEmpty());
+  EXPECT_THAT(asked(3.3), ElementsAre(1, 2)) << "whoever knows the ids has not compared them";
+  reader_.note_known(kStream, 2);
+  reader_.note_known(kStream, 1);
+  EXPECT_THAT(asked(9.0), ElementsAre(2, 2)) << "not all of it came in order";
+  reader_.note_known(kStream, 2);
+  EXPECT_THAT(asked(99.0), IsEmpty());
+  (void)reader_.note_start("w", 111, 99.0);
+  EXPECT_THAT(asked(99.0), IsEmpty()) << "the same start";
+  (void)reader_.note_start("w", 222, 99.0);
+  EXPECT_THAT(asked(99.0), ElementsAre(1, 2));
+  for (int forged = 0; forged < 1000; ++forged) (void)reader_.note_start("w", forged, 99.5);
+  EXPECT_THAT(asked(99.5), IsEmpty()) << "a forger could have everything sent again and again";
+}
+
+TEST_F(StreamReaderTest, NoMoreThanHalfAWindowIsHandedOutBetweenTwoHeartbeats) {
+  const std::uint64_t half = stream_window("test_window") / 2;
+  StreamReader reader("reader", {});
+  const auto window = [](std::uint64_t sequence) {
+    TestWindow message;
+    message.header.writer_id = "w";
+    message.header.stream_sequence = sequence;
+    return Message(message);
+  };
+  EXPECT_EQ(reader.accept(window(1)).size(), 1U);
+  EXPECT_TRUE(reader.note_start("w", 111, 0.0).empty());
+  reader.note_known({"test_window", "w"}, 1);
+  EXPECT_TRUE(reader.note_start("w", 111, 0.0).empty());
+  std::size_t handed_out = 0;
+  for (std::uint64_t k = 2; k <= 2 * half; ++k) handed_out += reader.accept(window(k)).size();
+  EXPECT_EQ(handed_out, half);
+  EXPECT_TRUE(reader.requests(100.0).empty()) << "nothing is missing";
+  EXPECT_TRUE(reader.requests(200.0).empty());
+  EXPECT_EQ(reader.note_start("w", 111, 0.0).size(), half - 1);
+}
+
+TEST_F(StreamReaderTest, AWriterThatCountsAnewIsReadFromItsStartButNotForEver) {
+  EXPECT_TRUE(reader_.read_again({"advisory", "w"}, 0.0));
+  EXPECT_THAT(accept(1), ElementsAre(1));
+  EXPECT_THAT(accept(2), ElementsAre(2));
+  EXPECT_FALSE(reader_.read_again({"advisory", "w"}, 30.0)) << "a forger could keep the reader busy";
+  EXPECT_TRUE(reader_.read_again({"advisory", "w"}, 61.0));
+  EXPECT_FALSE(reader_.read_again({"advisory", "nobody"}, 0.0));
+}
+
 using Range = ResendQueue::Range;
+
+constexpr std::uint64_t kSent = 1'000'000;
 
 TEST(ResendQueueTest, ServesBoundedPieces) {
   ResendQueue queue;
-  queue.add({Topic::advisory, 1, 150});
+  queue.add({Topic::advisory, 1, 150}, kSent);
   EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 1, 64}));
   EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 65, 128}));
   EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 129, 150}));
@@ -167,10 +302,10 @@ TEST(ResendQueueTest, ServesBoundedPieces) {
 
 TEST(ResendQueueTest, ServesSeveralReadersThatMissTheSameOnce) {
   ResendQueue queue;
-  queue.add({Topic::advisory, 1, 10});
-  queue.add({Topic::advisory, 5, 20});
-  queue.add({Topic::advisory, 21, 22});
-  queue.add({Topic::state_report, 5, 6});
+  queue.add({Topic::advisory, 1, 10}, kSent);
+  queue.add({Topic::advisory, 5, 20}, kSent);
+  queue.add({Topic::advisory, 21, 22}, kSent);
+  queue.add({Topic::state_report, 5, 6}, kSent);
   EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 1, 22}));
   EXPECT_EQ(queue.take(64), (Range{Topic::state_report, 5, 6}));
   EXPECT_TRUE(queue.empty());
@@ -178,16 +313,63 @@ TEST(ResendQueueTest, ServesSeveralReadersThatMissTheSameOnce) {
 
 TEST(ResendQueueTest, TakesTopicsInTurn) {
   ResendQueue queue;
-  queue.add({Topic::advisory, 1, 100});
-  queue.add({Topic::state_report, 1, 1});
+  queue.add({Topic::advisory, 1, 100}, kSent);
+  queue.add({Topic::state_report, 1, 1}, kSent);
   EXPECT_EQ(queue.take(64)->topic, Topic::advisory);
   EXPECT_EQ(queue.take(64)->topic, Topic::state_report);
   EXPECT_EQ(queue.take(64)->topic, Topic::advisory);
 }
 
+TEST(ResendQueueTest, ARequestOfAnyRangeCountsForAWindowAndNoMoreThanWasSent) {
+  const std::uint64_t window = stream_window("advisory");
+  const auto served = [](std::uint64_t first, std::uint64_t last, std::uint64_t sent) {
+    ResendQueue queue;
+    queue.add({Topic::advisory, first, last}, sent);
+    return queue.take(kHighest);
+  };
+  EXPECT_EQ(served(0, kHighest, 3), (Range{Topic::advisory, 1, 3}));
+  EXPECT_EQ(served(0, kHighest, kSent), (Range{Topic::advisory, 1, window}));
+  EXPECT_EQ(served(kHighest, kHighest, kHighest), (Range{Topic::advisory, kHighest, kHighest}));
+  EXPECT_EQ(served(0, kHighest, kHighest), (Range{Topic::advisory, 1, window}));
+  EXPECT_EQ(served(kHighest, 0, kSent), std::nullopt);
+  EXPECT_EQ(served(kHighest - 3, kHighest, kSent), std::nullopt) << "of what there is not";
+  EXPECT_EQ(served(0, 0, kSent), std::nullopt);
+}
+
+TEST(ResendQueueTest, RequestsAtTheHighestNumberTouchWhatTheyTouch) {
+  ResendQueue queue;
+  queue.add({Topic::advisory, kHighest, kHighest}, kHighest);
+  queue.add({Topic::advisory, 1, 2}, kHighest);
+  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, kHighest, kHighest}));
+  EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 1, 2}));
+}
+
+TEST(ResendQueueTest, AFloodOfRequestsWaitsBounded) {
+  ResendQueue scattered;
+  for (std::uint64_t k = 1; k <= 100'000; ++k) scattered.add({Topic::advisory, 3 * k, 3 * k}, kSent);
+  std::uint64_t messages = 0;
+  while (const auto range = scattered.take(64)) messages += range->last - range->first + 1;
+  EXPECT_LE(messages, ResendQueue::kMostWaiting);
+  ResendQueue joined;  // each touches the one before: the whole journal would be one range
+  for (std::uint64_t k = 0; k < 1000; ++k) joined.add({Topic::advisory, 256 * k + 1, 256 * k + 256}, kSent);
+  for (messages = 0; const auto range = joined.take(64);) messages += range->last - range->first + 1;
+  EXPECT_LE(messages, ResendQueue::kMostWaiting);
+  EXPECT_GE(messages, 1000U);
+}
+
+TEST(ResendQueueTest, RestsForAsLongAsItSent) {
+  using std::chrono::milliseconds;
+  ResendQueue queue;
+  const ResendQueue::Time begin{};
+  EXPECT_TRUE(queue.may_send(begin));
+  queue.note_sent(begin, begin + milliseconds(30));
+  EXPECT_FALSE(queue.may_send(begin + milliseconds(59)));
+  EXPECT_TRUE(queue.may_send(begin + milliseconds(60)));
+}
+
 TEST(ResendQueueTest, PassesOverWhatIsEmpty) {
   ResendQueue queue;
-  queue.add({Topic::advisory, 5, 4});
+  queue.add({Topic::advisory, 5, 4}, kSent);
   EXPECT_TRUE(queue.empty());
 }
 

@@ -56,5 +56,22 @@ TEST(Offset, IsAbsentWhereNothingVariesOrTheSearchEnds) {
   EXPECT_FALSE(estimate_offset(reference, record(0.8, 1.0, 0.0, 1), kInterval_s, 0.2));
 }
 
+/// At 20 kHz there are 20 000 lags on either side: they are searched in two steps.
+TEST(Offset, IsFoundAtAHighRateWithBoundedWork) {
+  constexpr double kFast_s = 5e-5;
+  const auto fast = [](double late_s, double gain) {
+    std::vector<double> values;
+    for (double t = 0.0; t < 10.0; t += kFast_s) values.push_back(gain * shape(t - late_s));
+    return values;
+  };
+  const std::vector<double> reference = fast(0.0, 1.0);
+  for (const double late_s : {-0.777, 0.00042, 0.5}) {
+    const auto estimate = estimate_offset(reference, fast(late_s, -2.0), kFast_s, 1.0);
+    ASSERT_TRUE(estimate);
+    EXPECT_NEAR(estimate->offset_s, late_s, 1e-5);  // a fifth of a row
+    EXPECT_NEAR(estimate->gain, -2.0, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace sealwatch::signal

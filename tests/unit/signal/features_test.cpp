@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -212,6 +213,24 @@ TEST(Features, TableNamesEachOnce) {
     EXPECT_EQ(find_feature(feature.name), &feature);
   }
   EXPECT_EQ(find_feature("no_such_feature"), nullptr);
+}
+
+/// Whatever a window holds, its phases and features end. Who takes samples in marks such values (core/test_limits.hpp);
+/// these loops do not rely on it.
+TEST(Features, OfWildNumbersEnd) {
+  const SyntheticPst pst;
+  for (const double wild :
+       {1e308, -1e308, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 5e-324}) {
+    for (const char* channel : {"position", "velocity", "motor_voltage", "pressure_a", "flow"}) {
+      TimeSeries samples = pst.record();
+      for (Series& series : samples.channels)
+        if (series.name == channel) series.values[0] = series.values[700] = series.values[701] = wild;
+      for (const auto& [name, feature] : features_of(pst, samples)) {
+        EXPECT_TRUE(std::isfinite(feature.value)) << name;
+        EXPECT_TRUE(std::isfinite(feature.std_error)) << name;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "sealwatch/port/patient_publish.hpp"
 #include "tests/unit/transport/kits.hpp"
 
 namespace sealwatch::test {
@@ -103,7 +104,8 @@ TEST_P(BusContract, LosesNothingOfABurstAndKeepsItsOrder) {
   connect(*publisher, *subscriber);
   constexpr std::size_t kBurst = 10'000;
   std::thread burst([&] {
-    for (std::size_t k = 1; k <= kBurst; ++k) ASSERT_TRUE(publisher->publish(advisory(kAssets[k % kAssets.size()], k)));
+    for (std::size_t k = 1; k <= kBurst; ++k)
+      ASSERT_TRUE(publish_patiently(*publisher, advisory(kAssets[k % kAssets.size()], k, "")));
   });
   const auto items = collect(*subscriber, kBurst);
   burst.join();
@@ -122,7 +124,7 @@ TEST_P(BusContract, CarriesLargeBlocksUnchanged) {
   std::thread sender([&] {
     for (std::size_t k = 1; k <= kBlocks; ++k) {
       block.header.stream_sequence = k;
-      ASSERT_TRUE(publisher->publish(Message(block)));
+      ASSERT_TRUE(publish_patiently(*publisher, Message(block)));
     }
   });
   const auto items = collect(*subscriber, 1);
@@ -177,7 +179,7 @@ TEST_P(BusContract, KeepsTheOrderOfEachOfTwoPublishers) {
   connect(*second, *subscriber);
   constexpr std::size_t kEach = 500;
   const auto send = [](Bus& bus, const std::string& writer) {
-    for (std::uint64_t k = 1; k <= kEach; ++k) ASSERT_TRUE(bus.publish(advisory("a", k, writer)));
+    for (std::uint64_t k = 1; k <= kEach; ++k) ASSERT_TRUE(publish_patiently(bus, advisory("a", k, writer)));
   };
   std::thread sender([&] { send(*first, "first"); });
   send(*second, "second");
@@ -194,7 +196,7 @@ TEST_P(BusContract, DeliversWhatWasPublishedJustBeforeThePublisherClosed) {
   auto publisher = open();
   connect(*publisher, *subscriber);
   constexpr std::size_t kCount = 300;
-  for (std::uint64_t k = 1; k <= kCount; ++k) ASSERT_TRUE(publisher->publish(advisory("a", k)));
+  for (std::uint64_t k = 1; k <= kCount; ++k) ASSERT_TRUE(publish_patiently(*publisher, advisory("a", k)));
   publisher.reset();
   EXPECT_EQ(numbers(collect(*subscriber, kCount)), count_from_1(kCount));
   EXPECT_TRUE(subscriber->receive(kQuiet).empty()) << "the end of a publisher is not a message";

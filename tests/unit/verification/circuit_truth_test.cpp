@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "services/common/verification/circuit_truth.hpp"
-#include "services/common/verification/estimate_test.hpp"
+#include "services/verification/lives/circuit_truth.hpp"
+#include "services/verification/lives/estimate_test.hpp"
 #include "services/virtual_bench/simulate_test.hpp"
 #include "tests/unit/verification/actuator.hpp"
 

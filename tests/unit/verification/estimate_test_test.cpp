@@ -1,8 +1,8 @@
-#include "services/common/verification/estimate_test.hpp"
+#include "services/verification/lives/estimate_test.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/common/verification/circuit_truth.hpp"
+#include "services/verification/lives/circuit_truth.hpp"
 #include "tests/unit/verification/actuator.hpp"
 
 namespace sealwatch::verification {

@@ -1,4 +1,4 @@
-#include "services/common/verification/life_record.hpp"
+#include "services/verification/lives/life_record.hpp"
 
 #include <gtest/gtest.h>
 

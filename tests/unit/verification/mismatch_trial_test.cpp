@@ -1,11 +1,11 @@
 // The blind trial: its figures on records made by hand, and a few whole sets.
-#include "services/common/verification/mismatch_trial.hpp"
+#include "services/verification/trial/mismatch_trial.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/common/verification/mismatch_summary.hpp"
+#include "services/verification/trial/mismatch_summary.hpp"
 
 namespace sealwatch::verification {
 namespace {
@@ -223,7 +223,8 @@ TEST(MismatchTrial, ASearchThatStoppedEarlyStartsAgain) {
   ASSERT_EQ(set.answer.found.size(), 1U);
   EXPECT_EQ(set.answer.found[0].id, "sensor_gain");
   EXPECT_EQ(set.answer.found[0].element, "sensor:shaft_speed");
-  EXPECT_NEAR(set.answer.found[0].value, set.hidden[0].value, 0.02 * std::abs(set.hidden[0].value));
+  // Displacement and back-EMF constant are known within half a per cent: no gain is known much better.
+  EXPECT_NEAR(set.answer.found[0].value, set.hidden[0].value, 0.01);
   EXPECT_LT(set.answer.held_after, 1.05);
 }
 

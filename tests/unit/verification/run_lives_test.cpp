@@ -1,5 +1,5 @@
 // Threads, shards, interruptions and damaged files change no byte of the records.
-#include "services/common/verification/run_lives.hpp"
+#include "services/verification/lives/run_lives.hpp"
 
 #include <gtest/gtest.h>
 

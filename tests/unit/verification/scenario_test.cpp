@@ -1,11 +1,11 @@
 // What a scenario changes of a life, and that it changes nothing else.
-#include "services/common/verification/scenario.hpp"
+#include "services/verification/lives/scenario.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/common/verification/setting.hpp"
+#include "services/verification/lives/setting.hpp"
 #include "services/virtual_bench/random.hpp"
 
 namespace sealwatch::verification {

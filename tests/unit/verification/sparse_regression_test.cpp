@@ -1,11 +1,11 @@
 // The control of the field: it finds what is large and recorded, and it is fooled by noise.
-#include "services/common/verification/sparse_regression.hpp"
+#include "services/verification/trial/sparse_regression.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "services/virtual_bench/truth_trials.hpp"
+#include "services/verification/truth/trials.hpp"
 
 namespace sealwatch::verification {
 namespace {

@@ -1,9 +1,9 @@
 // The measures on made-up answers whose result is known by hand.
-#include "services/common/verification/summary.hpp"
+#include "services/verification/lives/summary.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/common/verification/method_tally.hpp"
+#include "services/verification/lives/method_tally.hpp"
 
 namespace sealwatch::verification {
 namespace {

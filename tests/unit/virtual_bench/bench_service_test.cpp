@@ -160,6 +160,7 @@ TEST_F(Bench, ReplacementStartsANewLife) {
   EXPECT_LT(worn, 0.9);
   MaintenanceEvent event;
   event.asset_id = "XT03-MV2";
+  event.kind = "seal_replaced";
   event.header.message_id = "maintenance_event/1";
   event.header.event_time_ns = add_months(kInstalled, 100.5).nanoseconds;
   ASSERT_TRUE(listener_.publish(Message(event)));

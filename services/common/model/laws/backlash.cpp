@@ -7,7 +7,7 @@ namespace sealwatch::laws {
 // g is where the stem is in the clearance: 0 on the flank that it drives the load with in +x, where a recording starts,
 // 1 on the other. Motion carries it to the flank of its direction within a way of about b; between the flanks the load
 // is lost. The fifth power keeps the flanks sharp, the fourth the loss flat between them.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_backlash(const LawInput& in) {
   const auto& v = in.signal[0];
   const auto& F_b = in.parameter[0];
   const auto& b = in.parameter[1];
@@ -28,7 +28,7 @@ Law backlash() {
                                   {.usual = 5e3, .significant = 600.0, .max = 1e5}),
                          shape("b", "m", "clearance", {2e-4, 5e-5, 8e-4}, 1e-5, 2e-3)},
           .hidden = HiddenState{.name = "place_in_clearance", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_backlash};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // T = A sin(N theta), d theta/dt = omega
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_cogging_torque(const LawInput& in) {
   return {.contribution = in.parameter[0] * sine(in.parameter[1] * in.hidden), .rate = in.signal[0]};
 }
 
@@ -19,7 +19,7 @@ Law cogging_torque() {
                          shape("N", "1", "periods in a turn: a whole number",
                                {6.0, 12.0, 4.0, 8.0, 10.0, 18.0, 24.0, 36.0}, 1.0, 120.0)},
           .hidden = HiddenState{.name = "shaft_angle", .unit = "rad", .scale = 1.0, .free_initial = true},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_cogging_torque};
 }
 
 }  // namespace sealwatch::laws

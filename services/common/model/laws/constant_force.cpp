@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_0
-static LawOutput evaluate(const LawInput& in) { return {.contribution = in.parameter[0], .rate = {}}; }
+static LawOutput evaluate_constant_force(const LawInput& in) { return {.contribution = in.parameter[0], .rate = {}}; }
 
 Law constant_force() {
   return {
@@ -16,7 +16,7 @@ Law constant_force() {
       .source = "Janot, Gautier, Brunot, Data set and reference models of EMPS (2019)",
       .parameters = {strength("F_0", "N", "force against +x",
                               {.usual = 1200.0, .significant = 600.0, .max = 1e5, .either_sign = true})},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_constant_force};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_c tanh(v / v_s)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_coulomb_friction(const LawInput& in) {
   const auto& F_c = in.parameter[0];
   const auto& v_s = in.parameter[1];
   return {.contribution = F_c * tanh(in.signal[0] / v_s), .rate = {}};
@@ -19,7 +19,7 @@ Law coulomb_friction() {
           .source = "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
           .parameters = {strength("F_c", "N", "friction force", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                          reversal_speed()},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_coulomb_friction};
 }
 
 }  // namespace sealwatch::laws

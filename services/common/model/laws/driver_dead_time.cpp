@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // V = V_d tanh(i / i_s)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_driver_dead_time(const LawInput& in) {
   return {.contribution = in.parameter[0] * tanh(in.signal[0] / in.parameter[1]), .rate = {}};
 }
 
@@ -17,7 +17,7 @@ Law driver_dead_time() {
           .source = "Jeong, Park, IEEE Trans. Industrial Electronics 38 (1991) 108",
           .parameters = {strength("V_d", "V", "voltage lost", {.usual = 1.0, .significant = 0.3, .max = 20.0}),
                          shape("i_s", "A", "current over which the direction changes", {0.2, 0.05, 1.0}, 0.01, 5.0)},
-          .evaluate = &evaluate,
+          .evaluate = &evaluate_driver_dead_time,
           .elements = {"driver"}};
 }
 

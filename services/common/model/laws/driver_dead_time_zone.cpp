@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // V = V_z tanh(u / u_s)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_driver_dead_time_zone(const LawInput& in) {
   return {.contribution = in.parameter[0] * tanh(in.signal[1] / in.parameter[1]), .rate = {}};
 }
 
@@ -18,7 +18,7 @@ Law driver_dead_time_zone() {
       .source = "Jeong, Park, IEEE Trans. Industrial Electronics 38 (1991) 108; rounded dead zone",
       .parameters = {strength("V_z", "V", "command that is swallowed", {.usual = 1.0, .significant = 0.3, .max = 20.0}),
                      shape("u_s", "V", "command over which it is", {1.0, 0.2, 4.0}, 0.05, 20.0)},
-      .evaluate = &evaluate,
+      .evaluate = &evaluate_driver_dead_time_zone,
       .elements = {"driver"}};
 }
 

@@ -3,7 +3,9 @@
 namespace sealwatch::laws {
 
 // q = G (p - p_0)
-static LawOutput evaluate(const LawInput& in) { return {.contribution = in.parameter[0] * in.signal[0], .rate = {}}; }
+static LawOutput evaluate_external_leakage_laminar(const LawInput& in) {
+  return {.contribution = in.parameter[0] * in.signal[0], .rate = {}};
+}
 
 Law external_leakage_laminar() {
   return {.id = "external_leakage",
@@ -15,7 +17,7 @@ Law external_leakage_laminar() {
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: flow in annular gaps",
           .parameters = {strength("G", "m3/(s Pa)", "flow per pressure",
                                   {.usual = 4e-14, .significant = 8e-15, .max = 1e-10})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_external_leakage_laminar};
 }
 
 }  // namespace sealwatch::laws

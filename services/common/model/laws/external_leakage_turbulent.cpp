@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = G_t (p - p_0) / sqrt(|p - p_0| + 1 kPa)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_external_leakage_turbulent(const LawInput& in) {
   return {.contribution = in.parameter[0] * signed_root(in.signal[0], 1e3), .rate = {}};
 }
 
@@ -17,7 +17,7 @@ Law external_leakage_turbulent() {
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: orifice flow",
           .parameters = {strength("G_t", "m3/(s Pa^0.5)", "flow per root of pressure",
                                   {.usual = 1e-10, .significant = 2.5e-11, .max = 1e-7})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_external_leakage_turbulent};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // dV/dp = C_h
-static LawOutput evaluate(const LawInput& in) { return {.contribution = in.parameter[0], .rate = {}}; }
+static LawOutput evaluate_hose_compliance(const LawInput& in) { return {.contribution = in.parameter[0], .rate = {}}; }
 
 Law hose_compliance() {
   return {.id = "hose_compliance",
@@ -15,7 +15,7 @@ Law hose_compliance() {
           .source = "Merritt, Hydraulic Control Systems (1967), section 2: elasticity of containers",
           .parameters = {strength("C_h", "m3/Pa", "volume per pressure",
                                   {.usual = 5e-14, .significant = 4e-15, .max = 1e-10})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_hose_compliance};
 }
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,7 @@ namespace sealwatch::laws {
 
 // F = F_h zeta, d zeta/dt = (v - (|v| zeta + v |zeta|) / 2) / x_y: Bouc and Wen with exponent 1 and beta = gamma, so
 // that unloading is straight; zeta from -1 to 1, |zeta| rounded over 1e-3.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_hysteretic_load(const LawInput& in) {
   const auto& v = in.signal[0];
   const auto& zeta = in.hidden;
   const auto& F_h = in.parameter[0];
@@ -25,7 +25,7 @@ Law hysteretic_load() {
       .parameters = {strength("F_h", "N", "load once it has yielded", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      shape("x_y", "m", "way over which it yields", {2e-3, 5e-4, 6e-3}, 1e-4, 5e-2)},
       .hidden = HiddenState{.name = "memory", .unit = "1", .scale = 1.0},
-      .evaluate = &evaluate,
+      .evaluate = &evaluate_hysteretic_load,
       .limit = "coulomb_friction"};
 }
 

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // D = D_q sgn(q_f) |q_f / 1e-5 m3/s|^a_q, dq_f/dt = (q - q_f) / 1 ms: as in line_resistance_laminar.cpp.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_line_resistance_power(const LawInput& in) {
   constexpr double kLag_s = 1e-3;
   const auto& q_f = in.hidden;
   return {.contribution = in.parameter[0] * signed_power(q_f, kFlow_m3_s, in.parameter[1]),
@@ -22,7 +22,7 @@ Law line_resistance_power() {
           .parameters = {strength("D_q", "Pa", "drop at 1e-5 m3/s", {.usual = 2e5, .significant = 1e5, .max = 1e8}),
                          exponent("a_q", {1.5, 3.0}, 0.5, 5.0)},
           .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6, .settled = true},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_line_resistance_power};
 }
 
 }  // namespace sealwatch::laws

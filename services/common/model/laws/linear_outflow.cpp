@@ -3,7 +3,9 @@
 namespace sealwatch::laws {
 
 // q = k level
-static LawOutput evaluate(const LawInput& in) { return {.contribution = in.parameter[0] * in.signal[0], .rate = {}}; }
+static LawOutput evaluate_linear_outflow(const LawInput& in) {
+  return {.contribution = in.parameter[0] * in.signal[0], .rate = {}};
+}
 
 Law linear_outflow() {
   return {.id = "linear_outflow",
@@ -14,7 +16,7 @@ Law linear_outflow() {
           .energy = "k >= 0: water leaves",
           .source = "Hagen-Poiseuille",
           .parameters = {strength("k", "1/s", "outflow per level", {.usual = 5e-3, .significant = 1e-3, .max = 1.0})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_linear_outflow};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = k (level / 1 V)^n, the level kept positive
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_outflow_exponent(const LawInput& in) {
   return {.contribution = in.parameter[0] * exp(in.parameter[1] * log(wetted(in.signal[0]))), .rate = {}};
 }
 
@@ -17,7 +17,7 @@ Law outflow_exponent() {
           .source = "Torricelli's law with a free exponent",
           .parameters = {strength("k", "V/s", "outflow at 1 V", {.usual = 0.01, .significant = 2e-3, .max = 2.0}),
                          shape("n", "1", "exponent", {0.75, 0.25, 1.5}, 0.05, 3.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_outflow_exponent};
 }
 
 }  // namespace sealwatch::laws

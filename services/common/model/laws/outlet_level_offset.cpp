@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = k (sqrt(level + h) - sqrt(level)), the level kept positive
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_outlet_level_offset(const LawInput& in) {
   const LawScalar level = wetted(in.signal[0]);
   return {.contribution = in.parameter[0] * (sqrt(level + in.parameter[1]) - sqrt(level)), .rate = {}};
 }
@@ -19,7 +19,7 @@ Law outlet_level_offset() {
           .parameters = {strength("k", "V^0.5/s", "coefficient of the outlet",
                                   {.usual = 0.05, .significant = 5e-3, .max = 2.0}),
                          shape("h", "V", "depth of the outlet", {0.5, 0.1, 1.5}, 0.01, 5.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_outlet_level_offset};
 }
 
 }  // namespace sealwatch::laws

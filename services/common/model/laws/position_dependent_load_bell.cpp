@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_b exp(-|(x - x_b) / w_b|^m): m = 2 is the bump of position_dependent_load_bump.cpp, a larger m a plateau.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_position_dependent_load_bell(const LawInput& in) {
   const LawScalar away = (in.signal[1] - in.parameter[1]) / in.parameter[2];
   return {.contribution = in.parameter[0] * exp(-even_power(away, 1.0, in.parameter[3])), .rate = {}};
 }
@@ -22,7 +22,7 @@ Law position_dependent_load_bell() {
                          shape("x_b", "m", "position", {0.052}, 0.0, 0.3),
                          shape("w_b", "m", "half width", {4e-3}, 5e-4, 0.1),
                          shape("m", "1", "sharpness of its flanks", {2.0, 3.0}, 1.0, 10.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_position_dependent_load_bell};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_b exp(-((x - x_b) / w_b)^2)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_position_dependent_load_bump(const LawInput& in) {
   const auto& x = in.signal[1];
   const auto& F_b = in.parameter[0];
   const auto& x_b = in.parameter[1];
@@ -23,7 +23,7 @@ Law position_dependent_load_bump() {
                                   {.usual = 2e3, .significant = 600.0, .max = 1e5, .either_sign = true}),
                          shape("x_b", "m", "position", {0.052, 0.047, 0.057, 0.042, 0.062}, 0.0, 0.3),
                          shape("w_b", "m", "half width", {4e-3, 1.5e-3, 1e-2}, 5e-4, 0.1)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_position_dependent_load_bump};
 }
 
 }  // namespace sealwatch::laws

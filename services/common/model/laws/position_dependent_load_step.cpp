@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_s (1 + tanh((x - x_s) / w_s)) / 2
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_position_dependent_load_step(const LawInput& in) {
   const auto& x = in.signal[1];
   const auto& F_s = in.parameter[0];
   const auto& x_s = in.parameter[1];
@@ -23,7 +23,7 @@ Law position_dependent_load_step() {
                                   {.usual = 2e3, .significant = 600.0, .max = 1e5, .either_sign = true}),
                          shape("x_s", "m", "position", {0.052, 0.047, 0.057}, 0.0, 0.3),
                          shape("w_s", "m", "half width of the step", {1e-3, 4e-3}, 2e-4, 0.05)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_position_dependent_load_step};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_c zeta, d zeta/dt = (v - |v| zeta) / delta: zeta is the bristles' deflection as a share of the largest, delta.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_presliding_friction_dahl(const LawInput& in) {
   const auto& v = in.signal[0];
   const auto& zeta = in.hidden;
   const auto& F_c = in.parameter[0];
@@ -23,7 +23,7 @@ Law presliding_friction_dahl() {
                                   {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                          shape("delta", "m", "deflection at which the contacts slide", {5e-5, 5e-6, 2e-4}, 1e-6, 5e-4)},
           .hidden = HiddenState{.name = "bristle", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate,
+          .evaluate = &evaluate_presliding_friction_dahl,
           .limit = "coulomb_friction"};
 }
 

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_c zeta + sigma_1 delta d zeta/dt, d zeta/dt = (v - |v| zeta) / delta: Dahl's bristles with their own damping.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_presliding_friction_lugre(const LawInput& in) {
   const auto& v = in.signal[0];
   const auto& zeta = in.hidden;
   const auto& F_c = in.parameter[0];
@@ -27,7 +27,7 @@ Law presliding_friction_lugre() {
                          strength("sigma_1", "N s/m", "damping of the bristles",
                                   {.usual = 1e5, .significant = 4e5, .max = 1e7})},
           .hidden = HiddenState{.name = "bristle", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate,
+          .evaluate = &evaluate_presliding_friction_lugre,
           .limit = "coulomb_friction"};
 }
 

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = k_d |p_A - p_B| tanh(v / v_s), |.| rounded over 1e4 Pa
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_pressure_dependent_friction_difference(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
   const auto& k_d = in.parameter[0];
   const auto& v_s = in.parameter[1];
@@ -21,7 +21,7 @@ Law pressure_dependent_friction_difference() {
           .parameters = {strength("k_d", "m2", "seal face times friction coefficient",
                                   {.usual = 1e-4, .significant = 6e-5, .max = 1e-2}),
                          reversal_speed()},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_pressure_dependent_friction_difference};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // As in pressure_dependent_friction_difference.cpp, with any sharpness of the change of direction.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_pressure_dependent_friction_difference_rounded(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
   return {
       .contribution = in.parameter[0] * smooth_abs(p_A - p_B, 1e4) * rounded_sign(v, in.parameter[1], in.parameter[2]),
@@ -25,7 +25,7 @@ Law pressure_dependent_friction_difference_rounded() {
       .parameters = {strength("k_d", "m2", "seal face times friction coefficient",
                               {.usual = 1e-4, .significant = 6e-5, .max = 1e-2}),
                      shape("v_s", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3), sharpness()},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_pressure_dependent_friction_difference_rounded};
 }
 
 }  // namespace sealwatch::laws

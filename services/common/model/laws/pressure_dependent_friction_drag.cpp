@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = c_p v |(p_A - p_B) / 10 MPa|^b_d
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_pressure_dependent_friction_drag(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
   return {.contribution = in.parameter[0] * v * even_power(p_A - p_B, kPressure_Pa, in.parameter[1]), .rate = {}};
 }
@@ -20,7 +20,7 @@ Law pressure_dependent_friction_drag() {
       .closed_form = true,
       .parameters = {strength("c_p", "N s/m", "friction at 10 MPa", {.usual = 1e6, .significant = 4.5e5, .max = 1e8}),
                      exponent("b_d", {1.0, 2.0, -1.0}, -2.0, 4.0)},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_pressure_dependent_friction_drag};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_p tanh(v / v_p) |(p_A - p_B) / 10 MPa|^b_p
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_pressure_dependent_friction_power(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
   const auto& v_p = in.parameter[2];
   return {.contribution = in.parameter[0] * tanh(v / v_p) * even_power(p_A - p_B, kPressure_Pa, in.parameter[1]),
@@ -23,7 +23,7 @@ Law pressure_dependent_friction_power() {
       .parameters = {strength("F_p", "N", "friction force at 10 MPa", {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      exponent("b_p", {2.0, 0.5}, -1.0, 4.0),
                      shape("v_p", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_pressure_dependent_friction_power};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // T = k |dp| tanh(omega / omega_s), |dp| rounded over 1e4 Pa
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_pressure_dependent_shaft_friction(const LawInput& in) {
   const auto& omega = in.signal[0];
   const auto& dp = in.signal[1];
   return {.contribution = in.parameter[0] * smooth_abs(dp, 1e4) * tanh(omega / in.parameter[1]), .rate = {}};
@@ -21,7 +21,7 @@ Law pressure_dependent_shaft_friction() {
       .parameters = {strength("k", "m3/rad", "torque per pressure, a share of the displacement",
                               {.usual = 2e-9, .significant = 4e-10, .max = 1e-6}),
                      shape("omega_s", "rad/s", "speed over which the direction changes", {2.0, 0.5, 10.0}, 0.05, 50.0)},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_pressure_dependent_shaft_friction};
 }
 
 }  // namespace sealwatch::laws

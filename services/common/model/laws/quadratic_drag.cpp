@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = k v |v|; differentiable at standstill, where both v and |v| vanish.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_quadratic_drag(const LawInput& in) {
   const auto& v = in.signal[0];
   return {.contribution = in.parameter[0] * v * abs(v), .rate = {}};
 }
@@ -17,7 +17,7 @@ Law quadratic_drag() {
           .energy = "k >= 0: it always opposes the motion",
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: orifice flow",
           .parameters = {strength("k", "N s2/m2", "drag", {.usual = 1e9, .significant = 3.4e8, .max = 1e12})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_quadratic_drag};
 }
 
 }  // namespace sealwatch::laws

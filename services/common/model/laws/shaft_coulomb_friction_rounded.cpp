@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // T = T_c omega / (|omega|^m + omega_s^m)^(1/m)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_shaft_coulomb_friction_rounded(const LawInput& in) {
   return {.contribution = in.parameter[0] * rounded_sign(in.signal[0], in.parameter[1], in.parameter[2]), .rate = {}};
 }
 
@@ -19,7 +19,7 @@ Law shaft_coulomb_friction_rounded() {
           .parameters = {strength("T_c", "N m", "friction torque", {.usual = 0.02, .significant = 5e-3, .max = 5.0}),
                          shape("omega_s", "rad/s", "speed over which the direction changes", {2.0}, 0.05, 50.0),
                          sharpness()},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_shaft_coulomb_friction_rounded};
 }
 
 }  // namespace sealwatch::laws

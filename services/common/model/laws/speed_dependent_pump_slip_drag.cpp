@@ -3,7 +3,9 @@
 namespace sealwatch::laws {
 
 // q = k_d omega
-static LawOutput evaluate(const LawInput& in) { return {.contribution = in.parameter[0] * in.signal[1], .rate = {}}; }
+static LawOutput evaluate_speed_dependent_pump_slip_drag(const LawInput& in) {
+  return {.contribution = in.parameter[0] * in.signal[1], .rate = {}};
+}
 
 Law speed_dependent_pump_slip_drag() {
   return {.id = "speed_dependent_pump_slip",
@@ -15,7 +17,7 @@ Law speed_dependent_pump_slip_drag() {
           .source = "Wilson, Trans. ASME 71 (1949) 115: difference of effective and geometric displacement",
           .parameters = {strength("k_d", "m3/rad", "displacement lost",
                                   {.usual = 1e-9, .significant = 4e-10, .max = 1e-6})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_speed_dependent_pump_slip_drag};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = k_0 (p_1 - p_2) / (1 + |omega / omega_k|^m): m = 1 is the law of speed_dependent_pump_slip_falling.cpp.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_speed_dependent_pump_slip_fading(const LawInput& in) {
   const LawScalar speed = even_power(in.signal[1] / in.parameter[1], 1.0, in.parameter[2]);
   return {.contribution = in.parameter[0] * in.signal[0] / (1.0 + speed), .rate = {}};
 }
@@ -21,7 +21,7 @@ Law speed_dependent_pump_slip_fading() {
                                   {.usual = 2e-14, .significant = 8e-15, .max = 1e-10}),
                          shape("omega_k", "rad/s", "speed at which it has halved", {30.0, 100.0}, 1.0, 1000.0),
                          exponent("m", {2.0}, 0.5, 6.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_speed_dependent_pump_slip_fading};
 }
 
 }  // namespace sealwatch::laws

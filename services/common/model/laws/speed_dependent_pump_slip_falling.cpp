@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = k_0 dp / (1 + |omega| / omega_k), |omega| rounded over 1 rad/s
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_speed_dependent_pump_slip_falling(const LawInput& in) {
   const auto& omega_k = in.parameter[1];
   return {.contribution = in.parameter[0] * in.signal[0] / (1.0 + smooth_abs(in.signal[1], 1.0) / omega_k), .rate = {}};
 }
@@ -19,7 +19,7 @@ Law speed_dependent_pump_slip_falling() {
           .parameters = {strength("k_0", "m3/(s Pa)", "flow per pressure at rest",
                                   {.usual = 2e-14, .significant = 8e-15, .max = 1e-10}),
                          shape("omega_k", "rad/s", "speed at which it has halved", {30.0, 10.0, 100.0}, 1.0, 1000.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_speed_dependent_pump_slip_falling};
 }
 
 }  // namespace sealwatch::laws

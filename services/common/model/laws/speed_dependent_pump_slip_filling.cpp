@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = k_f omega |omega|
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_speed_dependent_pump_slip_filling(const LawInput& in) {
   const auto& omega = in.signal[1];
   return {.contribution = in.parameter[0] * omega * abs(omega), .rate = {}};
 }
@@ -18,7 +18,7 @@ Law speed_dependent_pump_slip_filling() {
           .source = "Ivantysyn, Ivantysynova, Hydrostatic Pumps and Motors (2001): square term of the loss polynomial",
           .parameters = {strength("k_f", "m3 s/rad2", "displacement lost per speed",
                                   {.usual = 5e-12, .significant = 2e-12, .max = 1e-8})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_speed_dependent_pump_slip_filling};
 }
 
 }  // namespace sealwatch::laws

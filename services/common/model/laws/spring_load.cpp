@@ -3,7 +3,9 @@
 namespace sealwatch::laws {
 
 // F = k x
-static LawOutput evaluate(const LawInput& in) { return {.contribution = in.parameter[0] * in.signal[1], .rate = {}}; }
+static LawOutput evaluate_spring_load(const LawInput& in) {
+  return {.contribution = in.parameter[0] * in.signal[1], .rate = {}};
+}
 
 Law spring_load() {
   return {.id = "spring_load",
@@ -14,7 +16,7 @@ Law spring_load() {
           .energy = "k >= 0: it stores what it takes; its preload is part of the load",
           .source = "Hooke's law",
           .parameters = {strength("k", "N/m", "stiffness", {.usual = 5e4, .significant = 3e4, .max = 1e8})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_spring_load};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = (F_c + F_x exp(-(v / v_st)^2)) tanh(v / v_s)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_stribeck_friction(const LawInput& in) {
   const auto& v = in.signal[0];
   const auto& [F_c, F_x, v_st, v_s] = in.parameter;
   return {.contribution = (F_c + F_x * bell(v / v_st)) * tanh(v / v_s), .rate = {}};
@@ -23,7 +23,7 @@ Law stribeck_friction() {
                               {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                      shape("v_st", "m/s", "speed at which the film forms", {5e-4, 1e-4, 2e-3}, 2e-5, 5e-2),
                      reversal_speed()},
-      .evaluate = &evaluate,
+      .evaluate = &evaluate_stribeck_friction,
       .limit = "coulomb_friction"};
 }
 

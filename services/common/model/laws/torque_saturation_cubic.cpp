@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // T = k_3 i^3
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_torque_saturation_cubic(const LawInput& in) {
   const auto& i = in.signal[2];
   return {.contribution = in.parameter[0] * i * i * i, .rate = {}};
 }
@@ -18,7 +18,7 @@ Law torque_saturation_cubic() {
           .source = "second term of the torque curve's series",
           .parameters = {strength("k_3", "N m/A3", "torque lost per cube of current",
                                   {.usual = 4e-4, .significant = 8e-5, .max = 0.02})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_torque_saturation_cubic};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // T = k_f i |i| / (i_f + |i|): what Froehlich's curve T_M i / (1 + |i| / i_f) lacks of T_M i, where k_f = T_M.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_torque_saturation_froehlich(const LawInput& in) {
   const auto& i = in.signal[2];
   const auto& i_f = in.parameter[1];
   return {.contribution = in.parameter[0] * i * abs(i) / (i_f + abs(i)), .rate = {}};
@@ -20,7 +20,7 @@ Law torque_saturation_froehlich() {
           .parameters = {strength("k_f", "N m/A", "torque constant that saturates",
                                   {.usual = 0.04, .significant = 5e-3, .max = 2.0}),
                          shape("i_f", "A", "current at which half of it is lost", {10.0, 3.0, 30.0}, 0.5, 300.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_torque_saturation_froehlich};
 }
 
 }  // namespace sealwatch::laws

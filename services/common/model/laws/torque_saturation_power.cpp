@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // T = T_i sgn(i) |i / 1 A|^n: torque that the iron does not give any more.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_torque_saturation_power(const LawInput& in) {
   return {.contribution = in.parameter[0] * signed_power(in.signal[2], kCurrent_A, in.parameter[1]), .rate = {}};
 }
 
@@ -18,7 +18,7 @@ Law torque_saturation_power() {
           .closed_form = true,
           .parameters = {strength("T_i", "N m", "torque lost at 1 A", {.usual = 4e-4, .significant = 8e-5, .max = 0.1}),
                          exponent("n", {2.0, 4.0}, 1.2, 8.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_torque_saturation_power};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = k dp / sqrt(|dp| + 1 kPa)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_turbulent_pump_slip(const LawInput& in) {
   return {.contribution = in.parameter[0] * signed_root(in.signal[0], 1e3), .rate = {}};
 }
 
@@ -17,7 +17,7 @@ Law turbulent_pump_slip() {
           .source = "Schloesser, Hydraulic Power Transmission (1961): Mathematical model for displacement pumps",
           .parameters = {strength("k", "m3/(s Pa^0.5)", "flow per root of pressure",
                                   {.usual = 6e-11, .significant = 2.5e-11, .max = 1e-7})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_turbulent_pump_slip};
 }
 
 }  // namespace sealwatch::laws

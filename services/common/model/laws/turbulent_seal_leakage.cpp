@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = k D / sqrt(|D| + 1 kPa), D = p_A - p_B
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_turbulent_seal_leakage(const LawInput& in) {
   return {.contribution = in.parameter[0] * signed_root(in.signal[0], 1e3), .rate = {}};
 }
 
@@ -17,7 +17,7 @@ Law turbulent_seal_leakage() {
           .source = "Merritt, Hydraulic Control Systems (1967), section 3: orifice flow",
           .parameters = {strength("k", "m3/(s Pa^0.5)", "flow per root of pressure",
                                   {.usual = 1e-10, .significant = 2.5e-11, .max = 1e-7})},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_turbulent_seal_leakage};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_r (1 - h) tanh(v / v_r), s_r dh/dt = |v| (1 - h): h = 1 - exp(-way / s_r). |v| rounded at 1e-9 m/s.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_breaking_in(const LawInput& in) {
   const auto& [F_r, s_r, v_r, none] = in.parameter;
   const LawScalar left = 1.0 - in.hidden;
   return {.contribution = F_r * left * tanh(in.signal[0] / v_r),
@@ -24,7 +24,7 @@ Law unlisted_breaking_in() {
                      shape("s_r", "m", "way over which it wears off", {5e-3, 1e-3}, 1e-4, 0.1),
                      shape("v_r", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},
       .hidden = HiddenState{.name = "worn_off", .unit = "1", .scale = 1.0},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_unlisted_breaking_in};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_e exp(-|x| / x_e), |x| rounded over 1 mm
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_decaying_load(const LawInput& in) {
   return {.contribution = in.parameter[0] * exp(-(smooth_abs(in.signal[1], 1e-3) / in.parameter[1])), .rate = {}};
 }
 
@@ -19,7 +19,7 @@ Law unlisted_decaying_load() {
           .parameters = {strength("F_e", "N", "load at the end of the stroke",
                                   {.usual = 2e4, .significant = 6e3, .max = 1e6, .either_sign = true}),
                          shape("x_e", "m", "way over which it decays", {0.02, 5e-3}, 2e-3, 0.2)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_unlisted_decaying_load};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_plus max(tanh(v / v_d), 0) - F_minus max(-tanh(v / v_d), 0), corners rounded over 0.02
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_directional_friction(const LawInput& in) {
   const LawScalar direction = tanh(in.signal[0] / in.parameter[2]);
   const LawScalar size = magnitude(direction, kCorner);
   return {.contribution = 0.5 * direction *
@@ -25,7 +25,7 @@ Law unlisted_directional_friction() {
                          strength("F_minus", "N", "friction moving towards -x",
                                   {.usual = 1e3, .significant = 600.0, .max = 1e5}),
                          shape("v_d", "m/s", "speed over which it builds up", {1e-4, 2e-3}, 5e-6, 0.02)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_unlisted_directional_friction};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // q = G_l (p_A - p_B) exp(-((x - x_l) / w_l)^2)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_local_leakage(const LawInput& in) {
   const auto& [G_l, x_l, w_l, none] = in.parameter;
   return {.contribution = G_l * in.signal[0] * bell((in.signal[2] - x_l) / w_l), .rate = {}};
 }
@@ -21,7 +21,7 @@ Law unlisted_local_leakage() {
                                   {.usual = 3e-14, .significant = 8e-15, .max = 1e-11}),
                          shape("x_l", "m", "position", {0.052, 0.047, 0.057}, 0.0, 0.3),
                          shape("w_l", "m", "half width", {4e-3, 1.5e-3}, 5e-4, 0.1)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_unlisted_local_leakage};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // V = R_i i |i / 1 A|^a_i
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_resistance_power(const LawInput& in) {
   return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[0], kCurrent_A, in.parameter[1]),
           .rate = {}};
 }
@@ -20,7 +20,7 @@ Law unlisted_resistance_power() {
       .closed_form = true,
       .parameters = {strength("R_i", "ohm", "resistance at 1 A", {.usual = 0.05, .significant = 0.012, .max = 10.0}),
                      exponent("a_i", {1.0, 2.0, -0.5}, -0.9, 4.0)},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_unlisted_resistance_power};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = k_v sgn(v) |v / 1 mm/s|^a_v
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_speed_power(const LawInput& in) {
   return {.contribution = in.parameter[0] * signed_power(in.signal[0], kSpeed_m_s, in.parameter[1]), .rate = {}};
 }
 
@@ -18,7 +18,7 @@ Law unlisted_speed_power() {
           .closed_form = true,
           .parameters = {strength("k_v", "N", "force at 1 mm/s", {.usual = 1e3, .significant = 400.0, .max = 1e5}),
                          exponent("a_v", {1.5, 0.5, 3.0}, 0.2, 5.0)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_unlisted_speed_power};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // F = F_t tanh(v / v_t) exp(-((x - x_t) / w_t)^2)
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_tight_spot(const LawInput& in) {
   const auto& [F_t, x_t, w_t, v_t] = in.parameter;
   return {.contribution = F_t * tanh(in.signal[0] / v_t) * bell((in.signal[1] - x_t) / w_t), .rate = {}};
 }
@@ -22,7 +22,7 @@ Law unlisted_tight_spot() {
                          shape("x_t", "m", "position", {0.052, 0.047, 0.057}, 0.0, 0.3),
                          shape("w_t", "m", "half width", {4e-3, 1.5e-3}, 5e-4, 0.1),
                          shape("v_t", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_unlisted_tight_spot};
 }
 
 }  // namespace sealwatch::laws

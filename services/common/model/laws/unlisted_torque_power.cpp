@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // T = T_w sgn(omega) |omega / 100 rad/s|^a_w
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_unlisted_torque_power(const LawInput& in) {
   return {.contribution = in.parameter[0] * signed_power(in.signal[0], kShaftSpeed_rad_s, in.parameter[1]), .rate = {}};
 }
 
@@ -19,7 +19,7 @@ Law unlisted_torque_power() {
       .closed_form = true,
       .parameters = {strength("T_w", "N m", "torque at 100 rad/s", {.usual = 0.01, .significant = 2e-3, .max = 5.0}),
                      exponent("a_w", {2.0, 0.5, 3.0}, 0.2, 5.0)},
-      .evaluate = &evaluate};
+      .evaluate = &evaluate_unlisted_torque_power};
 }
 
 }  // namespace sealwatch::laws

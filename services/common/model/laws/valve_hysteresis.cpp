@@ -6,7 +6,7 @@ namespace sealwatch::laws {
 //
 // k = 2: the memory turns over within D_o / 2 about D_o, which may lie below the valve's cracking pressure, as its
 // orifice leaks before it opens.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_valve_hysteresis(const LawInput& in) {
   constexpr double kSteepness = 2.0;
   const auto& h = in.hidden;
   const auto &dp_h = in.parameter[0], &tau = in.parameter[1], &D_o = in.parameter[2];
@@ -27,7 +27,7 @@ Law valve_hysteresis() {
                          shape("tau", "s", "time in which the valve settles", {0.1, 0.02, 0.5, 2.0}, 5e-3, 10.0),
                          shape("D_o", "Pa", "drop at which it opens", {5e4, 2e4}, 5e3, 1e5)},
           .hidden = HiddenState{.name = "open_memory", .unit = "1", .scale = 1.0, .settled = true},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_valve_hysteresis};
 }
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,7 @@ namespace sealwatch::laws {
 
 // dp = dp_f tanh((D_f - D) / p_s), dD_f/dt = (D - D_f) / tau_f: while the drop rises its lagged value is behind, and
 // the friction adds to the cracking pressure; while it falls, friction keeps the poppet open.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_valve_hysteresis_friction(const LawInput& in) {
   constexpr double kChange_Pa = 5e3;
   const LawScalar behind = in.hidden - in.signal[0];
   return {.contribution = in.parameter[0] * tanh(behind / kChange_Pa), .rate = -behind / in.parameter[1]};
@@ -22,7 +22,7 @@ Law valve_hysteresis_friction() {
                                   {.usual = 2e4, .significant = 5e3, .max = 5e4}),
                          shape("tau_f", "s", "time in which a change is forgotten", {0.1, 0.02, 0.5}, 5e-3, 10.0)},
           .hidden = HiddenState{.name = "lagged_drop", .unit = "Pa", .scale = 5e4, .settled = true},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_valve_hysteresis_friction};
 }
 
 }  // namespace sealwatch::laws

@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // relative change = -b tanh(h), dh/dt = (P / 100 W - h) / tau: about -b h, and never below -b.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_viscosity_warm_up_dissipation(const LawInput& in) {
   constexpr double kReference_W = 100.0;
   const auto& h = in.hidden;
   return {.contribution = -in.parameter[0] * tanh(h), .rate = (in.signal[0] / kReference_W - h) / in.parameter[1]};
@@ -21,7 +21,7 @@ Law viscosity_warm_up_dissipation() {
                                   {.usual = 0.1, .significant = 0.05, .max = 0.9}),
                          shape("tau", "s", "thermal time constant", {30.0, 10.0, 120.0}, 1.0, 3000.0)},
           .hidden = HiddenState{.name = "warmth", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_viscosity_warm_up_dissipation};
 }
 
 }  // namespace sealwatch::laws

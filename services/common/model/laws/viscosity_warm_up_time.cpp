@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // relative change = -b_t h, dh/dt = (1 - h) / tau_t: from 0 to -b_t
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_viscosity_warm_up_time(const LawInput& in) {
   const auto& h = in.hidden;
   return {.contribution = -in.parameter[0] * h, .rate = (1.0 - h) / in.parameter[1]};
 }
@@ -20,7 +20,7 @@ Law viscosity_warm_up_time() {
                                   {.usual = 0.1, .significant = 0.05, .max = 0.9}),
                          shape("tau_t", "s", "thermal time constant", {30.0, 10.0, 120.0}, 1.0, 3000.0)},
           .hidden = HiddenState{.name = "warmth", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_viscosity_warm_up_time};
 }
 
 }  // namespace sealwatch::laws

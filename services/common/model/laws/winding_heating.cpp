@@ -3,7 +3,7 @@
 namespace sealwatch::laws {
 
 // V = k w i, dw/dt = (i^2 - w) / tau: resistance that grows with the winding's temperature, k w its growth.
-static LawOutput evaluate(const LawInput& in) {
+static LawOutput evaluate_winding_heating(const LawInput& in) {
   const auto& i = in.signal[0];
   const auto& w = in.hidden;
   return {.contribution = in.parameter[0] * w * i, .rate = (i * i - w) / in.parameter[1]};
@@ -21,7 +21,7 @@ Law winding_heating() {
                                   {.usual = 2e-3, .significant = 2e-4, .max = 0.2}),
                          shape("tau", "s", "thermal time constant", {60.0, 15.0, 240.0}, 2.0, 3000.0)},
           .hidden = HiddenState{.name = "heat", .unit = "A2", .scale = 25.0},
-          .evaluate = &evaluate};
+          .evaluate = &evaluate_winding_heating};
 }
 
 }  // namespace sealwatch::laws

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
 #include "services/data_acquisition/recording_blocks.hpp"
 #include "tests/unit/layers/contract.hpp"
@@ -146,6 +147,21 @@ TEST(DataAcquisition, ANewTestClosesTheOpenOneAsCut) {
   EXPECT_TRUE(blocks[0].samples.time_s.empty());
   EXPECT_EQ(blocks[1].boundary, BlockBoundary::begin);
   EXPECT_EQ(send(layer, {other.begin() + 1, other.end()}).size(), other.size() - 1) << "other assets go on";
+}
+
+/// The block that closes it bore number 0, and was taken for the first block, come again: the test never ended.
+TEST(DataAcquisition, ATestWithTheHighestBlockNumberIsClosedAsAnyOther) {
+  DataAcquisition layer(assets());
+  std::vector<RawSamples> blocks = live_blocks_of(recording(1));
+  blocks.resize(3);
+  blocks.back().block_number = std::numeric_limits<std::uint64_t>::max();
+  std::set<std::string> ids;
+  for (const SampleBlock& block : send(layer, blocks)) ids.insert(block.header.message_id);
+  const std::vector<SampleBlock> later = send(layer, live_blocks_of(recording(2)));
+  ASSERT_GE(later.size(), 2U);
+  EXPECT_EQ(later.front().boundary, BlockBoundary::end);
+  EXPECT_TRUE(later.front().aborted);
+  EXPECT_FALSE(ids.contains(later.front().header.message_id)) << later.front().header.message_id;
 }
 
 TEST(DataAcquisition, ATestThatFallsSilentIsClosedByTime) {
@@ -377,6 +393,84 @@ TEST(DataAcquisitionOptions, NamesWhatIsWrong) {
   options.gap_factor = 0.5;
   ASSERT_FALSE(options.validate());
   EXPECT_EQ(options.validate().error().place, "gap_factor");
+}
+
+/// Numbers that no sensor gives are marked as missing; the test and its other channels go on.
+TEST(ChannelStatus, ANumberThatNoSensorGivesIsMarked) {
+  Recording test = recording();
+  const double wild[] = {1e308, -std::numeric_limits<double>::max(), std::numeric_limits<double>::infinity(), 1e12};
+  for (std::size_t i = 0; i < std::size(wild); ++i) values(test, "position")[10 * i] = wild[i];
+  values(test, "flow")[7] = 5e-324;
+  test.samples.channels[0].noise_std = std::numeric_limits<double>::infinity();
+  const std::vector<SampleBlock> blocks = send_all(test);
+  EXPECT_THAT(final_status(blocks, "position").reason,
+              HasSubstr("4 of 1551 samples are not a number that a sensor gives"));
+  const std::vector<double>& position = blocks[0].samples.find("position")->values;
+  for (std::size_t i = 0; i < std::size(wild); ++i) EXPECT_TRUE(std::isnan(position[10 * i]));
+  EXPECT_EQ(position[5], values(test, "position")[5]);
+  EXPECT_EQ(blocks[0].samples.find("flow")->values[7], 0.0);
+  EXPECT_EQ(blocks[0].samples.channels[0].noise_std, 0.0);
+}
+
+/// One wild time takes no other row with it.
+TEST(DataAcquisition, ATimeThatIsNoneIsLeftOutAlone) {
+  Recording test = recording();
+  test.samples.time_s[100] = 1e300;
+  test.samples.time_s[200] = std::numeric_limits<double>::infinity();
+  test.samples.time_s[300] = 1e9;
+  const std::vector<SampleBlock> blocks = send_all(test);
+  EXPECT_EQ(blocks.back().clock_steps_back, 3U);
+  EXPECT_EQ(blocks.back().samples.time_s.back(), test.samples.time_s.back());
+}
+
+/// An open test whose sender never ends it.
+TEST(DataAcquisition, ATestThatNeverEndsIsClosedAtItsLimitAndSaysSo) {
+  DataAcquisition layer(assets());
+  RawSamples raw = live_blocks_of(recording()).front();
+  raw.samples = {.time_s = {}, .channels = {{"position", "m", 0.0, {}}}};
+  std::vector<SampleBlock> blocks;
+  constexpr std::uint64_t kRows = 100'000;
+  for (std::uint64_t number = 0; number < 15; ++number) {
+    raw.block_number = number;
+    raw.boundary = number == 0 ? BlockBoundary::begin : BlockBoundary::inside;
+    raw.header.message_id = "raw/" + std::to_string(number);
+    raw.samples.time_s.clear();
+    for (std::uint64_t row = 0; row < kRows; ++row)
+      raw.samples.time_s.push_back(0.01 * static_cast<double>(number * kRows + row));
+    raw.samples.channels[0].values.assign(kRows, 0.06);
+    for (SampleBlock& block : send(layer, {raw})) blocks.push_back(std::move(block));
+  }
+  ASSERT_EQ(blocks.size(), 11U);  // 2 numbers a row: 10 blocks of them, and the one that says why
+  EXPECT_EQ(blocks.back().boundary, BlockBoundary::end);
+  EXPECT_TRUE(blocks.back().aborted);
+  EXPECT_THAT(blocks.back().abort_reason, HasSubstr("refused: 2200000 numbers (rows times channels), more than"));
+}
+
+TEST(DataAcquisition, ABlockThatIsMoreThanATestMayBeIsATestThatSaysSo) {
+  RawSamples raw = live_blocks_of(recording()).front();
+  raw.samples.channels.assign(300, {"position", "m", 0.0, {}});
+  DataAcquisition layer(assets());
+  const std::vector<SampleBlock> blocks = send(layer, {raw});
+  ASSERT_EQ(blocks.size(), 1U);
+  EXPECT_EQ(blocks[0].boundary, BlockBoundary::whole);
+  EXPECT_THAT(blocks[0].abort_reason, HasSubstr("refused: 300 channels, more than the 256"));
+  EXPECT_TRUE(layer.is_closed(raw));
+}
+
+TEST(DataAcquisition, ATestOfManyDaysIsClosed) {
+  DataAcquisition layer(assets());
+  std::vector<RawSamples> raw = live_blocks_of(recording());
+  for (double& time_s : raw[2].samples.time_s) time_s += 8.0 * 86400.0;
+  const std::vector<SampleBlock> blocks = send(layer, raw);
+  ASSERT_EQ(blocks.size(), 3U);
+  EXPECT_THAT(blocks[2].abort_reason, HasSubstr("s long, more than the 604800 s"));
+}
+
+TEST(PstId, SaysThatATestWasMadeUp) {
+  RawSamples raw = blocks_of(recording()).front();
+  raw.source_id = "virtual_bench";
+  DataAcquisition layer(assets());
+  EXPECT_THAT(send(layer, {raw}).front().header.pst_id, testing::EndsWith("-simulated"));
 }
 
 }  // namespace

@@ -127,5 +127,53 @@ TEST_F(RecordingsFolderTest, RejectsWhatCannotBeReadWithTheReason) {
   EXPECT_THAT(errors_[1], testing::HasSubstr("XT09-MV9"));
 }
 
+TEST_F(RecordingsFolderTest, ANameThatCameBeforeOverwritesNothing) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  for (const char* text : {"time,position\n0,first\n", "time,position\n0,second\n"}) {
+    std::ofstream(directory_ / "may.csv") << text;
+    std::ofstream(directory_ / "may.yaml") << "asset_id: XT03-MV2\n";
+    EXPECT_TRUE(watched.look().empty());
+    EXPECT_TRUE(watched.look().empty());
+  }
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("rejected/may.csv", "rejected/may.yaml",
+                                                     "rejected/may.csv.error.txt", "rejected/may.2.csv",
+                                                     "rejected/may.2.yaml", "rejected/may.2.csv.error.txt"));
+  const auto text_of = [this](const char* name) {
+    std::ifstream file(directory_ / "rejected" / name);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_THAT(text_of("may.csv"), testing::HasSubstr("first"));
+  EXPECT_THAT(text_of("may.2.csv"), testing::HasSubstr("second"));
+}
+
+/// A link could lead the service to read, or to write over, any file that its user may.
+TEST_F(RecordingsFolderTest, LinksAreNotFollowed) {
+  const fs::path elsewhere = directory_.string() + "_elsewhere";
+  fs::create_directories(elsewhere);
+  fs::create_directories(directory_ / "rejected");
+  std::ofstream(elsewhere / "precious") << "precious";
+  fs::create_symlink(elsewhere / "precious", directory_ / "link.csv");
+  fs::create_symlink(elsewhere / "precious", directory_ / "rejected" / "bad.csv.error.txt");
+  std::ofstream(directory_ / "bad.csv") << "no recording";
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(errors_, testing::Contains(testing::HasSubstr("link.csv: is a symbolic link, which is not followed")));
+  EXPECT_TRUE(fs::is_symlink(directory_ / "rejected" / "link.csv"));
+  std::ifstream precious(elsewhere / "precious");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(precious), {}), "precious");
+
+  fs::remove_all(directory_ / "rejected");
+  fs::create_directory_symlink(elsewhere, directory_ / "rejected");
+  std::ofstream(directory_ / "worse.csv") << "no recording";
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_FALSE(fs::exists(elsewhere / "worse.csv"));
+  EXPECT_THAT(errors_, testing::Contains(testing::HasSubstr("could not be moved to")));
+  fs::remove_all(elsewhere);
+}
+
 }  // namespace
 }  // namespace sealwatch

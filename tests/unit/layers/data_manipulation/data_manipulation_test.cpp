@@ -363,5 +363,39 @@ TEST(DataManipulationOptions, NamesWhatIsWrong) {
   EXPECT_EQ(options.validate().error().place, "least_correlation");
 }
 
+TimeSeries at_times(std::vector<double> time_s) {
+  TimeSeries samples{.time_s = std::move(time_s), .channels = {{"position", "m", 0.0, {}}, {"flow", "m3/s", 0.0, {}}}};
+  for (const double t : samples.time_s) {
+    samples.channels[0].values.push_back(0.06 - 1e-3 * t);
+    samples.channels[1].values.push_back(1e-6);
+  }
+  return samples;
+}
+
+/// Stamped on arrival: fifty rows a microsecond apart, once a second. A uniform window of them would have a million
+/// rows a second.
+TEST(DataManipulation, RowsThatComeInBurstsAreKeptAndRefusedByName) {
+  std::vector<double> time_s;
+  for (int second = 0; second < 60; ++second)
+    for (int row = 0; row < 50; ++row) time_s.push_back(second + 1e-6 * row);
+  const Result result = conclude(at_times(time_s));
+  EXPECT_FALSE(result.window.complete);
+  EXPECT_TRUE(result.window.samples.time_s.empty());
+  EXPECT_THAT(result.window.abort_reason, HasSubstr("refused: rows 1e-06 s apart"));
+  EXPECT_EQ(result.features.abort_reason, result.window.abort_reason);
+  EXPECT_EQ(result.window.header.source_ids.size(), 6U) << "its blocks are known";
+}
+
+TEST(DataManipulation, ATestBeyondALimitIsRefusedByName) {
+  std::vector<double> picoseconds, few_of_many;
+  for (int row = 0; row < 1000; ++row) {
+    picoseconds.push_back(5e-12 * row);
+    few_of_many.push_back(row % 20 == 0 ? 4.0 * (row / 20) : few_of_many.back() + 0.001);
+  }
+  EXPECT_THAT(conclude(at_times(picoseconds)).window.abort_reason,
+              HasSubstr("refused: rows 5e-12 s apart, closer than the 1e-05 s"));
+  EXPECT_THAT(conclude(at_times(few_of_many)).window.abort_reason, HasSubstr("rows would stand for the 1000 recorded"));
+}
+
 }  // namespace
 }  // namespace sealwatch

@@ -14,8 +14,8 @@ using testing::HasSubstr;
 /// Says which recordings it was given.
 class TellingExplainer final : public Explainer {
  public:
-  ModelDiscrepancy explain(const AssetConfig& asset, std::span<const Recording> fit,
-                           std::span<const Recording> holdout) const override {
+  ModelDiscrepancy explain(const AssetConfig& asset, std::span<const Recording> fit, std::span<const Recording> holdout,
+                           const std::stop_token& /*cancel*/) const override {
     ModelDiscrepancy found;
     found.analysed = true;
     found.summary = asset.asset_id + " fit";

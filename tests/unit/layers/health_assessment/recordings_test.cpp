@@ -39,12 +39,12 @@ Life play(const AssetConfig& asset, const std::filesystem::path& folder, const s
   std::sort(files.begin(), files.end());
   Life life;
   const std::vector<AssetConfig> assets = {asset};
-  std::vector<std::unique_ptr<Layer>> layers;
-  layers.push_back(std::make_unique<DataAcquisition>(assets));
-  layers.push_back(std::make_unique<DataManipulation>(assets));
-  layers.push_back(std::make_unique<StateDetection>(assets, simulator));
-  layers.push_back(std::make_unique<HealthAssessment>(assets));
-  InProcessPipeline pipeline(std::move(layers), [&](const Message& message) {
+  const std::vector<LayerMaker> layers = {
+      [&](const std::string&) { return std::make_unique<DataAcquisition>(assets); },
+      [&](const std::string&) { return std::make_unique<DataManipulation>(assets); },
+      [&](const std::string&) { return std::make_unique<StateDetection>(assets, simulator); },
+      [&](const std::string&) { return std::make_unique<HealthAssessment>(assets); }};
+  InProcessPipeline pipeline(layers, [&](const Message& message) {
     if (const auto* state = std::get_if<StateReport>(&message)) life.states.push_back(*state);
     if (const auto* health = std::get_if<HealthReport>(&message)) life.healths.push_back(*health);
   });

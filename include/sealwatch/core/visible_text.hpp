@@ -1,0 +1,21 @@
+// Text of strangers (ids, names and remarks of messages, file names) made fit for a terminal, a log and a command to
+// paste: the one owner. A terminal obeys control characters, a log's reader is misled by line breaks, a shell by its
+// metacharacters; bytes that are no UTF-8 end a JSON writer.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace sealwatch {
+
+/// Whether `text` is UTF-8 (RFC 3629).
+[[nodiscard]] bool is_valid_utf8(std::string_view text);
+/// Whether it is UTF-8 without control characters (C0, DEL, C1) and without those that turn the direction of writing;
+/// with `several_lines`, line breaks and tabs may stand in it.
+[[nodiscard]] bool is_visible(std::string_view text, bool several_lines = false);
+/// The same text where it is visible; else with "\xHH" for every byte that is not.
+[[nodiscard]] std::string visible(std::string_view text, bool several_lines = true);
+/// One word of a POSIX shell: as it stands where no character of it means anything to a shell, else in single quotes.
+[[nodiscard]] std::string shell_word(std::string_view text);
+
+}  // namespace sealwatch

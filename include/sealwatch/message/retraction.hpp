@@ -1,0 +1,71 @@
+// Retraction: an operator says that a test, or everything since a date, must not count (a wrong asset, a wrong clock, a
+// sensor that was found broken). It travels as a maintenance_event of these kinds, whose time is that of the act, with
+// who and why; its message_id says what is meant, so that layers find it again in what they concluded from it:
+//
+//   test_retracted         retraction/<asset>/test/<pst_id>/<when>
+//   tests_retracted        retraction/<asset>/since/<time>/<when>     all that is known when it comes, from that time on
+//   retraction_withdrawn   retraction/<asset>/withdrawn/<when>/<id of the retraction>
+//
+// Nothing is deleted: what is retracted stays in the record, and counts again when the retraction is withdrawn.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "sealwatch/core/time.hpp"
+#include "sealwatch/message/advisory_generation.hpp"
+
+namespace sealwatch {
+
+inline constexpr std::string_view kTestRetracted = "test_retracted";
+inline constexpr std::string_view kTestsRetracted = "tests_retracted";
+inline constexpr std::string_view kRetractionWithdrawn = "retraction_withdrawn";
+
+struct Retraction {
+  std::string id;                     ///< message id of the event that says it
+  std::string pst_id = {};            ///< the test; "" none
+  std::optional<UtcTime> since = {};  ///< all tests from then on
+  std::string withdrawn_id = {};      ///< the retraction that no longer holds; "" none
+};
+
+[[nodiscard]] inline bool is_replacement(const MaintenanceEvent& event) { return event.kind.ends_with("_replaced"); }
+
+[[nodiscard]] inline bool is_retraction_id(std::string_view message_id) {
+  return message_id.starts_with("retraction/");
+}
+
+/// What the event of this id retracts or withdraws; nothing when it is no such event.
+[[nodiscard]] inline std::optional<Retraction> retraction_of(const std::string& asset_id,
+                                                             const std::string& message_id) {
+  const std::string begin = "retraction/" + asset_id + "/";
+  if (!message_id.starts_with(begin)) return std::nullopt;
+  const std::string rest = message_id.substr(begin.size());
+  const std::size_t first = rest.find('/'), last = rest.rfind('/');
+  if (first == std::string::npos) return std::nullopt;
+  Retraction retraction{.id = message_id};
+  const std::string kind = rest.substr(0, first);
+  if (kind == "withdrawn") {
+    const std::size_t second = rest.find('/', first + 1);
+    if (second == std::string::npos) return std::nullopt;
+    retraction.withdrawn_id = rest.substr(second + 1);
+    return retraction;
+  }
+  if (last <= first + 1) return std::nullopt;
+  const std::string what = rest.substr(first + 1, last - first - 1);
+  if (kind == "test") retraction.pst_id = what;
+  if (kind == "since")
+    if (const auto time = parse_utc(what)) retraction.since = *time;
+  if (retraction.pst_id.empty() && !retraction.since) return std::nullopt;
+  return retraction;
+}
+
+/// What an event of each kind has in its id behind the asset's.
+[[nodiscard]] inline std::string retraction_id(const std::string& asset_id, std::string_view kind,
+                                               const std::string& what, UtcTime when) {
+  const std::string begin = "retraction/" + asset_id + "/", now = format_utc(when);
+  if (kind == kRetractionWithdrawn) return begin + "withdrawn/" + now + "/" + what;
+  return begin + (kind == kTestRetracted ? "test/" : "since/") + what + "/" + now;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,28 @@
+// What the command lines of sealwatch's programs share: checks of arguments, and what an exit status means.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace sealwatch::cli {
+
+inline constexpr const char* kExitStatus =
+    "Exit status: 0 ok; 1 it ran and the answer is \"no\"; 2 bad usage or input; 3 internal failure.";
+
+/// Each check returns what is wrong, "" where nothing is.
+inline std::string not_negative(const std::string& text) { return text.starts_with("-") ? "must not be negative" : ""; }
+
+/// CLI::Range lets what is not a number pass.
+inline std::string a_number(const std::string& text) {
+  return std::isnan(std::strtod(text.c_str(), nullptr)) ? "must be a number" : "";
+}
+
+/// An asset is given by its file: whoever gives the id is told so.
+inline std::string an_asset_file(const std::string& text) {
+  if (std::filesystem::is_regular_file(text)) return {};
+  return "wants an asset file, and '" + text + "' is none; for example --asset config/assets/xt03-mv2.yaml";
+}
+
+}  // namespace sealwatch::cli

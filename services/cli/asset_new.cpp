@@ -1,0 +1,283 @@
+// `sealwatch asset new`: a first asset file, with its channel map, from somebody's own log (docs/logs.md).
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/signal/statistics.hpp"
+#include "services/cli/channel_guess.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/common/report/page.hpp"
+#include "services/common/report/plot.hpp"
+#include "services/common/report/readable.hpp"
+#include "services/common/runtime/asset_file.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What was understood of a log.
+struct Understood {
+  Offer offer;
+  const PlantDescription* plant = nullptr;
+  ChannelMap map;
+  std::vector<ChannelGuess> guesses;
+  std::vector<Recording> tests;
+  std::vector<std::string> remarks;
+};
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') out += '\\';
+    out += letter;
+  }
+  return out + "\"";
+}
+
+const char* word_of(char sign) {
+  return sign == ';' ? "semicolon" : sign == '\t' ? "tab" : sign == '|' ? "bar" : sign == ' ' ? "blank" : "comma";
+}
+
+void set_layout(Understood& log) {
+  if (!log.offer.text) return;
+  const FoundLayout& found = log.offer.layout;
+  log.map.log.delimiter = word_of(found.delimiter);
+  log.map.log.decimal = found.decimal == ',' ? "comma" : "point";
+  log.map.log.header_row = static_cast<int>(found.header_row);
+  log.map.log.units_row = static_cast<int>(found.units_row);
+  log.map.log.first_row = static_cast<int>(found.first_row);
+}
+
+void set_columns(Understood& log) {
+  const ColumnMapping time = log.map.columns["time"];
+  log.map.columns = {{"time", time}};
+  for (const ChannelGuess& guess : log.guesses)
+    log.map.columns[guess.channel] = {.column = log.offer.columns[guess.column].text, .unit = guess.unit};
+}
+
+/// Reads the log by the map; where its time starts anew or cells are empty, the map learns to say so.
+Status read_by_map(const std::string& file, Understood& log) {
+  for (;;) {
+    Result<std::vector<Recording>> tests = read_recordings(file, *log.plant, log.map);
+    if (tests) {
+      log.tests = std::move(*tests);
+      return {};
+    }
+    const std::string& rule = tests.error().rule;
+    if (rule.starts_with("time goes back") && log.map.log.time_resets == "refuse") {
+      log.map.log.time_resets = "split";
+      log.remarks.emplace_back(
+          "its time starts anew: each time is taken as another test (time_resets: split, or join)");
+    } else if (rule == "the cell is empty" && log.map.log.incomplete_rows == "refuse") {
+      log.map.log.incomplete_rows = "skip";
+      log.remarks.emplace_back("rows with an empty cell in a column that is used are left out (incomplete_rows: skip)");
+    } else {
+      return fail(tests.error());
+    }
+  }
+}
+
+/// Asks for each channel which column it is; an empty line takes the guess.
+void ask(Understood& log) {
+  for (const ChannelDescription& channel : log.plant->channels) {
+    const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
+    const std::string proposed = guess == log.guesses.end() ? "none" : log.offer.columns[guess->column].text;
+    std::printf("%s [%s], %s: column %s? (Enter: yes, another column, or none) ", channel.name.c_str(),
+                channel.unit.c_str(), channel.meaning.c_str(), proposed.c_str());
+    std::fflush(stdout);
+    std::string answer;
+    if (!std::getline(std::cin, answer) || answer.empty()) continue;
+    if (guess != log.guesses.end()) log.guesses.erase(guess);
+    if (answer == "none") continue;
+    const Result<std::size_t> column = find_offered(log.offer.columns, answer);
+    if (!column) {
+      complain(column.error());
+      continue;
+    }
+    std::string unit = unit_of(log.offer.columns[*column]);
+    if (unit.empty()) {
+      std::printf("  its unit? (Enter: %s) ", channel.unit.c_str());
+      std::fflush(stdout);
+      std::getline(std::cin, unit);
+    }
+    log.guesses.push_back({channel.name, *column, unit, 0.0, true});
+  }
+}
+
+std::string range_text(const std::vector<Recording>& tests, const std::string& channel) {
+  double low = 0.0, high = 0.0;
+  bool any = false;
+  std::string unit;
+  for (const Recording& test : tests)
+    if (const Series* series = test.samples.find(channel)) {
+      const auto [least, most] = std::ranges::minmax(series->values);
+      low = any ? std::min(low, least) : least, high = any ? std::max(high, most) : most;
+      any = true, unit = series->unit;
+    }
+  return any ? report::readable(low, unit) + " to " + report::readable(high, unit) : "";
+}
+
+std::string left_aside(const Understood& log) {
+  std::string text;
+  if (!log.tests.empty())
+    for (const std::string& column : log.tests.front().left_aside) text.append(text.empty() ? "" : ", ").append(column);
+  return text;
+}
+
+std::string mapping_text(const ColumnMapping& mapping) {
+  std::string text = "{column: " + quoted(mapping.column);
+  if (!mapping.unit.empty()) text += ", unit: " + quoted(mapping.unit);
+  return text + "}";
+}
+
+std::string yaml_of(const Understood& log, const std::string& id, const std::string& file) {
+  std::string out = "# From " + fs::path(file).filename().string() +
+                    ": what sealwatch understood of it. Correct what is wrong; docs/logs.md, docs/asset-file.md.\n";
+  for (const std::string& remark : log.remarks) out += "# " + remark + "\n";
+  out += "asset_id: " + quoted(id) + "\nmodel: " + log.plant->name + "  # " + log.plant->meaning + "\n";
+  out += "# The plant's own values hold until yours stand here, in SI units:\n# parameters: {";
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, log.plant->parameters.size()); ++k)
+    out.append(k > 0 ? ", " : "")
+        .append(log.plant->parameters[k].name)
+        .append(": ")
+        .append(number(log.plant->parameters[k].value));
+  out += "}\n\nchannels:\n  time: " + mapping_text(log.map.columns.at("time")) + "\n";
+  for (const ChannelDescription& channel : log.plant->channels) {
+    const auto mapping = log.map.columns.find(channel.name);
+    if (mapping == log.map.columns.end()) {
+      out += "  # " + channel.name + ": not in the log; " + channel.meaning + " [" + channel.unit + "]\n";
+      continue;
+    }
+    const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
+    out += "  " + channel.name + ": " + mapping_text(mapping->second) + "  # " + range_text(log.tests, channel.name);
+    out += guess != log.guesses.end() && !guess->sure ? "; uncertain, another channel would fit as well\n" : "\n";
+  }
+  const LogLayout& layout = log.map.log;
+  if (log.offer.text) {
+    out += "\nlog:\n  delimiter: " + layout.delimiter + "\n  decimal: " + layout.decimal + "\n";
+    if (layout.header_row > 0) out += "  header_row: " + std::to_string(layout.header_row) + "\n";
+    if (layout.units_row > 0) out += "  units_row: " + std::to_string(layout.units_row) + "\n";
+    out += "  first_row: " + std::to_string(layout.first_row) + "\n";
+    if (layout.time_resets != "refuse") out += "  time_resets: " + layout.time_resets + "\n";
+    if (layout.incomplete_rows != "refuse") out += "  incomplete_rows: " + layout.incomplete_rows + "\n";
+  }
+  if (const std::string aside = left_aside(log); !aside.empty()) out += "# left aside: " + aside + "\n";
+  return out;
+}
+
+std::string page_of(const Understood& log, const std::string& file) {
+  report::Table table({"channel", "column of the log", "unit", "from to", "noise from sample to sample"});
+  std::string plots;
+  const Recording& test = log.tests.front();
+  for (const Series& channel : test.samples.channels) {
+    const auto mapping = log.map.columns.find(channel.name);
+    const bool mapped = mapping != log.map.columns.end();
+    table.row({report::words_of(channel.name), mapped ? mapping->second.column : channel.name,
+               mapped ? mapping->second.unit : "", range_text(log.tests, channel.name),
+               report::readable(signal::estimate_noise_std(channel.values), channel.unit, 2)});
+    plots += "<div>" +
+             report::to_svg({.title = report::words_of(channel.name),
+                             .x = {.label = "time", .unit = "s"},
+                             .y = {.label = report::words_of(channel.name), .unit = channel.unit},
+                             .marks = {report::Line{.x = test.samples.time_s, .y = channel.values}},
+                             .height = 180,
+                             .legend = false}) +
+             "</div>";
+  }
+  std::string body = "<h1>" + report::escaped(fs::path(file).filename().string()) + " as " +
+                     report::escaped(log.plant->name) + "</h1>";
+  for (const std::string& remark : log.remarks) body += report::paragraph(remark);
+  if (const std::string aside = left_aside(log); !aside.empty())
+    body += report::paragraph("Left aside: " + aside, "muted");
+  return report::html_page("What was understood of a log",
+                           body + table.html() + "<div class=\"plots\">" + plots + "</div>");
+}
+
+void print_table(const Understood& log) {
+  const FoundLayout& found = log.offer.layout;
+  if (log.offer.text)
+    std::printf("%s between columns, decimal %s, header in row %zu, numbers from row %zu\n", word_of(found.delimiter),
+                found.decimal == ',' ? "comma" : "point", found.header_row, found.first_row);
+  std::printf("plant %s, %s of %zu samples\n", log.plant->name.c_str(), count_of(log.tests.size(), "test").c_str(),
+              log.tests.front().samples.time_s.size());
+  std::printf("  %-24s %-30s %-12s %s\n", "channel", "column", "unit", "from to");
+  for (const auto& [channel, mapping] : log.map.columns)
+    std::printf("  %s %s %-12s %s\n", padded(channel, 24).c_str(), padded(mapping.column, 30).c_str(),
+                mapping.unit.c_str(), channel == "time" ? "" : range_text(log.tests, channel).c_str());
+  for (const std::string& remark : log.remarks) std::printf("  %s\n", remark.c_str());
+  if (const std::string aside = left_aside(log); !aside.empty()) std::printf("  left aside: %s\n", aside.c_str());
+}
+
+/// A file that is there may have been completed by hand: it is never written over.
+Status write_new(const std::string& file, const std::string& text) {
+  std::FILE* stream = std::fopen(file.c_str(), "wx");
+  const bool written = stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  if (stream != nullptr && std::fclose(stream) == 0 && written) return {};
+  std::error_code ignored;
+  const bool there = stream == nullptr && fs::exists(file, ignored);
+  return fail(Error{.file = file,
+                    .place = {},
+                    .value = {},
+                    .rule = there ? "is there already" : "cannot be written",
+                    .advice = there ? "give another name with --out" : ""});
+}
+
+Result<Understood> understand(const AssetNewOptions& options) {
+  Result<Offer> offer = offer_of(options.log, {});
+  if (!offer) return fail(offer.error());
+  Understood log;
+  log.offer = std::move(*offer);
+  log.map.columns["time"] = guess_time(log.offer);
+  const std::string& time = log.map.columns["time"].column;
+  const Result<const PlantDescription*> wanted =
+      options.model.empty() ? &guess_plant(log.offer, time) : find_plant(options.model);
+  if (!wanted) return fail(wanted.error());
+  log.plant = *wanted;
+  if (const ColumnMapping& clock = log.map.columns["time"];
+      clock.unit == "s" && unit_of(log.offer.columns[*find_offered(log.offer.columns, clock.column)]).empty())
+    log.remarks.emplace_back("the unit of the time is not said: taken for s");
+  log.guesses = guess_channels(log.offer, *log.plant, time);
+  if (!options.yes && isatty(STDIN_FILENO) != 0) ask(log);
+  set_layout(log);
+  set_columns(log);
+  if (log.guesses.empty()) {
+    std::vector<std::string> names;
+    for (const ChannelDescription& channel : log.plant->channels) names.push_back(channel.name);
+    return fail(Error{
+        .file = options.log,
+        .place = {},
+        .value = {},
+        .rule = "no column looks like a channel of plant " + log.plant->name,
+        .advice = "write the map by hand (docs/logs.md), or name another plant with --model; " + suggest("", names)});
+  }
+  if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
+  return log;
+}
+
+}  // namespace
+
+int run_asset_new(const AssetNewOptions& options) {
+  const Result<Understood> log = understand(options);
+  if (!log) return complain(log.error()), kBadInput;
+  const std::string id = options.asset_id.empty() ? fs::path(options.log).stem().string() : options.asset_id;
+  if (const Status written = write_new(options.file, yaml_of(*log, id, options.log)); !written)
+    return complain(written.error()), kBadInput;
+  if (const Result<AssetConfig> back = load_asset(options.file); !back) return complain(back.error()), kInternalFailure;
+  const std::string page = fs::path(options.file).replace_extension(".html").string();
+  std::ofstream(page, std::ios::binary) << page_of(*log, options.log);
+  print_table(*log);
+  std::printf("in %s and, as a picture, %s. Correct what is wrong, then for instance:\n  sealwatch fit --asset %s %s\n",
+              options.file.c_str(), page.c_str(), options.file.c_str(), options.log.c_str());
+  return kOk;
+}
+
+}  // namespace sealwatch::cli

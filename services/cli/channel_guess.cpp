@@ -1,0 +1,147 @@
+#include "services/cli/channel_guess.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "services/common/recording/cells.hpp"
+#include "services/common/units/unit_conversion.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+/// What engineers call a quantity, by the SI unit of its channel: English, German, ISA letters.
+const std::map<std::string, std::set<std::string>>& vocabulary() {
+  static const std::map<std::string, std::set<std::string>> words = {
+      {"Pa", {"p", "press", "pressure", "druck", "pt", "pi", "pit"}},
+      {"m", {"x", "pos", "position", "stroke", "travel", "displacement", "weg", "hub", "zt", "lvdt"}},
+      {"m/s", {"v", "vel", "velocity", "speed", "geschwindigkeit"}},
+      {"m3/s", {"q", "flow", "durchfluss", "volumenstrom", "ft", "fi", "fit"}},
+      {"V", {"u", "volt", "voltage", "spannung", "command", "cmd"}},
+      {"A", {"i", "amp", "amps", "current", "strom"}},
+      {"rad/s", {"n", "rpm", "omega", "speed", "drehzahl"}},
+      {"rad", {"angle", "winkel", "phi"}},
+      {"K", {"temp", "temperature", "temperatur", "tt", "ti"}},
+      {"N", {"f", "force", "load", "kraft"}}};
+  return words;
+}
+
+/// "PT-101A Druck" as pt, 101, a, druck.
+std::vector<std::string> tokens_of(const std::string& text) {
+  std::vector<std::string> tokens;
+  char before = ' ';
+  for (const char letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool digit = std::isdigit(byte) != 0, alpha = std::isalpha(byte) != 0 || byte >= 0x80;
+    const bool goes_on = (digit && std::isdigit(static_cast<unsigned char>(before)) != 0) ||
+                         (alpha && (std::isalpha(static_cast<unsigned char>(before)) != 0 ||
+                                    static_cast<unsigned char>(before) >= 0x80));
+    if (!goes_on && (digit || alpha)) tokens.emplace_back();
+    if (digit || alpha) tokens.back() += static_cast<char>(std::tolower(byte));
+    before = letter;
+  }
+  return tokens;
+}
+
+/// Chambers and ports are letters to some and numbers to others.
+std::string as_letter(const std::string& token) {
+  return token.size() == 1 && token[0] >= '1' && token[0] <= '9'
+             ? std::string(1, static_cast<char>('a' + token[0] - '1'))
+             : token;
+}
+
+bool same_word(const std::string& a, const std::string& b) {
+  constexpr std::size_t kAbbreviation = 3;
+  if (as_letter(a) == as_letter(b)) return true;
+  const std::size_t shorter = std::min(a.size(), b.size());
+  return shorter >= kAbbreviation && a.compare(0, shorter, b, 0, shorter) == 0;
+}
+
+/// Share of the channel's words that the column has, and of those of the column that the channel has.
+double likeness(const std::vector<std::string>& column, const std::vector<std::string>& channel) {
+  const auto has = [](const std::vector<std::string>& words, const std::string& word) {
+    return std::ranges::any_of(words, [&](const std::string& other) { return same_word(word, other); });
+  };
+  const auto share = [&](const std::vector<std::string>& of, const std::vector<std::string>& in) {
+    const auto found = std::ranges::count_if(of, [&](const std::string& word) { return has(in, word); });
+    return of.empty() ? 0.0 : static_cast<double>(found) / static_cast<double>(of.size());
+  };
+  return share(channel, column) + 0.5 * share(column, channel);
+}
+
+bool within_range(const Offer& offer, std::size_t column, const ChannelDescription& channel,
+                  const UnitConversion& to_si) {
+  if (channel.range_max <= channel.range_min || offer.cells[column].empty()) return true;
+  return std::ranges::all_of(offer.cells[column], [&](const std::string& cell) {
+    const Result<double> number = parse_number(cell, offer.layout.decimal);
+    return number && to_si.to_si(*number) >= channel.range_min && to_si.to_si(*number) <= channel.range_max;
+  });
+}
+
+/// How much speaks for it; 0: nothing, or its unit speaks against it.
+double score_of(const Offer& offer, std::size_t column, const ChannelDescription& channel) {
+  constexpr double kUnit = 1.0, kName = 2.0, kQuantity = 1.0, kRange = 0.25;
+  const std::string si = channel.unit.empty() ? "1" : channel.unit, unit = unit_of(offer.columns[column]);
+  const Result<UnitConversion> to_si = convert_unit(unit, si);
+  if (!to_si) return 0.0;
+  const bool numbers = std::ranges::all_of(offer.cells[column], [&](const std::string& cell) {
+    return parse_number(cell, offer.layout.decimal).has_value();
+  });
+  if (!numbers) return 0.0;
+  const std::vector<std::string> words = tokens_of(split_header_cell(offer.columns[column].text).name);
+  double score = kName * likeness(words, tokens_of(channel.name));
+  if (const auto known = vocabulary().find(si); known != vocabulary().end())
+    score += std::ranges::any_of(words, [&](const std::string& word) { return known->second.contains(word); })
+                 ? kQuantity
+                 : 0.0;
+  if (score <= 0.0) return 0.0;
+  return score + (unit.empty() || si == "1" ? 0.0 : kUnit) +
+         (within_range(offer, column, channel, *to_si) ? kRange : 0.0);
+}
+
+constexpr double kEnough = 1.2;  // more than a unit, or than a word in passing
+
+}  // namespace
+
+std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant,
+                                         const std::string& time_column) {
+  std::vector<ChannelGuess> all;
+  for (std::size_t column = 0; column < offer.columns.size(); ++column) {
+    if (offer.columns[column].text == time_column) continue;
+    for (const ChannelDescription& channel : plant.channels)
+      if (const double score = score_of(offer, column, channel); score > kEnough)
+        all.push_back({channel.name, column, unit_of(offer.columns[column]), score, true});
+  }
+  std::ranges::stable_sort(all, [](const ChannelGuess& a, const ChannelGuess& b) { return a.score > b.score; });
+  std::vector<ChannelGuess> taken;
+  for (const ChannelGuess& guess : all) {
+    const auto clashes = [&](const ChannelGuess& other) {
+      return other.channel == guess.channel || other.column == guess.column;
+    };
+    if (std::ranges::any_of(taken, clashes)) continue;
+    taken.push_back(guess);
+    taken.back().sure = std::ranges::none_of(all, [&](const ChannelGuess& other) {
+      return other.score == guess.score && (other.channel == guess.channel) != (other.column == guess.column);
+    });
+  }
+  return taken;
+}
+
+const PlantDescription& guess_plant(const Offer& offer, const std::string& time_column) {
+  const PlantDescription* best = &all_plants().front();
+  double most = 0.0;
+  for (const PlantDescription& plant : all_plants()) {
+    double score = 0.0;
+    const std::vector<ChannelGuess> guesses = guess_channels(offer, plant, time_column);
+    for (const ChannelGuess& guess : guesses) score += guess.score;
+    for (const ChannelDescription& channel :
+         plant.channels)  // what a plant wants and the log has not, its input above all
+      if (std::ranges::find(guesses, channel.name, &ChannelGuess::channel) == guesses.end())
+        score -= channel.input ? 0.5 : 0.05;
+    if (score > most) most = score, best = &plant;
+  }
+  return *best;
+}
+
+}  // namespace sealwatch::cli

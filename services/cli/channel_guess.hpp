@@ -1,0 +1,27 @@
+// Which columns of somebody's log are probably which channels of a plant, by their units, names and values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/cli/log_offer.hpp"
+
+namespace sealwatch::cli {
+
+struct ChannelGuess {
+  std::string channel;
+  std::size_t column = 0;  ///< of the offer
+  std::string unit;        ///< for the map
+  double score = 0.0;      ///< how much speaks for it
+  bool sure = true;        ///< false: another channel would fit this column as well
+};
+
+/// Each channel and each column at most once, the most likely first taken; without `time_column`.
+[[nodiscard]] std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant,
+                                                       const std::string& time_column);
+
+/// The plant of all that there are which the most speaks for.
+[[nodiscard]] const PlantDescription& guess_plant(const Offer& offer, const std::string& time_column);
+
+}  // namespace sealwatch::cli

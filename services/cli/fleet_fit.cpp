@@ -1,0 +1,115 @@
+// `sealwatch fleet fit`: a fleet's own ageing constants from its histories, for the configuration that forecasts read.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "sealwatch/forecast/fleet_uncertainty.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/common/forecast/history.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using forecast::FleetErrors;
+using forecast::FleetFit;
+using forecast::FleetLife;
+
+constexpr double kReferenceLives = 4.0;
+
+Result<UtcTime> installed_at(const FleetFitOptions& options, std::size_t life, const FleetLife& read) {
+  if (!options.installed.empty()) return parse_utc(options.installed[life]);
+  return add_months(read.history.front().time, -1.0);  // tests are monthly: the first a month after installation
+}
+
+Result<std::vector<FleetLife>> read_fleet(const FleetFitOptions& options) {
+  if (!options.installed.empty() && options.installed.size() != options.histories.size())
+    return fail(Error{.file = {},
+                      .place = "--installed",
+                      .value = std::to_string(options.installed.size()) + " dates",
+                      .rule = "must be one for each of the " + std::to_string(options.histories.size()) + " histories",
+                      .advice = {}});
+  std::optional<SealSetting> seal;
+  if (!options.asset_file.empty()) {
+    const auto asset = load_asset_or_explain(options.asset_file);
+    if (!asset)
+      return fail(Error{.file = options.asset_file, .place = {}, .value = {}, .rule = "cannot be used", .advice = {}});
+    seal = asset->seal;
+  }
+  std::vector<FleetLife> fleet;
+  for (std::size_t k = 0; k < options.histories.size(); ++k) {
+    Result<std::vector<forecast::ConditionSample>> history = forecast::read_history(options.histories[k], seal);
+    if (!history) return fail(history.error());
+    FleetLife life{.history = std::move(*history), .installed = {}};
+    const Result<UtcTime> installed = installed_at(options, k, life);
+    if (!installed) return fail(installed.error());
+    life.installed = *installed;
+    fleet.push_back(std::move(life));
+  }
+  return fleet;
+}
+
+std::string yaml_of(const FleetConstants& constants) {
+  std::string out = "services:\n  prognostic_assessment:\n    fleet:\n";
+  FleetConstants::visit(
+      [&out](std::string_view name, double value) {
+        char line[96];
+        std::snprintf(line, sizeof line, "      %s: %.6g\n", std::string(name).c_str(), value);
+        out += line;
+      },
+      constants);
+  return out;
+}
+
+std::string json_of(const FleetFit& fit, const FleetErrors& errors, const FleetConstants& constants) {
+  nlohmann::ordered_json json = {{"schema", "sealwatch.fleet/1"},
+                                 {"lives", fit.lives},
+                                 {"passed_over", fit.passed_over},
+                                 {"reference_lives", kReferenceLives},
+                                 {"constants", nlohmann::ordered_json::object()},
+                                 {"std_errors",
+                                  {{"initial_rate", errors.initial_rate},
+                                   {"steepening", errors.steepening},
+                                   {"irregularity_std", errors.irregularity_std}}}};
+  FleetConstants::visit([&json](std::string_view name, double value) { json["constants"][std::string(name)] = value; },
+                        constants);
+  return json.dump(1) + "\n";
+}
+
+void print_text(const FleetFit& fit, const FleetErrors& errors, const FleetConstants& constants) {
+  const forecast::FleetPopulation reference;
+  std::printf("%d %s; the reference counts as %g lives more\n", fit.lives, fit.lives == 1 ? "life" : "lives",
+              kReferenceLives);
+  if (fit.passed_over > 0)
+    std::printf("  passed over, with fewer than %d tests: %d\n", forecast::kFewestTestsOfLife, fit.passed_over);
+  std::printf("  %-22s %14s     %-12s %14s\n", "constant", "fleet", "std. error", "reference");
+  const auto row = [](const char* name, double value, double error, double usual) {
+    std::printf("  %-22s %14s  +- %-12s %14s\n", name, number(value, 4).c_str(), number(error, 2).c_str(),
+                number(usual, 4).c_str());
+  };
+  row("initial_rate", fit.population.initial_rate, errors.initial_rate, reference.initial_rate);
+  row("steepening, a month", fit.population.steepening, errors.steepening, reference.steepening);
+  row("irregularity_std", fit.population.irregularity_std, errors.irregularity_std, reference.irregularity_std);
+  std::printf("  a mean seal from new to 0.6: %s months, by the reference %s\n",
+              number(mean_remaining_months(fit.population.initial_condition, 0.6, fit.population), 3).c_str(),
+              number(mean_remaining_months(reference.initial_condition, 0.6, reference), 3).c_str());
+  std::printf("\nFor the configuration; the spreads hold the errors of the means:\n%s", yaml_of(constants).c_str());
+}
+
+}  // namespace
+
+int run_fleet_fit(const FleetFitOptions& options) {
+  const Result<std::vector<FleetLife>> fleet = read_fleet(options);
+  if (!fleet) return complain(fleet.error()), kBadInput;
+  const Result<FleetFit> fit = forecast::fit_population(*fleet, {}, kReferenceLives);
+  if (!fit) return complain(fit.error()), kBadInput;
+  const FleetErrors errors = forecast::fleet_errors(*fleet, *fit, {}, kReferenceLives);
+  const FleetConstants constants = forecast::constants_for_forecasts(fit->population, errors);
+  if (options.json)
+    std::printf("%s", json_of(*fit, errors, constants).c_str());
+  else
+    print_text(*fit, errors, constants);
+  return kOk;
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,71 @@
+#include "services/cli/foreign_file.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/cli/log_offer.hpp"
+#include "services/common/recording/cells.hpp"
+#include "services/common/recording/log_layout.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/common/units/unit_conversion.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+bool is_number_column(const std::vector<std::string>& cells, char decimal) {
+  return std::ranges::all_of(cells,
+                             [decimal](const std::string& cell) { return parse_number(cell, decimal).has_value(); });
+}
+
+/// The SI unit that a unit belongs to; the unit itself where it is none that is known.
+std::string si_of(const std::string& unit) {
+  if (unit.empty()) return "1";
+  for (const char* si : {"1", "Pa", "m", "m/s", "m3/s", "rad/s", "rad", "N", "V", "A", "K", "s", "N m", "m/s2",
+                         "rad/s2", "kg", "kg/s", "W", "m3"})
+    if (convert_unit(unit, si)) return si;
+  return unit;
+}
+
+/// All columns of numbers as the channels of a plant that nobody described.
+PlantDescription plant_of(const Offer& offer, const ChannelMap& map) {
+  PlantDescription plant;
+  plant.name = "of this file";
+  const auto add = [&plant](const std::string& name, const std::string& unit) {
+    ChannelDescription channel;
+    channel.name = name, channel.unit = si_of(unit);
+    plant.channels.push_back(std::move(channel));
+  };
+  std::set<std::string> renamed;
+  for (const auto& [channel, mapping] : map.columns) {
+    const Result<std::size_t> index = find_offered(offer.columns, mapping.column);
+    if (!index) continue;  // the reader says so
+    const OfferedColumn& column = offer.columns[*index];
+    renamed.insert(column.text);
+    const std::string beside = column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
+    if (channel != "time") add(channel, mapping.unit.empty() ? beside : mapping.unit);
+  }
+  for (std::size_t k = 0; k < offer.columns.size(); ++k) {
+    const NameAndUnitText cell = split_header_cell(offer.columns[k].text);
+    if (renamed.contains(offer.columns[k].text) || cell.name.empty() || cell.name == "time") continue;
+    if (is_number_column(offer.cells[k], offer.layout.decimal))
+      add(cell.name, offer.columns[k].unit.empty() ? cell.unit : offer.columns[k].unit);
+  }
+  return plant;
+}
+
+}  // namespace
+
+Result<Recording> read_any_channels(const std::string& file, const ChannelMap& given) {
+  const Result<Offer> offer = offer_of(file, given.log);
+  if (!offer) return fail(offer.error());
+  ChannelMap map = given;
+  const auto is_absent = [&](const auto& entry) { return !find_offered(offer->columns, entry.second.column); };
+  if (std::ranges::all_of(map.columns, is_absent)) map.columns.clear();  // a map of the other file
+  const auto is_time = [](const OfferedColumn& column) { return split_header_cell(column.text).name == "time"; };
+  if (!map.columns.contains("time") && std::ranges::none_of(offer->columns, is_time))
+    map.columns["time"] = guess_time(*offer);
+  return read_recording(file, plant_of(*offer, map), map);
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,123 @@
+#include "services/cli/log_offer.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <optional>
+#include <set>
+
+#include "services/common/recording/cells.hpp"
+#include "services/common/recording/hdf5_reader.hpp"
+#include "services/common/recording/log_reader.hpp"
+#include "services/common/recording/mat_reader.hpp"
+#include "services/common/recording/recording_file.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+constexpr std::size_t kRowsLookedAt = 50;
+
+Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return fail("cannot be opened");
+  Result<FoundLayout> layout = layout_of(in, given);
+  if (!layout) return fail(layout.error());
+  Offer offer;
+  offer.layout = std::move(*layout);
+  std::string head(std::size_t{1} << 16U, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  if (!in.eof()) head.resize(head.rfind('\n') + 1);
+  const auto rows = rows_of(head, offer.layout.delimiter, offer.layout.first_row, kRowsLookedAt);
+  for (std::size_t k = 0; k < offer.layout.header.size(); ++k) {
+    offer.columns.push_back({offer.layout.header[k], offer.layout.units[k]});
+    std::vector<std::string>& cells = offer.cells.emplace_back();
+    for (const auto& row : rows)
+      if (k < row.size() && !trim(row[k]).empty()) cells.push_back(row[k]);
+  }
+  return offer;
+}
+
+Result<Offer> offer_of_vectors(const std::string& file) {
+  const Result<std::vector<MatVariable>> vectors =
+      suffix_of(file) == ".mat" ? read_mat_vectors(file) : read_hdf5_vectors(file);
+  if (!vectors) return fail(vectors.error());
+  Offer offer;
+  offer.text = false;
+  for (const MatVariable& vector : *vectors) {
+    offer.columns.push_back({vector.name.substr(vector.name.rfind('/') + 1), vector.unit});
+    offer.cells.emplace_back();  // numbers all
+  }
+  return offer;
+}
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::vector<double> numbers_of(const std::vector<std::string>& cells, char decimal) {
+  std::vector<double> numbers;
+  for (const std::string& cell : cells)
+    if (const Result<double> number = parse_number(cell, decimal)) numbers.push_back(*number);
+  return numbers;
+}
+
+bool rises(const std::vector<double>& numbers) {
+  return numbers.size() > 1 && std::ranges::is_sorted(numbers) && numbers.back() > numbers.front();
+}
+
+/// Days since 1899-12-30 of our time, not seconds: some ten thousands, and a test is a small part of one.
+bool are_excel_days(const std::vector<double>& numbers) {
+  return rises(numbers) && numbers.front() > 20000.0 && numbers.back() < 80000.0 &&
+         numbers.back() - numbers.front() < 0.5;
+}
+
+std::optional<std::size_t> time_column(const Offer& offer) {
+  static const std::set<std::string> kNames = {"time",       "t",        "timestamp", "zeit", "date",
+                                               "time stamp", "datetime", "date/time", "datum"};
+  const auto first = [&](const auto& is_one) -> std::optional<std::size_t> {
+    for (std::size_t k = 0; k < offer.columns.size(); ++k)
+      if (is_one(k)) return k;
+    return std::nullopt;
+  };
+  if (const auto named =
+          first([&](std::size_t k) { return kNames.contains(lower(split_header_cell(offer.columns[k].text).name)); }))
+    return named;
+  if (const auto timed = first([&](std::size_t k) { return !time_format_of(offer.cells[k]).empty(); })) return timed;
+  return first([&](std::size_t k) {
+    const std::vector<double> numbers = numbers_of(offer.cells[k], offer.layout.decimal);
+    return numbers.size() == offer.cells[k].size() && rises(numbers);
+  });
+}
+
+std::string time_unit(const Offer& offer, std::size_t column) {
+  if (std::string format = time_format_of(offer.cells[column]); !format.empty()) return format;
+  if (are_excel_days(numbers_of(offer.cells[column], offer.layout.decimal))) return "excel";
+  const std::string said = unit_of(offer.columns[column]);
+  return said.empty() ? std::string("s") : said;
+}
+
+}  // namespace
+
+std::string unit_of(const OfferedColumn& column) {
+  return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
+}
+
+Result<Offer> offer_of(const std::string& file, const LogLayout& given) {
+  const std::string suffix = suffix_of(file);
+  const bool vectors = suffix == ".mat" || suffix == ".h5" || suffix == ".hdf5";
+  Result<Offer> offer = vectors ? offer_of_vectors(file) : offer_of_text(file, given);
+  if (offer && offer->columns.empty()) offer = fail("holds no columns");
+  if (offer) return offer;
+  Error error = offer.error();
+  error.file = file;
+  return fail(std::move(error));
+}
+
+ColumnMapping guess_time(const Offer& offer) {
+  const std::size_t at = time_column(offer).value_or(0);
+  return {.column = offer.columns[at].text, .unit = time_unit(offer, at)};
+}
+
+}  // namespace sealwatch::cli

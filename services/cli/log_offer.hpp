@@ -1,0 +1,29 @@
+// What a file of somebody's own offers: its columns with some of their cells, and which of them is the time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/channel_map.hpp"
+#include "sealwatch/core/result.hpp"
+#include "services/common/recording/log_columns.hpp"
+#include "services/common/recording/log_layout.hpp"
+
+namespace sealwatch::cli {
+
+struct Offer {
+  std::vector<OfferedColumn> columns;
+  std::vector<std::vector<std::string>> cells;  ///< the first ones of each column that are not empty; of vectors none
+  FoundLayout layout;
+  bool text = true;  ///< false: vectors of numbers, HDF5 or MATLAB
+};
+
+[[nodiscard]] Result<Offer> offer_of(const std::string& file, const LogLayout& given);
+
+/// Unit said beside the column or in its header cell.
+[[nodiscard]] std::string unit_of(const OfferedColumn& column);
+
+/// The column called time, t, Timestamp, Zeit or Date; else the first whose cells are times; else the first that rises.
+[[nodiscard]] ColumnMapping guess_time(const Offer& offer);
+
+}  // namespace sealwatch::cli

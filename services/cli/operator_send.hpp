@@ -1,0 +1,25 @@
+// How what people tell the system reaches it: as a stream of one message, which every reader confirms.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/cli/session.hpp"
+
+namespace sealwatch::cli {
+
+[[nodiscard]] std::int64_t now_ns();
+
+/// The bus, where somebody speaks of an asset that there is; else what is wrong is said on standard error.
+[[nodiscard]] std::optional<Session> open_for(const std::string& config, const std::string& asset_id,
+                                              const std::string& who);
+
+/// Publishes one message as a stream of its own and waits until every one of `readers` has journaled it. What else
+/// comes on the bus meanwhile goes to `look`. Returns the exit status.
+[[nodiscard]] int send(std::optional<Session>& session, Message message, std::vector<std::string> readers,
+                       const std::function<void(const Message&)>& look = {});
+
+}  // namespace sealwatch::cli

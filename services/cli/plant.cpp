@@ -1,0 +1,161 @@
+// `sealwatch plant check`: what was understood of a plant that is written as text, or every fault with its line.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "services/cli/commands.hpp"
+#include "services/common/runtime/plant_file.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using Row = std::vector<std::string>;
+
+std::string shown(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", number);
+  return text.data();
+}
+
+/// A heading and rows in columns.
+void print_table(const std::string& heading, const std::vector<Row>& rows) {
+  if (rows.empty()) return;
+  std::vector<std::size_t> width;
+  for (const Row& row : rows)
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      width.resize(std::max(width.size(), row.size()), 0);
+      width[k] = std::max(width[k], row[k].size());
+    }
+  std::printf("\n%s\n", heading.c_str());
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k)
+      line += "  " + row[k] + (k + 1 < row.size() ? std::string(width[k] - row[k].size(), ' ') : "");
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+bool drives(const RuntimePlant& plant, const std::string& channel) {
+  return std::ranges::find(plant.inputs, channel, &RuntimeInput::channel) != plant.inputs.end();
+}
+
+std::vector<std::string> laws_at(const equations::TextSite& site, const std::vector<Law>& own) {
+  std::vector<std::string> ids;
+  const auto add = [&](const Law& law) {
+    const bool fits = law.kind == site.kind && !law.closed_form &&
+                      (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end());
+    if (fits && std::ranges::find(ids, law.id) == ids.end()) ids.emplace_back(law.id);
+  };
+  for (const Law& law : all_laws())
+    if (law.plant.empty()) add(law);
+  for (const Law& law : own) add(law);
+  return ids;
+}
+
+void print_plant(const std::string& file, const ReadPlant& read) {
+  const PlantDescription& plant = read.built.plant.description;
+  std::printf("%s: valid: plant %s, %s\n", file.c_str(), plant.name.c_str(), plant.meaning.c_str());
+  std::vector<Row> rows;
+  for (const equations::TextInput& input : read.text.inputs)
+    rows.push_back({input.channel.name, "[" + input.channel.unit + "]",
+                    drives(read.built.plant, input.channel.name) ? "drives the plant" : "stands in no equation",
+                    input.channel.meaning});
+  print_table("Inputs", rows);
+  rows.clear();
+  for (const equations::TextOutput& output : read.text.outputs)
+    rows.push_back({output.channel.name, "[" + output.channel.unit + "]", "= " + output.value,
+                    "noise " + shown(output.channel.noise_std), output.channel.meaning});
+  print_table("Outputs", rows);
+  rows.clear();
+  for (std::size_t k = 0; k < read.text.states.size(); ++k) {
+    const equations::TextState& state = read.text.states[k];
+    const char* own = state.settles ? "settles" : state.own ? "each recording's own" : "starts there";
+    rows.push_back({"d " + state.description.name + "/dt", "[(" + state.description.unit + ")/s]", "= " + state.rate,
+                    "from " + joined(state.start, " or "), own});
+  }
+  print_table("States", rows);
+  rows.clear();
+  for (const auto& [name, text] : read.text.definitions) rows.push_back({name, "= " + text});
+  print_table("Definitions", rows);
+  rows.clear();
+  for (const ParameterDescription& parameter : plant.parameters)
+    rows.push_back({parameter.name, shown(parameter.value) + " " + parameter.unit,
+                    "from " + shown(parameter.min) + " to " + shown(parameter.max),
+                    parameter.estimate ? "estimated" : "fixed", parameter.meaning});
+  print_table("Parameters", rows);
+  rows.clear();
+  for (const equations::TextSite& site : read.text.sites) {
+    std::vector<std::string> seen;
+    for (const equations::TextSignal& signal : site.signals)
+      seen.push_back(signal.name + " = " + signal.value + " [" + signal.unit + "]");
+    rows.push_back(
+        {site.element, std::string(name_of(site.kind)) + " [" + site.unit + "]", "sees " + joined(seen, ", ")});
+    rows.push_back({"", "", "tried there: " + joined(laws_at(site, read.built.laws), ", ")});
+  }
+  print_table("Sites, where physics may be missing", rows);
+}
+
+nlohmann::ordered_json errors_of(const std::vector<Error>& errors) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Error& error : errors)
+    list.push_back({{"file", error.file},
+                    {"place", error.place},
+                    {"value", error.value},
+                    {"rule", error.rule},
+                    {"advice", error.advice}});
+  return list;
+}
+
+nlohmann::ordered_json plant_as_json(const std::string& file, const Checked<ReadPlant>& read) {
+  nlohmann::ordered_json result = {{"schema", "sealwatch.plant_check/1"},
+                                   {"file", file},
+                                   {"valid", read.has_value()},
+                                   {"errors", nlohmann::ordered_json::array()}};
+  if (!read) {
+    result["errors"] = errors_of(read.error());
+    return result;
+  }
+  const PlantDescription& plant = read->built.plant.description;
+  result["name"] = plant.name;
+  for (const ChannelDescription& channel : plant.channels)
+    result["channels"].push_back({{"name", channel.name}, {"unit", channel.unit}, {"input", channel.input}});
+  for (const ParameterDescription& parameter : plant.parameters)
+    result["parameters"].push_back({{"name", parameter.name},
+                                    {"value", parameter.value},
+                                    {"unit", parameter.unit},
+                                    {"min", parameter.min},
+                                    {"max", parameter.max},
+                                    {"estimate", parameter.estimate}});
+  for (const StateDescription& state : plant.states)
+    result["states"].push_back({{"name", state.name}, {"unit", state.unit}});
+  for (const equations::TextSite& site : read->text.sites)
+    result["sites"].push_back({{"element", site.element},
+                               {"kind", name_of(site.kind)},
+                               {"unit", site.unit},
+                               {"laws", laws_at(site, read->built.laws)}});
+  return result;
+}
+
+}  // namespace
+
+int run_plant_check(const PlantCheckOptions& options) {
+  const Checked<ReadPlant> read = read_plant_file(options.file);
+  if (options.json)
+    std::printf("%s\n", plant_as_json(options.file, read).dump(1).c_str());
+  else if (read)
+    print_plant(options.file, *read);
+  if (!read && !options.json) {
+    for (const Error& error : read.error()) std::fprintf(stderr, "%s\n", error.describe().c_str());
+    std::fprintf(stderr, "%zu fault%s found\n", read.error().size(), read.error().size() == 1 ? "" : "s");
+  }
+  return read ? kOk : kBadInput;
+}
+
+}  // namespace sealwatch::cli

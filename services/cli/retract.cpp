@@ -1,0 +1,60 @@
+// `sealwatch retract`: tests that must not count, or count again.
+#include <cstdio>
+
+#include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/retraction.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/operator_send.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+/// Kind and what it says, or nothing after an objection.
+std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
+  MaintenanceEvent event;
+  event.asset_id = options.asset_id;
+  event.reported_by = options.by;
+  event.remark = options.reason;
+  event.header.event_time_known = true;
+  event.header.event_time_ns = now_ns();
+  std::string what = options.pst_id.empty() ? options.withdraw : options.pst_id;
+  event.kind = options.pst_id.empty() ? kRetractionWithdrawn : kTestRetracted;
+  if (!options.since.empty()) {
+    Result<UtcTime> since = parse_utc(options.since);
+    if (!since) {
+      since.error().place = "--since";
+      complain(since.error());
+      return std::nullopt;
+    }
+    event.kind = kTestsRetracted;
+    what = format_utc(*since);
+  }
+  event.header.message_id = retraction_id(options.asset_id, event.kind, what, {event.header.event_time_ns});
+  if (event.kind != kRetractionWithdrawn || retraction_of(options.asset_id, what)) return event;
+  complain(Error{.file = {},
+                 .place = "--withdraw",
+                 .value = what,
+                 .rule = "is no retraction of asset " + options.asset_id,
+                 .advice = "give the id that sealwatch retract printed; it stands in the advisory's reasons too"});
+  return std::nullopt;
+}
+
+}  // namespace
+
+int run_retract(const RetractOptions& options) {
+  const std::optional<MaintenanceEvent> event = event_of(options);
+  if (!event) return kBadInput;
+  std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
+  if (!session) return kBadInput;
+  const int sent = send(session, *event, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  if (sent != kOk) return sent;
+  const bool withdrawn = event->kind == kRetractionWithdrawn;
+  std::printf("received: %s; the remaining life is concluded anew, the advice with the next test\n",
+              withdrawn ? "these tests count again" : "these tests no longer count");
+  if (!withdrawn)
+    std::printf("taken back by: sealwatch retract %s --withdraw %s --by NAME --reason WHY\n",
+                shell_word(options.asset_id).c_str(), shell_word(event->header.message_id).c_str());
+  return kOk;
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,30 @@
+// What is wrong with the services themselves, where they cannot see what they are there to see: in words, each with its
+// category of NAMUR NE 107.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/message/service.hpp"
+#include "services/cli/services_heard.hpp"
+
+namespace sealwatch::cli {
+
+/// NAMUR NE 107 (2017), section 4: what a device says of itself.
+enum class Ne107 { good, failure, function_check, out_of_specification, maintenance_required };
+[[nodiscard]] std::string_view words(Ne107 category);
+
+/// The one table: category by kind of alarm (ServiceAlarm::kind, and "no_heartbeat" of a service that is not heard).
+[[nodiscard]] Ne107 category_of(std::string_view alarm_kind);
+
+struct HeardAlarm {
+  std::string service;
+  ServiceAlarm alarm;
+  std::uint64_t untold = 0;  ///< alarms of this service that did not fit into its heartbeat, said with its last one
+};
+/// Those that stand, service by service.
+[[nodiscard]] std::vector<HeardAlarm> alarms_of(const std::vector<ServicesHeard::Service>& services);
+[[nodiscard]] std::string one_line(const HeardAlarm& heard);
+
+}  // namespace sealwatch::cli

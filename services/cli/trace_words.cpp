@@ -1,0 +1,124 @@
+#include "services/cli/trace_words.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "services/common/report/readable.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using trace::Alteration;
+using trace::AlteredParameter;
+using trace::ChannelComparison;
+
+std::string parameter_text(const AlteredParameter& parameter) {
+  const std::string name = parameter.name + " ";
+  if (parameter.std_error > 0.0)
+    return name + report::readable_with_error(parameter.value, parameter.std_error,
+                                              parameter.unit == "1" ? "" : parameter.unit);
+  return name + report::readable(parameter.value, parameter.unit);
+}
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json alteration_json(const Alteration& alteration) {
+  Json json = {{"id", alteration.id},
+               {"element", alteration.where},
+               {"parameters", Json::array()},
+               {"removed_share", number_or_null(alteration.removed_share)},
+               {"would_do", alteration.would_do}};
+  for (const AlteredParameter& parameter : alteration.parameters)
+    json["parameters"].push_back({{"name", parameter.name},
+                                  {"value", number_or_null(parameter.value)},
+                                  {"std_error", number_or_null(parameter.std_error)},
+                                  {"unit", parameter.unit}});
+  return json;
+}
+
+Json channel_json(const ChannelComparison& channel) {
+  Json json = {{"channel", channel.name},
+               {"unit", channel.unit},
+               {"input", channel.input},
+               {"differs", channel.differs},
+               {"p_value", number_or_null(channel.p_value)},
+               {"rms", number_or_null(channel.rms)},
+               {"noise_std", number_or_null(channel.noise_std)},
+               {"effective_samples", number_or_null(channel.effective_samples)},
+               {"nrmse_percent", number_or_null(channel.nrmse_percent)},
+               {"by", channel.by},
+               {"regimes", Json::array()},
+               {"intervals", Json::array()},
+               {"alterations", Json::array()}};
+  for (const trace::RegimeMisfit& regime : channel.regimes)
+    json["regimes"].push_back({{"name", regime.name},
+                               {"time_share", regime.time_share},
+                               {"rms", number_or_null(regime.rms)},
+                               {"misfit_share", number_or_null(regime.misfit_share)}});
+  for (const trace::MisfitInterval& interval : channel.intervals)
+    json["intervals"].push_back(
+        {{"begin_s", interval.begin_s}, {"end_s", interval.end_s}, {"misfit_share", interval.misfit_share}});
+  for (const Alteration& alteration : channel.alterations) json["alterations"].push_back(alteration_json(alteration));
+  return json;
+}
+
+}  // namespace
+
+std::string alteration_text(const Alteration& alteration) {
+  std::string text = report::words_of(alteration.id);
+  if (const std::size_t colon = alteration.where.find(':'); colon != std::string::npos)
+    text += " of " + report::words_of(alteration.where.substr(colon + 1));
+  for (const AlteredParameter& parameter : alteration.parameters)
+    text.append(&parameter == alteration.parameters.data() ? ": " : ", ").append(parameter_text(parameter));
+  return text;
+}
+
+std::string trace_summary(const trace::TraceComparison& comparison) {
+  if (comparison.consistent)
+    return "The simulation agrees with the recording: what is left depends on nothing in the simulation.";
+  std::string channels;
+  std::size_t differing = 0;
+  for (const ChannelComparison& channel : comparison.channels)
+    if (channel.differs) channels.append(differing++ == 0 ? "" : ", ").append(report::words_of(channel.name));
+  std::string text = "They differ beyond noise in " + channels + ". ";
+  if (comparison.answer.empty())
+    return text + "No gain, offset, delay, clock rate or sign of a channel or of the input would do.";
+  text += "This would do: ";
+  for (const Alteration& alteration : comparison.answer)
+    text.append(&alteration == comparison.answer.data() ? "" : "; ").append(alteration_text(alteration));
+  text += ".";
+  if (differing == 1 && comparison.channels.size() == 1 && comparison.answer.front().id == "sensor_lag")
+    text += " With one channel, a delay of the input is the same.";
+  return text;
+}
+
+std::string trace_limit() {
+  return "A trace alone cannot name physics in the plant: what a plant lacks moves its balances, and a trace shows "
+         "only what "
+         "came out. What would: the equations as a text plant or an FMU (sealwatch plant), and sealwatch explain on "
+         "the same "
+         "recordings.";
+}
+
+std::string trace_json(const trace::TraceComparison& comparison, const std::string& recorded,
+                       const std::string& simulated) {
+  Json json = {{"schema", "sealwatch.trace/1"},
+               {"recorded", recorded},
+               {"simulated", simulated},
+               {"consistent", comparison.consistent},
+               {"motion", comparison.motion},
+               {"channels", Json::array()},
+               {"common", Json::array()},
+               {"answer", Json::array()},
+               {"only_recorded", comparison.only_recorded},
+               {"only_simulated", comparison.only_simulated},
+               {"summary", trace_summary(comparison)},
+               {"limit", trace_limit()}};
+  for (const ChannelComparison& channel : comparison.channels) json["channels"].push_back(channel_json(channel));
+  for (const Alteration& alteration : comparison.common) json["common"].push_back(alteration_json(alteration));
+  for (const Alteration& alteration : comparison.answer) json["answer"].push_back(alteration_json(alteration));
+  return json.dump(1) + "\n";
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,134 @@
+// `sealwatch validate --simulated`: a trace of somebody's simulation beside a recording (docs/logs.md).
+#include <cstdio>
+#include <fstream>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/foreign_file.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/terminal.hpp"
+#include "services/cli/trace_page.hpp"
+#include "services/cli/trace_words.hpp"
+#include "services/common/report/readable.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/channel_map_file.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+constexpr std::size_t kWidth = 110;
+constexpr std::size_t kAlterationsShown = 6;
+
+void print_alterations(const std::vector<trace::Alteration>& alterations) {
+  for (std::size_t k = 0; k < std::min(alterations.size(), kAlterationsShown); ++k)
+    std::printf("    %6s  %-12s %s\n", report::percent_text(alterations[k].removed_share).c_str(),
+                alterations[k].would_do ? "would do" : "", alteration_text(alterations[k]).c_str());
+}
+
+void print_channel(const trace::ChannelComparison& channel) {
+  std::printf("\n  %s: %s (p %s)\n", report::words_of(channel.name).c_str(),
+              channel.differs ? "differs beyond noise" : "no difference beyond noise",
+              report::p_value_text(channel.p_value).c_str());
+  std::printf("    difference %s rms, noise %s, %s effective samples of %zu; NRMSE %.2f %%\n",
+              report::readable(channel.rms, channel.unit).c_str(),
+              report::readable(channel.noise_std, channel.unit).c_str(),
+              report::number_text(channel.effective_samples).c_str(), channel.recorded.size(), channel.nrmse_percent);
+  if (!channel.differs) return;
+  std::string by;
+  for (const std::string& group : channel.by) by.append(by.empty() ? "" : "; ").append(group);
+  std::printf("    it goes with: %s\n", wrapped(by, kWidth, 4).c_str());
+  for (const trace::MisfitInterval& interval : channel.intervals)
+    std::printf("    %6s of it from %s to %s s\n", report::percent_text(interval.misfit_share).c_str(),
+                number(interval.begin_s).c_str(), number(interval.end_s).c_str());
+  for (const trace::RegimeMisfit& regime : channel.regimes)
+    std::printf("    %6s of it %s (%s of the time), %s rms\n", report::percent_text(regime.misfit_share).c_str(),
+                regime.name.c_str(), report::percent_text(regime.time_share).c_str(),
+                report::readable(regime.rms, channel.unit).c_str());
+  std::printf("  removes of the misfit of %s:\n", report::words_of(channel.name).c_str());
+  print_alterations(channel.alterations);
+}
+
+void print_text(const trace::TraceComparison& comparison) {
+  std::printf("%s\n", wrapped(trace_summary(comparison), kWidth, 0).c_str());
+  for (const trace::ChannelComparison& channel : comparison.channels) print_channel(channel);
+  if (!comparison.common.empty()) {
+    std::printf("\n  removes of all channels' misfit, one cause for all:\n");
+    print_alterations(comparison.common);
+  }
+  const auto list = [](const char* where, const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
+    if (!text.empty()) std::printf("  only in the %s, not compared: %s\n", where, text.c_str());
+  };
+  std::printf("\n");
+  list("recording", comparison.only_recorded);
+  list("simulation", comparison.only_simulated);
+  if (!comparison.consistent) std::printf("%s\n", wrapped(trace_limit(), kWidth, 0).c_str());
+}
+
+/// What is known of the recording: the asset's channels, or whatever the files' headers name.
+struct Known {
+  ChannelMap map;
+  std::vector<std::string> inputs;
+};
+
+std::optional<Known> known_of(const ValidateOptions& options) {
+  Known known;
+  known.inputs = options.inputs;
+  if (!options.asset_file.empty()) {
+    const auto asset = load_asset_or_explain(options.asset_file, options.map_file);
+    if (!asset) return std::nullopt;
+    known.map = asset->channel_map;
+    if (const Result<const PlantDescription*> plant = find_plant(asset->model); plant && known.inputs.empty())
+      for (const ChannelDescription& channel : (*plant)->channels)
+        if (channel.input) known.inputs.push_back(channel.name);
+  } else if (!options.map_file.empty()) {
+    const auto map = check_channel_map(options.map_file, nullptr);
+    if (!map) return complain(combine(map.error())), std::nullopt;
+    known.map = *map;
+  }
+  return known;
+}
+
+}  // namespace
+
+int run_validate_trace(const ValidateOptions& options) {
+  const std::optional<Known> known = known_of(options);
+  if (!known) return kBadInput;
+  if (options.recordings.size() != 1)
+    return complain({.file = {},
+                     .place = "--simulated",
+                     .value = {},
+                     .rule = "is held against one recording",
+                     .advice = "sealwatch validate --simulated SIM.csv RECORDED.csv"}),
+           kBadInput;
+  const Result<Recording> recorded = read_any_channels(options.recordings.front(), known->map);
+  const Result<Recording> simulated = recorded ? read_any_channels(options.simulated, known->map) : recorded;
+  if (!simulated) return complain(simulated.error()), kBadInput;
+  Progress progress("comparing", 1 + recorded->samples.channels.size());
+  trace::Options asked;
+  asked.inputs = known->inputs;
+  asked.progress = [&progress](std::size_t done, std::size_t) { progress.show(done, "channels"); };
+  const auto comparison = trace::compare_traces(recorded->samples, simulated->samples, asked);
+  progress.finish();
+  if (!comparison) {
+    Error error = comparison.error();
+    error.file = options.simulated + " beside " + options.recordings.front();
+    return complain(error), kBadInput;
+  }
+  if (!options.page.empty()) {
+    std::ofstream page(options.page, std::ios::binary);
+    page << trace_page(*comparison, options.recordings.front(), options.simulated);
+    page.close();
+    if (!page)
+      return complain({.file = options.page, .place = {}, .value = {}, .rule = "cannot be written", .advice = {}}),
+             kBadInput;
+  }
+  if (options.json)
+    std::printf("%s", trace_json(*comparison, options.recordings.front(), options.simulated).c_str());
+  else
+    print_text(*comparison);
+  return comparison->consistent ? kOk : kAnswerIsNo;
+}
+
+}  // namespace sealwatch::cli

@@ -1,0 +1,69 @@
+// FMI 2.0: variables are numbered by their place, from 1; the structure refers to these numbers.
+#include "services/common/fmi/description_reader.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+struct Kind {
+  const char* element;
+  FmiType type;
+};
+constexpr std::array kKinds = {Kind{"Real", FmiType::float64}, Kind{"Integer", FmiType::int32},
+                               Kind{"Boolean", FmiType::boolean}, Kind{"String", FmiType::string},
+                               Kind{"Enumeration", FmiType::enumeration}};
+
+DeclaredTypes read_types(const DescriptionReader& reader, const pugi::xml_node& root) {
+  DeclaredTypes types;
+  for (const pugi::xml_node& type : root.child("TypeDefinitions").children("SimpleType"))
+    types[reader.required(type, "name")] = read_type(reader, type.first_child());
+  return types;
+}
+
+Variable read_variable(const DescriptionReader& reader, const pugi::xml_node& node, const DeclaredTypes& types,
+                       std::size_t count) {
+  Variable variable{.name = reader.required(node, "name"),
+                    .reference = static_cast<std::uint32_t>(reader.whole(node, "valueReference", UINT32_MAX)),
+                    .causality = reader.one_of(node, "causality", FmiCausality::local),
+                    .variability = reader.one_of(node, "variability", FmiVariability::continuous),
+                    .unit = {},
+                    .description = reader.text(node, "description"),
+                    .start = {},
+                    .min = {},
+                    .max = {},
+                    .nominal = {},
+                    .derivative_of = {}};
+  for (const Kind& kind : kKinds) {
+    const pugi::xml_node content = node.child(kind.element);
+    if (!content) continue;
+    variable.type = kind.type;
+    read_number_attributes(reader, content, types, variable);
+    if (variable.start.size() > 1) reader.refuse(node, reader.text(content, "start"), "start must be one number");
+    if (kind.type != FmiType::float64 && !node.attribute("variability"))
+      variable.variability = FmiVariability::discrete;
+    if (content.attribute("derivative")) variable.derivative_of = reader.whole(content, "derivative", count) - 1;
+    if (variable.derivative_of && *variable.derivative_of >= count)
+      reader.refuse(node, "0", "derivative counts variables from 1");
+    return variable;
+  }
+  reader.refuse(node, variable.name, "has no type: Real, Integer, Boolean, String or Enumeration");
+}
+
+}  // namespace
+
+void read_fmi2(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description) {
+  const DeclaredTypes types = read_types(reader, root);
+  const pugi::xml_node variables = root.child("ModelVariables");
+  std::size_t count = 0;
+  for (const pugi::xml_node& node : variables.children("ScalarVariable")) count += node.empty() ? 0U : 1U;
+  for (const pugi::xml_node& node : variables.children("ScalarVariable"))
+    description.variables.push_back(read_variable(reader, node, types, count));
+  for (const pugi::xml_node& node : root.child("ModelStructure").child("Derivatives").children("Unknown")) {
+    const std::uint64_t index = reader.whole(node, "index", count);
+    if (index == 0) reader.refuse(node, "0", "index counts variables from 1");
+    add_states(reader, node, index - 1, description);
+  }
+  if (root.attribute("numberOfEventIndicators"))
+    description.event_indicators = reader.whole(root, "numberOfEventIndicators", 1000000);
+}
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,119 @@
+#include "services/common/fmi/description_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace sealwatch::fmi {
+namespace {
+
+std::optional<double> to_number(std::string_view text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) text.remove_prefix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void DescriptionReader::refuse(const pugi::xml_node& at, std::string value, std::string rule,
+                               std::string advice) const {
+  const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at.offset_debug()));
+  const auto line = 1 + std::ranges::count(text_.substr(0, std::min(offset, text_.size())), '\n');
+  std::string place = "modelDescription.xml, line " + std::to_string(line);
+  if (const char* name = at.attribute("name").value(); *name != '\0') place += std::string(", ") + name;
+  throw Fault{{.file = file_,
+               .place = std::move(place),
+               .value = std::move(value),
+               .rule = std::move(rule),
+               .advice = std::move(advice)}};
+}
+
+std::string DescriptionReader::text(const pugi::xml_node& node, const char* name) const {
+  return node.attribute(name).value();
+}
+
+std::string DescriptionReader::required(const pugi::xml_node& node, const char* name) const {
+  if (!node.attribute(name)) refuse(node, node.name(), std::string("lacks the attribute ") + name);
+  return node.attribute(name).value();
+}
+
+bool DescriptionReader::flag(const pugi::xml_node& node, const char* name) const {
+  const std::string value = text(node, name);
+  if (value.empty() || value == "false" || value == "0") return false;
+  if (value != "true" && value != "1") refuse(node, value, std::string(name) + " must be true or false");
+  return true;
+}
+
+std::optional<double> DescriptionReader::number(const pugi::xml_node& node, const char* name) const {
+  const pugi::xml_attribute attribute = node.attribute(name);
+  if (!attribute) return std::nullopt;
+  const std::optional<double> value = to_number(attribute.value());
+  if (!value) refuse(node, attribute.value(), std::string(name) + " must be a number");
+  return value;
+}
+
+std::uint64_t DescriptionReader::whole(const pugi::xml_node& node, const char* name, std::uint64_t most) const {
+  const std::string value = required(node, name);
+  std::uint64_t result = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
+  if (error != std::errc() || end != value.data() + value.size() || result > most)
+    refuse(node, value, std::string(name) + " must be a whole number up to " + std::to_string(most));
+  return result;
+}
+
+std::vector<double> DescriptionReader::numbers(const pugi::xml_node& node, const char* name) const {
+  std::vector<double> values;
+  std::istringstream parts(text(node, name));
+  for (std::string part; parts >> part;) {
+    const std::optional<double> value = part == "true" ? 1.0 : part == "false" ? 0.0 : to_number(part);
+    if (!value) refuse(node, part, std::string(name) + " must be a number");
+    values.push_back(*value);
+  }
+  return values;
+}
+
+DeclaredType read_type(const DescriptionReader& reader, const pugi::xml_node& node) {
+  return {.unit = reader.text(node, "unit"),
+          .min = reader.number(node, "min"),
+          .max = reader.number(node, "max"),
+          .nominal = reader.number(node, "nominal")};
+}
+
+void read_number_attributes(const DescriptionReader& reader, const pugi::xml_node& node, const DeclaredTypes& types,
+                            Variable& variable) {
+  if (variable.type == FmiType::string || variable.type == FmiType::binary || variable.type == FmiType::clock) return;
+  DeclaredType own = read_type(reader, node);
+  if (const std::string name = reader.text(node, "declaredType"); !name.empty()) {
+    const auto type = types.find(name);
+    if (type == types.end()) reader.refuse(node, name, "declaredType names no type of the description");
+    if (own.unit.empty()) own.unit = type->second.unit;
+    if (!own.min) own.min = type->second.min;
+    if (!own.max) own.max = type->second.max;
+    if (!own.nominal) own.nominal = type->second.nominal;
+  }
+  variable.unit = std::move(own.unit);
+  variable.min = own.min, variable.max = own.max, variable.nominal = own.nominal;
+  variable.start = reader.numbers(node, "start");
+}
+
+void add_states(const DescriptionReader& reader, const pugi::xml_node& at, std::size_t derivative,
+                ModelDescription& description) {
+  const Variable& rate = description.variables[derivative];
+  if (!rate.derivative_of)
+    reader.refuse(at, rate.name, "stands among the state derivatives and has no attribute derivative");
+  const Variable& state = description.variables[*rate.derivative_of];
+  if (state.size != rate.size) reader.refuse(at, rate.name, "has another size than its state " + state.name);
+  if (state.type != FmiType::float64 || rate.type != FmiType::float64)
+    reader.refuse(at, state.name, "is a state that is no Float64 (Real), which sealwatch integrates alone");
+  for (std::size_t element = 0; element < rate.size; ++element) {
+    description.states.push_back({*rate.derivative_of, element});
+    description.derivatives.push_back({derivative, element});
+  }
+}
+
+}  // namespace sealwatch::fmi

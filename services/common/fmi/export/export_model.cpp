@@ -1,0 +1,288 @@
+#include "services/common/fmi/export/export_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/equations/dimension.hpp"
+#include "services/common/fmi/export/c_expressions.hpp"
+#include "services/common/fmi/export/law_formulas.hpp"
+#include "services/common/fmi/export/shell_text.hpp"
+#include "services/common/model/physics_terms.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using equations::Node;
+
+/// A variable of the exported FMU.
+struct Row {
+  std::string name, unit, meaning;
+  double start = 0.0;
+};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return result;
+}
+
+class Exporter {
+ public:
+  Exporter(const RuntimePlant& plant, const AssetConfig& asset) : plant_(plant), asset_(asset) {}
+
+  Result<ExportedModel> write() {
+    const auto* text = dynamic_cast<const equations::TextEquations*>(plant_.equations.get());
+    if (text == nullptr)
+      return fail(Error{.file = plant_.description.file,
+                        .place = {},
+                        .value = plant_.description.name,
+                        .rule = "is not written as text, so that its equations cannot be written in C",
+                        .advice = "an FMU stays with its tool: add the laws there (laws.c and laws.mo of explain)"});
+    parts_ = &text->parts();
+    auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);
+    if (!terms) return fail(terms.error());
+    terms_ = std::move(*terms);
+    if (const Status rows = collect(*text); !rows) return fail(rows.error());
+    ExportedModel model{.identifier = plant_.description.name, .source = {}, .description = {}, .left_out = left_out_};
+    std::ranges::replace_if(
+        model.identifier, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+    const auto equations = source();
+    if (!equations) return fail(equations.error());
+    token_ = "{sealwatch-" + content_hash(*equations) + "}";
+    model.source = head() + *equations + std::string(fmi2_shell_text());
+    model.description = description(model.identifier);
+    return model;
+  }
+
+ private:
+  Status collect(const equations::TextEquations& text) {
+    const PlantDescription& plant = plant_.description;
+    TimeSeries nothing{.time_s = {0.0, 1.0}, .channels = {}};
+    for (const ChannelDescription& channel : plant.channels)
+      nothing.channels.push_back({channel.name, channel.unit, 0.0, {0.0, 0.0}});
+    std::vector<double> values;
+    for (const ParameterDescription& row : plant.parameters) {
+      const auto setting = asset_.parameters.find(row.name);
+      values.push_back(setting == asset_.parameters.end() ? row.value : setting->second.value);
+      parameters_.push_back({row.name, row.unit, row.meaning, values.back()});
+    }
+    const auto start = text.initial_state(values, nothing);
+    if (!start) return fail(start.error());
+    for (std::size_t k = 0; k < plant.states.size(); ++k)
+      states_.push_back({plant.states[k].name, plant.states[k].unit, plant.states[k].meaning, (*start)[k]});
+    for (const std::string& name : terms_.hidden_names) states_.push_back({name, "1", "hidden state of a law", 0.0});
+    for (const PhysicsParameter& row : terms_.parameters)
+      parameters_.push_back(
+          {row.name, std::string(row.parameter->unit), std::string(row.parameter->meaning), row.setting.value});
+    for (const RuntimeInput& input : plant_.inputs) {
+      const ChannelDescription* channel = plant.find_channel(input.channel);
+      inputs_.push_back({channel->name, channel->unit, channel->meaning, 0.0});
+    }
+    add_rates();
+    for (const RuntimeOutput& output : plant_.outputs) {
+      const ChannelDescription* channel = plant.find_channel(output.channel);
+      outputs_.push_back({channel->name, channel->unit, channel->meaning, 0.0});
+    }
+    for (const SensorTerm& term : terms_.sensors) left_out_.push_back("the law of the sensor of " + term.channel);
+    return {};
+  }
+
+  void add_rates() {
+    std::vector<Node> all;
+    for (const auto* nodes : {&parts_->derivatives.values, &parts_->signals.values, &parts_->outputs.values})
+      all.insert(all.end(), nodes->begin(), nodes->end());
+    const std::vector<bool> used = parts_->expressions.variables_of(all, parts_->places.count);
+    const std::size_t plain = inputs_.size();
+    for (std::size_t k = 0; k < plain; ++k) {
+      const std::size_t input = parts_->used_inputs[k];
+      if (!used[parts_->places.rates + input]) continue;
+      rates_.push_back(input);
+      inputs_.push_back({inputs_[k].name + "_rate", inputs_[k].unit + "/s", "rate of " + inputs_[k].name, 0.0});
+    }
+  }
+
+  [[nodiscard]] std::string head() const {
+    std::ostringstream out;
+    out << "/* " << plant_.description.name << " of " << asset_.asset_id
+        << ", written by sealwatch: the plant with the laws that were found. SI units. */\n"
+        << "#define MODEL_TOKEN \"" << token_ << "\"\n"
+        << "#define STATES " << states_.size() << "\n#define INPUTS " << inputs_.size() << "\n#define PARAMETERS "
+        << parameters_.size() << "\n#define OUTPUTS " << outputs_.size()
+        << "\n#include <math.h>\n#include <string.h>\n\n";
+    for (const auto& [name, rows] :
+         {std::pair{"start_states", &states_}, {"start_inputs", &inputs_}, {"start_parameters", &parameters_}}) {
+      out << "static const double " << name << "[] = {";
+      for (const Row& row : *rows) out << c_number(row.start) << ", ";
+      out << "0.0};\n";
+    }
+    return out.str() + "\n";
+  }
+
+  Result<std::string> source() {
+    std::string text;
+    for (const auto& [name, nodes] : {std::pair{"plant_rates", &parts_->derivatives.values},
+                                      {"plant_signals", &parts_->signals.values},
+                                      {"plant_outputs", &parts_->outputs.values}}) {
+      const auto function = c_function(name, *parts_, *nodes, rates_);
+      if (!function)
+        return fail(Error{.file = plant_.description.file,
+                          .place = {},
+                          .value = plant_.description.name,
+                          .rule = function.error().rule,
+                          .advice = function.error().advice});
+      text += *function + "\n";
+    }
+    const auto laws = laws_function();
+    if (!laws) return fail(laws.error());
+    return text + helper_functions_c() + "\n" + *laws + R"c(
+static void model_derivatives(double t, const double* x, const double* u, const double* p, double* dx) {
+  double e[SITES + 1];
+  model_laws(t, x, u, p, e, dx + PLANT_STATES);
+  plant_rates(t, x, u, p, e, dx);
+}
+static void model_outputs(double t, const double* x, const double* u, const double* p, double* y) {
+  double e[SITES + 1], hidden_rates[STATES + 1];
+  model_laws(t, x, u, p, e, hidden_rates);
+  plant_outputs(t, x, u, p, e, y);
+}
+
+)c";
+  }
+
+  // What the laws add at each site, and the rates of their hidden states; as RuntimeSystem::add_laws.
+  Result<std::string> laws_function() {
+    std::ostringstream out;
+    out << "#define SITES " << plant_.description.sites.size() << "\n#define PLANT_STATES "
+        << plant_.description.states.size()
+        << "\n/* What laws add at the sites, e, and the rates of their hidden states. */\n"
+           "static void model_laws(double t, const double* x, const double* u, const double* p, double* e,\n"
+           "                       double* hidden_rates) {\n"
+           "  double s[4 * SITES + 1];\n  memset(e, 0, (SITES + 1) * sizeof *e);\n  (void)hidden_rates;\n"
+           "  plant_signals(t, x, u, p, e, s);\n";
+    for (std::size_t site = 0; site < plant_.description.sites.size(); ++site) {
+      bool first = true;
+      for (const ActiveTerm& term : terms_.active) {
+        if (std::ranges::find(term.sites, site) == term.sites.end()) continue;
+        const LawFormula* formula = find_formula(*term.law);
+        if (formula == nullptr)
+          return fail(Error{.file = plant_.description.file,
+                            .place = {},
+                            .value = std::string(term.law->id),
+                            .rule = "is a law that the plant brings itself, which is not written in C yet",
+                            .advice = "leave it out of the asset's physics"});
+        if (first && parts_->signals_see_added) out << "  plant_signals(t, x, u, p, e, s);\n";
+        first = false;
+        out << "  { /* " << term.law->id << " at " << plant_.description.sites[site].element << ": "
+            << term.law->equation << " */\n";
+        for (std::size_t k = 0; k < kSiteSignals; ++k)
+          out << "    const double s" << k + 1 << " = s[" << 4 * site + k << "];\n";
+        out << "    const double h = "
+            << (term.hidden < 0 ? "0.0" : "x[PLANT_STATES + " + std::to_string(term.hidden) + "]") << ";\n";
+        for (std::size_t k = 0; k < kLawParameters; ++k)
+          out << "    const double p" << k + 1 << " = "
+              << (k < term.law->parameters.size() ? "p[" + std::to_string(term.first_parameter + k) + "]" : "0.0")
+              << ";\n";
+        out << "    (void)s1, (void)s2, (void)s3, (void)s4, (void)h, (void)p1, (void)p2, (void)p3, (void)p4;\n"
+            << "    e[" << site << "] += " << in_c(formula->contribution) << ";\n";
+        if (term.hidden >= 0 && site == term.sites.back())
+          out << "    hidden_rates[" << term.hidden << "] = " << in_c(formula->rate) << ";\n";
+        out << "  }\n";
+      }
+    }
+    out << "}\n";
+    return out.str();
+  }
+
+  [[nodiscard]] std::string description(const std::string& identifier) const {
+    std::ostringstream out;
+    out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"2.0\" modelName=\""
+        << escaped(plant_.description.name) << "\" guid=\"" << token_ << "\" description=\""
+        << escaped(plant_.description.meaning) << "\" generationTool=\"sealwatch\" numberOfEventIndicators=\"0\">\n"
+        << "<ModelExchange modelIdentifier=\"" << identifier
+        << "\" completedIntegratorStepNotNeeded=\"true\">\n<SourceFiles><File name=\"model.c\"/></SourceFiles>\n"
+           "</ModelExchange>\n";
+    units(out);
+    out << "<ModelVariables>\n";
+    rows(out, states_, 1000, "causality=\"local\" variability=\"continuous\" initial=\"exact\"", true);
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      out << "<ScalarVariable name=\"der(" << escaped(states_[k].name) << ")\" valueReference=\"" << 2000 + k
+          << "\" causality=\"local\" variability=\"continuous\" initial=\"calculated\"><Real derivative=\"" << k + 1
+          << "\"/></ScalarVariable>\n";
+    rows(out, inputs_, 3000, "causality=\"input\" variability=\"continuous\"", true);
+    rows(out, parameters_, 4000, "causality=\"parameter\" variability=\"tunable\" initial=\"exact\"", true);
+    rows(out, outputs_, 5000, "causality=\"output\" variability=\"continuous\" initial=\"calculated\"", false);
+    out << "</ModelVariables>\n<ModelStructure>\n";
+    const std::size_t first = 2 * states_.size() + inputs_.size() + parameters_.size();
+    const auto unknowns = [&](std::size_t from, std::size_t count) {
+      for (std::size_t k = 0; k < count; ++k) out << "<Unknown index=\"" << from + k + 1 << "\"/>";
+    };
+    out << "<Outputs>", unknowns(first, outputs_.size()), out << "</Outputs>\n";
+    if (!states_.empty()) out << "<Derivatives>", unknowns(states_.size(), states_.size()), out << "</Derivatives>\n";
+    out << "<InitialUnknowns>", unknowns(states_.size(), states_.size()), unknowns(first, outputs_.size()),
+        out << "</InitialUnknowns>\n</ModelStructure>\n</fmiModelDescription>\n";
+    return out.str();
+  }
+
+  // Units whose powers are whole; others are named without their meaning.
+  void units(std::ostringstream& out) const {
+    std::vector<std::string> names;
+    for (const auto* list : {&states_, &inputs_, &parameters_, &outputs_})
+      for (const Row& row : *list)
+        if (std::ranges::find(names, row.unit) == names.end()) names.push_back(row.unit);
+    out << "<UnitDefinitions>\n";
+    for (const std::string& name : names) {
+      out << "<Unit name=\"" << escaped(name) << "\">";
+      const auto dimension = equations::find_dimension(name);
+      const bool whole =
+          dimension && std::ranges::all_of(dimension->power, [](double p) { return p == std::round(p); });
+      if (whole) {
+        constexpr std::array kBase = {"m", "kg", "s", "A", "K", "mol", "cd"};
+        out << "<BaseUnit";
+        for (std::size_t k = 0; k < kBase.size(); ++k)
+          if (dimension->power[k] != 0.0) out << " " << kBase[k] << "=\"" << std::lround(dimension->power[k]) << "\"";
+        out << "/>";
+      }
+      out << "</Unit>\n";
+    }
+    out << "</UnitDefinitions>\n";
+  }
+
+  static void rows(std::ostringstream& out, const std::vector<Row>& list, int reference, const char* attributes,
+                   bool with_start) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      out << "<ScalarVariable name=\"" << escaped(list[k].name) << "\" valueReference=\""
+          << static_cast<std::size_t>(reference) + k << "\" description=\"" << escaped(list[k].meaning) << "\" "
+          << attributes << "><Real unit=\"" << escaped(list[k].unit) << "\"";
+      if (with_start) out << " start=\"" << c_number(list[k].start) << "\"";
+      out << "/></ScalarVariable>\n";
+    }
+  }
+
+  const RuntimePlant& plant_;
+  const AssetConfig& asset_;
+  const equations::TextEquationsParts* parts_ = nullptr;
+  PhysicsTerms terms_;
+  std::vector<Row> states_, inputs_, parameters_, outputs_;
+  std::vector<std::size_t> rates_;
+  std::vector<std::string> left_out_;
+  std::string token_;
+};
+
+}  // namespace
+
+Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset) {
+  return Exporter(plant, asset).write();
+}
+
+}  // namespace sealwatch::fmi

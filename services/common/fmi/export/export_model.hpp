@@ -1,0 +1,29 @@
+// A plant that is written as text, with the laws of an asset in it, as a model in C and its modelDescription.xml: an FMU
+// of FMI 2.0 for Model Exchange once it is packed (fmu_writer.hpp).
+//
+//   states      the plant's, then the laws' hidden states       parameters  the plant's, then the laws'
+//   inputs      the plant's; where equations or laws need the rate of an input, that rate is an input of its own
+//
+// The asset's values are the start values. Sensors' laws and low-passes belong to the recording, not to the plant, and
+// stay out; so does a recording's own load factor.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/asset.hpp"
+#include "services/common/equations/text_equations.hpp"
+
+namespace sealwatch::fmi {
+
+struct ExportedModel {
+  std::string identifier;   ///< "spring_return"
+  std::string source;       ///< model.c, whole
+  std::string description;  ///< modelDescription.xml
+  std::vector<std::string> left_out;
+};
+
+/// An Error where something cannot be written in C: tables, laws that the plant brings itself.
+[[nodiscard]] Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset);
+
+}  // namespace sealwatch::fmi

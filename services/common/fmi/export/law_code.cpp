@@ -1,0 +1,128 @@
+#include "services/common/fmi/export/law_code.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "sealwatch/model/physics.hpp"
+#include "services/common/equations/site_table.hpp"
+#include "services/common/fmi/export/law_formulas.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), error == std::errc() ? end : text.data()};
+}
+
+std::string name_of_function(const PhysicsTerm& term) {
+  std::string name = term.element + "_" + term.id;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+/// One argument of a law's function.
+struct Argument {
+  std::string formula_name;          ///< "s1", "p2", "h"
+  std::string unit, meaning, value;  ///< value: "" of a signal
+};
+
+std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term) {
+  std::vector<Argument> arguments;
+  const equations::SiteNames& names = equations::names_of_site(law.kind);
+  for (std::size_t k = 0; k < kSiteSignals; ++k)
+    if (!names.signals[k].name.empty())
+      arguments.push_back(
+          {"s" + std::to_string(k + 1), std::string(names.signals[k].unit), std::string(names.signals[k].name), ""});
+  if (law.hidden)
+    arguments.push_back({"h", std::string(law.hidden->unit), "hidden state: " + std::string(law.hidden->name), ""});
+  for (std::size_t k = 0; k < law.parameters.size(); ++k) {
+    const LawParameter& parameter = law.parameters[k];
+    const auto setting = term.parameters.find(std::string(parameter.name));
+    if (setting == term.parameters.end()) continue;
+    arguments.push_back({"p" + std::to_string(k + 1), std::string(parameter.unit),
+                         std::string(parameter.name) + ": " + std::string(parameter.meaning),
+                         number(setting->second.value)});
+  }
+  return arguments;
+}
+
+std::string heading(const Law& law, const PhysicsTerm& term) {
+  return std::string(law.id) + " at " + term.element + ": " + std::string(law.equation) + "\n" +
+         std::string(law.meaning) +
+         "; a loss counts positive, unit of the result: " + std::string(equations::names_of_site(law.kind).unit);
+}
+
+std::string with_line_starts(const std::string& text, const std::string& start) {
+  std::string result = start;
+  for (const char c : text) {
+    result += c;
+    if (c == '\n') result += start;
+  }
+  return result;
+}
+
+std::string c_function(const std::string& name, const std::vector<Argument>& arguments, std::string_view formula) {
+  std::string text = "double " + name + "(";
+  std::string defaults, separator;
+  for (const Argument& argument : arguments) {
+    if (argument.value.empty()) {
+      text += separator + "double " + argument.formula_name;
+      separator = ", ";
+    } else {
+      defaults += "  const double " + argument.formula_name + " = " + argument.value + "; /* " + argument.meaning +
+                  " [" + argument.unit + "] */\n";
+    }
+  }
+  return text + ") {\n" + defaults + "  return " + in_c(formula) + ";\n}\n";
+}
+
+std::string modelica_function(const std::string& name, const std::vector<Argument>& arguments,
+                              std::string_view formula) {
+  std::string text = "  function " + name + "\n";
+  for (const Argument& argument : arguments)
+    text += "    input Real " + argument.formula_name + (argument.value.empty() ? "" : " = " + argument.value) + " \"" +
+            argument.meaning + " [" + argument.unit + "]\";\n";
+  return text + "    output Real y;\n  algorithm\n    y := " + std::string(formula) + ";\n  end " + name + ";\n";
+}
+
+}  // namespace
+
+LawCode law_code(const PlantDescription& plant, const AssetConfig& asset) {
+  LawCode code{
+      .c = "/* Physics that sealwatch found at " + asset.asset_id + " (plant " + plant.name +
+           "), SI units.\n * s1, s2, ...: what the law sees; h: its hidden state, whose rate is a function of its "
+           "own. */\n#include <math.h>\n\n" +
+           helper_functions_c() + "\n",
+      .modelica = "// Physics that sealwatch found at " + asset.asset_id + " (plant " + plant.name +
+                  "), SI units.\npackage FoundPhysics\n" + helper_functions_modelica()};
+  for (const PhysicsTerm& term : asset.physics) {
+    std::vector<std::string> names;
+    for (const auto& [name, setting] : term.parameters) names.push_back(name);
+    const auto law = find_law(term.id, names, plant.name);
+    const LawFormula* formula = law ? find_formula(**law) : nullptr;
+    if (formula == nullptr) {
+      code.c += "/* " + term.id + " at " + term.element + ": of a sensor, or the plant's own: not written here. */\n";
+      code.modelica +=
+          "  // " + term.id + " at " + term.element + ": of a sensor, or the plant's own: not written here.\n";
+      continue;
+    }
+    const std::vector<Argument> arguments = arguments_of(**law, term);
+    const std::string function = name_of_function(term), head = heading(**law, term);
+    code.c += "/*\n" + with_line_starts(head, " * ") + "\n */\n" +
+              c_function(function, arguments, formula->contribution) + "\n";
+    code.modelica +=
+        with_line_starts(head, "  // ") + "\n" + modelica_function(function, arguments, formula->contribution);
+    if (formula->rate.empty()) continue;
+    code.c += "/* d/dt of its hidden state h */\n" + c_function(function + "_rate", arguments, formula->rate) + "\n";
+    code.modelica +=
+        "  // d/dt of its hidden state h\n" + modelica_function(function + "_rate", arguments, formula->rate);
+  }
+  code.modelica += "end FoundPhysics;\n";
+  return code;
+}
+
+}  // namespace sealwatch::fmi

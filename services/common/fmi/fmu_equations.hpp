@@ -1,0 +1,82 @@
+// A plant whose derivatives come from an FMU. What stands around the FMU is written as text (sealwatch/services/common/
+// equations) and is here the `frame`, a run-time plant of its own:
+//
+//   v = v(t, x, u, p, e)        inputs of the FMU            (frame outputs behind the plant's own)
+//   q = q(p)                    parameters of the FMU        (the next frame outputs)
+//   z = [dx/dt; w] = F(t, x, v, q)      the FMU: its derivatives and the variables that are used
+//   f, s, y = frame(t, x, u, p, [z; e])                      z stands where the frame has its first `added`
+//
+//   df/dx = df_frame/dx + df_frame/dz (F_x + F_v dv/dx),  and so on for p and e by the chain rule
+//
+// What laws add goes to f behind the FMU, or to v before it: the user's model stays as it is. F_x and F_v are the
+// binary's directional derivatives or central differences on the instance; F_q one-sided differences on further
+// instances. The unit of every quantity of the FMU is converted: SI = factor * value + offset.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "sealwatch/model/runtime_equations.hpp"
+#include "services/common/fmi/fmu_file.hpp"
+
+namespace sealwatch::fmi {
+
+/// An element of the FMU that the frame sets or reads: its place among the elements of its group in Setup.
+struct Port {
+  std::size_t place = 0;
+  Conversion unit;
+};
+
+struct FmuBlock {
+  std::shared_ptr<const FmuFile> file;
+  Setup setup;
+  std::vector<Conversion> states;
+  std::vector<double> state_sizes;  ///< SI
+  std::vector<Port> variables, inputs, parameters;
+  std::vector<double> input_start, parameter_start;  ///< of all elements of the groups, in the FMU's units
+  double start_time_s = 0.0;
+};
+
+/// Processes that run the FMU, kept for the next run.
+class ProcessPool {
+ public:
+  [[nodiscard]] Result<std::unique_ptr<FmuProcess>> take(const FmuBlock& block, std::size_t slots);
+  void give_back(std::unique_ptr<FmuProcess> process);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<FmuProcess>> idle_;
+};
+
+class FmuEquations final : public RuntimeEquations {
+ public:
+  /// How many of each the plant has; its outputs are the frame's first ones.
+  struct Counts {
+    std::size_t inputs = 0, outputs = 0, sites = 0;
+  };
+  FmuEquations(FmuBlock block, std::shared_ptr<const RuntimeEquations> frame, Counts counts, bool outputs_see_added);
+  [[nodiscard]] Result<std::unique_ptr<RuntimeEvaluator>> evaluator(
+      std::span<const double> parameters, std::span<const std::size_t> differentiated) const override;
+  [[nodiscard]] Result<std::vector<double>> initial_state(std::span<const double> parameters,
+                                                          const TimeSeries& recorded) const override {
+    return frame_->initial_state(parameters, recorded);
+  }
+  [[nodiscard]] bool signals_see_added() const override { return frame_->signals_see_added(); }
+  [[nodiscard]] bool outputs_see_added() const override { return outputs_see_added_; }
+  [[nodiscard]] const FmuBlock& block() const { return block_; }
+
+ private:
+  FmuBlock block_;
+  std::shared_ptr<const RuntimeEquations> frame_;
+  Counts counts_;
+  bool outputs_see_added_;
+  std::shared_ptr<ProcessPool> pool_ = std::make_shared<ProcessPool>();
+};
+
+/// Compares the directional derivatives that the FMU gives with differences, at its start and near it; an Error that
+/// names the first that is wrong. Also refuses derivatives that are not finite numbers.
+[[nodiscard]] Status check_derivatives(const FmuBlock& block);
+
+}  // namespace sealwatch::fmi

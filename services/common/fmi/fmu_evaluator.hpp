@@ -1,0 +1,105 @@
+// One run of an FMU's equations (fmu_equations.hpp).
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "services/common/fmi/fmu_equations.hpp"
+
+namespace sealwatch::fmi {
+
+/// What the FMU gave at a point, in SI: z = [dx/dt; w] and its derivatives as far as they were asked for.
+struct BlockValues {
+  std::vector<double> z;
+  std::vector<bool> signs;  ///< of the event indicators
+  RuntimeMatrix by_state, by_input, by_parameter;
+};
+
+/// The FMU itself: begins, and gives z at points.
+class RunningBlock {
+ public:
+  /// `parameters`: q of the run, then q of each direction of differentiation at a step `steps[k]` away.
+  [[nodiscard]] static Result<std::unique_ptr<RunningBlock>> begin(const FmuBlock& block,
+                                                                   std::shared_ptr<ProcessPool> pool,
+                                                                   const std::vector<std::vector<double>>& parameters,
+                                                                   std::vector<double> steps);
+  ~RunningBlock();
+  RunningBlock(const RunningBlock&) = delete;
+  RunningBlock& operator=(const RunningBlock&) = delete;
+  /// Null where the FMU has no value; trouble() says why.
+  [[nodiscard]] const BlockValues* at(double time_s, std::span<const double> states, std::span<const double> inputs,
+                                      EvaluationRequest wanted);
+  [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  [[nodiscard]] bool has_events() const;
+  [[nodiscard]] double next_event_s() const { return beginning_.outcome.next_time_s; }
+  /// Whether an indicator has another sign than when accept() or pass_event() was called last.
+  [[nodiscard]] bool event_before(double time_s, std::span<const double> states, std::span<const double> inputs);
+  [[nodiscard]] bool accept(double time_s, std::span<const double> states, std::span<const double> inputs);
+  [[nodiscard]] bool pass_event(double time_s, std::span<double> states, std::span<const double> inputs);
+  [[nodiscard]] const Beginning& beginning() const { return beginning_; }
+
+ private:
+  RunningBlock(const FmuBlock& block, std::shared_ptr<ProcessPool> pool, std::vector<double> steps)
+      : block_(block), pool_(std::move(pool)), steps_(std::move(steps)) {}
+  void set_point(std::span<const double> states, std::span<const double> inputs);
+  /// A Co-Simulation unit goes on to this time, with inputs that are linear from the last one.
+  [[nodiscard]] const BlockValues* step_to(double time_s);
+  [[nodiscard]] bool is_known(double time_s, const EvaluationRequest& wanted) const;
+  void convert(const Evaluation& values, const EvaluationRequest& wanted);
+  void convert_jacobian(std::span<const double> derivatives, std::span<const double> outputs, std::size_t columns,
+                        bool of_states);
+  [[nodiscard]] bool differentiate_by_parameters(double time_s);
+  [[nodiscard]] double rate(std::size_t state, double value) const { return block_.states[state].factor * value; }
+
+  const FmuBlock& block_;
+  std::shared_ptr<ProcessPool> pool_;
+  std::vector<std::unique_ptr<FmuProcess>> processes_;  ///< several where the binary allows one instance in each
+  std::vector<double> steps_;
+  Beginning beginning_;
+  std::vector<double> states_, inputs_, known_states_, known_inputs_;  ///< in the FMU's units
+  std::vector<bool> signs_;
+  double known_time_s_ = std::numeric_limits<double>::quiet_NaN();
+  EvaluationRequest known_;
+  double first_time_s_ = std::numeric_limits<double>::quiet_NaN();  ///< of the recording, of a Co-Simulation unit
+  BlockValues values_;
+  std::string trouble_;
+};
+
+class FmuEvaluator final : public RuntimeEvaluator {
+ public:
+  FmuEvaluator(const FmuBlock& block, std::unique_ptr<RuntimeEvaluator> frame, std::unique_ptr<RunningBlock> running,
+               std::size_t outputs, std::size_t sites, std::size_t differentiated, bool signals_use_block);
+  [[nodiscard]] bool evaluate(RuntimeFunction function, const RuntimePoint& point, std::span<double> values) override;
+  [[nodiscard]] const RuntimeLinearisation* linearise(RuntimeFunction function, const RuntimePoint& point,
+                                                      RuntimeDirections directions) override;
+  [[nodiscard]] std::string trouble() const override;
+  [[nodiscard]] bool has_events() const override { return running_->has_events(); }
+  [[nodiscard]] double next_event_s() const override { return running_->next_event_s(); }
+  [[nodiscard]] bool event_before(const RuntimePoint& point) override;
+  [[nodiscard]] bool accept(const RuntimePoint& point) override;
+  [[nodiscard]] bool pass_event(const RuntimePoint& point, std::span<double> states) override;
+
+ private:
+  [[nodiscard]] RuntimePoint framed(const RuntimePoint& point);
+  [[nodiscard]] std::span<const double> inputs_at(const RuntimePoint& point);
+  [[nodiscard]] bool needs_block(RuntimeFunction function) const {
+    return function != RuntimeFunction::signals || signals_use_block_;
+  }
+  /// The frame has signals of what the FMU gives too, before the plant's own.
+  [[nodiscard]] std::size_t first_row(RuntimeFunction function) const {
+    return function == RuntimeFunction::signals ? z_count_ * kSiteSignals : 0;
+  }
+
+  const FmuBlock& block_;
+  std::unique_ptr<RuntimeEvaluator> frame_;
+  std::unique_ptr<RunningBlock> running_;
+  std::size_t outputs_, sites_, differentiated_, z_count_;
+  bool signals_use_block_;
+  std::vector<double> added_, frame_outputs_, frame_signals_;
+  RuntimeMatrix v_by_state_, v_by_parameter_, v_by_added_;
+  RuntimeMatrix z_by_state_, z_by_parameter_, z_by_added_;
+  RuntimeLinearisation result_;
+};
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,138 @@
+#include "services/common/fmi/fmu_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace sealwatch::fmi {
+namespace {
+
+bool is_number(FmiType type) { return type != FmiType::string && type != FmiType::binary && type != FmiType::clock; }
+
+/// An ELF file of 64 bits for x86-64, by its first bytes (System V ABI, ELF header).
+std::string fault_of_binary(const std::filesystem::path& file) {
+  std::array<char, 20> header{};
+  std::ifstream(file, std::ios::binary).read(header.data(), header.size());
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(header[k]); };
+  if (header[0] == 'M' && header[1] == 'Z') return "is a binary for Windows";
+  if (!std::string_view(header.data(), 4)
+           .starts_with("\x7f"
+                        "ELF"))
+    return "is no binary for Linux";
+  if (byte(4) != 2) return "is a binary for 32 bits";
+  constexpr unsigned kX86_64 = 62;
+  const unsigned machine = byte(18) + 256U * byte(19);
+  return machine == kX86_64 ? "" : "is a binary for another processor (ELF machine " + std::to_string(machine) + ")";
+}
+
+Handle handle_of(const Variable& variable) {
+  return {variable.reference, variable.type, static_cast<std::uint32_t>(variable.size)};
+}
+
+std::vector<Handle> handles_of(const ModelDescription& description, std::span<const std::size_t> variables) {
+  std::vector<Handle> handles;
+  for (const std::size_t variable : variables) handles.push_back(handle_of(description.variables[variable]));
+  return handles;
+}
+
+/// Whole variables of elements that follow each other.
+std::vector<Handle> handles_of(const ModelDescription& description, std::span<const Element> elements) {
+  std::vector<Handle> handles;
+  for (const Element& element : elements)
+    if (element.element == 0) handles.push_back(handle_of(description.variables[element.variable]));
+  return handles;
+}
+
+bool changes_between_events(const Variable& variable) {
+  return variable.variability == FmiVariability::continuous &&
+         (variable.type == FmiType::float64 || variable.type == FmiType::float32);
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const FmuFile>> FmuFile::open(const std::string& file) {
+  Result<UnpackedFmu> unpacked = unpack_fmu(file);
+  if (!unpacked) return fail(unpacked.error());
+  std::ostringstream text;
+  text << std::ifstream(unpacked->path_of(kDescriptionName), std::ios::binary).rdbuf();
+  Result<ModelDescription> description = read_model_description(file, text.str());
+  if (!description) return fail(description.error());
+  std::shared_ptr<FmuFile> fmu(new FmuFile(std::move(*unpacked), std::move(*description)));
+  if (const Status found = fmu->find_binary(); !found) return fail(found.error());
+  return fmu;
+}
+
+const Interface& FmuFile::interface() const {
+  return co_simulation() ? *description_.co_simulation : *description_.model_exchange;
+}
+
+Error FmuFile::refusal(std::string rule, std::string advice, std::string value) const {
+  return {.file = unpacked_.file,
+          .place = {},
+          .value = std::move(value),
+          .rule = std::move(rule),
+          .advice = std::move(advice)};
+}
+
+Status FmuFile::find_binary() {
+  const std::string& name = interface().model_identifier;
+  const std::string platform = description_.version == Version::fmi2 ? "linux64" : "x86_64-linux";
+  binary_ = "binaries/" + platform + "/" + name + ".so";
+  if (unpacked_.has(binary_)) {
+    const std::string fault = fault_of_binary(unpacked_.path_of(binary_));
+    if (fault.empty()) return {};
+    return fail(refusal("its member " + binary_ + " " + fault, "export the FMU for Linux on x86-64"));
+  }
+  std::set<std::string> platforms;
+  for (const std::string& member : unpacked_.members) {
+    if (!member.starts_with("binaries/")) continue;
+    const std::string rest = member.substr(9);
+    if (const auto end = rest.find('/'); end != std::string::npos && end > 0) platforms.insert(rest.substr(0, end));
+  }
+  std::string there;
+  for (const std::string& one : platforms) there += (there.empty() ? "" : ", ") + one;
+  return fail(
+      refusal("has no binary " + binary_ + (there.empty() ? "; it has none at all" : "; it has some for " + there),
+              "export the FMU for Linux on x86-64 (linux64)"));
+}
+
+Result<Setup> FmuFile::setup(Selection& selection) const {
+  const auto& variables = description_.variables;
+  for (const auto* list : {&selection.parameters, &selection.inputs, &selection.outputs})
+    for (const std::size_t k : *list)
+      if (!is_number(variables[k].type))
+        return fail(
+            refusal("is no number, but a variable of type " + std::string(sealwatch::name_of(variables[k].type)),
+                    "leave it out", variables[k].name));
+  const auto behind = std::ranges::stable_partition(
+      selection.inputs, [&](std::size_t k) { return changes_between_events(variables[k]); });
+  const auto continuous = static_cast<std::uint32_t>(behind.begin() - selection.inputs.begin());
+  const bool real_outputs = std::ranges::all_of(selection.outputs, [&](std::size_t k) {
+    return variables[k].causality == FmiCausality::output && variables[k].type == FmiType::float64;
+  });
+  const bool real_inputs = std::ranges::all_of(selection.inputs.begin(), behind.begin(),
+                                               [&](std::size_t k) { return variables[k].type == FmiType::float64; });
+  const bool directional = !co_simulation() && interface().directional_derivatives && real_inputs;
+  const std::string resources = unpacked_.path_of("resources").string();
+  return Setup{
+      .library = unpacked_.path_of(binary_).string(),
+      .folder = unpacked_.folder.path().string(),
+      .resources = description_.version == Version::fmi2 ? "file://" + resources : resources + "/",
+      .token = description_.token,
+      .fmi3 = description_.version == Version::fmi3 ? 1U : 0U,
+      .co_simulation = co_simulation() ? 1U : 0U,
+      .once_per_process = interface().once_per_process ? 1U : 0U,
+      .state_directional = directional ? 1U : 0U,
+      .output_directional = directional && real_outputs ? 1U : 0U,
+      .event_indicators = co_simulation() ? 0U : static_cast<std::uint32_t>(description_.event_indicators),
+      .states = co_simulation() ? std::vector<Handle>() : handles_of(description_, description_.states),
+      .derivatives = co_simulation() ? std::vector<Handle>() : handles_of(description_, description_.derivatives),
+      .parameters = handles_of(description_, selection.parameters),
+      .inputs = handles_of(description_, selection.inputs),
+      .outputs = handles_of(description_, selection.outputs),
+      .continuous_inputs = continuous};
+}
+
+}  // namespace sealwatch::fmi

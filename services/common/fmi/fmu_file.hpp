@@ -1,0 +1,44 @@
+// An FMU, opened: its archive unpacked, its description read, its binary for this platform found.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "services/common/fmi/fmu_archive.hpp"
+#include "services/common/fmi/fmu_process.hpp"
+#include "services/common/fmi/model_description.hpp"
+
+namespace sealwatch::fmi {
+
+/// Variables by which an FMU is driven, read and changed. Inputs whose type or variability lets them change at events
+/// only stand behind the others: FmuFile::setup() orders them.
+struct Selection {
+  std::vector<std::size_t> parameters, inputs, outputs;  ///< indices of whole variables
+};
+
+class FmuFile {
+ public:
+  /// An Error when it cannot be run here.
+  [[nodiscard]] static Result<std::shared_ptr<const FmuFile>> open(const std::string& file);
+  [[nodiscard]] const ModelDescription& description() const { return description_; }
+  [[nodiscard]] const std::string& name() const { return unpacked_.file; }
+  /// Whether it offers Co-Simulation alone: then nothing can be added to its derivatives.
+  [[nodiscard]] bool co_simulation() const { return !description_.model_exchange; }
+  [[nodiscard]] const Interface& interface() const;
+  /// What its process must know; `selection` is put in order.
+  [[nodiscard]] Result<Setup> setup(Selection& selection) const;
+  [[nodiscard]] const UnpackedFmu& unpacked() const { return unpacked_; }
+
+ private:
+  FmuFile(UnpackedFmu unpacked, ModelDescription description)
+      : unpacked_(std::move(unpacked)), description_(std::move(description)) {}
+  [[nodiscard]] Status find_binary();
+  [[nodiscard]] Error refusal(std::string rule, std::string advice, std::string value = {}) const;
+
+  UnpackedFmu unpacked_;
+  ModelDescription description_;
+  std::string binary_;  ///< member
+};
+
+}  // namespace sealwatch::fmi

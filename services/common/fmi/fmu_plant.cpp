@@ -1,0 +1,259 @@
+#include "services/common/fmi/fmu_plant.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/equations/dimension.hpp"
+#include "services/common/equations/plant_names.hpp"
+#include "services/common/fmi/fmu_equations.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using equations::Dimension;
+using equations::TextPlant;
+
+Error fault(std::string value, std::string rule, std::string advice = {}) {
+  return {.file = {}, .place = {}, .value = std::move(value), .rule = std::move(rule), .advice = std::move(advice)};
+}
+
+class Builder {
+ public:
+  Builder(const TextPlant& text, const FmuSection& section, const equations::Faults& faults)
+      : text_(text), section_(section), faults_(faults) {}
+
+  std::optional<equations::BuiltPlant> build() {
+    auto file = FmuFile::open(section_.file);
+    if (!file) return complain("fmu.file", file.error()), std::nullopt;
+    block_.file = *file;
+    description_ = &block_.file->description();
+    order_states();
+    choose_variables();
+    if (!sound_) return std::nullopt;
+    write_frame();
+    auto built = equations::build_plant(frame_, [&](const std::string& key, const Error& error) {
+      const auto of = keys_.find(key.substr(0, key.rfind('.')));
+      complain(of == keys_.end() ? key : of->second, error);
+    });
+    if (!built || !sound_) return std::nullopt;
+    if (const Status honest = check_derivatives(block_); !honest)
+      return complain("fmu.file", honest.error()), std::nullopt;
+    strip(built->plant);
+    return built;
+  }
+
+ private:
+  void complain(const std::string& key, const Error& error) {
+    sound_ = false;
+    faults_(key, error);
+  }
+
+  // The plant's states are the FMU's, in any order; those of the frame stand in the FMU's.
+  void order_states() {
+    frame_ = text_;
+    frame_.states.clear();
+    if (block_.file->co_simulation()) {
+      if (!text_.states.empty())
+        complain("states", fault(text_.states[0].description.name, "cannot be a state: the FMU is for Co-Simulation",
+                                 "such a unit keeps its states to itself: leave out `states`"));
+      if (!text_.sites.empty())
+        complain(text_.sites[0].key, fault(text_.sites[0].element, "cannot be a site: the FMU is for Co-Simulation",
+                                           "export it for Model Exchange: then laws can be added to its derivatives"));
+      return;
+    }
+    for (const Element& state : description_->states) {
+      const std::string name = description_->name_of(state);
+      const auto row = std::ranges::find(section_.states, name);
+      if (row == section_.states.end()) {
+        complain("states", fault(name, "is a state of the FMU and is missing", "add it with variable: " + name));
+        continue;
+      }
+      frame_.states.push_back(text_.states[static_cast<std::size_t>(row - section_.states.begin())]);
+      const equations::TextState& of = frame_.states.back();
+      const std::string key = "states." + of.description.name;
+      block_.states.push_back(conversion(key, description_->variables[state.variable], of.description.unit));
+      block_.state_sizes.push_back(of.size.value_or(1.0));
+      if (!of.size) complain(key, fault(of.description.name, "has no size", "give size: how large it usually is"));
+    }
+    for (std::size_t k = 0; k < text_.states.size(); ++k)
+      if (std::ranges::none_of(description_->states, [&](const Element& state) {
+            return description_->name_of(state) == section_.states[k];
+          })) {
+        std::vector<std::string> names;
+        for (const Element& state : description_->states) names.push_back(description_->name_of(state));
+        complain("states." + text_.states[k].description.name,
+                 fault(section_.states[k], "is no state of the FMU", suggest(section_.states[k], names)));
+      }
+  }
+
+  // From the unit that the FMU declares to SI; where it declares none it counts in the plant file's.
+  Conversion conversion(const std::string& key, const Variable& variable, const std::string& unit) {
+    const Unit* declared = description_->find_unit(variable.unit);
+    if (declared == nullptr || !declared->has_base) return {};
+    const auto here = equations::find_dimension(unit), there = equations::find_dimension(si_name(*declared));
+    if (here && there && !(*here == *there))
+      complain(key, fault(unit, "is another quantity than the FMU's unit " + variable.unit,
+                          "the FMU says that this is in " + si_name(*declared)));
+    return {declared->factor, declared->offset};
+  }
+
+  void choose_variables() {
+    Selection selection;
+    std::vector<Element> inputs, parameters, outputs;
+    const auto choose = [&](const std::string& key, const std::string& name, std::vector<Element>& elements,
+                            std::vector<std::size_t>& whole) {
+      const Result<Element> element = description_->find_element(name);
+      if (!element) return complain(key, element.error());
+      elements.push_back(*element);
+      if (std::ranges::find(whole, element->variable) == whole.end()) whole.push_back(element->variable);
+    };
+    const auto check = [&](const std::string& key, const std::string& name, FmiCausality causality) {
+      const Variable* variable = description_->find(name.substr(0, name.find('[')));
+      if (variable != nullptr && variable->causality != causality)
+        complain(key, fault(name, "is no " + std::string(name_of(causality)) + " of the FMU, but its " +
+                                      std::string(name_of(variable->causality))));
+    };
+    for (const auto& [name, value] : section_.inputs)
+      choose("fmu.inputs." + name, name, inputs, selection.inputs),
+          check("fmu.inputs." + name, name, FmiCausality::input);
+    for (const auto& [name, value] : section_.parameters)
+      choose("fmu.parameters." + name, name, parameters, selection.parameters),
+          check("fmu.parameters." + name, name, FmiCausality::parameter);
+    for (const FmuVariable& variable : section_.variables)
+      choose("fmu.variables." + variable.name, variable.variable, outputs, selection.outputs);
+    if (!sound_) return;
+    const auto setup = block_.file->setup(selection);
+    if (!setup) return complain("fmu", setup.error());
+    block_.setup = *setup;
+    block_.start_time_s = description_->start_time_s.value_or(0.0);
+    block_.inputs = ports(inputs, selection.inputs, block_.input_start);
+    block_.parameters = ports(parameters, selection.parameters, block_.parameter_start);
+    std::vector<double> unused;
+    block_.variables = ports(outputs, selection.outputs, unused);
+    for (std::size_t k = 0; k < section_.variables.size(); ++k)
+      block_.variables[k].unit = conversion("fmu.variables." + section_.variables[k].name,
+                                            description_->variables[outputs[k].variable], section_.variables[k].unit);
+    units_of(inputs, input_units_, block_.inputs);
+    units_of(parameters, parameter_units_, block_.parameters);
+  }
+
+  // Places among the elements of the whole variables, in the order of the setup, and the start values of all.
+  [[nodiscard]] std::vector<Port> ports(const std::vector<Element>& elements, const std::vector<std::size_t>& whole,
+                                        std::vector<double>& start) const {
+    std::map<std::size_t, std::size_t> first;
+    for (const std::size_t variable : whole) {
+      const Variable& of = description_->variables[variable];
+      first[variable] = start.size();
+      for (std::size_t k = 0; k < of.size; ++k) start.push_back(of.start.empty() ? 0.0 : of.start[k]);
+    }
+    std::vector<Port> result;
+    result.reserve(elements.size());
+    for (const Element& element : elements) result.push_back({first[element.variable] + element.element, {}});
+    return result;
+  }
+
+  void units_of(const std::vector<Element>& elements, std::vector<std::string>& units, std::vector<Port>& to) const {
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+      const Unit* unit = description_->find_unit(description_->variables[elements[k].variable].unit);
+      units.push_back(unit != nullptr && unit->has_base ? si_name(*unit) : "");
+      if (unit != nullptr && unit->has_base) to[k].unit = {unit->factor, unit->offset};
+    }
+  }
+
+  // The text around the FMU: its derivatives and variables are what is "added" first, its inputs and parameters are
+  // outputs behind the plant's own.
+  void write_frame() {
+    std::vector<equations::TextSite> sites;
+    const auto from_fmu = [&](const std::string& symbol, const std::string& unit, const std::string& key) {
+      sites.push_back({.element = "fmu",
+                       .kind = SiteKind::own,
+                       .symbol = symbol,
+                       .unit = unit,
+                       .signals = {},
+                       .adds_to = {},
+                       .key = key});
+    };
+    for (std::size_t k = 0; k < frame_.states.size(); ++k) {
+      equations::TextState& state = frame_.states[k];
+      state.rate = "fmu_derivative_" + std::to_string(k + 1);
+      from_fmu(state.rate, "1/s " + state.description.unit, "states." + state.description.name);
+    }
+    for (const FmuVariable& variable : section_.variables)
+      from_fmu(variable.name, variable.unit, "fmu.variables." + variable.name);
+    frame_.sites.insert(frame_.sites.begin(), sites.begin(), sites.end());
+    for (std::size_t k = 0; k < section_.inputs.size(); ++k)
+      to_fmu("fmu.inputs." + section_.inputs[k].first, section_.inputs[k].second, input_units_[k]);
+    for (std::size_t k = 0; k < section_.parameters.size(); ++k)
+      to_fmu("fmu.parameters." + section_.parameters[k].first, section_.parameters[k].second, parameter_units_[k]);
+    for (const equations::TextSite& site : sites) to_fmu(site.key, site.symbol, site.unit);
+  }
+
+  void to_fmu(const std::string& key, const std::string& value, std::string unit) {
+    if (unit.empty()) unit = unit_of(value);
+    const std::string name = "fmu_" + std::to_string(keys_.size() + 1);
+    keys_["outputs." + name] = key;
+    frame_.outputs.push_back({.channel = {.name = name, .unit = unit, .meaning = key}, .value = value});
+  }
+
+  // Where the FMU declares no unit, whatever unit an expression has is right.
+  [[nodiscard]] std::string unit_of(const std::string& value) const {
+    equations::Expressions expressions;
+    const equations::Faults quiet = [](const std::string&, const Error&) {};
+    equations::PlantNames names(frame_, expressions, quiet);
+    const auto formula = equations::understand(value, expressions, names);
+    return formula ? equations::words_of(formula->dimension) : "1";
+  }
+
+  // Whether what laws add is seen at once by an output, or by an input of the FMU.
+  [[nodiscard]] bool outputs_see_added() const {
+    equations::Expressions expressions;
+    const equations::Faults quiet = [](const std::string&, const Error&) {};
+    equations::PlantNames names(frame_, expressions, quiet);
+    const std::size_t own = frame_.sites.size() - text_.sites.size();
+    return std::ranges::any_of(frame_.outputs, [&](const equations::TextOutput& output) {
+      const auto formula = equations::understand(output.value, expressions, names);
+      if (!formula) return false;
+      const auto used = expressions.variables_of(std::array{formula->node}, names.places().count);
+      return std::any_of(used.begin() + static_cast<std::ptrdiff_t>(names.places().added + own), used.end(),
+                         [](bool one) { return one; });
+    });
+  }
+
+  void strip(RuntimePlant& plant) {
+    const std::size_t outputs = text_.outputs.size(), sites = frame_.sites.size() - text_.sites.size();
+    const auto of_frame = [](const std::string& name) { return name.starts_with("fmu_"); };
+    plant.outputs.resize(outputs);
+    std::erase_if(plant.description.channels,
+                  [&](const ChannelDescription& row) { return of_frame(row.name) && !row.input; });
+    std::erase_if(plant.description.elements, [&](const ElementDescription& row) {
+      return row.name.starts_with("sensor:") && of_frame(row.name.substr(7));
+    });
+    plant.description.sites.erase(plant.description.sites.begin(),
+                                  plant.description.sites.begin() + static_cast<std::ptrdiff_t>(sites));
+    plant.equations = std::make_shared<FmuEquations>(
+        std::move(block_), plant.equations,
+        FmuEquations::Counts{.inputs = plant.inputs.size(), .outputs = outputs, .sites = text_.sites.size()},
+        outputs_see_added());
+  }
+
+  const TextPlant& text_;
+  const FmuSection& section_;
+  const equations::Faults& faults_;
+  bool sound_ = true;
+  const ModelDescription* description_ = nullptr;
+  FmuBlock block_;
+  TextPlant frame_;
+  std::vector<std::string> input_units_, parameter_units_;
+  std::map<std::string, std::string> keys_;  ///< of the frame's rows, to those of the file
+};
+
+}  // namespace
+
+std::optional<equations::BuiltPlant> build_fmu_plant(const TextPlant& text, const FmuSection& section,
+                                                     const equations::Faults& faults) {
+  return Builder(text, section, faults).build();
+}
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,295 @@
+#include "services/common/fmi/import_fmu.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "services/common/fmi/fmu_process.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+constexpr std::size_t kMostParameters = 200;  ///< in force; further ones come as comments
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  std::string result(text.data(), error == std::errc() ? end : text.data());
+  return result.find_first_of(".en") == std::string::npos ? result + ".0" : result;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) {
+      result += ' ';
+    } else {
+      if (c == '"' || c == '\\') result += '\\';
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+std::string in_comment(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20; }, ' ');
+  return text;
+}
+
+/// One row of the file: an element of the FMU and the name that stands for it.
+struct Row {
+  Element element;
+  std::string name;
+  std::string unit;
+  Conversion scale;
+  std::string meaning;
+};
+
+class Writer {
+ public:
+  Writer(const FmuFile& file, const std::string& path) : file_(file), fmu_(file.description()), path_(path) {}
+
+  Result<std::string> write() {
+    collect();
+    if (const Status started = start(); !started) return fail(started.error());
+    head();
+    fmu_section();
+    channels();
+    parameter_rows();
+    if (!file_.co_simulation()) {
+      state_rows();
+      site_rows();
+    } else {
+      out_
+          << "\n# This FMU is for Co-Simulation alone: it integrates by itself and keeps its states, so that no law "
+             "can be\n"
+             "# added to its derivatives. fit, validate and explain work with its inputs, outputs, parameters and\n"
+             "# sensors; explain asks no physics of it. Exported for Model Exchange it can be asked for physics too.\n";
+    }
+    return out_.str();
+  }
+
+ private:
+  // Names of expressions: letters, digits and _; each once.
+  std::string name_for(const std::string& name) {
+    static const std::set<std::string> kTaken = {"t",    "pi",   "sqrt",  "exp",  "log",  "sin", "cos", "tan",
+                                                 "asin", "acos", "atan",  "tanh", "abs",  "min", "max", "sign",
+                                                 "step", "root", "hypot", "rate", "mean", "time"};
+    std::string result;
+    for (const unsigned char c : name)
+      if (std::isalnum(c) != 0 || c == '_')
+        result += static_cast<char>(c);
+      else if (!result.empty() && result.back() != '_')
+        result += '_';
+    while (result.size() > 1 && result.back() == '_') result.pop_back();
+    if (result.empty() || std::isdigit(static_cast<unsigned char>(result[0])) != 0 || result.starts_with("fmu_"))
+      result = "v_" + result;
+    while (kTaken.contains(result) || !names_.insert(result).second) result += "_";
+    return result;
+  }
+
+  Row row_of(const Element& element) {
+    const Variable& variable = fmu_.variables[element.variable];
+    Row row{.element = element,
+            .name = name_for(fmu_.name_of(element)),
+            .unit = "1",
+            .scale = {},
+            .meaning = variable.description};
+    if (const Unit* unit = fmu_.find_unit(variable.unit); unit != nullptr && unit->has_base) {
+      row.unit = si_name(*unit);
+      row.scale = {unit->factor, unit->offset};
+    }
+    if (row.meaning.empty()) row.meaning = fmu_.name_of(element);
+    if (variable.unit.empty() || row.unit == "1")
+      row.meaning += variable.unit.empty() ? "" : " [" + variable.unit + "]";
+    return row;
+  }
+
+  static bool is_number(FmiType type) {
+    return type != FmiType::string && type != FmiType::binary && type != FmiType::clock;
+  }
+
+  void collect() {
+    if (!file_.co_simulation())
+      for (const Element& state : fmu_.states) states_.push_back(row_of(state));
+    for (std::size_t k = 0; k < fmu_.variables.size(); ++k) {
+      const Variable& variable = fmu_.variables[k];
+      if (!is_number(variable.type)) continue;
+      const bool real = variable.type == FmiType::float64 || variable.type == FmiType::float32;
+      std::vector<Row>* rows = nullptr;
+      if (variable.causality == FmiCausality::input) rows = &inputs_;
+      if (variable.causality == FmiCausality::output) rows = &outputs_;
+      if (variable.causality == FmiCausality::parameter && real && !variable.start.empty() &&
+          variable.variability != FmiVariability::constant)
+        rows = &parameters_;
+      for (std::size_t element = 0; rows != nullptr && element < variable.size; ++element)
+        rows->push_back(row_of({k, element}));
+    }
+  }
+
+  // The states' values and sizes are known to the running model alone.
+  Status start() {
+    Selection selection;
+    for (const Row& row : inputs_)
+      if (row.element.element == 0) selection.inputs.push_back(row.element.variable);
+    const auto setup = file_.setup(selection);
+    if (!setup) return fail(setup.error());
+    std::vector<double> inputs;
+    for (const std::size_t variable : selection.inputs) {
+      const Variable& of = fmu_.variables[variable];
+      for (std::size_t k = 0; k < of.size; ++k) inputs.push_back(of.start.empty() ? 0.0 : of.start[k]);
+    }
+    auto process = FmuProcess::start(file_.name(), *setup, 1);
+    if (!process) return fail(process.error());
+    const std::vector<double> steps(states_.size(), 1e-7), input_steps(inputs.size(), 1e-7);
+    auto beginning = (*process)->begin({.start_time_s = fmu_.start_time_s.value_or(0.0),
+                                        .state_steps = steps,
+                                        .input_steps = input_steps,
+                                        .inputs = inputs,
+                                        .parameters = {}});
+    if (!beginning) return fail(beginning.error());
+    beginning_ = std::move(*beginning);
+    return {};
+  }
+
+  void head() {
+    const std::string version = fmu_.version == Version::fmi2 ? "FMI 2.0" : "FMI 3.0";
+    out_ << "# A plant for sealwatch around the FMU " << in_comment(path_) << " (" << version << ", "
+         << (file_.co_simulation() ? "Co-Simulation" : "Model Exchange")
+         << (fmu_.tool.empty() ? "" : ", made by " + in_comment(fmu_.tool)) << ").\n"
+         << "# Written by `sealwatch plant import`; complete what the comments ask for, then `sealwatch plant check` "
+            "it.\n"
+         << "# All units are SI: the FMU's own are converted.\n\n"
+         << "name: " << name_for(fmu_.model_name) << "\n"
+         << "meaning: " << quoted(fmu_.description.empty() ? "the FMU " + fmu_.model_name : fmu_.description) << "\n";
+  }
+
+  void fmu_section() {
+    out_ << "\nfmu:\n  file: " << quoted(path_) << "\n";
+    if (!inputs_.empty()) out_ << "  inputs:        # of the FMU, each an expression of the recorded inputs below\n";
+    for (const Row& row : inputs_) out_ << "    " << quoted(fmu_.name_of(row.element)) << ": " << row.name << "\n";
+    if (!parameters_.empty()) out_ << "  parameters:    # of the FMU, each an expression of the parameters below\n";
+    for (std::size_t k = 0; k < parameters_.size(); ++k)
+      out_ << (k < kMostParameters ? "    " : "    # ") << quoted(fmu_.name_of(parameters_[k].element)) << ": "
+           << parameters_[k].name << "\n";
+    out_ << "  variables:     # of the FMU, by the names that expressions use; any of its variables may be added\n";
+    for (const Row& row : outputs_)
+      out_ << "    " << row.name << ": {variable: " << quoted(fmu_.name_of(row.element))
+           << ", unit: " << quoted(row.unit) << "}\n";
+  }
+
+  void channels() {
+    if (!inputs_.empty())
+      out_ << "\n# Recorded inputs. Rename them to the recording's columns (here and in fmu.inputs); delete those that "
+              "are not\n"
+              "# recorded: the FMU then keeps its own start value.\n"
+              "inputs:\n";
+    for (const Row& row : inputs_)
+      out_ << "  " << row.name << ": {unit: " << quoted(row.unit) << ", meaning: " << quoted(row.meaning) << "}\n";
+    out_ << "\n# Recorded outputs. Rename them to the recording's columns, delete those that are not recorded.\n"
+            "# noise_std: what the sensor's noise is; without it the recordings tell.\n"
+            "outputs:\n";
+    for (const Row& row : outputs_)
+      out_ << "  " << row.name << ": {unit: " << quoted(row.unit) << ", value: " << shown(row)
+           << ", meaning: " << quoted(row.meaning) << "}\n";
+    if (outputs_.empty())
+      out_ << "  {}  # the FMU declares none: name variables of it in fmu.variables and use them here\n";
+  }
+
+  // An output that is a state under another name is taken as the state, which costs nothing.
+  [[nodiscard]] std::string shown(const Row& output) const {
+    const Variable& variable = fmu_.variables[output.element.variable];
+    for (const Row& state : states_)
+      if (fmu_.variables[state.element.variable].reference == variable.reference && variable.size == 1 &&
+          variable.type == FmiType::float64)
+        return state.name;
+    return output.name;
+  }
+
+  void parameter_rows() {
+    if (parameters_.empty()) return;
+    out_ << "\n# Parameters. Set `estimate: true` for those that fit may change, with bounds that you believe in.\n"
+            "parameters:\n";
+    for (std::size_t k = 0; k < parameters_.size(); ++k) {
+      const Row& row = parameters_[k];
+      const Variable& variable = fmu_.variables[row.element.variable];
+      const double value = row.scale.to_si(variable.start[row.element.element]);
+      const double reach = value == 0.0 ? 1.0 : 9.0 * std::abs(value);
+      double min = value > 0.0 ? 0.1 * value : value - reach, max = value < 0.0 ? 0.1 * value : value + reach;
+      if (variable.min) min = std::max(min, row.scale.to_si(*variable.min));
+      if (variable.max) max = std::min(max, row.scale.to_si(*variable.max));
+      const bool sound = min <= value && value <= max && min < max;
+      if (!sound) min = value - reach, max = value + reach;
+      out_ << (k < kMostParameters ? "  " : "  # ") << row.name << ": {unit: " << quoted(row.unit)
+           << ", value: " << number(value) << ", min: " << number(min) << ", max: " << number(max)
+           << ", estimate: false, meaning: " << quoted(row.meaning) << "}\n";
+    }
+  }
+
+  void state_rows() {
+    if (states_.empty()) return;
+    out_ << "\n# States. `start` may be a channel, whose first value is taken, or rate(channel); a list is tried in "
+            "turn.\n"
+            "# size: how large it usually is (the integration keeps to a share of it).\n"
+            "# own: false where every recording starts at the same value.\n"
+            "states:\n";
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      const Row& row = states_[k];
+      const double start = row.scale.to_si(beginning_.states[k]);
+      const double nominal = std::abs(row.scale.factor * beginning_.nominals[k]);
+      const bool usual = std::isfinite(nominal) && nominal > 0.0;
+      out_ << "  " << row.name << ": {variable: " << quoted(fmu_.name_of(row.element)) << ", unit: " << quoted(row.unit)
+           << ", start: " << quoted(start_of(row, start)) << ", size: " << number(usual ? nominal : 1.0)
+           << ", own: " << (shown_by_output(row) ? "true" : "false") << ", meaning: " << quoted(row.meaning) << "}\n";
+    }
+  }
+
+  [[nodiscard]] bool shown_by_output(const Row& state) const {
+    return std::ranges::any_of(outputs_, [&](const Row& output) { return shown(output) == state.name; });
+  }
+
+  [[nodiscard]] std::string start_of(const Row& state, double value) const {
+    for (const Row& output : outputs_)
+      if (shown(output) == state.name) return output.name;
+    return number(value) + "[" + state.unit + "]";
+  }
+
+  void site_rows() {
+    out_ << "\n# Where physics may be missing: elements with sites, at which the laws of the catalogue (docs/laws.md) "
+            "are tried.\n"
+            "# What a law adds goes to the derivatives of states, with a factor; a loss counts positive. Or a site "
+            "gets a\n"
+            "# symbol, which an input of the FMU may contain. For a force on a mass M with the velocity v and the "
+            "position x:\n"
+            "# elements:\n"
+            "#   piston:\n"
+            "#     meaning: force on the piston\n"
+            "#     sites:\n"
+            "#       - {kind: piston_force, adds_to: {v: -1/M}, signals: {speed: v, position: x}}\n"
+            "# Its derivatives are:";
+    for (const Element& derivative : fmu_.derivatives) out_ << " " << in_comment(fmu_.name_of(derivative));
+    out_ << "\nelements: {}\n"
+            "\n# With sites: how many times larger each unit of their laws is here than on a 60 kN actuator; `plant "
+            "check`\n"
+            "# lists the units that are missing. For example {N: 0.02, m: 1, m/s: 10}.\n"
+            "law_sizes: {}\n";
+  }
+
+  const FmuFile& file_;
+  const ModelDescription& fmu_;
+  const std::string& path_;
+  std::set<std::string> names_;
+  std::vector<Row> inputs_, outputs_, parameters_, states_;
+  Beginning beginning_;
+  std::ostringstream out_;
+};
+
+}  // namespace
+
+Result<std::string> plant_file_of(const FmuFile& file, const std::string& path) { return Writer(file, path).write(); }
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,152 @@
+#include "services/common/fmi/model_description.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/fmi/description_reader.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+constexpr std::size_t kMostStates = 2000;
+
+std::optional<Interface> read_interface(const DescriptionReader& reader, const pugi::xml_node& node, bool fmi2) {
+  if (!node) return std::nullopt;
+  Interface result{.model_identifier = reader.required(node, "modelIdentifier"),
+                   .needs_execution_tool = reader.flag(node, "needsExecutionTool"),
+                   .once_per_process = reader.flag(node, "canBeInstantiatedOnlyOncePerProcess"),
+                   .directional_derivatives = reader.flag(node, "providesDirectionalDerivative") ||
+                                              reader.flag(node, "providesDirectionalDerivatives"),
+                   .needs_completed_step = fmi2 ? !reader.flag(node, "completedIntegratorStepNotNeeded")
+                                                : reader.flag(node, "needsCompletedIntegratorStep")};
+  const std::string& name = result.model_identifier;
+  const bool plain = !name.empty() &&
+                     std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; }) &&
+                     std::isdigit(static_cast<unsigned char>(name[0])) == 0;
+  if (!plain) reader.refuse(node, name, "modelIdentifier must be a name of the C language");
+  return result;
+}
+
+std::vector<Unit> read_units(const DescriptionReader& reader, const pugi::xml_node& root) {
+  constexpr std::array kBase = {"kg", "m", "s", "A", "K", "mol", "cd", "rad"};
+  std::vector<Unit> units;
+  for (const pugi::xml_node& node : root.child("UnitDefinitions").children("Unit")) {
+    Unit unit{.name = reader.required(node, "name")};
+    if (const pugi::xml_node base = node.child("BaseUnit")) {
+      unit.has_base = true;
+      for (std::size_t k = 0; k < kBase.size(); ++k) {
+        const double exponent = reader.number(base, kBase[k]).value_or(0.0);
+        if (exponent != static_cast<int>(std::clamp(exponent, -99.0, 99.0)))
+          reader.refuse(node, reader.text(base, kBase[k]), "an exponent must be a whole number");
+        unit.exponents[k] = static_cast<int>(exponent);
+      }
+      unit.factor = reader.number(base, "factor").value_or(1.0);
+      unit.offset = reader.number(base, "offset").value_or(0.0);
+      if (unit.factor == 0.0) reader.refuse(node, "0", "the factor of a unit must not be 0");
+    }
+    units.push_back(std::move(unit));
+  }
+  return units;
+}
+
+void read_experiment(const DescriptionReader& reader, const pugi::xml_node& node, ModelDescription& description) {
+  description.start_time_s = reader.number(node, "startTime");
+  description.stop_time_s = reader.number(node, "stopTime");
+  description.step_s = reader.number(node, "stepSize");
+}
+
+void check(const DescriptionReader& reader, const pugi::xml_node& root, const ModelDescription& description) {
+  if (!description.model_exchange && !description.co_simulation)
+    reader.refuse(root, description.scheduled_execution ? "ScheduledExecution" : "",
+                  "offers neither Model Exchange nor Co-Simulation",
+                  "export it for Model Exchange (then a law can be added to its derivatives)");
+  if (description.states.size() > kMostStates)
+    reader.refuse(root, std::to_string(description.states.size()) + " states",
+                  "has more than " + std::to_string(kMostStates) + " states");
+}
+
+ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node& root) {
+  if (!root) reader.refuse(root, {}, "has no element fmiModelDescription");
+  ModelDescription description;
+  description.file = reader.file();
+  description.version_text = reader.required(root, "fmiVersion");
+  const bool fmi2 = description.version_text.starts_with("2.");
+  if (!fmi2 && !description.version_text.starts_with("3."))
+    reader.refuse(root, description.version_text, "is no version of FMI that sealwatch runs: 2.0 and 3.0",
+                  "export the model as FMI 2.0 or 3.0");
+  description.version = fmi2 ? Version::fmi2 : Version::fmi3;
+  description.model_name = reader.required(root, "modelName");
+  description.token = reader.required(root, fmi2 ? "guid" : "instantiationToken");
+  description.tool = reader.text(root, "generationTool");
+  description.description = reader.text(root, "description");
+  description.model_exchange = read_interface(reader, root.child("ModelExchange"), fmi2);
+  description.co_simulation = read_interface(reader, root.child("CoSimulation"), fmi2);
+  description.scheduled_execution = !root.child("ScheduledExecution").empty();
+  description.units = read_units(reader, root);
+  read_experiment(reader, root.child("DefaultExperiment"), description);
+  fmi2 ? read_fmi2(reader, root, description) : read_fmi3(reader, root, description);
+  check(reader, root, description);
+  return description;
+}
+
+}  // namespace
+
+Result<ModelDescription> read_model_description(const std::string& file, std::string_view text) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+  const DescriptionReader reader(file, text);
+  try {
+    if (!parsed) {
+      const auto end = std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, parsed.offset)), text.size());
+      return fail(Error{
+          .file = file,
+          .place = "modelDescription.xml, line " + std::to_string(1 + std::ranges::count(text.substr(0, end), '\n')),
+          .value = {},
+          .rule = std::string("is no XML: ") + parsed.description(),
+          .advice = "export the FMU again with the tool that made it"});
+    }
+    return read_root(reader, document.child("fmiModelDescription"));
+  } catch (const Fault& fault) {
+    return fail(fault.error);
+  }
+}
+
+const Variable* ModelDescription::find(std::string_view variable) const {
+  const auto found = std::ranges::find(variables, variable, &Variable::name);
+  return found == variables.end() ? nullptr : &*found;
+}
+
+const Unit* ModelDescription::find_unit(std::string_view unit) const {
+  const auto found = std::ranges::find(units, unit, &Unit::name);
+  return found == units.end() ? nullptr : &*found;
+}
+
+std::string ModelDescription::name_of(const Element& element) const {
+  const Variable& variable = variables[element.variable];
+  return variable.size == 1 ? variable.name : variable.name + "[" + std::to_string(element.element + 1) + "]";
+}
+
+Result<Element> ModelDescription::find_element(std::string_view name) const {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < variables.size(); ++k) {
+    const Variable& variable = variables[k];
+    names.push_back(name_of({k, 0}));
+    if (variable.name == name && variable.size == 1) return Element{k, 0};
+    if (variable.size == 1 || !name.starts_with(variable.name + "[") || !name.ends_with(']')) continue;
+    std::string_view digits = name.substr(variable.name.size() + 1);
+    digits.remove_suffix(1);
+    std::size_t element = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), element);
+    if (error == std::errc() && end == digits.data() + digits.size() && element >= 1 && element <= variable.size)
+      return Element{k, element - 1};
+  }
+  return fail(Error{.file = file,
+                    .place = {},
+                    .value = std::string(name),
+                    .rule = "is no variable of the FMU",
+                    .advice = suggest(name, names)});
+}
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,109 @@
+// What an FMU says about itself in modelDescription.xml (FMI 2.0.4 section 2.2, FMI 3.0.1 section 2.4), in one form
+// for both versions. Variables of FMI 3 may be arrays; states, derivatives and channels are named by their elements.
+//
+//   y_SI = factor y + offset        for a variable y in one of its own units
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sealwatch/core/fields.hpp"
+#include "sealwatch/core/result.hpp"
+
+namespace sealwatch {
+
+SEALWATCH_ENUM(FmiType, float64, float32, int8, uint8, int16, uint16, int32, uint32, int64, uint64, boolean,
+               enumeration, string, binary, clock)
+SEALWATCH_ENUM(FmiCausality, parameter, calculatedParameter, input, output, local, independent, structuralParameter,
+               dependent)
+SEALWATCH_ENUM(FmiVariability, constant, fixed, tunable, discrete, continuous)
+
+namespace fmi {
+
+enum class Version { fmi2, fmi3 };
+
+/// Exponents of kg, m, s, A, K, mol, cd, rad.
+using BaseExponents = std::array<int, 8>;
+
+struct Conversion {
+  double factor = 1.0, offset = 0.0;
+  [[nodiscard]] double to_si(double value) const { return factor * value + offset; }
+  [[nodiscard]] double from_si(double value) const { return (value - offset) / factor; }
+};
+
+struct Unit {
+  std::string name;  ///< "N.m", as the FMU writes it
+  bool has_base = false;
+  BaseExponents exponents{};
+  double factor = 1.0;
+  double offset = 0.0;
+};
+
+struct Variable {
+  std::string name;
+  std::uint32_t reference = 0;  ///< value reference: the number by which the binary knows it
+  FmiType type = FmiType::float64;
+  FmiCausality causality = FmiCausality::local;
+  FmiVariability variability = FmiVariability::continuous;
+  std::string unit;  ///< name of a Unit, or ""
+  std::string description;
+  std::size_t size = 1;       ///< number of elements, row by row
+  std::vector<double> start;  ///< of numbers: empty, or one for each element
+  std::optional<double> min, max, nominal;
+  std::optional<std::size_t> derivative_of;  ///< index of the variable that it is the time derivative of
+};
+
+/// One of the interfaces that the binary offers.
+struct Interface {
+  std::string model_identifier;  ///< name of its binary
+  bool needs_execution_tool = false;
+  bool once_per_process = false;
+  bool directional_derivatives = false;
+  bool needs_completed_step = false;  ///< wants to be told of every step of the integration
+};
+
+/// An element of a variable.
+struct Element {
+  std::size_t variable = 0;  ///< index in ModelDescription::variables
+  std::size_t element = 0;
+};
+
+struct ModelDescription {
+  Version version = Version::fmi2;
+  std::string file;  ///< for messages
+  std::string version_text;
+  std::string model_name;
+  std::string token;  ///< guid, instantiationToken
+  std::string tool;
+  std::string description;
+  std::optional<Interface> model_exchange;
+  std::optional<Interface> co_simulation;
+  bool scheduled_execution = false;
+  std::vector<Unit> units;
+  std::vector<Variable> variables;
+  std::vector<Element> states;       ///< elements, in the binary's order
+  std::vector<Element> derivatives;  ///< of the states
+  std::size_t event_indicators = 0;
+  std::optional<double> start_time_s, stop_time_s, step_s;
+
+  [[nodiscard]] const Variable* find(std::string_view variable) const;
+  [[nodiscard]] const Unit* find_unit(std::string_view unit) const;
+  /// "x", or "x[2]" of an array.
+  [[nodiscard]] std::string name_of(const Element& element) const;
+  /// The element that name_of() names; an Error with the nearest name otherwise.
+  [[nodiscard]] Result<Element> find_element(std::string_view name) const;
+};
+
+/// From the text of a modelDescription.xml; `file` names it in messages.
+[[nodiscard]] Result<ModelDescription> read_model_description(const std::string& file, std::string_view text);
+
+/// SI unit by its usual name ("N m"), or put together ("kg m2/s3"); "1" where the unit says nothing.
+[[nodiscard]] std::string si_name(const Unit& unit);
+
+}  // namespace fmi
+}  // namespace sealwatch

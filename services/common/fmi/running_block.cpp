@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <cmath>
+
+#include "services/common/fmi/fmu_evaluator.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+/// Of a quantity's usual size, for central differences: both the curvature over it and the rounding of a binary that
+/// computes in double are then some 1e-9 of the derivative.
+constexpr double kDifference = 1e-7;
+
+std::vector<double> state_steps(const FmuBlock& block) {
+  std::vector<double> steps;
+  for (std::size_t k = 0; k < block.states.size(); ++k)
+    steps.push_back(kDifference * block.state_sizes[k] / std::abs(block.states[k].factor));
+  return steps;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std::size_t slots) {
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto fits = std::ranges::find_if(idle_, [&](const auto& process) { return process->most_slots() >= slots; });
+    if (fits != idle_.end()) {
+      std::unique_ptr<FmuProcess> process = std::move(*fits);
+      idle_.erase(fits);
+      return process;
+    }
+    idle_.clear();  // too small for what is asked now
+  }
+  return FmuProcess::start(block.file->name(), block.setup, slots);
+}
+
+void ProcessPool::give_back(std::unique_ptr<FmuProcess> process) {
+  if (!process->alive()) return;
+  const std::scoped_lock lock(mutex_);
+  idle_.push_back(std::move(process));
+}
+
+Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block, std::shared_ptr<ProcessPool> pool,
+                                                          const std::vector<std::vector<double>>& parameters,
+                                                          std::vector<double> steps) {
+  std::unique_ptr<RunningBlock> running(new RunningBlock(block, std::move(pool), std::move(steps)));
+  const std::size_t in_one = block.setup.once_per_process != 0 ? 1 : parameters.size();
+  const std::vector<double> differences = state_steps(block);
+  const std::vector<double> input_differences(block.input_start.size(), kDifference);
+  for (std::size_t first = 0; first < parameters.size(); first += in_one) {
+    auto process = running->pool_->take(block, in_one);
+    if (!process) return fail(process.error());
+    running->processes_.push_back(std::move(*process));
+    std::vector<double> values;
+    for (std::size_t slot = first; slot < first + in_one; ++slot) {
+      std::vector<double> all = block.parameter_start;
+      for (std::size_t k = 0; k < block.parameters.size(); ++k)
+        all[block.parameters[k].place] = block.parameters[k].unit.from_si(parameters[slot][k]);
+      values.insert(values.end(), all.begin(), all.end());
+    }
+    auto beginning = running->processes_.back()->begin({.start_time_s = block.start_time_s,
+                                                        .state_steps = differences,
+                                                        .input_steps = input_differences,
+                                                        .inputs = block.input_start,
+                                                        .slots = in_one,
+                                                        .parameters = values});
+    if (!beginning) return fail(beginning.error());
+    if (first == 0) running->beginning_ = std::move(*beginning);
+  }
+  running->inputs_ = block.input_start;
+  running->states_.resize(block.states.size());
+  return running;
+}
+
+RunningBlock::~RunningBlock() {
+  for (auto& process : processes_) pool_->give_back(std::move(process));
+}
+
+bool RunningBlock::is_known(double time_s, const EvaluationRequest& wanted) const {
+  return time_s == known_time_s_ && states_ == known_states_ && inputs_ == known_inputs_ &&
+         wanted.by_state <= known_.by_state && wanted.by_input <= known_.by_input &&
+         wanted.by_parameter <= known_.by_parameter;
+}
+
+const BlockValues* RunningBlock::at(double time_s, std::span<const double> states, std::span<const double> inputs,
+                                    EvaluationRequest wanted) {
+  set_point(states, inputs);
+  if (steps_.empty()) wanted.by_parameter = 0;
+  if (is_known(time_s, wanted)) return &values_;
+  if (!processes_[0]->alive()) return nullptr;  // trouble_ says why
+  if (block_.setup.co_simulation != 0) return step_to(time_s);
+  const bool in_one = processes_.size() == 1;
+  EvaluationRequest asked = wanted;
+  if (!in_one) asked.by_parameter = 0;
+  const auto values = processes_[0]->evaluate(time_s, states_, inputs_, asked);
+  known_time_s_ = std::numeric_limits<double>::quiet_NaN();
+  if (!values) return trouble_ = values.error().describe(), nullptr;
+  convert(*values, asked);
+  if (wanted.by_parameter != 0 && !in_one && !differentiate_by_parameters(time_s)) return nullptr;
+  known_time_s_ = time_s, known_states_ = states_, known_inputs_ = inputs_, known_ = wanted;
+  return &values_;
+}
+
+const BlockValues* RunningBlock::step_to(double time_s) {
+  const bool first = std::isnan(first_time_s_);
+  if (first) first_time_s_ = known_time_s_ = time_s;
+  std::vector<double> mean = inputs_;
+  for (std::size_t k = 0; !first && k < block_.setup.continuous_inputs; ++k)
+    mean[k] = 0.5 * (inputs_[k] + known_inputs_[k]);
+  const std::size_t variables = block_.variables.size(), outputs = elements(block_.setup.outputs);
+  values_.z.assign(variables, 0.0);
+  values_.by_state.resize(variables, 0);
+  values_.by_input.resize(variables, block_.inputs.size());  // no site acts on an input
+  values_.by_parameter.resize(variables, steps_.size());
+  std::size_t slot = 0;
+  for (auto& process : processes_) {
+    const auto values = process->do_step(block_.start_time_s + known_time_s_ - first_time_s_,
+                                         std::max(0.0, time_s - known_time_s_), mean);
+    if (!values) return trouble_ = values.error().describe(), nullptr;
+    for (std::size_t row = 0; row < values->size() / std::max<std::size_t>(1, outputs); ++row, ++slot)
+      for (std::size_t k = 0; k < variables; ++k) {
+        const auto& [place, unit] = block_.variables[k];
+        const double value = unit.to_si((*values)[row * outputs + place]);
+        if (slot == 0)
+          values_.z[k] = value;
+        else
+          values_.by_parameter.row(k)[slot - 1] = (value - values_.z[k]) / steps_[slot - 1];
+      }
+  }
+  known_time_s_ = time_s, known_inputs_ = inputs_, known_states_ = states_, known_ = {1, 1, 1};
+  return &values_;
+}
+
+bool RunningBlock::has_events() const {
+  const bool held = block_.setup.continuous_inputs < block_.setup.inputs.size();
+  return block_.setup.co_simulation == 0 &&
+         (block_.setup.event_indicators > 0 || held || std::isfinite(beginning_.outcome.next_time_s) ||
+          block_.file->interface().needs_completed_step);
+}
+
+bool RunningBlock::event_before(double time_s, std::span<const double> states, std::span<const double> inputs) {
+  if (block_.setup.event_indicators == 0) return false;
+  const BlockValues* values = at(time_s, states, inputs, {});
+  return values != nullptr && values->signs != signs_;
+}
+
+bool RunningBlock::accept(double time_s, std::span<const double> states, std::span<const double> inputs) {
+  if (!block_.file->interface().needs_completed_step) return false;
+  set_point(states, inputs);
+  const auto end = processes_[0]->completed_step(time_s, states_, inputs_);
+  if (!end) trouble_ = end.error().describe();
+  return end && end->event;
+}
+
+bool RunningBlock::pass_event(double time_s, std::span<double> states, std::span<const double> inputs) {
+  set_point(states, inputs);
+  for (std::size_t k = processes_.size(); k-- > 0;) {
+    std::vector<double> after = states_;
+    const auto outcome = processes_[k]->event(time_s, after, inputs_);
+    if (!outcome) return trouble_ = outcome.error().describe(), false;
+    if (outcome->terminate)
+      return trouble_ = "the FMU ends the simulation by itself at " + std::to_string(time_s) + " s", false;
+    if (k > 0) continue;
+    beginning_.outcome = *outcome;
+    for (std::size_t row = 0; row < after.size(); ++row) states[row] = block_.states[row].to_si(after[row]);
+  }
+  known_time_s_ = std::numeric_limits<double>::quiet_NaN();
+  const BlockValues* values = at(time_s, states, inputs, {});
+  if (values == nullptr) return false;
+  signs_ = values->signs;
+  return true;
+}
+
+void RunningBlock::set_point(std::span<const double> states, std::span<const double> inputs) {
+  for (std::size_t k = 0; k < states.size(); ++k) states_[k] = block_.states[k].from_si(states[k]);
+  for (std::size_t k = 0; k < block_.inputs.size(); ++k)
+    inputs_[block_.inputs[k].place] = block_.inputs[k].unit.from_si(inputs[k]);
+}
+
+void RunningBlock::convert(const Evaluation& values, const EvaluationRequest& wanted) {
+  const std::size_t states = states_.size(), variables = block_.variables.size(), outputs = values.outputs.size();
+  values_.z.resize(states + variables);
+  values_.signs.resize(values.indicators.size());
+  for (std::size_t k = 0; k < values.indicators.size(); ++k) values_.signs[k] = values.indicators[k] > 0.0;
+  for (std::size_t k = 0; k < states; ++k) values_.z[k] = rate(k, values.derivatives[k]);
+  for (std::size_t k = 0; k < variables; ++k)
+    values_.z[states + k] = block_.variables[k].unit.to_si(values.outputs[block_.variables[k].place]);
+  if (wanted.by_state != 0) convert_jacobian(values.derivatives_by_state, values.outputs_by_state, states, true);
+  if (wanted.by_input != 0) {
+    const std::size_t known = states > 0    ? values.derivatives_by_input.size() / states
+                              : outputs > 0 ? values.outputs_by_input.size() / outputs
+                                            : 0;
+    convert_jacobian(values.derivatives_by_input, values.outputs_by_input, known, false);
+  }
+  if (wanted.by_parameter == 0) return;
+  values_.by_parameter.resize(states + variables, steps_.size());
+  for (std::size_t slot = 0; slot < steps_.size(); ++slot) {
+    const std::span<const double> other = values.parameter.subspan(slot * (states + outputs), states + outputs);
+    for (std::size_t k = 0; k < states; ++k)
+      values_.by_parameter.row(k)[slot] = rate(k, other[k] - values.derivatives[k]) / steps_[slot];
+    for (std::size_t k = 0; k < variables; ++k) {
+      const auto& [place, unit] = block_.variables[k];
+      values_.by_parameter.row(states + k)[slot] =
+          unit.factor * (other[states + place] - values.outputs[place]) / steps_[slot];
+    }
+  }
+}
+
+void RunningBlock::convert_jacobian(std::span<const double> derivatives, std::span<const double> outputs,
+                                    std::size_t columns, bool of_states) {
+  const std::size_t states = states_.size(), variables = block_.variables.size();
+  const std::size_t known = of_states ? states : block_.inputs.size();
+  RuntimeMatrix& matrix = of_states ? values_.by_state : values_.by_input;
+  matrix.resize(states + variables, known);
+  for (std::size_t column = 0; column < known; ++column) {
+    const std::size_t place = of_states ? column : block_.inputs[column].place;
+    if (place >= columns) continue;  // changes at events only
+    const double scale = of_states ? block_.states[column].factor : block_.inputs[column].unit.factor;
+    for (std::size_t k = 0; k < states; ++k) matrix.row(k)[column] = rate(k, derivatives[k * columns + place]) / scale;
+    for (std::size_t k = 0; k < variables; ++k) {
+      const auto& [row, unit] = block_.variables[k];
+      matrix.row(states + k)[column] = unit.factor * outputs[row * columns + place] / scale;
+    }
+  }
+}
+
+bool RunningBlock::differentiate_by_parameters(double time_s) {
+  const std::size_t states = states_.size(), variables = block_.variables.size();
+  values_.by_parameter.resize(states + variables, steps_.size());
+  for (std::size_t slot = 0; slot < steps_.size(); ++slot) {
+    const auto other = processes_[slot + 1]->evaluate(time_s, states_, inputs_, {});
+    if (!other) return trouble_ = other.error().describe(), false;
+    for (std::size_t k = 0; k < states; ++k)
+      values_.by_parameter.row(k)[slot] = (rate(k, other->derivatives[k]) - values_.z[k]) / steps_[slot];
+    for (std::size_t k = 0; k < variables; ++k) {
+      const auto& [place, unit] = block_.variables[k];
+      values_.by_parameter.row(states + k)[slot] =
+          (unit.to_si(other->outputs[place]) - values_.z[states + k]) / steps_[slot];
+    }
+  }
+  return true;
+}
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <sstream>
+
+#include "services/common/fmi/model_description.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+struct KnownUnit {
+  BaseExponents exponents;  // kg m s A K mol cd rad
+  const char* name;
+};
+
+/// As recordings and plants write them (sealwatch/core/units.hpp). The radian is a plain number where it is not alone
+/// with the second.
+constexpr std::array kKnown = {
+    KnownUnit{{0, 0, 0, 0, 0, 0, 0, 0}, "1"},          KnownUnit{{1, 0, 0, 0, 0, 0, 0, 0}, "kg"},
+    KnownUnit{{0, 1, 0, 0, 0, 0, 0, 0}, "m"},          KnownUnit{{0, 2, 0, 0, 0, 0, 0, 0}, "m2"},
+    KnownUnit{{0, 3, 0, 0, 0, 0, 0, 0}, "m3"},         KnownUnit{{0, 0, 1, 0, 0, 0, 0, 0}, "s"},
+    KnownUnit{{0, 0, -1, 0, 0, 0, 0, 0}, "1/s"},       KnownUnit{{0, 1, -1, 0, 0, 0, 0, 0}, "m/s"},
+    KnownUnit{{0, 1, -2, 0, 0, 0, 0, 0}, "m/s2"},      KnownUnit{{0, 3, -1, 0, 0, 0, 0, 0}, "m3/s"},
+    KnownUnit{{0, 0, 0, 1, 0, 0, 0, 0}, "A"},          KnownUnit{{0, 0, 0, 0, 1, 0, 0, 0}, "K"},
+    KnownUnit{{0, 0, 0, 0, 0, 0, 0, 1}, "rad"},        KnownUnit{{0, 0, -1, 0, 0, 0, 0, 1}, "rad/s"},
+    KnownUnit{{0, 0, -2, 0, 0, 0, 0, 1}, "rad/s2"},    KnownUnit{{1, 1, -2, 0, 0, 0, 0, 0}, "N"},
+    KnownUnit{{1, 2, -2, 0, 0, 0, 0, 0}, "N m"},       KnownUnit{{1, -1, -2, 0, 0, 0, 0, 0}, "Pa"},
+    KnownUnit{{1, 2, -3, 0, 0, 0, 0, 0}, "W"},         KnownUnit{{1, 2, -3, -1, 0, 0, 0, 0}, "V"},
+    KnownUnit{{1, 2, -3, -2, 0, 0, 0, 0}, "ohm"},      KnownUnit{{1, 2, -2, -2, 0, 0, 0, 0}, "H"},
+    KnownUnit{{1, 0, -1, 0, 0, 0, 0, 0}, "N s/m"},     KnownUnit{{1, 0, -2, 0, 0, 0, 0, 0}, "N/m"},
+    KnownUnit{{1, -3, 0, 0, 0, 0, 0, 0}, "kg/m3"},     KnownUnit{{1, 2, 0, 0, 0, 0, 0, 0}, "kg m2"},
+    KnownUnit{{-1, 4, 1, 0, 0, 0, 0, 0}, "m3/(s Pa)"}, KnownUnit{{1, -1, -1, 0, 0, 0, 0, 0}, "Pa s"},
+    KnownUnit{{1, -4, -1, 0, 0, 0, 0, 0}, "Pa s/m3"}};
+
+/// "kg m2": the base units with an exponent of this sign.
+std::string product(const BaseExponents& exponents, int sign) {
+  constexpr std::array kBase = {"kg", "m", "s", "A", "K", "mol", "cd", "rad"};
+  std::ostringstream text;
+  const char* between = "";
+  for (std::size_t k = 0; k < kBase.size(); ++k) {
+    const int exponent = sign * exponents[k];
+    if (exponent <= 0) continue;
+    text << between << kBase[k];
+    if (exponent > 1) text << exponent;
+    between = " ";
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::string si_name(const Unit& unit) {
+  if (!unit.has_base) return "1";
+  const auto known = std::ranges::find(kKnown, unit.exponents, &KnownUnit::exponents);
+  if (known != kKnown.end()) return known->name;
+  const std::string above = product(unit.exponents, 1), below = product(unit.exponents, -1);
+  std::ostringstream text;
+  text << (above.empty() ? "1" : above);
+  if (below.find(' ') != std::string::npos)
+    text << "/(" << below << ")";
+  else if (!below.empty())
+    text << "/" << below;
+  return text.str();
+}
+
+}  // namespace sealwatch::fmi

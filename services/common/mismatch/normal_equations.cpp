@@ -1,0 +1,24 @@
+#include "services/common/mismatch/normal_equations.hpp"
+
+namespace sealwatch::mismatch {
+
+NormalEquations normal_equations(const FittedModel& model) {
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  Eigen::Index unknowns = shared;
+  for (const PemRecording& part : model.problem.recordings) unknowns += static_cast<Eigen::Index>(part.own.size());
+  NormalEquations all{.gram = Eigen::MatrixXd::Zero(unknowns, unknowns), .gradient = Eigen::VectorXd::Zero(unknowns)};
+  Eigen::Index own = shared;
+  for (const Linearisation& at : model.optimum.at_optimum) {
+    std::vector<Eigen::Index> place(static_cast<std::size_t>(at.jacobian.cols()));
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      place[k] = column < shared ? column : own + column - shared;
+    }
+    all.gram(place, place) += at.jacobian.transpose() * at.jacobian;
+    all.gradient(place) += at.jacobian.transpose() * at.residual;
+    own += at.jacobian.cols() - shared;
+  }
+  return all;
+}
+
+}  // namespace sealwatch::mismatch

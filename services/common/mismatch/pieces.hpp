@@ -1,0 +1,23 @@
+// One long recording as two, so that what one half shows can be proven on the other.
+//
+//   tau = max over the outputs of  dt (1 + 2 sum_k rho_k),  up to the first rho_k <= 0
+//
+// rho: autocorrelation of a recorded output. Samples closer than tau say the same twice: the halves are tau apart, and
+// a recording shorter than ten tau is one test, of which nothing can be left out.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sealwatch/core/recording.hpp"
+
+namespace sealwatch::mismatch {
+
+/// tau [s] of the channels that stand in `outputs`; 0 where none of them moves.
+[[nodiscard]] double correlation_time_s(const TimeSeries& samples, std::span<const std::string> outputs);
+
+/// Both halves of a long recording, each named by its file and its time; nothing where it is too short.
+[[nodiscard]] std::vector<Recording> in_halves(const Recording& recording, std::span<const std::string> outputs);
+
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,54 @@
+#include "services/common/mismatch/tolerance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/common/mismatch/linear_algebra.hpp"
+#include "services/common/mismatch/normal_equations.hpp"
+
+namespace sealwatch::mismatch {
+
+std::vector<KnownValue> known_values(const AssetConfig& asset, const PlantDescription& plant) {
+  std::vector<KnownValue> known;
+  for (const auto& [name, setting] : asset.parameters) {
+    const ParameterDescription* parameter = plant.find_parameter(name);
+    if (parameter == nullptr || setting.estimate || setting.value == 0.0 || name == plant.load_parameter) continue;
+    const double tolerance =
+        setting.tolerance > 0.0 ? setting.tolerance : parameter->tolerance * std::abs(setting.value);
+    if (tolerance > 0.0) known.push_back({.name = name, .value = setting.value, .standard_deviation = tolerance});
+  }
+  return known;
+}
+
+std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const FittedModel& model, const Data& data,
+                                  int threads) {
+  constexpr double kShows = 0.25;
+  Data with_all = data;
+  with_all.known = known;
+  const Result<FittedModel> all = fit_model(model.asset, with_all, &model, threads, 0);
+  if (!all) return {};
+  const NormalEquations equations = normal_equations(*all);
+  const Eigen::VectorXd scale = equations.gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd gram = scale.asDiagonal() * equations.gram * scale.asDiagonal();
+  std::vector<Eigen::Index> estimated;
+  for (Eigen::Index k = 0; k < gram.cols(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (at >= all->problem.shared.size() || !all->problem.shared[at].is_known()) estimated.push_back(k);
+  }
+  Eigen::MatrixXd given_way = submatrix(gram, estimated);
+  given_way.diagonal().array() += kRidge;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(given_way);
+  std::vector<KnownValue> shown;
+  for (std::size_t k = 0; k < all->problem.shared.size(); ++k) {
+    const Unknown& unknown = all->problem.shared[k];
+    if (!unknown.is_known()) continue;
+    const auto column = static_cast<Eigen::Index>(k);
+    const Eigen::VectorXd across = gram(estimated, column);
+    const double left = (gram(column, column) - across.dot(factor.solve(across))) / (scale(column) * scale(column));
+    if (unknown.prior_std * unknown.prior_std * left > kShows)
+      shown.push_back(*std::ranges::find(known, unknown.name, &KnownValue::name));
+  }
+  return shown;
+}
+
+}  // namespace sealwatch::mismatch

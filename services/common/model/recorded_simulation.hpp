@@ -1,0 +1,55 @@
+// What the simulations of all plants have in common: the recording's channels, the laws in force, the names of states
+// and the values from which a simulation starts.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/model/physics_terms.hpp"
+
+namespace sealwatch {
+
+/// An output that a plant can simulate.
+struct OutputName {
+  std::string channel;
+  int state = -1;  ///< the state that it equals; -1: the equations compute it
+};
+
+/// One simulated and recorded channel.
+struct SimulatedChannel {
+  int output = 0;  ///< index among the plant's outputs
+  int state = -1;  ///< the state that it equals; -1: the equations compute it
+  double time_constant_s = 0.0;
+};
+
+class RecordedSimulation : public PlantSimulation {
+ public:
+  [[nodiscard]] const PlantDescription& plant() const override { return plant_; }
+  [[nodiscard]] std::span<const std::string> channels() const override { return channel_names_; }
+  [[nodiscard]] std::span<const std::string> state_names() const override { return state_names_; }
+  [[nodiscard]] std::span<const std::string> slow_state_names() const override { return slow_state_names_; }
+  [[nodiscard]] const ModelValues& start() const override { return start_; }
+  [[nodiscard]] const RowMatrix& recorded() const override { return recorded_; }
+  [[nodiscard]] std::span<const PhysicsParameter> physics_parameters() const override { return terms_.parameters; }
+  [[nodiscard]] std::span<const SimulatedChannel> simulated_channels() const { return channels_; }
+  [[nodiscard]] const PhysicsTerms& terms() const { return terms_; }
+
+ protected:
+  RecordedSimulation(const PlantDescription& plant, PhysicsTerms terms);
+  /// Takes the outputs that are recorded.
+  void select_channels(std::span<const OutputName> outputs, const AssetConfig& asset, const TimeSeries& recorded);
+  /// The plant's states and start, to which those of the laws are added.
+  void set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start);
+
+ private:
+  const PlantDescription& plant_;
+  PhysicsTerms terms_;
+  std::vector<std::string> state_names_, slow_state_names_, channel_names_;
+  std::vector<SimulatedChannel> channels_;
+  RowMatrix recorded_;
+  ModelValues start_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,259 @@
+// One run of a simulation over a recording: integration by segments of smooth input, sampling, sensors' low-passes and
+// laws.
+//
+// System is what ode/bdf.hpp integrates, and
+//   Vector scale(double relative_tolerance) const;   allowed local error of each state per step
+//   Mask settled() const;                            states that start at rest
+//   int maximum_order() const;
+//   void set_segment(std::size_t segment);           of the recorded input
+//   void output(int which, double t, const double* point, std::size_t stride, double* signal);
+//       value of an output that is no state, and its derivatives by all columns; point: [y | S], row by row
+//   std::string trouble() const;                     why it could not be evaluated; "": nothing that is known
+// and, where it has events (RuntimeSystem), has_events() and what comes with it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "sealwatch/ode/bdf.hpp"
+#include "services/common/model/quasi_steady.hpp"
+#include "services/common/model/recorded_input.hpp"
+#include "services/common/model/recorded_simulation.hpp"
+#include "services/common/model/sensor_filter.hpp"
+#include "services/common/model/sensor_laws.hpp"
+
+namespace sealwatch {
+
+/// Where sensors have a low-pass or a lag, coarser recordings are simulated at points between their samples too,
+/// because these filters take the signal as linear from point to point.
+inline constexpr double kLongestPointDistance_s = 0.0051;
+
+template <class System>
+class RecordingRun {
+ public:
+  using Integrator = Bdf<System>;
+  using Vector = typename Integrator::Vector;
+
+  RecordingRun(const RecordedSimulation& simulation, const RecordedInput& input, System system,
+               const ModelValues& values, std::span<const FreeQuantity> free, const SimulationOptions& options,
+               const InjectedColumns* injected)
+      : simulation_(simulation),
+        input_(input),
+        free_(free),
+        columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())),
+        system_(std::move(system)),
+        scale_(system_.scale(options.relative_tolerance)),
+        deadline_(options.deadline),
+        integrator_(system_, static_cast<int>(columns_) - 1, scale_,
+                    {.maximum_step = options.maximum_step_s,
+                     .maximum_steps = options.maximum_steps,
+                     .maximum_order = system_.maximum_order()}),
+        point_(integrator_.size(), 0.0),
+        signal_(columns_, 0.0) {
+    const std::vector<SensorTerm>& laws = simulation.terms().sensors;
+    for (const SimulatedChannel& channel : simulation.simulated_channels()) {
+      filters_.emplace_back(channel.time_constant_s, columns_);
+      filtered_ = filtered_ || channel.time_constant_s > 0.0;
+    }
+    for (const SensorTerm& term : laws) filtered_ = filtered_ || term.kind == SiteKind::sensor_lag;
+    for (std::size_t c = 0; !laws.empty() && c < filters_.size(); ++c)
+      sensors_.emplace_back(laws, simulation.channels()[c], values, free, columns_);
+    const Eigen::Index rows = simulation.recorded().rows(), channels = simulation.recorded().cols();
+    outputs_.values.resize(rows, channels);
+    outputs_.sensitivities.resize(rows * channels, static_cast<Eigen::Index>(columns_) - 1);
+  }
+
+  /// Whether an event ended the run that sensitivities do not cross; without columns it goes on.
+  [[nodiscard]] bool stopped_by_event() const { return stopped_by_event_; }
+
+  [[nodiscard]] Result<SimulatedOutputs> simulate(const ModelValues& values) {
+    if (!initial_point(values)) return failure(input_.times().front());
+    filtered_until_ = input_.times().front();
+    pass_sensors(filtered_until_, point_.data());
+    sample(0);
+    for (std::size_t segment = 0; segment < input_.segment_count(); ++segment)
+      if (!run_segment(segment)) return failure(integrator_.time());
+    outputs_.steps = integrator_.statistics().steps;
+    outputs_.linearisations = integrator_.statistics().linearisations;
+    return std::move(outputs_);
+  }
+
+ private:
+  [[nodiscard]] tl::unexpected<Error> failure(double time) const {
+    if (passed(deadline_)) return fail("the simulation was ended: its time was up");
+    return fail(Error{.file = {},
+                      .place = "t = " + std::to_string(time) + " s",
+                      .value = system_.trouble(),
+                      .rule = "the simulation failed: no step size follows the equations from here",
+                      .advice = "check the parameters' values and the recorded input around this time"});
+  }
+
+  // Held states and their seeds from the values, settled ones with them.
+  [[nodiscard]] bool initial_point(const ModelValues& values) {
+    const std::size_t stride = integrator_.stride();
+    auto fast = system_.settled();
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      if (free_[k].kind != FreeQuantity::Kind::initial_state) continue;
+      fast[free_[k].index] = false;
+      point_[free_[k].index * stride + 1 + k] = 1.0;
+    }
+    Vector state = Integrator::Sizes::vector(integrator_.states());
+    std::copy(values.initial_state.begin(), values.initial_state.end(), state.begin());
+    QuasiSteadyState<System> rest(system_, input_.times().front(), fast, scale_);
+    if (!rest.solve(state) || !rest.differentiate(state, point_.data(), stride)) return false;
+    for (int k = 0; k < integrator_.states(); ++k) point_[k * stride] = state[k];
+    return true;
+  }
+
+  // The integrator may step beyond the segment's end, where the held input is continued: no step is shortened.
+  [[nodiscard]] bool run_segment(std::size_t segment) {
+    system_.set_segment(segment);
+    event_s_ = kNoEvent;
+    if constexpr (requires { system_.has_events(); })  // the input may have jumped
+      if (system_.has_events()) return pass_event(input_.segment_begin(segment)) && run_samples(segment);
+    return integrator_.start(input_.segment_begin(segment), point_.data()) && run_samples(segment);
+  }
+
+  [[nodiscard]] bool run_samples(std::size_t segment) {
+    const std::vector<double>& times = input_.times();
+    for (; next_ < times.size() && times[next_] <= input_.segment_end(segment); ++next_) {
+      const double last = times[next_ - 1], distance = times[next_] - last;
+      const int points = filtered_ ? static_cast<int>(std::ceil(distance / kLongestPointDistance_s)) : 1;
+      for (int k = 1; k <= points; ++k)
+        if (!advance_to(k == points ? times[next_] : last + distance * k / points, distance / points)) return false;
+      sample(next_);
+    }
+    return true;
+  }
+
+  // Steps until `time` is reached and passes the sensors the signal there, and at the ends of steps that are shorter
+  // than the distance between points: there the signal moves too fast to be taken as linear.
+  [[nodiscard]] bool advance_to(double time, double distance) {
+    if (passed(deadline_)) return false;
+    if (integrator_.states() == 0) return pass_known_events(time) && (pass_sensors(time, point_.data()), true);
+    while (integrator_.time() < time || event_s_ < time) {
+      if (event_s_ <= integrator_.time()) {
+        integrator_.interpolate(event_s_, point_.data());
+        if (!pass_event(event_s_)) return false;
+        continue;
+      }
+      const double begin = integrator_.time();
+      if (passed(deadline_) || !integrator_.step()) return false;
+      if constexpr (requires { system_.has_events(); })
+        if (system_.has_events()) look_for_event(begin);
+      const double end = std::min(integrator_.time(), event_s_);
+      if (filtered_ && end < time && end > filtered_until_ && end - begin < distance) {
+        integrator_.interpolate(end, point_.data());
+        pass_sensors(end, point_.data());
+      }
+    }
+    integrator_.interpolate(time, point_.data());
+    pass_sensors(time, point_.data());
+    return true;
+  }
+
+  // Without states nothing moves by itself, but at events.
+  [[nodiscard]] bool pass_known_events(double time) {
+    if constexpr (requires { system_.has_events(); })
+      while (system_.has_events() && system_.next_event_s() <= time)
+        if (!pass_event(system_.next_event_s())) return false;
+    return true;
+  }
+
+  // Finds the first event of the last step, by halving where only its two sides are known.
+  void look_for_event(double begin) {
+    const double end = std::min(integrator_.time(), std::max(begin, system_.next_event_s()));
+    if (!event_before(end)) {
+      const bool known_before = end < integrator_.time() || end == system_.next_event_s();
+      if (known_before || system_.accept(end, states_at(end))) event_s_ = end;
+      return;
+    }
+    double before = begin, after = end;
+    constexpr double kPrecision = 1e-13;
+    while (after - before > kPrecision * std::max(1.0, std::abs(after))) {
+      const double middle = 0.5 * (before + after);
+      if (middle <= before || middle >= after) break;
+      (event_before(middle) ? after : before) = middle;
+    }
+    event_s_ = after;
+  }
+
+  [[nodiscard]] const double* states_at(double time) {
+    integrator_.interpolate(time, point_.data());
+    event_state_.resize(static_cast<std::size_t>(integrator_.states()));
+    for (std::size_t k = 0; k < event_state_.size(); ++k) event_state_[k] = point_[k * integrator_.stride()];
+    return event_state_.data();
+  }
+  [[nodiscard]] bool event_before(double time) { return system_.event_before(time, states_at(time)); }
+
+  // An event at the point: states after it, and the integration starts anew. Sensitivities cross what is smooth.
+  [[nodiscard]] bool pass_event(double time) {
+    event_s_ = kNoEvent;
+    if constexpr (requires { system_.has_events(); }) {
+      constexpr int kMostAtOnce = 1000;
+      at_once_ = time - last_event_s_ < 1e-9 ? at_once_ + 1 : 0;
+      last_event_s_ = time;
+      if (at_once_ > kMostAtOnce) return false;
+      std::vector<double> state(static_cast<std::size_t>(integrator_.states()));
+      for (std::size_t k = 0; k < state.size(); ++k) state[k] = point_[k * integrator_.stride()];
+      const auto outcome = system_.pass_event(time, state.data());
+      if (outcome == System::Passed::failed) return false;
+      const bool at_begin = time <= input_.times().front();  // nothing has happened yet
+      if (outcome == System::Passed::jump && columns_ > 1 && !at_begin) return stopped_by_event_ = true, false;
+      for (std::size_t k = 0; k < state.size(); ++k) point_[k * integrator_.stride()] = state[k];
+    }
+    return integrator_.states() == 0 || integrator_.start(time, point_.data());
+  }
+
+  void pass_sensors(double time, const double* point) {
+    for (std::size_t c = 0; c < filters_.size(); ++c) {
+      const auto [output, state, time_constant] = simulation_.simulated_channels()[c];
+      const double* signal = signal_.data();
+      if (state < 0)
+        system_.output(output, time, point, integrator_.stride(), signal_.data());
+      else
+        signal = point + state * integrator_.stride();
+      filters_[c].advance(time - filtered_until_, signal);
+      if (!sensors_.empty()) sensors_[c].advance(time - filtered_until_, filters_[c].output());
+    }
+    filtered_until_ = time;
+  }
+
+  void sample(std::size_t row) {
+    const auto first = static_cast<Eigen::Index>(row * filters_.size());
+    double* sensitivities = outputs_.sensitivities.data() + first * outputs_.sensitivities.cols();
+    double* values = outputs_.values.data() + first;
+    for (std::size_t c = 0; c < filters_.size(); ++c) {
+      const std::vector<double>& output = sensors_.empty() ? filters_[c].output() : sensors_[c].output();
+      *values++ = output.front();
+      sensitivities = std::copy(output.begin() + 1, output.end(), sensitivities);
+    }
+  }
+
+  const RecordedSimulation& simulation_;
+  const RecordedInput& input_;
+  std::span<const FreeQuantity> free_;
+  std::size_t columns_;
+  System system_;
+  Vector scale_;
+  const Deadline* deadline_;
+  Integrator integrator_;
+  std::vector<double> point_, signal_;
+  std::vector<SensorFilter> filters_;
+  std::vector<SensorLaws> sensors_;  ///< empty where no sensor has a law
+  SimulatedOutputs outputs_;
+  std::size_t next_ = 1;
+  double filtered_until_ = 0.0;  ///< time of the sensors' last point
+  bool filtered_ = false;        ///< some channel has a low-pass or a lag
+  static constexpr double kNoEvent = std::numeric_limits<double>::infinity();
+  double event_s_ = kNoEvent;  ///< that lies within the last step and is not passed yet
+  double last_event_s_ = -kNoEvent;
+  int at_once_ = 0;
+  bool stopped_by_event_ = false;
+  std::vector<double> event_state_;
+};
+
+}  // namespace sealwatch

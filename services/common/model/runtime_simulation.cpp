@@ -1,0 +1,138 @@
+#include "services/common/model/runtime_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "services/common/model/measured_input.hpp"
+#include "services/common/model/recording_run.hpp"
+#include "services/common/model/runtime_system.hpp"
+#include "services/common/model/simulation_plants.hpp"
+#include "services/common/model/start_values.hpp"
+
+namespace sealwatch {
+namespace {
+
+std::vector<InputChannel> input_channels(const RuntimePlant& plant, const TimeSeries& recorded) {
+  std::vector<InputChannel> channels;
+  for (const RuntimeInput& input : plant.inputs) {
+    const std::vector<double>& values = recorded.find(input.channel)->values;
+    const bool hold = input.course == InputCourse::held || recorded.input_hold;
+    if (input.smoothing_s > 0.0) {
+      SmoothedInput smoothed = smoothed_input(recorded.time_s, values, input.smoothing_s);
+      channels.push_back({std::move(smoothed.values), false, std::move(smoothed.slopes)});
+    } else {
+      const bool spline = input.course == InputCourse::band_limited && !hold;
+      if (spline) {
+        channels.push_back({values, false, spline_slopes(recorded.time_s, values), true});
+        continue;
+      }
+      const bool averaged = input.course == InputCourse::averaged && !hold;
+      channels.push_back({averaged ? means_of_neighbours(values) : values, hold});
+    }
+  }
+  return channels;
+}
+
+double mean_distance_s(const std::vector<double>& times) {
+  return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
+
+tl::unexpected<Error> without_derivatives(const PlantDescription& plant) {
+  return fail("plant " + plant.name + " gave a derivative or an output that is not a finite number",
+              "check its equations where something is divided by zero or a root is taken of what may be negative");
+}
+
+}  // namespace
+
+RuntimePlantSimulation::RuntimePlantSimulation(std::shared_ptr<const RuntimePlant> plant,
+                                               const PlantDescription& description, const TimeSeries& recorded,
+                                               PhysicsTerms terms)
+    : RecordedSimulation(description, std::move(terms)),
+      runtime_(std::move(plant)),
+      input_(recorded.time_s, input_channels(*runtime_, recorded)) {}
+
+Result<std::unique_ptr<PlantSimulation>> RuntimePlantSimulation::create(std::shared_ptr<const RuntimePlant> plant,
+                                                                        const PlantDescription& description,
+                                                                        const AssetConfig& asset,
+                                                                        const TimeSeries& recorded,
+                                                                        PhysicsTerms terms) {
+  std::unique_ptr<RuntimePlantSimulation> simulation(
+      new RuntimePlantSimulation(plant, description, recorded, std::move(terms)));
+  std::vector<OutputName> outputs;
+  for (const auto& [channel, state] : plant->outputs) outputs.push_back({channel, state});
+  simulation->select_channels(outputs, asset, recorded);
+  ModelValues start{.parameters = parameter_values(description, asset), .load_factor = 0.0, .initial_state = {}};
+  Result<std::vector<double>> state = plant->equations->initial_state(start.parameters, recorded);
+  if (!state) return fail(state.error());
+  start.initial_state = std::move(*state);
+  std::vector<std::string> names, slow;
+  for (std::size_t k = 0; k < description.states.size(); ++k) {
+    names.push_back(description.states[k].name);
+    if (plant->states[k].slow) slow.push_back(description.states[k].name);
+  }
+  simulation->set_states(std::move(names), std::move(slow), std::move(start));
+  return simulation;
+}
+
+Result<SimulatedOutputs> RuntimePlantSimulation::run(const ModelValues& values, std::span<const FreeQuantity> free,
+                                                     const SimulationOptions& options,
+                                                     InjectedColumns* injected) const {
+  FreeColumns columns = free_columns(plant(), values, free);
+  auto evaluator = runtime_->equations->evaluator(effective_parameters(plant(), values), columns.differentiated);
+  if (!evaluator) return fail(evaluator.error());
+  RuntimeSystem system(*runtime_, std::move(*evaluator), input_, terms(), values, std::move(columns), injected);
+  // Laws in an output act between samples at once: the steps follow the samples.
+  SimulationOptions stepping = options;
+  if (runtime_->equations->outputs_see_added() && injected != nullptr)
+    stepping.maximum_step_s = std::min(options.maximum_step_s, mean_distance_s(input_.times()));
+  RecordingRun<RuntimeSystem> recording(*this, input_, std::move(system), values, free, stepping, injected);
+  auto outputs = recording.simulate(values);
+  if (recording.stopped_by_event()) {
+    if (injected == nullptr) return run_by_differences(values, free, options);
+    return fail("plant " + plant().name + " jumps at events, across which missing physics cannot be looked for",
+                "fit and validate work; a model without such events (friction and stops rounded) can be explained");
+  }
+  if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
+    return without_derivatives(plant());
+  return outputs;
+}
+
+Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const ModelValues& values,
+                                                                    std::span<const FreeQuantity> free,
+                                                                    const SimulationOptions& options) const {
+  SimulationOptions tight = options;
+  tight.relative_tolerance = std::min(options.relative_tolerance, 1e-7);
+  auto outputs = run(values, {}, tight, nullptr);
+  if (!outputs) return outputs;
+  const Eigen::Index rows = outputs->values.size(), columns = static_cast<Eigen::Index>(free.size());
+  outputs->sensitivities.resize(rows, columns);
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const FreeQuantity& quantity = free[static_cast<std::size_t>(k)];
+    constexpr double kShare = 1e-3;  // of the value: central differences then err by its square, and far above steps
+    const double value = quantity.in(values), size = std::abs(value) > 0.0 ? std::abs(value) : 1.0;
+    ModelValues changed = values;
+    quantity.in(changed) = value + kShare * size;
+    const auto above = run(changed, {}, tight, nullptr);
+    quantity.in(changed) = value - kShare * size;
+    const auto below = run(changed, {}, tight, nullptr);
+    if (!above) return above;
+    if (!below) return below;
+    for (Eigen::Index row = 0; row < rows; ++row)
+      outputs->sensitivities(row, k) = (above->values.data()[row] - below->values.data()[row]) / (2.0 * kShare * size);
+  }
+  return outputs;
+}
+
+Status add_plant(RuntimePlant plant) {
+  const auto shared = std::make_shared<const RuntimePlant>(std::move(plant));
+  PlantSimulator simulator{.model = shared->description.name, .inputs = {}, .simulate = nullptr};
+  for (const RuntimeInput& input : shared->inputs) simulator.inputs.push_back(input.channel);
+  simulator.simulate = [shared](const PlantDescription& description, const AssetConfig& asset,
+                                const TimeSeries& recorded, PhysicsTerms terms) {
+    return RuntimePlantSimulation::create(shared, description, asset, recorded, std::move(terms));
+  };
+  return add_plant(shared->description, std::move(simulator));
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,138 @@
+#include "services/common/recording/cells.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <ctime>
+
+#include "services/common/recording/columns.hpp"
+#include "services/common/units/unit_conversion.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr std::size_t kLongestNumber = 60;
+constexpr double kExcelDayOf1970 = 25569.0;  // days from 1899-12-30 to 1970-01-01
+constexpr std::int64_t kNanoseconds = 1'000'000'000;
+
+/// ".25" or ",25" as nanoseconds; nothing where something else follows.
+std::optional<std::int64_t> fraction_of_a_second(std::string_view text) {
+  if (text.empty()) return 0;
+  if (text.front() != '.' && text.front() != ',' && text.front() != ':') return std::nullopt;
+  std::int64_t value = 0, unit = kNanoseconds;
+  for (const char digit : text.substr(1)) {
+    if (digit < '0' || digit > '9') return std::nullopt;
+    unit /= 10;
+    value += unit * (digit - '0');
+  }
+  return text.size() > 1 ? std::optional(value) : std::nullopt;
+}
+
+Result<UtcTime> from_excel(double days) {
+  if (!(days >= 1.0 && days <= 120000.0))  // the years 1900 to 2228
+    return fail("must be a day number as spreadsheets count them, 45000.5 for instance");
+  return UtcTime{static_cast<std::int64_t>(std::llround((days - kExcelDayOf1970) * kSecondsPerDay * 1e6)) * 1000};
+}
+
+}  // namespace
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+Result<double> parse_number(std::string_view text, char decimal) {
+  text = trim(text);
+  if (text.empty()) return fail("the cell is empty", "leave out the whole row of a missing sample");
+  if (text.front() == '+') text.remove_prefix(1);
+  std::array<char, kLongestNumber> with_point{};
+  if (decimal != '.') {
+    if (text.size() > with_point.size() || text.find('.') != std::string_view::npos) return fail("must be a number");
+    std::string_view rest = text;
+    for (char& letter : with_point) {
+      if (rest.empty()) break;
+      letter = rest.front() == decimal ? '.' : rest.front();
+      rest.remove_prefix(1);
+    }
+    text = std::string_view(with_point.data(), text.size());
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) return fail("is out of a double's range");
+  if (error != std::errc{} || end != text.data() + text.size()) return fail("must be a number");
+  if (!std::isfinite(value)) return fail("must be a finite number", "leave out the whole row of a missing sample");
+  return value;
+}
+
+Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern) {
+  const std::string text(trim(cell));
+  std::tm parts{};
+  parts.tm_mday = 1;  // of a pattern without a date: 1970-01-01
+  parts.tm_year = 70;
+  const char* const rest = strptime(text.c_str(), pattern.c_str(), &parts);
+  const auto fraction = rest != nullptr ? fraction_of_a_second(rest) : std::nullopt;
+  if (!fraction) return fail("must be a time as " + pattern + " describes it");
+  if (parts.tm_year < -200 || parts.tm_year > 350) return fail("must be a time of the years 1700 to 2250");
+  const std::int64_t seconds = timegm(&parts) - parts.tm_gmtoff;
+  return UtcTime{seconds * kNanoseconds + *fraction};
+}
+
+Result<TimeFormat> TimeFormat::of(std::string_view unit) {
+  TimeFormat format;
+  if (unit == "iso8601") {
+    format.kind_ = Kind::iso8601;
+  } else if (unit == "excel") {
+    format.kind_ = Kind::excel;
+  } else if (unit.find('%') != std::string_view::npos) {
+    format.kind_ = Kind::pattern;
+    format.pattern_ = unit;
+  } else {
+    const Result<UnitConversion> known = convert_unit(unit, "s");
+    if (!known)
+      return fail(
+          error_at({}, unit, known.error().rule + ": time is iso8601, excel, a pattern such as %H:%M:%S, or s, ms"));
+    format.to_s_ = *known;
+  }
+  return format;
+}
+
+Result<UtcTime> TimeFormat::moment(std::string_view cell, char decimal) const {
+  if (kind_ == Kind::excel) {
+    const Result<double> days = parse_number(cell, decimal);
+    return days ? from_excel(*days) : fail(days.error());
+  }
+  if (kind_ == Kind::pattern) return parse_pattern(cell, pattern_);
+  std::string text(trim(cell));
+  for (char& letter : text)
+    if (letter == ',') letter = '.';  // ISO 8601 allows both before fractions of a second
+  return parse_utc(text);
+}
+
+Result<double> TimeFormat::seconds(std::string_view cell, char decimal) {
+  if (kind_ == Kind::number) {
+    const Result<double> number = parse_number(cell, decimal);
+    return number ? Result<double>(to_s_.to_si(*number)) : number;
+  }
+  const Result<UtcTime> time = moment(cell, decimal);
+  if (!time) return fail(time.error().rule, time.error().advice);
+  if (!base_) base_ = *time;
+  return static_cast<double>(time->nanoseconds - base_->nanoseconds) * 1e-9;
+}
+
+Result<double> TimeFormat::seconds(double number) {
+  if (kind_ == Kind::number) return to_s_.to_si(number);
+  if (kind_ != Kind::excel) return fail("must be text for a time of this form", "give its unit: s, ms, ns or excel");
+  const Result<UtcTime> time = from_excel(number);
+  if (!time) return fail(time.error());
+  if (!base_) base_ = *time;
+  return static_cast<double>(time->nanoseconds - base_->nanoseconds) * 1e-9;
+}
+
+std::optional<UtcTime> TimeFormat::utc(double seconds) const {
+  const bool has_date = kind_ != Kind::pattern || pattern_.find_first_of("djFDxcs") != std::string::npos;
+  if (!base_ || !has_date) return std::nullopt;
+  return add_seconds(*base_, seconds);
+}
+
+}  // namespace sealwatch

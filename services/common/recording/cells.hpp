@@ -1,0 +1,49 @@
+// Cells of a table of text: numbers with a decimal point or comma, times as clocks and spreadsheets write them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time.hpp"
+#include "sealwatch/core/units.hpp"
+
+namespace sealwatch {
+
+/// Without blanks and tabs at its ends.
+[[nodiscard]] std::string_view trim(std::string_view text);
+
+/// The finite number that `text` is, or the rule that it breaks. `decimal` is '.' or ','.
+[[nodiscard]] Result<double> parse_number(std::string_view text, char decimal = '.');
+
+/// How a log's time column counts.
+class TimeFormat {
+ public:
+  /// `unit`: "iso8601", "excel" (days since 1899-12-30), a pattern of strptime such as "%d.%m.%Y %H:%M:%S" (fractions
+  /// of a second may follow; without a zone UTC), or any unit of time.
+  [[nodiscard]] static Result<TimeFormat> of(std::string_view unit);
+
+  /// Whether it tells the hour and the day, so that the recording's start is known.
+  [[nodiscard]] bool is_absolute() const { return kind_ != Kind::number; }
+  /// Seconds of `cell`: as the log counts them; of an absolute time those since the first cell that was asked.
+  [[nodiscard]] Result<double> seconds(std::string_view cell, char decimal);
+  /// The same of a number; an Error where the format wants text.
+  [[nodiscard]] Result<double> seconds(double number);
+  /// The UTC time of so many seconds; nothing where the format is not absolute.
+  [[nodiscard]] std::optional<UtcTime> utc(double seconds) const;
+
+ private:
+  enum class Kind { number, iso8601, excel, pattern };
+  [[nodiscard]] Result<UtcTime> moment(std::string_view cell, char decimal) const;
+
+  Kind kind_ = Kind::number;
+  UnitConversion to_s_;
+  std::string pattern_;
+  std::optional<UtcTime> base_;
+};
+
+/// The time that `cell` is by a pattern of strptime, with fractions of a second behind it.
+[[nodiscard]] Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern);
+
+}  // namespace sealwatch

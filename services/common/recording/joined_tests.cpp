@@ -1,0 +1,66 @@
+#include "services/common/recording/joined_tests.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "sealwatch/core/text.hpp"
+#include "sealwatch/signal/statistics.hpp"
+
+namespace sealwatch {
+namespace {
+
+double usual_step(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
+  return steps.empty() ? 1.0 : signal::median(std::move(steps));
+}
+
+/// What is added to the times of `next`.
+double shift_behind(const LogTest& last, const LogTest& next) {
+  const std::vector<double>& before = last.read.samples.time_s;
+  const std::vector<double>& after = next.read.samples.time_s;
+  if (last.start_time && next.start_time) return seconds_between(*last.start_time, *next.start_time);
+  return after.front() > before.back() ? 0.0 : before.back() + usual_step(before) - after.front();
+}
+
+Status join(LogTest& last, LogTest next) {
+  TimeSeries& samples = last.read.samples;
+  const double shift_s = shift_behind(last, next);
+  if (next.read.samples.time_s.front() + shift_s <= samples.time_s.back())
+    return fail(error_at("row 1, column time", {}, "begins before the file before it ends",
+                         "give the files in the order of their times"));
+  if (next.read.samples.channels.size() != samples.channels.size())
+    return fail(error_at("row 1, column 1", {}, "has other channels than the file before it"));
+  for (Series& channel : samples.channels) {
+    const Series* more = next.read.samples.find(channel.name);
+    if (more == nullptr) return fail(error_at("channel " + channel.name, {}, "is missing: the file before it has it"));
+    channel.values.insert(channel.values.end(), more->values.begin(), more->values.end());
+  }
+  for (const double time_s : next.read.samples.time_s) samples.time_s.push_back(time_s + shift_s);
+  last.read.content_hash = content_hash(last.read.content_hash + next.read.content_hash);
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return {path};
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t plus = std::min(path.find('+', begin), path.size());
+    parts.push_back(path.substr(begin, plus - begin));
+    begin = plus + 1;
+  }
+  const auto is_there = [&](const std::string& part) { return std::filesystem::exists(part, ignored); };
+  return std::ranges::any_of(parts, is_there) ? parts : std::vector<std::string>{path};
+}
+
+Status append(std::vector<LogTest>& tests, std::vector<LogTest> next) {
+  if (const Status joined = join(tests.back(), std::move(next.front())); !joined) return joined;
+  std::move(next.begin() + 1, next.end(), std::back_inserter(tests));
+  return {};
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,136 @@
+#include "services/common/recording/log_columns.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <set>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/recording/cells.hpp"
+#include "services/common/recording/log_layout.hpp"
+#include "services/common/units/unit_conversion.hpp"
+
+namespace sealwatch {
+namespace {
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string unit_of(const OfferedColumn& column) {
+  return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
+}
+
+Error of_channel(const std::string& channel, const std::string& value, const Error& why) {
+  return error_at("channel " + channel, value, why.rule, why.advice);
+}
+
+/// si = to_si(scale number + offset).
+Result<Column> mapped(const std::string& channel, const std::string& si_unit, const std::string& unit,
+                      const ColumnMapping& mapping) {
+  const Result<UnitConversion> conversion = convert_unit(unit, si_unit);
+  if (!conversion) return fail(of_channel(channel, unit, conversion.error()));
+  return Column{.name = channel,
+                .si_unit = si_unit,
+                .to_si = {.scale = conversion->scale * mapping.scale,
+                          .offset = conversion->scale * mapping.offset + conversion->offset,
+                          .si_unit = {}}};
+}
+
+class Mapper {
+ public:
+  Mapper(const std::vector<OfferedColumn>& offered, const PlantDescription& plant, const ChannelMap& map)
+      : offered_(offered), plant_(plant), map_(map) {}
+
+  Result<MappedColumns> run() {
+    for (const auto& [channel, mapping] : map_.columns)
+      if (const Status named = take_named(channel, mapping); !named) return fail(named.error());
+    for (std::size_t index = 0; index < offered_.size(); ++index)
+      if (const Status own = take_own_name(index); !own) return fail(own.error());
+    if (!taken_.contains("time"))
+      return fail(error_at("channel time", {}, "is missing and required", "name its column under channels: time"));
+    for (std::size_t index = 0; index < offered_.size(); ++index)
+      if (!used_.contains(index)) out_.left_aside.push_back(offered_[index].text);
+    std::ranges::sort(out_.columns, {}, &MappedColumn::index);  // in the order of the file
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] std::string si_unit_of(const std::string& channel) const {
+    const auto known = std::ranges::find(plant_.channels, channel, &ChannelDescription::name);
+    return known == plant_.channels.end() || known->unit.empty() ? "1" : known->unit;
+  }
+
+  Status take_named(const std::string& channel, const ColumnMapping& mapping) {
+    const Result<std::size_t> index = find_offered(offered_, mapping.column);
+    if (!index) return fail(of_channel(channel, mapping.column, index.error()));
+    return take(channel, *index, mapping.unit.empty() ? unit_of(offered_[*index]) : mapping.unit, mapping);
+  }
+
+  Status take_own_name(std::size_t index) {
+    const NameAndUnitText cell = split_header_cell(offered_[index].text);
+    const bool known = cell.name == "time" || std::ranges::find(plant_.channels, cell.name,
+                                                                &ChannelDescription::name) != plant_.channels.end();
+    if (!known || map_.columns.contains(cell.name) || used_.contains(index)) return {};
+    if (taken_.contains(cell.name))
+      return fail(error_at("channel " + cell.name, offered_[index].text, "is recorded twice"));
+    return take(cell.name, index, unit_of(offered_[index]), {});
+  }
+
+  Status take(const std::string& channel, std::size_t index, const std::string& unit, const ColumnMapping& mapping) {
+    Result<Column> column =
+        Column{.name = channel, .si_unit = "s", .to_si = {.scale = 1.0, .offset = 0.0, .si_unit = {}}};
+    if (channel == "time")
+      out_.time_unit = unit;
+    else
+      column = mapped(channel, si_unit_of(channel), unit, mapping);
+    if (!column) return fail(column.error());
+    out_.columns.push_back({index, std::move(*column)});
+    used_.insert(index);
+    taken_.insert(channel);
+    return {};
+  }
+
+  const std::vector<OfferedColumn>& offered_;
+  const PlantDescription& plant_;
+  const ChannelMap& map_;
+  MappedColumns out_;
+  std::set<std::size_t> used_;
+  std::set<std::string> taken_;
+};
+
+}  // namespace
+
+Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, const std::string& wanted) {
+  const auto matches = [&](const std::function<bool(const OfferedColumn&)>& same) {
+    std::vector<std::size_t> found;
+    for (std::size_t k = 0; k < offered.size(); ++k)
+      if (same(offered[k])) found.push_back(k);
+    return found;
+  };
+  const std::string small = lower(wanted);
+  const std::function<bool(const OfferedColumn&)> ways[] = {
+      [&](const OfferedColumn& column) { return column.text == wanted; },
+      [&](const OfferedColumn& column) { return split_header_cell(column.text).name == wanted; },
+      [&](const OfferedColumn& column) { return lower(column.text) == small; },
+      [&](const OfferedColumn& column) { return lower(split_header_cell(column.text).name) == small; }};
+  for (const auto& way : ways) {
+    const std::vector<std::size_t> found = matches(way);
+    if (found.size() == 1) return found.front();
+    if (found.size() > 1)
+      return fail("stands over columns " + std::to_string(found[0] + 1) + " and " + std::to_string(found[1] + 1),
+                  "give the whole header cell");
+  }
+  std::vector<std::string> texts;
+  for (const OfferedColumn& column : offered)
+    if (!column.text.empty()) texts.push_back(column.text);
+  return fail("is no column of this log", suggest(wanted, texts));
+}
+
+Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered, const PlantDescription& plant,
+                                  const ChannelMap& map) {
+  return Mapper(offered, plant, map).run();
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,38 @@
+// Which columns of a table are which channels, by a channel map: of a log's header, or of the vectors of a MATLAB or
+// HDF5 file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/config/channel_map.hpp"
+#include "services/common/recording/columns.hpp"
+
+namespace sealwatch {
+
+/// A column as a file offers it.
+struct OfferedColumn {
+  std::string text;       ///< header cell, UTF-8
+  std::string unit = {};  ///< said beside it, in a row of units or an attribute
+};
+
+struct MappedColumn {
+  std::size_t index = 0;  ///< of the offered columns
+  Column column;          ///< of `time` to_si is not used: see `time_unit`
+};
+
+struct MappedColumns {
+  std::vector<MappedColumn> columns;  ///< each channel once, `time` among them
+  std::string time_unit;              ///< for TimeFormat
+  std::vector<std::string> left_aside;
+};
+
+/// Errors name the channel, not the place.
+[[nodiscard]] Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered,
+                                                const PlantDescription& plant, const ChannelMap& map);
+
+/// The offered column that a mapping means: its text, or its text without the unit; then with small for capital letters.
+[[nodiscard]] Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, const std::string& wanted);
+
+}  // namespace sealwatch

@@ -1,0 +1,228 @@
+#include "services/common/recording/log_layout.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "services/common/recording/cells.hpp"
+#include "services/common/recording/columns.hpp"
+#include "services/common/recording/csv_rows.hpp"
+#include "services/common/units/unit_conversion.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr std::size_t kRowsLookedAt = 400;
+
+constexpr std::array kDelimiters = {std::pair{"semicolon", ';'}, std::pair{"tab", '\t'}, std::pair{"comma", ','},
+                                    std::pair{"bar", '|'}, std::pair{"blank", ' '}};
+constexpr std::array kDecimals = {std::pair{"point", '.'}, std::pair{"comma", ','}};
+
+// The day before the month: of "3/4/2031" nobody can tell, of "25/4/2031" and "4/25/2031" the cells do.
+constexpr std::array kTimePatterns = {"%d.%m.%Y %H:%M:%S",    "%d.%m.%Y %H:%M",    "%d/%m/%Y %H:%M:%S",
+                                      "%m/%d/%Y %I:%M:%S %p", "%m/%d/%Y %H:%M:%S", "%Y/%m/%d %H:%M:%S",
+                                      "%d-%b-%Y %H:%M:%S",    "%b %d %Y %H:%M:%S", "%H:%M:%S"};
+
+using Rows = std::vector<std::vector<std::string>>;
+
+bool is_iso(std::string_view cell) {
+  std::string text(trim(cell));
+  std::ranges::replace(text, ',', '.');
+  return text.size() > 10 && parse_utc(text).has_value();
+}
+
+bool is_time(std::string_view cell) {
+  return is_iso(cell) || std::ranges::any_of(kTimePatterns, [&](const char* pattern) {
+           return parse_pattern(cell, pattern).has_value();
+         });
+}
+
+std::size_t values_in(const std::vector<std::string>& row, char decimal) {
+  return static_cast<std::size_t>(std::ranges::count_if(row, [decimal](const std::string& cell) {
+    const std::string_view text = trim(cell);
+    if (text.empty()) return false;
+    const bool begins_as_one = (text.front() >= '0' && text.front() <= '9') || text.front() == '-' ||
+                               text.front() == '+' || text.front() == '.';
+    return parse_number(text, decimal).has_value() || (begins_as_one && is_time(text));
+  }));
+}
+
+bool is_blank(const std::string& cell) { return trim(cell).empty(); }
+
+/// Rows in which at least half of the cells that are not empty are numbers or times.
+bool is_row_of_values(const std::vector<std::string>& row, char decimal) {
+  const auto filled = row.size() - static_cast<std::size_t>(std::ranges::count_if(row, is_blank));
+  return filled >= 2 && 2 * values_in(row, decimal) >= filled;
+}
+
+struct Reading {
+  Rows rows;  ///< from the file's first
+  char delimiter;
+  char decimal;
+  std::size_t width = 0;  ///< the commonest number of cells among rows of values
+  std::size_t values = 0;
+};
+
+Reading read_as(std::string_view head, char delimiter, char decimal) {
+  Reading reading{.rows = rows_of(head, delimiter, 1, kRowsLookedAt), .delimiter = delimiter, .decimal = decimal};
+  std::map<std::size_t, std::size_t> widths;
+  for (const auto& row : reading.rows)
+    if (is_row_of_values(row, decimal)) ++widths[row.size()];
+  for (const auto& [width, count] : widths)  // of widths that are as common the largest: the other rows are cut
+    if (reading.width == 0 || count >= widths[reading.width]) reading.width = width;
+  if (widths.empty()) return reading;
+  for (const auto& row : reading.rows)
+    if (row.size() == reading.width && is_row_of_values(row, decimal)) reading.values += values_in(row, decimal);
+  return reading;
+}
+
+/// The best of all ways to read it; blanks only where nothing else makes a table.
+std::optional<Reading> best_reading(std::string_view head, const LogLayout& given) {
+  std::optional<Reading> best;
+  for (const auto& [delimiter_name, delimiter] : kDelimiters)
+    for (const auto& [decimal_name, decimal] : kDecimals) {
+      if (!given.delimiter.empty() && given.delimiter != delimiter_name) continue;
+      if (!given.decimal.empty() && given.decimal != decimal_name) continue;
+      if (delimiter == ',' && decimal == ',') continue;
+      if (delimiter == ' ' && given.delimiter.empty() && best) continue;
+      Reading reading = read_as(head, delimiter, decimal);
+      if (reading.width > 0 && (!best || reading.values > best->values)) best = std::move(reading);
+    }
+  return best;
+}
+
+bool is_row_of_units(const std::vector<std::string>& row) {
+  std::size_t filled = 0;
+  for (const std::string& cell : row) {
+    std::string_view text = trim(cell);
+    if (text.empty() || text == "-") continue;
+    if (text.size() > 2 && (text.front() == '[' || text.front() == '(')) text = text.substr(1, text.size() - 2);
+    ++filled;
+    if (!is_unit(as_utf8(text))) return false;
+  }
+  return filled > 0;
+}
+
+std::string without_brackets(std::string_view text) {
+  text = trim(text);
+  if (text.size() > 2 && (text.front() == '[' || text.front() == '(')) text = trim(text.substr(1, text.size() - 2));
+  return text == "-" ? "" : as_utf8(text);
+}
+
+std::vector<std::string> filled_to(std::vector<std::string> cells, std::size_t width) {
+  cells.resize(std::max(width, cells.size()));
+  return cells;
+}
+
+/// The rows above the table. Row numbers are the editor's, 1 for the first; rows[k] is row k + 1.
+void find_header(const Reading& reading, const LogLayout& given, FoundLayout& out) {
+  const auto row = [&reading](std::size_t number) -> const std::vector<std::string>& {
+    return reading.rows[number - 1];
+  };
+  std::size_t above = out.first_row - 1;
+  const auto skip_blank_rows = [&] {
+    while (above > 0 && std::ranges::all_of(row(above), is_blank)) --above;
+  };
+  skip_blank_rows();
+  out.units_row = static_cast<std::size_t>(given.units_row);
+  const bool header_given = given.header_row > 0;
+  if (out.units_row == 0 && above > (header_given ? static_cast<std::size_t>(given.header_row) : 1) &&
+      row(above).size() > 1 && is_row_of_units(row(above)))
+    out.units_row = above;
+  if (out.units_row == above && above > 0) --above, skip_blank_rows();
+  out.header_row = header_given ? static_cast<std::size_t>(given.header_row) : 0;
+  if (!header_given && above > 0 && 2 * row(above).size() > reading.width) out.header_row = above;
+}
+
+}  // namespace
+
+Rows rows_of(std::string_view head, char delimiter, std::size_t first_row, std::size_t most) {
+  Rows rows;
+  std::size_t number = 0;
+  while (!head.empty() && rows.size() < most) {
+    const std::size_t length = std::min(head.find('\n'), head.size());
+    if (++number >= first_row) {
+      std::istringstream line{std::string(head.substr(0, length))};
+      CsvRows cells(line, delimiter);
+      std::vector<std::string_view> row;
+      const Result<bool> there = cells.next(row);  // of a line with stray quotes: no cells
+      rows.emplace_back(there ? std::vector<std::string>(row.begin(), row.end()) : std::vector<std::string>());
+    }
+    head.remove_prefix(std::min(length + 1, head.size()));
+  }
+  return rows;
+}
+
+Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
+  if (head.empty()) return fail(error_at("row 1, column 1", {}, "the file is empty"));
+  const std::optional<Reading> reading = best_reading(head, given);
+  if (!reading)
+    return fail(error_at("row 1, column 1", head.substr(0, head.find('\n')),
+                         "no table of numbers follows within " + std::to_string(kRowsLookedAt) + " rows",
+                         "say how the log is written, under log: delimiter, decimal, header_row"));
+  FoundLayout out{.delimiter = reading->delimiter, .decimal = reading->decimal, .header = {}, .units = {}};
+  out.first_row = static_cast<std::size_t>(given.first_row);
+  const auto least = static_cast<std::size_t>(std::max(given.header_row, given.units_row));
+  for (std::size_t k = least; k < reading->rows.size() && out.first_row == 0; ++k)
+    if (reading->rows[k].size() == reading->width && is_row_of_values(reading->rows[k], reading->decimal))
+      out.first_row = k + 1;
+  if (out.first_row == 0 || out.first_row > reading->rows.size())
+    return fail(error_at("row " + std::to_string(reading->rows.size()) + ", column 1", {},
+                         "the file ends before its first row of numbers", "look at header_row and first_row"));
+  find_header(*reading, given, out);
+  const auto cells_of = [&](std::size_t number) {
+    return filled_to(number > 0 ? reading->rows[number - 1] : std::vector<std::string>(), reading->width);
+  };
+  for (const std::string& cell : cells_of(out.header_row))
+    out.header.push_back(out.header_row > 0 ? as_utf8(trim(cell)) : "column " + std::to_string(out.header.size() + 1));
+  for (const std::string& cell : cells_of(out.units_row)) out.units.push_back(without_brackets(cell));
+  out.units.resize(out.header.size());
+  return out;
+}
+
+NameAndUnitText split_header_cell(std::string_view cell) {
+  cell = trim(cell);
+  for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
+    const std::size_t at = cell.rfind(open);
+    if (at == std::string_view::npos || at == 0 || cell.back() != close) continue;
+    const std::string_view unit = trim(cell.substr(at + 1, cell.size() - at - 2));
+    if (open == '[' || is_unit(unit) || TimeFormat::of(unit).has_value())
+      return {std::string(trim(cell.substr(0, at))), std::string(unit)};
+  }
+  for (const std::string_view between : {" / ", ", ", " in "}) {
+    const std::size_t at = cell.rfind(between);
+    if (at == std::string_view::npos || at == 0) continue;
+    const std::string_view unit = trim(cell.substr(at + between.size()));
+    if (is_unit(unit)) return {std::string(trim(cell.substr(0, at))), std::string(unit)};
+  }
+  return {std::string(cell), {}};
+}
+
+std::string time_format_of(const std::vector<std::string>& cells) {
+  if (cells.empty()) return {};
+  if (std::ranges::all_of(cells, is_iso)) return "iso8601";
+  for (const char* pattern : kTimePatterns)
+    if (std::ranges::all_of(cells, [&](const auto& cell) { return parse_pattern(cell, pattern).has_value(); }))
+      return pattern;
+  return {};
+}
+
+std::string as_utf8(std::string_view text) {
+  if (is_utf8(text)) return std::string(text);
+  std::string out;
+  for (const char letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (byte < 0x80) {
+      out += letter;
+    } else {
+      out += static_cast<char>(0xC0U | (byte >> 6U));
+      out += static_cast<char>(0x80U | (byte & 0x3FU));
+    }
+  }
+  return out;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,215 @@
+#include "services/common/recording/log_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "sealwatch/signal/statistics.hpp"
+#include "services/common/recording/cells.hpp"
+#include "services/common/recording/csv_rows.hpp"
+#include "services/common/recording/log_columns.hpp"
+#include "services/common/recording/recording_file.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr std::size_t kHead_bytes = std::size_t{1} << 18U;
+
+std::string words(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+class LogReader {
+ public:
+  LogReader(std::istream& in, FoundLayout layout, const PlantDescription& plant, const ChannelMap& map)
+      : rows_(in, layout.delimiter), layout_(std::move(layout)), plant_(plant), map_(map) {}
+
+  Result<Log> read() {
+    if (const Status header = read_header(); !header) return fail(header.error());
+    for (;;) {
+      const Result<bool> more = rows_.next(cells_);
+      if (!more) return fail(more.error());
+      if (!*more) break;
+      if (const Status row = read_row(); !row) return fail(row.error());
+    }
+    if (values_.front().empty() && out_.tests.empty())
+      return fail(error_at("row " + std::to_string(layout_.first_row) + ", column time", {}, "no samples follow"));
+    end_test();
+    name_contents();
+    out_.left_aside = mapped_.left_aside;
+    return std::move(out_);
+  }
+
+ private:
+  Status read_header() {
+    std::vector<OfferedColumn> offered;
+    for (std::size_t k = 0; k < layout_.header.size(); ++k) offered.push_back({layout_.header[k], layout_.units[k]});
+    Result<MappedColumns> mapped = map_columns(offered, plant_, map_);
+    if (!mapped) {
+      Error error = mapped.error();
+      error.place = "row " + std::to_string(std::max<std::size_t>(layout_.header_row, 1)) + ", " + error.place;
+      return fail(std::move(error));
+    }
+    mapped_ = std::move(*mapped);
+    Result<TimeFormat> format = TimeFormat::of(mapped_.time_unit);
+    if (!format) return fail(error_at("channel time", mapped_.time_unit, format.error().rule));
+    time_format_ = std::move(*format);
+    for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
+      if (mapped_.columns[k].column.name == "time") time_ = k;
+    values_.resize(mapped_.columns.size());
+    for (std::size_t row = 1; row < layout_.first_row; ++row)
+      if (const Result<bool> skipped = rows_.skip_line(); !skipped) return fail(skipped.error());
+    return {};
+  }
+
+  Status read_row() {
+    if (std::ranges::all_of(cells_, [](std::string_view cell) { return trim(cell).empty(); })) return {};
+    if (map_.log.incomplete_rows == "skip" && is_incomplete()) return {};
+    if (++rows_read_ * mapped_.columns.size() > kMostNumbers)
+      return fail(error_in(0, "the file holds more than " + std::to_string(kMostNumbers) + " numbers",
+                           "one recording is one test: split the file"));
+    std::vector<double> numbers(mapped_.columns.size());
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const Result<double> number = number_at(k);
+      if (!number) return fail(error_in(k, number.error().rule, number.error().advice));
+      numbers[k] = *number;
+    }
+    if (const Status time = check_time(numbers[time_]); !time) return time;
+    numbers[time_] += shift_s_;
+    if (values_[time_].empty()) first_row_ = rows_.row();
+    for (std::size_t k = 0; k < numbers.size(); ++k) values_[k].push_back(numbers[k]);
+    return {};
+  }
+
+  [[nodiscard]] std::string_view cell(std::size_t k) const {
+    const std::size_t index = mapped_.columns[k].index;
+    return index < cells_.size() ? cells_[index] : std::string_view();
+  }
+
+  [[nodiscard]] bool is_incomplete() const {
+    for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
+      if (trim(cell(k)).empty()) return true;
+    return false;
+  }
+
+  Result<double> number_at(std::size_t k) {
+    if (mapped_.columns[k].index >= cells_.size())
+      return fail("the row has " + std::to_string(cells_.size()) + " cells and this is column " +
+                      std::to_string(mapped_.columns[k].index + 1),
+                  rows_.has_line_break() ? "take the row out" : "the last line is cut off");
+    if (k == time_) return time_format_.seconds(cell(k), layout_.decimal);
+    const Result<double> number = parse_number(cell(k), layout_.decimal);
+    if (!number) {
+      const bool empty = trim(cell(k)).empty();
+      return fail(number.error().rule,
+                  empty ? "log: {incomplete_rows: skip} leaves such rows out" : number.error().advice);
+    }
+    const double value = mapped_.columns[k].column.to_si.to_si(*number);
+    return std::isfinite(value) ? Result<double>(value) : fail("is out of a double's range");
+  }
+
+  /// A time column that starts anew: refused, the same test going on, or another test, as the map says.
+  Status check_time(double time_s) {
+    const std::vector<double>& time = values_[time_];
+    if (time.empty() || time_s + shift_s_ > time.back()) return {};
+    const bool repeats = time_s + shift_s_ == time.back();
+    if (map_.log.time_resets == "split" && !repeats) {
+      end_test();
+    } else if (map_.log.time_resets == "join" && !repeats) {
+      shift_s_ = time.back() + usual_step() - time_s;
+    } else {
+      return fail(error_in(
+          time_, repeats ? "time repeats" : "time goes back: the row before is at " + words(time.back()) + " s",
+          repeats ? "take one of the rows out, or log a finer time"
+                  : "log: {time_resets: join} takes it as one test, split as another test"));
+    }
+    return {};
+  }
+
+  [[nodiscard]] double usual_step() const {
+    const std::vector<double>& time = values_[time_];
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < time.size(); ++k) steps.push_back(time[k] - time[k - 1]);
+    return steps.empty() ? 1.0 : signal::median(std::move(steps));
+  }
+
+  void end_test() {
+    if (values_[time_].empty()) return;
+    LogTest test;
+    test.first_row = first_row_;
+    test.start_time = time_format_.utc(values_[time_].front());
+    if (time_format_.is_absolute()) {
+      const double begin_s = values_[time_].front();
+      for (double& time : values_[time_]) time -= begin_s;
+    }
+    std::vector<Column> columns;
+    for (const MappedColumn& mapped : mapped_.columns) columns.push_back(mapped.column);
+    test.read = assemble(std::move(columns), std::move(values_));
+    out_.tests.push_back(std::move(test));
+    values_.assign(mapped_.columns.size(), {});
+    shift_s_ = 0.0;
+  }
+
+  void name_contents() {
+    for (std::size_t k = 0; k < out_.tests.size(); ++k)
+      out_.tests[k].read.content_hash =
+          out_.tests.size() == 1 ? rows_.content_hash()
+                                 : content_hash(rows_.content_hash().append("#").append(std::to_string(k + 1)));
+  }
+
+  [[nodiscard]] Error error_in(std::size_t k, std::string rule, std::string advice = {}) const {
+    const std::string& channel = mapped_.columns[k].column.name;
+    const std::size_t index = mapped_.columns[k].index;
+    return error_at("row " + std::to_string(rows_.row()) + ", column " + std::to_string(index + 1) + " (" +
+                        printable(layout_.header[index]) + ", channel " + channel + ")",
+                    cell(k), std::move(rule), std::move(advice));
+  }
+
+  CsvRows rows_;
+  FoundLayout layout_;
+  const PlantDescription& plant_;
+  const ChannelMap& map_;
+  MappedColumns mapped_;
+  TimeFormat time_format_;
+  std::vector<std::string_view> cells_;
+  std::vector<std::vector<double>> values_;  ///< of the test that is being read, by mapped column
+  std::size_t time_ = 0;                     ///< index of time among the mapped columns
+  double shift_s_ = 0.0;                     ///< added to the log's time since it started anew
+  std::size_t rows_read_ = 0;
+  std::size_t first_row_ = 0;  ///< of the test that is being read
+  Log out_;
+};
+
+}  // namespace
+
+Result<FoundLayout> layout_of(std::istream& in, const LogLayout& given) {
+  const std::istream::pos_type begin = in.tellg();
+  std::string head(kHead_bytes, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  const bool whole = in.eof();
+  in.clear();
+  in.seekg(begin);
+  if (!whole) head.resize(head.rfind('\n') + 1);  // the last row may be cut
+  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF"))
+    return fail(error_at("row 1, column 1", {}, "the file is UTF-16 text", "save it as UTF-8"));
+  return find_layout(head, given);
+}
+
+bool has_a_column_of(const FoundLayout& layout, const ChannelMap& map) {
+  std::vector<OfferedColumn> offered;
+  for (const std::string& text : layout.header) offered.push_back({text});
+  return std::ranges::any_of(map.columns,
+                             [&](const auto& entry) { return find_offered(offered, entry.second.column).has_value(); });
+}
+
+Result<Log> read_log(std::istream& in, const PlantDescription& plant, const ChannelMap& map) {
+  Result<FoundLayout> layout = layout_of(in, map.log);
+  if (!layout) return fail(layout.error());
+  return LogReader(in, std::move(*layout), plant, map).read();
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,36 @@
+// A piece of work tried in a copy of this process, so that nothing it does can end this one: what it concludes there is
+// thrown away, only how it ended counts. The copy has this thread alone and no open file, and ends with its maker.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace sealwatch {
+
+class Trial {
+ public:
+  /// None where no process can be made.
+  [[nodiscard]] static std::unique_ptr<Trial> begin(const std::function<void()>& work,
+                                                    std::chrono::milliseconds deadline);
+  ~Trial();
+  Trial(const Trial&) = delete;
+  Trial& operator=(const Trial&) = delete;
+  /// None while it goes on; "" when it ended well, else what became of it.
+  [[nodiscard]] std::optional<std::string> result();
+
+ private:
+  Trial(pid_t process, int words, std::chrono::milliseconds deadline);
+  [[nodiscard]] std::string told() const;
+
+  pid_t process_;
+  int words_;  ///< what it says before it ends
+  std::chrono::steady_clock::time_point end_;
+  std::chrono::milliseconds deadline_;
+};
+
+}  // namespace sealwatch

@@ -1,0 +1,54 @@
+// Which messages a service failed on and which it is working on, in memory that outlives the process: a file mapped into
+// it. A process that is killed, aborts or hangs takes nothing along, so that the next one knows what it worked on. Costs
+// no system call. After a power cut it may be gone: nothing but a try that is not counted is lost.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <string>
+
+#include "sealwatch/core/result.hpp"
+
+namespace sealwatch {
+
+class TryRecord {
+ public:
+  /// For one process alone.
+  TryRecord() = default;
+  /// A process that worked on a message and did not end in order has failed on it. `path` is made where it is missing.
+  [[nodiscard]] Status keep_in(const std::string& path);
+  /// In order: what is being worked on has not failed.
+  ~TryRecord();
+  TryRecord(const TryRecord&) = delete;
+  TryRecord& operator=(const TryRecord&) = delete;
+
+  [[nodiscard]] unsigned failures(const std::string& message_id);
+  void begin(const std::string& message_id);
+  /// It ended well: nothing of it is remembered.
+  void end(const std::string& message_id);
+  void fail(const std::string& message_id);
+  /// It was given up before it ended, for a reason that is none of its own.
+  void leave(const std::string& message_id);
+  /// Nothing that is being worked on is counted any more, whatever way the process ends.
+  void stop_in_order();
+
+ private:
+  struct Entry {
+    std::uint64_t message;  ///< hash of its id; 0: free
+    std::uint32_t failures;
+    std::uint32_t at_work;
+  };
+  static constexpr std::size_t kEntries = 1024;
+  using Entries = std::array<Entry, kEntries>;
+
+  Entry* find(const std::string& message_id);
+  Entry& find_or_make(const std::string& message_id);
+
+  std::mutex mutex_;
+  Entries own_{};
+  Entries* entries_ = &own_;
+  std::size_t next_ = 0;  ///< where the next free entry is looked for
+};
+
+}  // namespace sealwatch

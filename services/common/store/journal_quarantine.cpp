@@ -1,0 +1,123 @@
+// What is set aside (journal.hpp): inputs in state set_aside, and why, in table quarantine.
+#include "services/common/message/json.hpp"
+#include "services/common/store/database.hpp"
+
+namespace sealwatch {
+namespace {
+
+using soci::into;
+using soci::use;
+
+/// The inputs that go with a message: all of its test, or itself alone.
+constexpr const char* kGoesWith = " AND (message_id = :id OR (pst_id = :pst AND pst_id <> '' AND asset_id = :asset))";
+
+/// Moves them from one state to another and says how many there were.
+long long move(soci::session& sql, const SetAside& message, InputState from, InputState to) {
+  const std::string query = "UPDATE inputs SET consumed = " + std::to_string(static_cast<int>(to)) +
+                            " WHERE consumed = " + std::to_string(static_cast<int>(from)) + kGoesWith;
+  soci::statement statement =
+      (sql.prepare << query, use(message.message_id, "id"), use(message.pst_id, "pst"), use(message.asset_id, "asset"));
+  statement.execute(true);
+  return statement.get_affected_rows();
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> Journal::open_inputs_of(const std::string& asset_id) {
+  return database_->guard("looking for open inputs", [&] {
+    std::vector<std::string> ids;
+    std::string id;
+    soci::statement statement = (database_->sql.prepare << "SELECT message_id FROM inputs WHERE consumed = 0 AND"
+                                                           " asset_id = :asset ORDER BY receipt",
+                                 use(asset_id, "asset"), into(id));
+    statement.execute();
+    while (statement.fetch()) ids.push_back(id);
+    return ids;
+  });
+}
+
+Result<std::optional<Message>> Journal::input(const std::string& message_id) {
+  return database_->guard("reading an input", [&]() -> std::optional<Message> {
+    std::string topic;
+    std::string payload;
+    soci::indicator there = soci::i_null;
+    database_->sql << "SELECT topic, payload FROM inputs WHERE message_id = :id", use(message_id, "id"), into(topic),
+        into(payload, there);
+    if (!database_->sql.got_data() || there != soci::i_ok) return std::nullopt;
+    const auto known = value_of<Topic>(topic);
+    Result<Message> message = known ? message_from_json(*known, payload) : fail("message of an unknown topic");
+    if (message) return std::move(*message);
+    Error error = message.error();
+    error.file = database_->name;
+    throw error;
+  });
+}
+
+Result<std::uint64_t> Journal::open_inputs_of_tests(const std::set<std::string>& pst_ids) {
+  return database_->guard("counting open inputs", [&] {
+    std::uint64_t found = 0;
+    std::string pst_id;
+    soci::statement statement =
+        (database_->sql.prepare << "SELECT pst_id FROM inputs WHERE consumed = 0 ORDER BY receipt", into(pst_id));
+    statement.execute();
+    while (statement.fetch()) found += pst_ids.contains(pst_id) ? 1 : 0;
+    return found;
+  });
+}
+
+Result<std::vector<SetAside>> Journal::quarantine() {
+  return database_->guard("reading the quarantine", [&] {
+    std::vector<SetAside> found;
+    SetAside row;
+    long long since = 0;
+    soci::statement statement =
+        (database_->sql.prepare << "SELECT message_id, topic, asset_id, pst_id, since, reason FROM quarantine"
+                                   " WHERE state <> 'released' ORDER BY since, message_id",
+         into(row.message_id), into(row.topic), into(row.asset_id), into(row.pst_id), into(since), into(row.reason));
+    statement.execute();
+    while (statement.fetch()) {
+      row.since_ns = since;
+      found.push_back(row);
+    }
+    return found;
+  });
+}
+
+Status Journal::set_aside(const SetAside& message) {
+  return database_->guard("setting a message aside", [&] {
+    const long long since = message.since_ns;
+    database_->sql << "INSERT INTO quarantine(message_id, topic, asset_id, pst_id, since, reason, state, asked_by,"
+                      " asked) VALUES(:id, :topic, :asset, :pst, :since, :reason, 'set_aside', '', 0)"
+                      " ON CONFLICT(message_id) DO UPDATE SET since = excluded.since, reason = excluded.reason,"
+                      " state = 'set_aside'",
+        use(message.message_id, "id"), use(message.topic, "topic"), use(message.asset_id, "asset"),
+        use(message.pst_id, "pst"), use(since, "since"), use(message.reason, "reason");
+    const long long moved = move(database_->sql, message, InputState::open, InputState::set_aside);
+    database_->open_inputs -= static_cast<std::uint64_t>(moved);
+    ++database_->batch_rows;
+  });
+}
+
+Status Journal::release(const SetAside& message) {
+  return database_->guard("trying a message again", [&] {
+    database_->sql << "UPDATE quarantine SET state = 'released' WHERE message_id = :id", use(message.message_id, "id");
+    const long long moved = move(database_->sql, message, InputState::set_aside, InputState::open);
+    database_->open_inputs += static_cast<std::uint64_t>(moved);
+    ++database_->batch_rows;
+  });
+}
+
+Result<std::vector<std::string>> Journal::asked_again() {
+  return database_->guard("reading the quarantine", [&] {
+    std::vector<std::string> ids;
+    std::string id;
+    soci::statement statement =
+        (database_->sql.prepare << "SELECT message_id FROM quarantine WHERE state = 'retry' ORDER BY message_id",
+         into(id));
+    statement.execute();
+    while (statement.fetch()) ids.push_back(id);
+    return ids;
+  });
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,377 @@
+#include "sealwatch/trace/trace_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "sealwatch/estimation/noise_floor.hpp"
+#include "sealwatch/estimation/residual_statistics.hpp"
+#include "sealwatch/signal/resampling.hpp"
+#include "sealwatch/signal/statistics.hpp"
+#include "sealwatch/trace/smooth_course.hpp"
+#include "services/common/trace/alterations.hpp"
+#include "services/common/trace/difference_tests.hpp"
+#include "services/common/trace/regimes.hpp"
+
+namespace sealwatch::trace {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kFewestSamples = 100;
+constexpr double kLeastOfTheSpread = 1e-9;  // rounding of the arithmetic, as a share of a channel's spread
+
+/// One channel on the common times.
+struct Pair {
+  std::string name, unit;
+  bool input = false;
+  VectorXd recorded, simulated;
+  Course course;
+  double least_variance = 0.0;  ///< rounding of the arithmetic
+  double step_variance = 0.0;   ///< of the steps in which both are written
+  double white_variance = 0.0;  ///< of the recording's noise from sample to sample
+};
+
+/// The misfit of a course and what a test says of it.
+struct Judged {
+  double squares = 0.0;
+  NoiseTest test;
+};
+
+MatrixXd beside(const std::vector<VectorXd>& columns) {
+  MatrixXd out(columns.front().size(), static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = columns[k];
+  return out;
+}
+
+class Comparison {
+ public:
+  Comparison(const TimeSeries& recorded, const TimeSeries& simulated, const Options& options)
+      : recorded_(recorded), simulated_(simulated), options_(options) {}
+
+  Result<TraceComparison> run() {
+    if (const Status common = find_common(); !common) return fail(common.error());
+    find_motion();
+    for (const Pair& pair : pairs_) {
+      if (options_.progress) options_.progress(out_.channels.size(), pairs_.size() + 1);
+      out_.channels.push_back(compare(pair));
+    }
+    for (const ChannelComparison& channel : out_.channels) out_.consistent = out_.consistent && !channel.differs;
+    if (!out_.consistent) {
+      if (options_.progress) options_.progress(pairs_.size(), pairs_.size() + 1);
+      ask_common();
+      answer();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  Status find_common() {
+    if (recorded_.time_s.size() < kFewestSamples || simulated_.time_s.size() < kFewestSamples)
+      return fail("too few samples to tell noise from difference: at least " + std::to_string(kFewestSamples));
+    const signal::SamplingGrid grid = signal::find_grid(recorded_.time_s);
+    interval_s_ = grid.interval_s;
+    std::size_t first = 0, last = grid.count;
+    const double rounding = 1e-6 * grid.interval_s;
+    while (first < last && grid.time_s(first) < simulated_.time_s.front() - rounding) ++first;
+    while (last > first && grid.time_s(last - 1) > simulated_.time_s.back() + rounding) --last;
+    if (last - first < std::max(kFewestSamples, grid.count / 4))
+      return fail("the simulation covers less than a quarter of the recording: from " +
+                      std::to_string(simulated_.time_s.front()) + " to " + std::to_string(simulated_.time_s.back()) +
+                      " s, the recording from " + std::to_string(recorded_.time_s.front()) + " to " +
+                      std::to_string(recorded_.time_s.back()) + " s",
+                  "both times must count from the same moment");
+    for (std::size_t k = first; k < last; ++k) out_.time_s.push_back(grid.time_s(k));
+    for (const Series& channel : recorded_.channels) take(channel, grid, first, last - first);
+    for (const Series& channel : simulated_.channels)
+      if (!recorded_.has(channel.name)) out_.only_simulated.push_back(channel.name);
+    if (pairs_.empty()) return fail("the files share no channel", "give both the same column names, or a map");
+    return {};
+  }
+
+  void take(const Series& channel, const signal::SamplingGrid& grid, std::size_t first, std::size_t count) {
+    const Series* simulated = simulated_.find(channel.name);
+    // Both between their samples in the same way, so that what is the same stays so.
+    const Course between(recorded_.time_s, channel.values);
+    VectorXd values(static_cast<Index>(count));
+    for (std::size_t k = 0; k < count; ++k) values(static_cast<Index>(k)) = between.at(grid.time_s(first + k)).first;
+    const bool input = std::ranges::find(options_.inputs, channel.name) != options_.inputs.end();
+    if (simulated == nullptr) {
+      out_.only_recorded.push_back(channel.name);
+      drives_.push_back(values);
+      return;
+    }
+    Pair pair{.name = channel.name,
+              .unit = channel.unit,
+              .input = input,
+              .recorded = values,
+              .simulated = values,
+              .course = Course(simulated_.time_s, simulated->values)};
+    for (Index k = 0; k < values.size(); ++k)
+      pair.simulated(k) = pair.course.at(out_.time_s[static_cast<std::size_t>(k)]).first;
+    const double spread = std::sqrt((values.array() - values.mean()).square().mean());
+    pair.least_variance = std::max(std::pow(kLeastOfTheSpread * spread, 2), 1e-300);
+    pair.white_variance = std::max(pair.least_variance, std::pow(signal::estimate_noise_std(channel.values), 2));
+    for (const std::vector<double>* series : {&channel.values, &simulated->values})
+      pair.step_variance += std::pow(estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
+    if (input) drives_.push_back(values);
+    pairs_.push_back(std::move(pair));
+  }
+
+  void find_motion() {
+    for (const char* unit : {"m/s", "m", "rad/s", "rad"})
+      for (const Pair& pair : pairs_)
+        if (out_.motion.empty() && pair.unit == unit && !pair.input) {
+          out_.motion = pair.name;
+          const bool speed = std::string(unit).ends_with("/s");
+          motion_ = speed ? pair.simulated : smooth_slope(pair.simulated, interval_s_);
+        }
+  }
+
+  /// What a simulation's faults leave behind, of a course on the common times.
+  [[nodiscard]] std::vector<RegressorGroup> groups_of(const VectorXd& s, double effective_samples) const {
+    const Index n = s.size();
+    const VectorXd one = VectorXd::Ones(n), v = smooth_slope(s, interval_s_), a = smooth_slope(v, interval_s_);
+    const VectorXd t = VectorXd::LinSpaced(n, -1.0, 1.0);
+    std::vector<RegressorGroup> groups;
+    groups.push_back({"shift, scale, delay and clock", beside({one, s, v, t.cwiseProduct(v)})});
+    std::vector<VectorXd> regimes{one};
+    for (const Regime& regime : parts_of(v)) regimes.push_back(regime.indicator);
+    for (const Regime& level : levels_of(s)) regimes.push_back(level.indicator);
+    for (const VectorXd& saturated : saturations(motion_.size() > 0 ? motion_ : v)) regimes.push_back(saturated);
+    groups.push_back({"motion and level", beside(regimes)});
+    std::vector<VectorXd> shapes{one, a, s.cwiseProduct(s), v.cwiseProduct(v.cwiseAbs())};
+    for (const VectorXd& drive : drives_) shapes.push_back(drive), shapes.push_back(smooth_slope(drive, interval_s_));
+    groups.push_back({"curvature and drive", beside(shapes)});
+    constexpr double kMostPieces = 8.0, kSamplesAPiece = 12.0;
+    const auto pieces = static_cast<Index>(std::clamp(effective_samples / kSamplesAPiece, 1.0, kMostPieces));
+    std::vector<VectorXd> windows{one};
+    for (Index k = 0; k < pieces; ++k) {
+      windows.push_back(VectorXd::Zero(n));
+      windows.back().segment(k * n / pieces, (k + 1) * n / pieces - k * n / pieces).setOnes();
+    }
+    groups.push_back({"time", beside(windows)});
+    return groups;
+  }
+
+  [[nodiscard]] std::vector<Regime> parts_of(const VectorXd& slope) const {
+    return regimes_of(motion_.size() > 0 ? motion_ : slope);
+  }
+
+  /// tanh(v/v_k) and its square for several v_k: what rubs changes its sign with the speed, at whatever speed.
+  [[nodiscard]] static std::vector<VectorXd> saturations(const VectorXd& velocity) {
+    std::vector<VectorXd> out;
+    const double fastest = velocity.cwiseAbs().maxCoeff();
+    for (const double share : {0.003, 0.01, 0.03, 0.1, 0.3}) {
+      if (!(fastest > 0.0)) break;
+      out.emplace_back((velocity.array() / (share * fastest)).tanh());
+      out.emplace_back(out.back().array().square());
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::vector<RegressorGroup> partitions_of(const VectorXd& s) const {
+    constexpr Index kPieces = 8;
+    const Index n = s.size();
+    std::vector<VectorXd> motion, pieces;
+    for (const Regime& regime : parts_of(smooth_slope(s, interval_s_))) motion.push_back(regime.indicator);
+    for (Index k = 0; k < kPieces; ++k) {
+      pieces.push_back(VectorXd::Zero(n));
+      pieces.back().segment(k * n / kPieces, (k + 1) * n / kPieces - k * n / kPieces).setOnes();
+    }
+    return {{"scatter in motion and at rest", beside(motion)}, {"scatter in time", beside(pieces)}};
+  }
+
+  [[nodiscard]] Judged judge(const Pair& pair, const VectorXd& course, Index first, Index count) const {
+    const VectorXd left = (pair.recorded - course).segment(first, count);
+    std::vector<RegressorGroup> groups = groups_of(course, static_cast<double>(count));
+    std::vector<RegressorGroup> partitions = partitions_of(course);
+    for (std::vector<RegressorGroup>* list : {&groups, &partitions})
+      for (RegressorGroup& group : *list) group.columns = MatrixXd(group.columns.middleRows(first, count));
+    Judged judged{.squares = left.squaredNorm() / static_cast<double>(count), .test = {}};
+    judged.test = test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance});
+    judged.test.noise_std = std::min(judged.test.noise_std, std::sqrt(judged.squares));
+    return judged;
+  }
+
+  [[nodiscard]] double limit() const { return options_.significance / static_cast<double>(pairs_.size()); }
+
+  ChannelComparison compare(const Pair& pair) {
+    ChannelComparison out;
+    out.name = pair.name, out.unit = pair.unit, out.input = pair.input;
+    const VectorXd difference = pair.recorded - pair.simulated;
+    const Judged judged = judge(pair, pair.simulated, 0, difference.size());
+    out.recorded.assign(pair.recorded.begin(), pair.recorded.end());
+    out.simulated.assign(pair.simulated.begin(), pair.simulated.end());
+    out.rms = std::sqrt(judged.squares);
+    out.noise_std = judged.test.noise_std;
+    out.effective_samples = judged.test.effective_samples;
+    out.nrmse_percent = nrmse_percent(out.recorded, out.simulated);
+    out.p_value = std::min(1.0, judged.test.p_value * static_cast<double>(pairs_.size()));
+    out.differs = judged.test.p_value < limit();
+    std::vector<GroupTest> telling = judged.test.groups;
+    std::ranges::sort(telling, {}, &GroupTest::p_value);
+    for (const GroupTest& group : telling)
+      if (group.p_value * static_cast<double>(telling.size()) < limit()) out.by.push_back(group.name);
+    std::vector<Regime> regimes = parts_of(smooth_slope(pair.simulated, interval_s_));
+    std::ranges::move(levels_of(pair.simulated), std::back_inserter(regimes));
+    out.regimes = misfit_by_regime(difference, regimes);
+    out.intervals = misfit_by_time(out_.time_s, difference);
+    if (out.differs) ask_alterations(pair, out);
+    return out;
+  }
+
+  [[nodiscard]] static AlteredChannel altered(const Pair& pair, double about = 0.0) {
+    return {
+        .recorded = pair.recorded, .simulated = &pair.course, .about = about, .least_variance = pair.least_variance};
+  }
+
+  [[nodiscard]] static std::vector<AlteredParameter> parameters_of(const AlterationFit& fit, const Freedom& freedom,
+                                                                   const std::string& unit) {
+    std::vector<AlteredParameter> out;
+    if (freedom.gain) out.push_back({"gain", fit.gain, fit.gain_std, "1"});
+    if (!freedom.gain && freedom.fixed_gain < 0.0) out.push_back({"gain", freedom.fixed_gain, 0.0, "1"});
+    if (freedom.offset) out.push_back({"offset", fit.offset, fit.offset_std, unit});
+    if (freedom.delay) out.push_back({"delay", fit.delay_s, fit.delay_std_s, "s"});
+    if (freedom.clock) out.push_back({"clock rate", fit.clock, fit.clock_std, "1"});
+    return out;
+  }
+
+  /// Of several channels at once: the share removed of their misfits, each in units of its noise from sample to sample.
+  [[nodiscard]] Alteration judged(std::string id, std::string where, const std::vector<const Pair*>& pairs,
+                                  const AlterationFit& fit, const Freedom& freedom) const {
+    Alteration out{.id = std::move(id), .where = std::move(where), .parameters = {}};
+    out.parameters = parameters_of(fit, freedom, pairs.front()->unit);
+    out.criterion = fit.criterion;
+    out.would_do = true;
+    double before = 0.0, after = 0.0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const Judged left = judge(*pairs[k], fit.altered[k], fit.first, fit.count);
+      const double noise = pairs[k]->white_variance;
+      const VectorXd raw = pairs[k]->recorded - pairs[k]->simulated;
+      before += std::max(raw.squaredNorm() / static_cast<double>(raw.size()) / noise - 1.0, 0.0);
+      after += std::max(left.squares / noise - 1.0, 0.0);
+      out.would_do = out.would_do && left.test.p_value >= limit();
+    }
+    out.removed_share = before > 0.0 ? std::clamp(1.0 - after / before, 0.0, 1.0) : 0.0;
+    out.would_do = out.would_do && out.removed_share > 0.0;
+    return out;
+  }
+
+  struct Way {
+    const char* id;
+    Freedom freedom;
+  };
+
+  /// One by one; two or three together only where no one of them would do.
+  void ask_alterations(const Pair& pair, ChannelComparison& out) const {
+    static const std::vector<std::vector<Way>> levels = {
+        {{"sensor_gain", {.gain = true}},
+         {"sensor_bias", {.offset = true}},
+         {"sensor_lag", {.delay = true}},
+         {"clock_rate", {.clock = true}},
+         {"sign", {.fixed_gain = -1.0}}},
+        {{"sensor_gain and sensor_bias", {.gain = true, .offset = true}},
+         {"sensor_gain and sensor_lag", {.gain = true, .delay = true}},
+         {"sensor_bias and sensor_lag", {.offset = true, .delay = true}},
+         {"sign and sensor_bias", {.offset = true, .fixed_gain = -1.0}}},
+        {{"sensor_gain, sensor_bias and sensor_lag", {.gain = true, .offset = true, .delay = true}}}};
+    for (const std::vector<Way>& level : levels) {
+      for (const Way& way : level) ask(way, pair, out);
+      if (std::ranges::any_of(out.alterations, &Alteration::would_do)) break;
+    }
+    keep_the_likeliest(out.alterations);
+    std::ranges::sort(out.alterations, [](const Alteration& a, const Alteration& b) {
+      return a.would_do != b.would_do ? a.would_do
+             : a.would_do             ? a.criterion < b.criterion
+                                      : a.removed_share > b.removed_share;
+    });
+  }
+
+  /// Smooth noise may hide what an alteration leaves; another that is far more likely shows that it is no noise.
+  static void keep_the_likeliest(std::vector<Alteration>& alterations) {
+    constexpr double kFarMoreLikely = 10.0;  // of -2 log L: very strong evidence (Kass and Raftery 1995)
+    double best = std::numeric_limits<double>::infinity();
+    for (const Alteration& alteration : alterations) best = std::min(best, alteration.criterion);
+    for (Alteration& alteration : alterations)
+      alteration.would_do = alteration.would_do && alteration.criterion <= best + kFarMoreLikely;
+  }
+
+  void ask(const Way& way, const Pair& pair, ChannelComparison& out) const {
+    const std::vector<AlteredChannel> channels{altered(pair)};
+    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom);
+    if (!fit) return;
+    std::string id = way.id;
+    if (pair.input)
+      for (const auto& [sensor, input] :
+           {std::pair{"sensor_gain", "input_gain"}, {"sensor_bias", "input_bias"}, {"sensor_lag", "input_delay"}})
+        if (const std::size_t at = id.find(sensor); at != std::string::npos)
+          id.replace(at, std::string(sensor).size(), input);
+    const std::string where = way.freedom.clock ? "clock" : (pair.input ? "input:" : "sensor:") + pair.name;
+    out.alterations.push_back(judged(id, where, {&pair}, *fit, way.freedom));
+  }
+
+  /// One cause for all: a clock moves every channel, an input all that it drives.
+  void ask_common() {
+    std::vector<const Pair*> all, driven;
+    for (const Pair& pair : pairs_) {
+      all.push_back(&pair);
+      if (!pair.input) driven.push_back(&pair);
+    }
+    ask_common("clock_rate", "clock", all, {.clock = true}, false);
+    if (driven.empty()) return;
+    ask_common("input_delay", "input", driven, {.delay = true}, false);
+    ask_common("input_gain", "input", driven, {.gain = true}, true);
+    std::ranges::sort(out_.common,
+                      [](const Alteration& a, const Alteration& b) { return a.removed_share > b.removed_share; });
+  }
+
+  void ask_common(const char* id, const char* where, const std::vector<const Pair*>& pairs, const Freedom& freedom,
+                  bool about_start) {
+    std::vector<AlteredChannel> channels;
+    for (const Pair* pair : pairs) channels.push_back(altered(*pair, about_start ? pair->simulated(0) : 0.0));
+    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom);
+    if (fit) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
+  }
+
+  /// One cause for all channels that differ before one for each.
+  void answer() {
+    std::vector<const ChannelComparison*> differing;
+    for (const ChannelComparison& channel : out_.channels)
+      if (channel.differs) differing.push_back(&channel);
+    if (differing.size() > 1)
+      for (const Alteration& common : out_.common)
+        if (common.would_do) {
+          out_.answer = {common};
+          return;
+        }
+    for (const ChannelComparison* channel : differing) {
+      if (channel->alterations.empty() || !channel->alterations.front().would_do) {
+        out_.answer.clear();
+        return;
+      }
+      out_.answer.push_back(channel->alterations.front());
+    }
+  }
+
+  const TimeSeries& recorded_;
+  const TimeSeries& simulated_;
+  const Options& options_;
+  double interval_s_ = 0.0;
+  std::vector<Pair> pairs_;
+  std::vector<VectorXd> drives_;  ///< inputs, and what only the recording has
+  VectorXd motion_;
+  TraceComparison out_;
+};
+
+}  // namespace
+
+Result<TraceComparison> compare_traces(const TimeSeries& recorded, const TimeSeries& simulated,
+                                       const Options& options) {
+  return Comparison(recorded, simulated, options).run();
+}
+
+}  // namespace sealwatch::trace

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# The pages of this repository: relative links and their anchors resolve, lines are at most 120 characters outside code,
+# tables, headings and links, user pages together have at most 30 000 words and end with what to read next, and the
+# phrases that the glossary replaces stay away.
+#   documents.sh SOURCE_DIR
+set -euo pipefail
+cd "$1"
+export LC_ALL=C.UTF-8
+most_words=30000
+longest_line=120
+user_pages=(README.md CONTRIBUTING.md docs/*.md)
+mapfile -t pages < <(printf '%s\n' "${user_pages[@]}" CHANGELOG.md; find docs -mindepth 2 -name '*.md' | sort)
+faults=0
+fault() { echo "$1"; faults=$((faults + 1)); }
+
+# The lines of a page outside fenced code.
+prose_of() { awk '/^ *```/ { code = !code; print ""; next } { print code ? "" : $0 }' "$1"; }
+
+# The anchors that GitHub gives a page's headings: lower case, no punctuation, blanks as hyphens.
+anchors_of() {
+  prose_of "$1" | sed -nE 's/^#+ +//p' | sed -E 's/\[([^]]*)\]\([^)]*\)/\1/g' |
+    tr '[:upper:]' '[:lower:]' | sed -E 's/[^[:alnum:] _-]//g; s/ /-/g'
+}
+
+for page in "${pages[@]}"; do
+  folder=$(dirname "$page")
+  while read -r link; do
+    [[ $link =~ ^(https?|mailto): ]] && continue
+    file=${link%%#*}
+    anchor=
+    [[ $link == *'#'* ]] && anchor=${link#*#}
+    target=$page
+    [ -z "$file" ] || target=$folder/$file
+    [ -e "$target" ] || { fault "$page: link to $link: no such file"; continue; }
+    [ -z "$anchor" ] || [[ $target != *.md ]] || anchors_of "$target" | grep -qxF -- "$anchor" ||
+      fault "$page: link to $link: no such heading"
+  done < <(prose_of "$page" | grep -oE '\]\([^) ]+\)' | sed -E 's/^\]\(|\)$//g' || true)
+  [[ $page == docs/records/* ]] && continue
+  while IFS=: read -r number line; do
+    fault "$page:$number: ${#line} characters, at most $longest_line"
+  done < <(prose_of "$page" | awk '/^ *\|/ || /^    / || /^#/ || /^ *!?\[[^]]*\]\([^)]*\)$/ { print ""; next } { print }' |
+    grep -nE "^.{$((longest_line + 1)),}" || true)
+done
+
+words=$(cat "${user_pages[@]}" | wc -w)
+[ "$words" -le $most_words ] || fault "user pages have $words words, at most $most_words: shorten, or move measurements to docs/records"
+for page in docs/*.md; do
+  tail -4 "$page" | grep -q '^Next: ' || fault "$page: does not end with what to read next (a paragraph that begins with 'Next: ')"
+done
+
+# Old phrases, and the terms of docs/glossary.md that stand for them.
+phrases=(
+  'in charge=primary forecaster' 'hollow=local minimum' 'are told=reported misfit' 'is told like=…'
+  'elastic modulus when new=leakage-derived condition index' 'nobody knows when=…' 'costs the law=…'
+  'kept aside=held out' 'only teach=…' 'Master Control Station=Master Control System')
+for pair in "${phrases[@]}"; do
+  old=${pair%%=*}
+  new=${pair#*=}
+  while IFS= read -r hit; do fault "$hit: say '$new' (docs/glossary.md)"; done < <(
+    grep -nF -- "$old" "${user_pages[@]}" docs/reference/*.md | grep -v '^docs/glossary.md:' | cut -d: -f1,2 || true)
+done
+
+[ $faults -eq 0 ] || { echo "$faults faults"; exit 1; }
+echo "${#pages[@]} pages, $words words in those for users"

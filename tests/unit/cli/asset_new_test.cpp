@@ -1,0 +1,72 @@
+// A first asset file from somebody's own log: what is written is accepted, and reads the log by the right columns.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/cli/commands.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "services/common/runtime/asset_file.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+class AssetNew : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("sealwatch_asset_new_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
+  int make(const char* text) const {
+    std::ofstream(path("log.csv"), std::ios::binary) << text;
+    return run_asset_new({.log = path("log.csv"), .file = path("a.yaml"), .model = {}, .asset_id = {}, .yes = true});
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(AssetNew, TheWrittenFileReadsTheLogWithoutFurtherWork) {
+  ASSERT_EQ(make("Prüfstand 3;;\n\nZeit;Spannung Motor;Druck A;Druck B;Weg;Bemerkung\n;V;barg;barg;mm;\n"
+                 "12.04.2031 03:00:00,000;1,0;100,5;20,1;60,0;Start\n12.04.2031 03:00:00,010;1,1;100,4;20,2;59,9;\n"),
+            kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->asset_id, "log");
+  EXPECT_EQ(asset->model, "eha") << "three channels that only it has together";
+  const auto recording = read_recording(path("log.csv"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  const TimeSeries& samples = recording->samples;
+  EXPECT_NEAR(samples.time_s.back(), 0.01, 1e-9);
+  EXPECT_NEAR(samples.find("pressure_b")->values.front(), 20.1e5 + 101325.0, 1e-3);
+  EXPECT_NEAR(samples.find("position")->values.back(), 0.0599, 1e-12);
+  EXPECT_EQ(samples.find("motor_voltage")->values.back(), 1.1);
+  EXPECT_EQ(recording->left_aside, std::vector<std::string>{"Bemerkung"});
+  EXPECT_TRUE(std::filesystem::exists(path("a.html")));
+}
+
+TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {
+  ASSERT_EQ(make("t [s],motor_voltage [V],position [mm]\n0,1,60\n1,1,\n2,1,59\n0,1,60\n1,1,59\n"), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.log.time_resets, "split");
+  EXPECT_EQ(asset->channel_map.log.incomplete_rows, "skip");
+  const auto tests = read_recordings(path("log.csv"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(tests) << tests.error().describe();
+  EXPECT_EQ(tests->size(), 2U);
+}
+
+TEST_F(AssetNew, NothingIsWrittenOverAndNothingIsMadeUp) {
+  ASSERT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kOk);
+  EXPECT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kBadInput) << "the file is there already";
+  std::filesystem::remove(path("a.yaml"));
+  EXPECT_EQ(make("t [s],Huhn [mm/kg],Ei\n0,60,1\n1,59,2\n"), kBadInput) << "no column is a channel";
+  EXPECT_FALSE(std::filesystem::exists(path("a.yaml")));
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

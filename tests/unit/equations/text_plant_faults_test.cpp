@@ -1,0 +1,264 @@
+// What a plant's file with a fault is told: file, line, value, rule, advice; and plants that need little: no state, a
+// law of their own, a table, twenty states.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+
+namespace sealwatch {
+namespace {
+
+const std::string kSound = R"(name: NAME
+meaning: a mass on a spring
+inputs:
+  u: {unit: N, meaning: force}
+outputs:
+  position: {value: x, unit: m, noise_std: 1e-5, meaning: where it is}
+parameters:
+  M: {value: 2.0, unit: kg, meaning: mass, estimate: true}
+  k: {value: 50.0, unit: N/m, meaning: stiffness}
+  c: {value: 4.0, unit: N s/m, meaning: damping}
+definitions:
+  force: u - k*x - c*v
+states:
+  x: {der: v, unit: m, start: position}
+  v: {der: (force - lost)/M, unit: m/s, start: 0, size: 1.0}
+elements:
+  mass:
+    meaning: forces on the mass
+    sites:
+      - {kind: piston_force, symbol: lost, signals: {speed: v, position: x}}
+law_sizes: {N: 1e-3, m: 1, m/s: 1, N/m: 1e-3, N/m2: 1e-3, N s/m: 1e-3, N s2/m2: 1e-3}
+)";
+
+std::string with(std::string text, const std::string& what, const std::string& instead) {
+  const auto at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), instead);
+}
+
+std::string written(const std::string& name, const std::string& text) {
+  const auto file = std::filesystem::path(testing::TempDir()) / (name + ".yaml");
+  std::ofstream(file) << with(text, "NAME", name);
+  return file.string();
+}
+
+std::string faults_of(const std::string& text) {
+  const auto plant = read_plant_file(written("faulty", text));
+  if (plant) return {};
+  std::string all;
+  for (const Error& error : plant.error()) all += error.describe() + "\n";
+  return all;
+}
+
+TEST(PlantFile, OfTheTestsIsSound) { EXPECT_EQ(faults_of(kSound), ""); }
+
+TEST(PlantFile, NamesEachFaultWithItsLine) {
+  struct Case {
+    std::string what, instead;
+    std::vector<std::string> told;
+  };
+  const Case cases[] = {
+      {"u - k*x - c*v", "u - k*y - c*v", {"line 12, key definitions.force", "'y'", "is not a known quantity"}},
+      {"u - k*x - c*v", "u - k*x - c*x", {"line 12", "joins N", "kg m/s"}},
+      {"u - k*x - c*v", "u - k*x - c*(v", {"line 12", "character"}},
+      {"u - k*x - c*v", "u - k*x - c*v + force", {"depends on itself: force -> force", "algebraic loop"}},
+      {"der: v,", "der: x,", {"line 14, key states.x.der", "has the unit m where m/s is needed"}},
+      {"value: x,", "value: v,", {"key outputs.position.value", "has the unit m/s where m is needed"}},
+      {"value: x,", "value: position,", {"is an output"}},
+      {"unit: N s/m", "unit: N s/mm", {"line 10, key parameters.c", "is not the SI unit"}},
+      {"unit: N s/m", "unit: N q/m", {"line 10", "'q'"}},
+      {"c*v\n", "k*v*1[s]\n", {"line 10, key parameters.c", "stands in no equation"}},
+      {"- lost", "", {"line 20, key elements.mass.sites[0]", "adds to no equation"}},
+      {"N/m: 1e-3, ", "", {"line 21, key law_sizes", "'N/m'", "is missing"}},
+      {"start: position", "start: velocity", {"line 14, key states.x.start", "neither a parameter nor a channel"}},
+      {", start: 0, size", ", size", {"key states.v", "has no start"}},
+      {", size: 1.0", "", {"key states.v", "has no size"}},
+      {"kind: piston_force", "kind: piston_forc", {"did you mean 'piston_force'"}},
+      {"{speed: v,", "{sped: v,", {"sped", "did you mean 'speed'"}},
+      {"symbol: lost", "adds_to: {w: -1/M}", {"'w'", "is not a state"}},
+      {"k: {value: 50.0", "x: {value: 50.0", {"is a name already"}},
+      {"c: {value: 4.0, unit", "c: {value: four, unit", {"line 10", "must be a number"}},
+      {"meaning: a mass", "meening: a mass", {"did you mean 'meaning'"}},
+      {"outputs:\n", "output:\n", {"line 5, key output", "did you mean 'outputs'"}},
+  };
+  for (const Case& one : cases) {
+    const std::string told = faults_of(with(kSound, one.what, one.instead));
+    for (const std::string& words : one.told)
+      EXPECT_NE(told.find(words), std::string::npos) << one.what << " -> " << one.instead << ":\n" << told;
+    EXPECT_NE(told.find("faulty.yaml"), std::string::npos) << told;
+  }
+}
+
+TEST(PlantFile, ThatIsLoadedTwiceIsOnePlantAndAnotherOfItsNameIsRefused) {
+  const auto first = load_plant(written("loaded", kSound)), again = load_plant(written("loaded", kSound));
+  ASSERT_TRUE(first && again);
+  EXPECT_EQ(*first, *again);
+  const auto other = load_plant(written("loaded", with(kSound, "value: 2.0", "value: 3.0")));
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().front().describe().find("give this plant another name"), std::string::npos);
+  EXPECT_FALSE(load_plant(written("taken", with(kSound, "NAME", "emps #NAME"))));
+}
+
+TimeSeries samples_of(const std::vector<std::pair<std::string, double (*)(double)>>& channels, int rows,
+                      double step_s) {
+  TimeSeries samples;
+  for (const auto& [name, course] : channels) {
+    samples.channels.push_back({name, "", 0.0, {}});
+    for (int row = 0; row < rows; ++row) samples.channels.back().values.push_back(course(step_s * row));
+  }
+  for (int row = 0; row < rows; ++row) samples.time_s.push_back(step_s * row);
+  return samples;
+}
+
+/// Sensitivities of parameters and of laws' parameters against differences of whole simulations.
+void expect_exact_sensitivities(const PlantSimulation& simulation) {
+  constexpr SimulationOptions kTight = {.relative_tolerance = 1e-10, .maximum_steps = 2000000};
+  std::vector<FreeQuantity> free;
+  for (const auto& parameter : simulation.plant().parameters) free.push_back(*simulation.find(parameter.name));
+  for (const auto& parameter : simulation.physics_parameters()) free.push_back(*simulation.find(parameter.name));
+  const ModelValues values = simulation.start();
+  const auto outputs = simulation.run(values, free, kTight);
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    ModelValues up = values, down = values;
+    const double step = 1e-4 * std::abs(free[k].in(values));
+    free[k].in(up) += step;
+    free[k].in(down) -= step;
+    const auto after = simulation.run(up, {}, kTight), before = simulation.run(down, {}, kTight);
+    ASSERT_TRUE(after && before);
+    const RowMatrix difference = (after->values - before->values) / (2.0 * step);
+    const Eigen::Map<const Eigen::VectorXd> flat(difference.data(), difference.size());
+    EXPECT_GT(flat.norm(), 0.0) << k;
+    EXPECT_LT((flat - outputs->sensitivities.col(static_cast<Eigen::Index>(k))).norm(), 1e-4 * flat.norm()) << k;
+  }
+}
+
+const std::string kWithoutStates = R"(name: NAME
+meaning: friction without inertia
+inputs:
+  position: {unit: m}
+  pressure: {unit: Pa}
+outputs:
+  force: {value: area*pressure*gain(pressure) + lost, unit: N, noise_std: 0.1}
+parameters:
+  area: {value: 5e-4, unit: m2, estimate: true}
+tables:
+  gain: {x: [0, 1e5, 3e5], x_unit: Pa, y: [1.0, 1.02, 1.05]}
+elements:
+  seal:
+    sites: [{kind: piston_force, symbol: lost, signals: {speed: rate(position), position: position, pressure_a: pressure}}]
+laws:
+  - id: gripping_seal
+    element: seal
+    equation: (F_0 + c*pressure_a) * sign(speed, v_s) + k*grip
+    meaning: an O-ring that grips
+    parameters:
+      F_0: {unit: N, usual: 5.0, matters: 0.5, max: 100, min: 0, strength: true}
+      c: {unit: m2, usual: 1e-5, matters: 1e-6, max: 1e-3, min: 0, strength: true}
+      v_s: {unit: m/s, usual: 1e-3, grid: [1e-4], min: 1e-5, max: 1e-1}
+      k: {unit: N/m, usual: 1e3, matters: 100, min: 0, max: 1e6, strength: true}
+    hidden: {name: grip, unit: m, der: "speed - abs(speed, 1e-6[m/s])*grip/1e-4[m]", size: 1e-4}
+law_sizes: {N: 1e-2, m: 1, m/s: 1, N/m: 2e-2, N/m2: 2e-2, N s/m: 1e-3, N s2/m2: 1e-4, m2: 1e-2}
+)";
+
+TEST(PlantFile, MayHaveNoStateATableAndALawOfItsOwn) {
+  const auto plant = load_plant(written("without_states", kWithoutStates));
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  const TimeSeries samples = samples_of({{"position", [](double t) { return 0.02 * std::sin(2.0 * t); }},
+                                         {"pressure", [](double t) { return 2e5 + 1e4 * std::cos(t); }},
+                                         {"force", [](double) { return 100.0; }}},
+                                        501, 0.01);
+  AssetConfig asset = nominal_asset("without_states");
+  const auto plain = PlantSimulation::create(asset, samples);
+  ASSERT_TRUE(plain) << plain.error().describe();
+  const auto outputs = (*plain)->run((*plain)->start(), {});
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  EXPECT_NEAR(outputs->values(0, 0), 5e-4 * 2.1e5 * (1.035 + 0.0018), 0.2);
+  expect_exact_sensitivities(**plain);
+  PhysicsTerm law{.id = "gripping_seal", .element = "seal", .parameters = {}};
+  for (const auto& [name, value] : {std::pair{"F_0", 5.0}, {"c", 1e-5}, {"v_s", 5e-3}, {"k", 1e3}})
+    law.parameters[name] = {value, 0.0, 1e6, true};
+  asset.physics = {law};
+  const auto gripping = PlantSimulation::create(asset, samples);
+  ASSERT_TRUE(gripping) << gripping.error().describe();
+  expect_exact_sensitivities(**gripping);
+  asset.model = "emps";
+  EXPECT_FALSE(PlantSimulation::create(asset, samples)) << "a plant's own law is its own";
+}
+
+TEST(PlantFile, NamesTheFaultsOfALawOfItsOwn) {
+  const std::array<std::string, 3> cases[] = {{"k*grip", "k*grip + 1[N]", "is not proportional to its strengths"},
+                                              {"der: \"speed -", "der: \"grip -", "joins m"},
+                                              {"c*pressure_a", "c*pressure_b", "neither a signal"}};
+  for (const auto& [what, instead, told] : cases) {
+    const std::string all = faults_of(with(kWithoutStates, what, instead));
+    EXPECT_NE(all.find(told), std::string::npos) << instead << ":\n" << all;
+    EXPECT_NE(all.find("laws[0]"), std::string::npos) << all;
+  }
+}
+
+TEST(PlantFile, ThatExplodesIsAnErrorOfTheIntegrator) {
+  const std::string text = with(kSound, "u - k*x - c*v", "u - k*x - c*v + 1e6[N/m3]*x^3");
+  const auto plant = load_plant(written("exploding", text));
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  const auto simulation = PlantSimulation::create(
+      nominal_asset("exploding"),
+      samples_of({{"u", [](double t) { return 100.0 * t; }}, {"position", [](double) { return 0.0; }}}, 501, 0.02));
+  ASSERT_TRUE(simulation);
+  const auto outputs = (*simulation)->run((*simulation)->start(), {});
+  ASSERT_FALSE(outputs);
+  const std::string told = outputs.error().describe();
+  EXPECT_NE(told.find("no step size follows"), std::string::npos) << told;
+  EXPECT_NE(told.find("moves fastest"), std::string::npos) << told;
+}
+
+/// A chain of ten masses between springs, pushed at its first: 20 states, 5 sites.
+std::string chain_of_masses() {
+  std::string states, elements, sites;
+  for (int k = 0; k < 10; ++k) {
+    const std::string i = std::to_string(k), before = std::to_string(k - 1), after = std::to_string(k + 1);
+    const std::string pushed = k == 0 ? "u - k*x0" : "k*(x" + before + " - x" + i + ")";
+    const std::string held = k == 9 ? "0" : "k*(x" + i + " - x" + after + ")";
+    const std::string lost = k % 2 == 0 ? " - lost" + i : "";
+    states += "  x" + i + ": {der: v" + i + ", unit: m, start: 0, size: 0.1, own: false}\n";
+    states += "  v" + i + ": {der: (" + pushed + " - " + held + " - c*v" + i + lost +
+              ")/M, unit: m/s, start: 0, size: 1, own: false}\n";
+    if (k % 2 == 0)
+      elements += "  mass" + i + ": {sites: [{kind: piston_force, symbol: lost" + i + ", signals: {speed: v" + i +
+                  ", position: x" + i + "}}]}\n";
+  }
+  return "name: NAME\nmeaning: chain\ninputs: {u: {unit: N}}\n"
+         "outputs: {first: {value: x0, unit: m, noise_std: 1e-5}, last: {value: x9, unit: m, noise_std: 1e-5}}\n"
+         "parameters:\n  M: {value: 2.0, unit: kg, estimate: true}\n  k: {value: 500.0, unit: N/m, estimate: true}\n"
+         "  c: {value: 4.0, unit: N s/m, estimate: true}\nstates:\n" +
+         states + "elements:\n" + elements +
+         "law_sizes: {N: 1e-3, m: 1, m/s: 1, N/m: 1e-3, N/m2: 1e-3, N s/m: 1e-3, N s2/m2: 1e-3}\n";
+}
+
+TEST(PlantFile, MayHaveTwentyStatesAndFiveSites) {
+  const auto plant = load_plant(written("chain", chain_of_masses()));
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  EXPECT_EQ((*plant)->states.size(), 20U);
+  EXPECT_EQ((*plant)->sites.size(), 5U);
+  AssetConfig asset = nominal_asset("chain");
+  PhysicsTerm friction{.id = "coulomb_friction", .element = "mass4", .parameters = {}};
+  friction.parameters = {{"F_c", {1.0, 0.0, 100.0, true}}, {"v_s", {0.05, 1e-3, 1.0, true}}};
+  asset.physics = {friction};
+  const auto simulation =
+      PlantSimulation::create(asset, samples_of({{"u", [](double t) { return 50.0 * std::sin(3.0 * t); }},
+                                                 {"first", [](double) { return 0.0; }},
+                                                 {"last", [](double) { return 0.0; }}},
+                                                501, 0.01));
+  ASSERT_TRUE(simulation) << simulation.error().describe();
+  expect_exact_sensitivities(**simulation);
+}
+
+}  // namespace
+}  // namespace sealwatch

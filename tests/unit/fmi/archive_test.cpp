@@ -1,0 +1,125 @@
+// What stands in an archive may be anything: each fault is refused by name, and nothing is written beside the
+// temporary folder, which goes.
+#include <gmock/gmock.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): setenv
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "services/common/fmi/fmu_file.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using testing::HasSubstr;
+
+class FmuArchive : public testing::Test {
+ protected:
+  FmuArchive() {
+    std::filesystem::create_directory(folder_ / "tmp");
+    setenv("TMPDIR", (folder_ / "tmp").c_str(), 1);
+  }
+  ~FmuArchive() override {
+    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "tmp")) << "a temporary folder is left";
+    unsetenv("TMPDIR");
+  }
+  std::string refused(const std::vector<TestMember>& members, const ArchiveLimits& limits = {}) {
+    write_archive(folder_ / "a.fmu", members);
+    const Result<UnpackedFmu> unpacked = unpack_fmu((folder_ / "a.fmu").string(), limits);
+    if (unpacked) return "unpacked";
+    EXPECT_EQ(unpacked.error().file, (folder_ / "a.fmu").string());
+    EXPECT_FALSE(unpacked.error().advice.empty());
+    return unpacked.error().describe();
+  }
+  TestFolder folder_;
+  const TestMember description_{"modelDescription.xml", "<x/>"};
+};
+
+TEST_F(FmuArchive, UnpacksWhatASimulationNeedsAndKeepsItsNames) {
+  write_archive(folder_ / "a.fmu",
+                {description_, {"resources\\deep\\table.txt", "1 2"}, {"sources/model.c", "int x;"}});
+  std::filesystem::path inside;
+  {
+    const Result<UnpackedFmu> unpacked = unpack_fmu((folder_ / "a.fmu").string());
+    ASSERT_TRUE(unpacked) << unpacked.error().describe();
+    inside = unpacked->folder.path();
+    EXPECT_TRUE(std::filesystem::exists(inside / "resources/deep/table.txt"));
+    EXPECT_FALSE(std::filesystem::exists(inside / "sources"));
+    EXPECT_TRUE(unpacked->has("sources/model.c"));
+    EXPECT_EQ(std::filesystem::status(inside).permissions(), std::filesystem::perms::owner_all);
+  }
+  EXPECT_FALSE(std::filesystem::exists(inside));
+}
+
+TEST_F(FmuArchive, NamesThatLeadOutAreRefused) {
+  for (const char* name : {"../evil", "resources/../../evil", "/etc/evil", "resources/..", "C:/evil", "..\\evil"})
+    EXPECT_THAT(refused({description_, {name, "x"}}), HasSubstr("path")) << name;
+  EXPECT_THAT(refused({description_, {"resources/a\nb", "x"}}), HasSubstr("control characters"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "evil"));
+}
+
+TEST_F(FmuArchive, LinksAndSpecialFilesAreRefused) {
+  EXPECT_THAT(refused({description_, {"resources/link", "/etc/passwd", S_IFLNK | 0777U}}), HasSubstr("symbolic link"));
+  EXPECT_THAT(refused({description_, {"resources/pipe", "", S_IFIFO | 0666U}}), HasSubstr("special file"));
+}
+
+TEST_F(FmuArchive, LimitsAreKeptWhateverAMemberSays) {
+  const std::string large(3U << 20U, '\0');  // packs to some kilobytes
+  ArchiveLimits limits;
+  limits.member_bytes = 2U << 20U;
+  EXPECT_THAT(refused({description_, {"resources/bomb", large}}, limits), HasSubstr("more than 2 MiB"));
+  limits.member_bytes = 4U << 20U;
+  limits.total_bytes = 4U << 20U;
+  EXPECT_THAT(refused({description_, {"resources/one", large}, {"resources/two", large}}, limits),
+              HasSubstr("member resources/two"));
+  limits.members = 1;
+  EXPECT_THAT(refused({description_, {"resources/one", "x"}}, limits), HasSubstr("more than 1 members"));
+}
+
+TEST_F(FmuArchive, WhatIsNoArchiveIsRefused) {
+  EXPECT_THAT(refused({{"readme.txt", "x"}}), HasSubstr("no modelDescription.xml"));
+  const std::string file = (folder_ / "b.fmu").string();
+  std::ofstream(file) << "this is no archive";
+  EXPECT_THAT(unpack_fmu(file).error().describe(), HasSubstr("ZIP archive"));
+  EXPECT_THAT(unpack_fmu((folder_ / "absent.fmu").string()).error().describe(), HasSubstr("no file"));
+  EXPECT_THAT(unpack_fmu(folder_.path().string()).error().describe(), HasSubstr("no file"));
+}
+
+TEST_F(FmuArchive, AFlippedOrCutByteNeverPassesSilently) {
+  write_archive(folder_ / "a.fmu", {{"modelDescription.xml", description_of(spring_return("fmu_spring_return2"))}});
+  std::string bytes(std::filesystem::file_size(folder_ / "a.fmu"), '\0');
+  std::ifstream(folder_ / "a.fmu", std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::string damaged = bytes;
+  damaged[bytes.size() / 2] = static_cast<char>(damaged[bytes.size() / 2] ^ 0x55);  // in the packed text
+  std::ofstream(folder_ / "b.fmu", std::ios::binary) << damaged;
+  EXPECT_THAT(unpack_fmu((folder_ / "b.fmu").string()).error().describe(), HasSubstr("damaged"));
+  std::ofstream(folder_ / "c.fmu", std::ios::binary) << bytes.substr(0, bytes.size() - 30);
+  EXPECT_FALSE(unpack_fmu((folder_ / "c.fmu").string()));
+}
+
+TEST_F(FmuArchive, AnotherPlatformIsNamed) {
+  const std::string xml = description_of(spring_return("fmu_spring_return2"));
+  const auto open = [&](const std::vector<TestMember>& members) {
+    write_archive(folder_ / "a.fmu", members);
+    const auto fmu = FmuFile::open((folder_ / "a.fmu").string());
+    return fmu ? std::string("opened") : fmu.error().describe();
+  };
+  EXPECT_THAT(open({{"modelDescription.xml", xml}, {"binaries/win64/model.dll", "MZ"}, {"binaries/darwin64/x", "y"}}),
+              HasSubstr("it has some for darwin64, win64"));
+  EXPECT_THAT(open({{"modelDescription.xml", xml}}), HasSubstr("it has none at all"));
+  EXPECT_THAT(open({{"modelDescription.xml", xml}, {"binaries/linux64/model.so", "MZ and so on"}}),
+              HasSubstr("for Windows"));
+  std::string arm(64, '\0');
+  arm.replace(0, 5,
+              "\x7f"
+              "ELF\x02");
+  arm[18] = static_cast<char>(183);
+  EXPECT_THAT(open({{"modelDescription.xml", xml}, {"binaries/linux64/model.so", arm}}),
+              HasSubstr("another processor (ELF machine 183)"));
+  EXPECT_THAT(open({{"modelDescription.xml", xml}, {"binaries/linux64/model.so", "hello"}}),
+              HasSubstr("no binary for Linux"));
+}
+
+}  // namespace
+}  // namespace sealwatch::fmi

@@ -1,0 +1,175 @@
+#include "tests/unit/fmi/fmu_builder.hpp"
+
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp, setenv
+#include <zip.h>
+
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+namespace sealwatch::fmi {
+namespace {
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+bool is_fmi3(const TestUnit& unit) { return unit.binary.ends_with('3'); }
+
+std::string real2(const std::string& name, int reference, const std::string& attributes, const std::string& real) {
+  return "<ScalarVariable name=\"" + name + "\" valueReference=\"" + std::to_string(reference) + "\" " + attributes +
+         "><Real " + real + "/></ScalarVariable>\n";
+}
+std::string real3(const std::string& name, int reference, const std::string& attributes) {
+  return "<Float64 name=\"" + name + "\" valueReference=\"" + std::to_string(reference) + "\" " + attributes + "/>\n";
+}
+
+}  // namespace
+
+void write_archive(const std::filesystem::path& file, const std::vector<TestMember>& members) {
+  int code = 0;
+  zip_t* archive = zip_open(file.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
+  if (archive == nullptr) std::abort();
+  for (const TestMember& member : members) {
+    zip_source_t* source = zip_source_buffer(archive, member.content.data(), member.content.size(), 0);
+    const zip_int64_t index = member.name.ends_with('/')
+                                  ? zip_dir_add(archive, member.name.c_str(), 0)
+                                  : zip_file_add(archive, member.name.c_str(), source, ZIP_FL_ENC_UTF_8);
+    if (index < 0) std::abort();
+    if (member.unix_mode)
+      zip_file_set_external_attributes(archive, static_cast<zip_uint64_t>(index), 0, ZIP_OPSYS_UNIX,
+                                       *member.unix_mode << 16U);
+  }
+  if (zip_close(archive) != 0) std::abort();
+}
+
+std::string description_of(const TestUnit& unit) {
+  const std::string directional = unit.directional ? "true" : "false";
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription ";
+  text += is_fmi3(unit) ? "fmiVersion=\"3.0\" instantiationToken=\"" : "fmiVersion=\"2.0\" guid=\"";
+  text += unit.token + "\" modelName=\"test\" generationTool=\"the tests\"";
+  if (!is_fmi3(unit)) text += " numberOfEventIndicators=\"" + std::to_string(unit.indicators) + "\"";
+  text += ">\n";
+  text += unit.interfaces.empty() ? "<ModelExchange modelIdentifier=\"model\" providesDirectionalDerivative" +
+                                        std::string(is_fmi3(unit) ? "s" : "") + "=\"" + directional + "\"/>\n"
+                                  : unit.interfaces;
+  text +=
+      "<UnitDefinitions><Unit name=\"mm\"><BaseUnit m=\"1\" factor=\"0.001\"/></Unit>"
+      "<Unit name=\"N\"><BaseUnit kg=\"1\" m=\"1\" s=\"-2\"/></Unit>"
+      "<Unit name=\"m\"><BaseUnit m=\"1\"/></Unit></UnitDefinitions>\n";
+  text += "<DefaultExperiment startTime=\"0\" stopTime=\"3\"/>\n";
+  text += "<ModelVariables>\n" + unit.variables + "</ModelVariables>\n";
+  text += "<ModelStructure>\n" + unit.structure + "</ModelStructure>\n</fmiModelDescription>\n";
+  return text;
+}
+
+TestUnit spring_return(const std::string& binary) {
+  TestUnit unit{.binary = binary, .variables = {}, .structure = {}, .interfaces = {}};
+  const std::string parameter = "causality=\"parameter\" variability=\"fixed\"";
+  const auto names = {"M", "F_v", "k_s", "k_F"};
+  const auto values = {"20", "2e3", "1e4", "100"};
+  if (is_fmi3(unit)) {
+    unit.variables = real3("time", 0, "causality=\"independent\"") +
+                     real3("x", 1000, "causality=\"local\" unit=\"m\"") + real3("v", 1001, "causality=\"local\"") +
+                     real3("der(x)", 2000, "derivative=\"1000\"") + real3("der(v)", 2001, "derivative=\"1001\"") +
+                     real3("u", 3000, "causality=\"input\" start=\"0\"");
+    int k = 0;
+    for (const auto* name : names)
+      unit.variables += real3(name, 4000 + k, parameter + " start=\"" + *(values.begin() + k) + "\""), ++k;
+    unit.variables += real3("position", 5000, "causality=\"output\" unit=\"m\"");
+    unit.structure =
+        "<Output valueReference=\"5000\"/><ContinuousStateDerivative valueReference=\"2000\"/>"
+        "<ContinuousStateDerivative valueReference=\"2001\"/>\n";
+    return unit;
+  }
+  unit.variables = real2("x", 1000, "", "unit=\"m\"") + real2("v", 1001, "", "") +
+                   real2("der(x)", 2000, "", "derivative=\"1\"") + real2("der(v)", 2001, "", "derivative=\"2\"") +
+                   real2("u", 3000, "causality=\"input\"", "start=\"0\"");
+  int k = 0;
+  for (const auto* name : names)
+    unit.variables +=
+        real2(name, 4000 + k, parameter, std::string("start=\"") + *(values.begin() + k) + "\" min=\"0\""),
+        ++k;
+  unit.variables += real2("position", 5000, "causality=\"output\"", "unit=\"m\"");
+  unit.structure =
+      "<Outputs><Unknown index=\"10\"/></Outputs>"
+      "<Derivatives><Unknown index=\"3\"/><Unknown index=\"4\"/></Derivatives>\n";
+  return unit;
+}
+
+TestUnit emps() {
+  TestUnit unit{
+      .binary = "fmu_emps2", .token = "{sealwatch-test-emps}", .variables = {}, .structure = {}, .interfaces = {}};
+  const std::string parameter = "causality=\"parameter\" variability=\"tunable\"";
+  unit.variables =
+      real2("x", 1000, "", "unit=\"m\"") + real2("v", 1001, "", "") + real2("der(x)", 2000, "", "derivative=\"1\"") +
+      real2("der(v)", 2001, "", "derivative=\"2\"") + real2("u", 3000, "causality=\"input\"", "start=\"0\"") +
+      real2("M", 4000, parameter, "start=\"95.1\"") + real2("F_v", 4001, parameter, "start=\"203.5\"") +
+      real2("k_F", 4002, parameter, "start=\"35.15\"") + real2("position", 5000, "causality=\"output\"", "unit=\"m\"");
+  unit.structure =
+      "<Outputs><Unknown index=\"9\"/></Outputs>"
+      "<Derivatives><Unknown index=\"3\"/><Unknown index=\"4\"/></Derivatives>\n";
+  return unit;
+}
+
+TestUnit gain() {
+  TestUnit unit{.binary = "fmu_gain_cs2", .variables = {}, .structure = {}, .interfaces = {}};
+  unit.interfaces = "<CoSimulation modelIdentifier=\"model\" canHandleVariableCommunicationStepSize=\"true\"/>\n";
+  unit.variables = real2("x", 0, "causality=\"output\"", "") + real2("u", 1, "causality=\"input\"", "start=\"0\"") +
+                   real2("k", 2, "causality=\"parameter\" variability=\"fixed\"", "start=\"2\"");
+  unit.structure = "<Outputs><Unknown index=\"1\"/></Outputs>\n";
+  return unit;
+}
+
+TestUnit bouncing(const std::string& binary) {
+  TestUnit unit{.binary = binary,
+                .token = "{sealwatch-test-bouncing}",
+                .indicators = 1,
+                .variables = {},
+                .structure = {},
+                .interfaces = {}};
+  const std::string parameter = "causality=\"parameter\" variability=\"fixed\"";
+  if (is_fmi3(unit)) {
+    unit.variables = real3("h", 1000, "causality=\"local\"") + real3("v", 1001, "causality=\"local\"") +
+                     real3("der(h)", 2000, "derivative=\"1000\"") + real3("der(v)", 2001, "derivative=\"1001\"") +
+                     real3("g", 4000, parameter + " start=\"9.81\"") + real3("e", 4001, parameter + " start=\"0.7\"") +
+                     real3("w", 4002, parameter + " start=\"3\"") + real3("height", 5000, "causality=\"output\"");
+    unit.structure =
+        "<Output valueReference=\"5000\"/><ContinuousStateDerivative valueReference=\"2000\"/>"
+        "<ContinuousStateDerivative valueReference=\"2001\"/><EventIndicator valueReference=\"1000\"/>\n";
+    return unit;
+  }
+  unit.variables = real2("h", 1000, "", "") + real2("v", 1001, "", "") + real2("der(h)", 2000, "", "derivative=\"1\"") +
+                   real2("der(v)", 2001, "", "derivative=\"2\"") + real2("g", 4000, parameter, "start=\"9.81\"") +
+                   real2("e", 4001, parameter, "start=\"0.7\"") + real2("w", 4002, parameter, "start=\"3\"") +
+                   real2("height", 5000, "causality=\"output\"", "");
+  unit.structure =
+      "<Outputs><Unknown index=\"8\"/></Outputs>"
+      "<Derivatives><Unknown index=\"3\"/><Unknown index=\"4\"/></Derivatives>\n";
+  return unit;
+}
+
+TestFolder::TestFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "sealwatch_test_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) std::abort();
+  path_ = name;
+  setenv("SEALWATCH_FMU_HOST", SEALWATCH_FMU_HOST_PROGRAM, 1);
+}
+
+TestFolder::~TestFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string TestFolder::build(const TestUnit& unit, const std::string& name) const {
+  const std::string binary = content_of(std::filesystem::path(SEALWATCH_TEST_FMUS) / (unit.binary + ".so"));
+  const std::string platform = is_fmi3(unit) ? "x86_64-linux" : "linux64";
+  write_archive(path_ / name, {{"modelDescription.xml", description_of(unit)},
+                               {"binaries/" + platform + "/model.so", binary},
+                               {"resources/", ""}});
+  return (path_ / name).string();
+}
+
+}  // namespace sealwatch::fmi

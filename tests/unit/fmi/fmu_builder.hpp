@@ -1,0 +1,52 @@
+// Builds FMUs for tests: archives of any members, and whole units around the binaries of tests/unit/fmi/fmus.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sealwatch::fmi {
+
+struct TestMember {
+  std::string name;
+  std::string content;
+  std::optional<std::uint32_t> unix_mode = {};  ///< of the kind that a symbolic link or a device has
+};
+
+/// Writes an archive of these members.
+void write_archive(const std::filesystem::path& file, const std::vector<TestMember>& members);
+
+/// What a test's binary is described by.
+struct TestUnit {
+  std::string binary;  ///< "fmu_spring_return2": its last letter is the version of FMI
+  std::string token = "{sealwatch-test-spring-return}";
+  bool directional = false;
+  int indicators = 0;
+  std::string variables;   ///< XML between <ModelVariables> and its end; "": those of spring_return
+  std::string structure;   ///< XML between <ModelStructure> and its end
+  std::string interfaces;  ///< XML of the interfaces; "": Model Exchange
+};
+[[nodiscard]] std::string description_of(const TestUnit& unit);
+[[nodiscard]] TestUnit spring_return(const std::string& binary);
+[[nodiscard]] TestUnit emps();
+/// For Co-Simulation.
+[[nodiscard]] TestUnit gain();
+[[nodiscard]] TestUnit bouncing(const std::string& binary);
+
+/// A folder of one test, removed at its end; also tells where sealwatch-fmu-host is.
+class TestFolder {
+ public:
+  TestFolder();
+  ~TestFolder();
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Makes NAME.fmu of a unit.
+  [[nodiscard]] std::string build(const TestUnit& unit, const std::string& name = "model.fmu") const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,107 @@
+// Events in a simulation: a ball that bounces and is thrown, against its parabolas in closed form; Co-Simulation units.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+constexpr double kGravity = 9.81, kBounce = 0.7, kThrow = 3.0, kThrowEvery_s = 0.7;
+
+/// Height of the ball: piece by piece, each event at its exact time.
+double height(double time, double gravity = kGravity, double bounce = kBounce) {
+  double t = 0.0, h = 1.0, v = 0.0, next_throw = kThrowEvery_s;
+  for (;;) {
+    const double ground = t + (v + std::sqrt(v * v + 2.0 * gravity * h)) / gravity;
+    const double until = std::min({time, ground, next_throw});
+    const double dt = until - t;
+    h += v * dt - 0.5 * gravity * dt * dt;
+    v -= gravity * dt;
+    t = until;
+    if (until == time) return h;
+    if (until == next_throw) {
+      v = kThrow;
+      next_throw += kThrowEvery_s;
+    } else {
+      h = 0.0;
+      v = -bounce * v;
+    }
+  }
+}
+
+std::string ball_file(const TestFolder& folder, const std::string& name) {
+  const std::string file = (folder / "plant.yaml").string();
+  std::ofstream(file) << "name: " << name << R"yaml(
+meaning: a ball
+fmu:
+  file: model.fmu
+  parameters: {g: g, e: e}
+  variables: {h: {variable: height, unit: m}}
+outputs:
+  height: {value: h, unit: m, noise_std: 1.0e-4}
+parameters:
+  g: {value: 9.81, unit: m/s2, estimate: true}
+  e: {value: 0.7, unit: "1", estimate: true}
+states:
+  hs: {variable: h, unit: m, start: "1.0[m]", own: false, size: 1.0}
+  v: {variable: v, unit: m/s, start: "0[m/s]", own: false, size: 1.0}
+law_sizes: {}
+)yaml";
+  return file;
+}
+
+TimeSeries watched() {
+  TimeSeries samples;
+  samples.channels = {{"height", "m", 0.0, {}}};
+  for (int row = 0; row <= 200; ++row) {
+    samples.time_s.push_back(0.01 * row);
+    samples.channels[0].values.push_back(0.0);
+  }
+  return samples;
+}
+
+TEST(FmuEvents, StateAndTimeEventsAreWhereTheyShouldBe) {
+  for (const char* binary : {"fmu_bouncing2", "fmu_bouncing3"}) {
+    const TestFolder folder;
+    const std::string fmu = folder.build(bouncing(binary));
+    const auto plant = load_plant(ball_file(folder, std::string("ball_") + binary));
+    ASSERT_TRUE(plant) << plant.error().front().describe();
+    const auto simulation = PlantSimulation::create(nominal_asset((*plant)->name), watched());
+    ASSERT_TRUE(simulation) << simulation.error().describe();
+    const auto outputs = (*simulation)->run((*simulation)->start(), {}, {.relative_tolerance = 1e-7});
+    ASSERT_TRUE(outputs) << outputs.error().describe();
+    for (int row = 0; row <= 200; ++row)
+      EXPECT_NEAR(outputs->values(row, 0), height(0.01 * row), 1e-6) << binary << " at " << 0.01 * row;
+  }
+}
+
+TEST(FmuEvents, SensitivitiesAcrossJumpsAreThoseOfTheWholeCourse) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(bouncing("fmu_bouncing2"));
+  const auto plant = load_plant(ball_file(folder, "ball_differentiated"));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("ball_differentiated"), watched());
+  ASSERT_TRUE(simulation);
+  const std::vector<FreeQuantity> free = {*(*simulation)->find("g"), *(*simulation)->find("e")};
+  const auto outputs = (*simulation)->run((*simulation)->start(), free);
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  constexpr double kStep = 1e-6;
+  int far = 0;  // samples just beside an event, where the ball turns, may differ
+  for (int row = 0; row <= 200; ++row) {
+    const double t = 0.01 * row;
+    const double by_g = (height(t, kGravity + kStep) - height(t, kGravity - kStep)) / (2.0 * kStep);
+    const double by_e = (height(t, kGravity, kBounce + kStep) - height(t, kGravity, kBounce - kStep)) / (2.0 * kStep);
+    far += std::abs(outputs->sensitivities(row, 0) - by_g) > 2e-3 ? 1 : 0;
+    far += std::abs(outputs->sensitivities(row, 1) - by_e) > 2e-2 ? 1 : 0;
+  }
+  EXPECT_LE(far, 8);
+}
+
+}  // namespace
+}  // namespace sealwatch::fmi

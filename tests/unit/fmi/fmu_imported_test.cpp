@@ -1,0 +1,60 @@
+// What `plant import` writes is a plant file as it is; a Co-Simulation unit is simulated and differentiated too.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/fmi/import_fmu.hpp"
+#include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+std::string imported(const TestFolder& folder, const TestUnit& unit, const std::string& name) {
+  const auto fmu = FmuFile::open(folder.build(unit));
+  EXPECT_TRUE(fmu) << fmu.error().describe();
+  auto text = plant_file_of(**fmu, "model.fmu");
+  EXPECT_TRUE(text) << text.error().describe();
+  text->replace(text->find("name: test"), 10, "name: " + name);
+  const std::string file = (folder / "plant.yaml").string();
+  std::ofstream(file) << *text;
+  return file;
+}
+
+TEST(ImportedFmu, IsAPlantFileAsItIs) {
+  const TestFolder folder;
+  int number = 0;
+  for (const TestUnit& unit : {spring_return("fmu_spring_return2"), spring_return("fmu_spring_return3"), emps(),
+                               bouncing("fmu_bouncing2"), bouncing("fmu_bouncing3"), gain()}) {
+    const auto plant = read_plant_file(imported(folder, unit, "imported_" + std::to_string(++number)));
+    EXPECT_TRUE(plant) << unit.binary << ": " << plant.error().front().describe();
+  }
+}
+
+TEST(ImportedFmu, ACoSimulationUnitIsSimulatedAndFitted) {
+  const TestFolder folder;
+  const auto plant = load_plant(imported(folder, gain(), "co_simulated"));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  TimeSeries samples;
+  samples.channels = {{"u", "1", 0.0, {}}, {"x", "1", 0.0, {}}};
+  for (int row = 0; row <= 100; ++row) {
+    samples.time_s.push_back(5.0 + 0.02 * row);
+    samples.channels[0].values.push_back(row < 3 ? row / 3.0 : 1.0);
+    samples.channels[1].values.push_back(0.0);
+  }
+  const auto simulation = PlantSimulation::create(nominal_asset("co_simulated"), samples);
+  ASSERT_TRUE(simulation) << simulation.error().describe();
+  const std::vector<FreeQuantity> free = {*(*simulation)->find("k")};
+  const auto outputs = (*simulation)->run((*simulation)->start(), free);
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  // x = k (t - r + ...): the ramp of 0.06 s delays the step by half of it.
+  const double expected = 2.0 * (1.0 - std::exp(-(2.0 - 0.03)));
+  EXPECT_NEAR(outputs->values(100, 0), expected, 2e-3);
+  EXPECT_NEAR(outputs->sensitivities(100, 0), expected / 2.0, 2e-3);
+}
+
+}  // namespace
+}  // namespace sealwatch::fmi

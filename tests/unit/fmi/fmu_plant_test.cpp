@@ -1,0 +1,242 @@
+// A plant file around an FMU against the same plant as text: values, sensitivities, laws at an input and at a
+// derivative; and every fault by name.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/fmi/export/fmu_writer.hpp"
+#include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr SimulationOptions kTight = {.relative_tolerance = 1e-7, .maximum_steps = 2000000};
+
+/// A valve positioner with a return spring: what its equations stand in, as text or from an FMU.
+std::string plant_with(const std::string& name, const std::string& fmu, const std::string& output,
+                       const std::string& der_x, const std::string& der_v) {
+  return "name: " + name + "\nmeaning: valve positioner with a return spring\n" + fmu + R"yaml(
+inputs:
+  drive_voltage: {unit: V, meaning: command u to the drive}
+outputs:
+  position: {value: )yaml" +
+         output + R"yaml(, unit: m, noise_std: 1.0e-5, meaning: stem position}
+parameters:
+  M:   {value: 20.0,  unit: kg,    meaning: moved mass, estimate: true}
+  F_v: {value: 2.0e3, unit: N s/m, meaning: viscous friction, estimate: true}
+  k_s: {value: 1.0e4, unit: N/m,   meaning: stiffness of the return spring, estimate: true}
+  k_F: {value: 100.0, unit: N/V,   meaning: force of the drive per voltage}
+states:
+  v: {)yaml" +
+         der_v + R"yaml(unit: m/s, start: "0[m/s]", own: false, size: 1.0}
+  x: {)yaml" +
+         der_x + R"yaml(unit: m, start: position, size: 0.02}
+elements:
+  driver:
+    meaning: force of the drive from its command
+    sites:
+      - {kind: voltage_command, symbol: u_lost, signals: {command: drive_voltage}}
+  piston:
+    meaning: force on the stem
+    sites:
+      - {kind: piston_force, adds_to: {v: -1/M}, signals: {speed: v, position: x}}
+law_sizes: {N: 0.02, m: 1.0, m2: 1.0, m/s: 10.0, N/m: 0.02, N/m2: 0.02, N s/m: 0.01, N s2/m2: 1.0e-3, V: 1.0, A: 1.0, s: 1.0}
+)yaml";
+}
+
+std::string text_plant() {
+  return plant_with("spring_in_text", "", "x", "der: v, ",
+                    "der: (k_F * (drive_voltage - u_lost) - F_v * v - k_s * x) / M, ");
+}
+
+std::string plant_text(const std::string& name) {
+  return plant_with(name, R"yaml(fmu:
+  file: model.fmu
+  inputs: {u: drive_voltage - u_lost}
+  parameters: {M: M, F_v: F_v, k_s: k_s, k_F: k_F}
+  variables: {stem: {variable: position, unit: m}}
+)yaml",
+                    "stem", "", "");
+}
+
+std::string written(const TestFolder& folder, const std::string& text) {
+  const std::string file = (folder / "plant.yaml").string();
+  std::ofstream(file) << text;
+  return file;
+}
+
+/// One file for all tests: a plant's name is known from one file alone.
+const std::string& text_file() {
+  static const TestFolder folder;
+  static const std::string file = written(folder, text_plant());
+  return file;
+}
+
+TimeSeries strokes() {
+  TimeSeries samples;
+  samples.channels = {{"drive_voltage", "V", 0.0, {}}, {"position", "m", 0.0, {}}};
+  for (int row = 0; row < 151; ++row) {
+    samples.time_s.push_back(4e-3 * row);
+    samples.channels[0].values.push_back(3.0 * std::sin(2.0 * std::numbers::pi * row / 150.0));
+    samples.channels[1].values.push_back(0.01);
+  }
+  return samples;
+}
+
+PhysicsTerm law_at(const std::string& element, const std::string& id, const std::string& plant) {
+  const auto law = std::ranges::find_if(all_laws(), [&](const Law& known) { return known.id == id && known.evaluate; });
+  PhysicsTerm term{.id = id, .element = element, .parameters = {}};
+  for (const LawParameter& parameter : law->parameters) {
+    const double value = parameter.start.front() * (*find_plant(plant))->law_size(parameter.unit);
+    term.parameters[std::string(parameter.name)] = {value, value, value, false};
+  }
+  return term;
+}
+
+void expect_equal(const std::string& fmu, const std::vector<PhysicsTerm>& physics) {
+  const auto text = load_plant(text_file());
+  ASSERT_TRUE(text) << text.error().front().describe();
+  const auto simulation = [&](const std::string& model) {
+    AssetConfig asset = nominal_asset(model);
+    asset.physics = physics;
+    auto made = PlantSimulation::create(asset, strokes());
+    EXPECT_TRUE(made) << made.error().describe();
+    return std::move(*made);
+  };
+  const auto expected_of = simulation((*text)->name), found_of = simulation(fmu);
+  const auto run = [&](const PlantSimulation& of) {
+    std::vector<FreeQuantity> free;
+    for (const auto& parameter : of.plant().parameters) free.push_back(*of.find(parameter.name));
+    for (const auto& parameter : of.physics_parameters()) free.push_back(*of.find(parameter.name));
+    for (const char* state : {"initial:x", "initial:v"}) free.push_back(*of.find(state));
+    auto outputs = of.run(of.start(), free, kTight);
+    EXPECT_TRUE(outputs) << outputs.error().describe();
+    return std::move(*outputs);
+  };
+  const SimulatedOutputs expected = run(*expected_of), found = run(*found_of);
+  // Of the largest of a column: derivatives by differences lead the integrator to other steps.
+  constexpr double kValues = 1e-5, kDifferences = 1e-3;
+  EXPECT_LT((expected.values - found.values).cwiseAbs().maxCoeff(), kValues * expected.values.cwiseAbs().maxCoeff());
+  ASSERT_EQ(expected.sensitivities.cols(), found.sensitivities.cols());
+  for (Eigen::Index k = 0; k < expected.sensitivities.cols(); ++k)
+    EXPECT_LE((expected.sensitivities.col(k) - found.sensitivities.col(k)).cwiseAbs().maxCoeff(),
+              kDifferences * expected.sensitivities.col(k).cwiseAbs().maxCoeff())
+        << fmu << ", column " << k;
+}
+
+TEST(FmuPlant, IsThePlantAsTextWithItsSensitivities) {
+  for (const char* binary : {"fmu_spring_return2", "fmu_spring_directional2", "fmu_spring_return3"}) {
+    const TestFolder folder;
+    TestUnit unit = spring_return(binary);
+    unit.directional = unit.binary == "fmu_spring_directional2";
+    const std::string fmu = folder.build(unit);
+    const auto plant = load_plant(written(folder, plant_text(binary)));
+    ASSERT_TRUE(plant) << plant.error().front().describe();
+    expect_equal(binary, {});
+    expect_equal(binary, {law_at("piston", "stribeck_friction", binary)});
+    expect_equal(binary, {law_at("piston", "presliding_friction", binary)});
+    expect_equal(binary, {law_at("driver", "driver_dead_time", binary)});
+  }
+}
+
+std::string fault(const TestFolder& folder, const std::string& text) {
+  const auto plant = read_plant_file(written(folder, text));
+  if (plant) return "read";
+  std::string all;
+  for (const Error& error : plant.error()) all += error.describe() + "\n";
+  return all;
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  EXPECT_NE(text.find(from), std::string::npos) << from;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(FmuPlant, FaultsNamePlaceValueAndRule) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(spring_return("fmu_spring_return2"));
+  const std::string good = plant_text("any");
+  EXPECT_EQ(fault(folder, good), "read");
+  EXPECT_THAT(fault(folder, with(good, "file: model.fmu", "file: modl.fmu")), HasSubstr("is no file"));
+  EXPECT_THAT(fault(folder, with(good, "variable: position", "variable: positin")),
+              HasSubstr("did you mean 'position'"));
+  EXPECT_THAT(fault(folder, with(good, "{u: drive_voltage", "{M: drive_voltage")), HasSubstr("is no input of the FMU"));
+  EXPECT_THAT(fault(folder, with(good, "drive_voltage - u_lost", "drive_voltag - u_lost")), HasSubstr("drive_voltag"));
+  EXPECT_THAT(fault(folder, with(good, "  x: {unit: m,", "  y: {unit: m,")),
+              HasSubstr("is a state of the FMU and is missing"));
+  EXPECT_THAT(fault(folder, with(good, "position, unit: m}", "position, unit: N}")), HasSubstr("another quantity"));
+}
+
+TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_lying2");
+  unit.directional = true;
+  const std::string fmu = folder.build(unit);
+  EXPECT_THAT(fault(folder, plant_text("lying")),
+              AllOf(HasSubstr("d der(v) / d v is said to be 0"), HasSubstr("not the derivatives of its own values")));
+}
+
+TEST(ExportedFmu, SimulatesAsThePlantWithItsLaws) {
+  const TestFolder folder;
+  const auto read = read_plant_file(text_file());
+  ASSERT_TRUE(read) << read.error().front().describe();
+  ASSERT_TRUE(load_plant(text_file()));
+  AssetConfig asset = nominal_asset("spring_in_text");
+  asset.parameters["M"].value = 25.0;
+  asset.physics = {law_at("piston", "stribeck_friction", "spring_in_text"),
+                   law_at("piston", "presliding_friction", "spring_in_text"),
+                   law_at("driver", "driver_dead_time", "spring_in_text")};
+  const auto model = export_model(read->built.plant, asset);
+  ASSERT_TRUE(model) << model.error().describe();
+  const auto fmu = write_fmu((folder / "out.fmu").string(), *model);
+  ASSERT_TRUE(fmu) << fmu.error().describe();
+  EXPECT_FALSE(write_fmu((folder / "out.fmu").string(), *model)) << "an FMU was written over";
+  if (!fmu->binary) GTEST_SKIP() << fmu->without_binary;
+  const std::string file = (folder / "exported.yaml").string();
+  std::ofstream(file) << R"yaml(name: exported
+meaning: the plant with its laws
+fmu:
+  file: out.fmu
+  inputs: {drive_voltage: drive_voltage, drive_voltage_rate: rate(drive_voltage)}
+inputs: {drive_voltage: {unit: V}}
+outputs: {position: {value: x, unit: m, noise_std: 1.0e-5}}
+states:
+  x: {unit: m, start: position, size: 0.02}
+  v: {unit: m/s, start: "0[m/s]", own: false, size: 1.0}
+  bristle: {variable: piston.presliding_friction.bristle, unit: "1", start: "0", own: false, size: 1.0}
+law_sizes: {}
+)yaml";
+  auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const auto run = [](const AssetConfig& of) {
+    const auto simulation = PlantSimulation::create(of, strokes());
+    EXPECT_TRUE(simulation) << simulation.error().describe();
+    auto outputs = (*simulation)->run((*simulation)->start(), {}, kTight);
+    EXPECT_TRUE(outputs) << outputs.error().describe();
+    return std::move(outputs->values);
+  };
+  const RowMatrix expected = run(asset), found = run(nominal_asset("exported"));
+  EXPECT_LT((expected - found).cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff());
+}
+
+TEST(FmuPlant, ACrashInARunIsAnErrorOfTheRun) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(spring_return("fmu_crash2"));
+  const auto plant = load_plant(written(folder, plant_text("crashing")));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("crashing"), strokes());
+  ASSERT_TRUE(simulation);
+  const auto outputs = (*simulation)->run((*simulation)->start(), {});
+  ASSERT_FALSE(outputs);
+  EXPECT_THAT(outputs.error().describe(), HasSubstr("crashed"));
+}
+
+}  // namespace
+}  // namespace sealwatch::fmi

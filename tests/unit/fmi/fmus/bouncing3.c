@@ -1,0 +1,2 @@
+#include "bouncing.h"
+#include "fmi3_shell.h"

@@ -1,0 +1,24 @@
+/* A valve positioner with a return spring: M dv/dt = k_F u - F_v v - k_s x, dx/dt = v. */
+#define MODEL_TOKEN "{sealwatch-test-spring-return}"
+#define STATES 2
+#define INPUTS 1
+#define PARAMETERS 4
+#define OUTPUTS 1
+enum { M_, F_V, K_S, K_F };
+static const double start_states[] = {0.0, 0.0};
+static const double start_inputs[] = {0.0};
+static const double start_parameters[] = {20.0, 2e3, 1e4, 100.0};
+
+#ifndef DERIVATIVES_BEGIN
+#define DERIVATIVES_BEGIN
+#endif
+static void model_derivatives(double t, const double* x, const double* u, const double* p, double* dx) {
+  (void)t;
+  DERIVATIVES_BEGIN
+  dx[0] = x[1];
+  dx[1] = (p[K_F] * u[0] - p[F_V] * x[1] - p[K_S] * x[0]) / p[M_];
+}
+static void model_outputs(double t, const double* x, const double* u, const double* p, double* y) {
+  (void)t, (void)u, (void)p;
+  y[0] = x[0];
+}

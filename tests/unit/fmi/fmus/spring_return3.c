@@ -1,0 +1,2 @@
+#include "spring_return.h"
+#include "fmi3_shell.h"

@@ -1,0 +1,60 @@
+// What `sealwatch plant import` writes of an FMU.
+#include <gmock/gmock.h>
+
+#include "services/common/fmi/import_fmu.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string imported(const TestFolder& folder, const TestUnit& unit) {
+  const auto file = FmuFile::open(folder.build(unit));
+  if (!file) return file.error().describe();
+  const auto text = plant_file_of(**file, "model.fmu");
+  return text ? *text : text.error().describe();
+}
+
+TEST(ImportFmu, BothVersionsGiveTheSameRows) {
+  const TestFolder folder;
+  for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
+    EXPECT_THAT(imported(folder, spring_return(binary)),
+                AllOf(HasSubstr("file: \"model.fmu\""), HasSubstr("    \"u\": u\n"), HasSubstr("    \"k_s\": k_s\n"),
+                      HasSubstr("position: {variable: \"position\", unit: \"m\"}"),
+                      HasSubstr("M: {unit: \"1\", value: 20.0, min: 2"),
+                      HasSubstr("x: {variable: \"x\", unit: \"m\", start: \"0.0[m]\", size: 1.0"),
+                      HasSubstr("# Its derivatives are: der(x) der(v)")));
+  }
+}
+
+TEST(ImportFmu, NamesBecomeNamesOfExpressionsAndUnitsSi) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    unit.variables.replace(unit.variables.find(from), from.size(), to);
+  };
+  replace("name=\"M\"", "name=\"body.parts[2].M\"");
+  replace("start=\"20\"", "start=\"20\" unit=\"mm\"");
+  replace("name=\"F_v\"", "name=\"t\"");
+  EXPECT_THAT(imported(folder, unit), AllOf(HasSubstr("\"body.parts[2].M\": body_parts_2_M"), HasSubstr("\"t\": t_"),
+                                            HasSubstr("body_parts_2_M: {unit: \"m\", value: 0.02")));
+}
+
+TEST(ImportFmu, AnOutputThatIsAStateIsTakenAsTheState) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  unit.variables.replace(unit.variables.find("5000"), 4, "1000");
+  EXPECT_THAT(imported(folder, unit),
+              AllOf(HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("start: \"position\"")));
+}
+
+TEST(ImportFmu, OneThatDoesNotStartIsRefusedByName) {
+  const TestFolder folder;
+  EXPECT_THAT(imported(folder, spring_return("fmu_spring_licence2")), HasSubstr("licence"));
+}
+
+}  // namespace
+}  // namespace sealwatch::fmi

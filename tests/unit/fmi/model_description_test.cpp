@@ -1,0 +1,115 @@
+// modelDescription.xml of both versions comes to one form, and each fault names its line.
+#include <gmock/gmock.h>
+
+#include "services/common/fmi/model_description.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string refused(const std::string& text) {
+  const auto description = read_model_description("m.fmu", text);
+  return description ? "accepted" : description.error().describe();
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(ModelDescription, BothVersionsSayTheSame) {
+  for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
+    const auto description = read_model_description("m.fmu", description_of(spring_return(binary)));
+    ASSERT_TRUE(description) << description.error().describe();
+    ASSERT_EQ(description->states.size(), 2U);
+    EXPECT_EQ(description->name_of(description->states[1]), "v");
+    EXPECT_EQ(description->name_of(description->derivatives[1]), "der(v)");
+    const Variable* mass = description->find("M");
+    ASSERT_NE(mass, nullptr);
+    EXPECT_EQ(mass->reference, 4000U);
+    EXPECT_EQ(mass->causality, FmiCausality::parameter);
+    EXPECT_EQ(mass->variability, FmiVariability::fixed);
+    EXPECT_EQ(mass->start, std::vector<double>{20.0});
+    EXPECT_EQ(description->find("position")->unit, "m");
+    EXPECT_EQ(description->find_unit("mm")->factor, 0.001);
+    EXPECT_EQ(description->stop_time_s, 3.0);
+    EXPECT_FALSE(description->model_exchange->directional_derivatives);
+  }
+}
+
+TEST(ModelDescription, TypesGiveWhatVariablesLeaveOut) {
+  std::string text = description_of(spring_return("fmu_spring_return3"));
+  text = replaced(text, "<ModelVariables>",
+                  "<TypeDefinitions><Float64Type name=\"Mass\" unit=\"N\" min=\"1\" max=\"50\" nominal=\"20\"/>"
+                  "</TypeDefinitions><ModelVariables>");
+  text = replaced(text, "name=\"M\"", "name=\"M\" declaredType=\"Mass\" max=\"40\"");
+  const auto description = read_model_description("m.fmu", text);
+  ASSERT_TRUE(description) << description.error().describe();
+  const Variable* mass = description->find("M");
+  EXPECT_EQ(mass->unit, "N");
+  EXPECT_EQ(mass->min, 1.0);
+  EXPECT_EQ(mass->max, 40.0);
+  EXPECT_EQ(mass->nominal, 20.0);
+  EXPECT_THAT(refused(replaced(text, "declaredType=\"Mass\"", "declaredType=\"Mas\"")),
+              AllOf(HasSubstr("line "), HasSubstr("Mas"), HasSubstr("names no type")));
+}
+
+TEST(ModelDescription, ArraysHaveTheirElements) {
+  TestUnit unit = spring_return("fmu_spring_return3");
+  unit.variables = R"xml(<UInt64 name="n" valueReference="1" causality="structuralParameter" start="3"/>
+<Float64 name="x" valueReference="1000"><Dimension valueReference="1"/></Float64>
+<Float64 name="der(x)" valueReference="2000" derivative="1000"><Dimension valueReference="1"/></Float64>
+<Float64 name="A" valueReference="4000" causality="parameter" variability="fixed" start="1 2 3 4 5 6"><Dimension start="2"/><Dimension valueReference="1"/></Float64>
+)xml";
+  unit.structure = R"(<ContinuousStateDerivative valueReference="2000"/>)";
+  const auto description = read_model_description("m.fmu", description_of(unit));
+  ASSERT_TRUE(description) << description.error().describe();
+  ASSERT_EQ(description->states.size(), 3U);
+  EXPECT_EQ(description->name_of(description->states[2]), "x[3]");
+  const auto element = description->find_element("A[5]");
+  ASSERT_TRUE(element);
+  EXPECT_EQ(description->variables[element->variable].start[element->element], 5.0);
+  EXPECT_THAT(description->find_element("A[7]").error().describe(), HasSubstr("no variable"));
+  EXPECT_THAT(refused(replaced(description_of(unit), "start=\"1 2 3 4 5 6\"", "start=\"1 2 3\"")),
+              HasSubstr("each of the 6 elements"));
+}
+
+TEST(ModelDescription, FaultsNameLineValueAndRule) {
+  const std::string good = description_of(spring_return("fmu_spring_return2"));
+  EXPECT_THAT(refused("<a><b></a>"), HasSubstr("no XML"));
+  EXPECT_THAT(refused("<a/>"), HasSubstr("no element fmiModelDescription"));
+  EXPECT_THAT(refused(replaced(good, "\"2.0\"", "\"1.0\"")), AllOf(HasSubstr("'1.0'"), HasSubstr("line 2")));
+  EXPECT_THAT(refused(replaced(good, "guid", "gid")), HasSubstr("lacks the attribute guid"));
+  EXPECT_THAT(refused(replaced(good, "valueReference=\"1001\"", "valueReference=\"v\"")),
+              AllOf(HasSubstr("line 8"), HasSubstr("v"), HasSubstr("whole number")));
+  EXPECT_THAT(refused(replaced(good, "<Real derivative=\"2\"/>", "")), HasSubstr("no type"));
+  EXPECT_THAT(refused(replaced(good, "derivative=\"2\"", "derivative=\"99\"")), HasSubstr("99"));
+  EXPECT_THAT(refused(replaced(good, "index=\"4\"", "index=\"5\"")), HasSubstr("no attribute derivative"));
+  EXPECT_THAT(refused(replaced(good, "start=\"2e3\"", "start=\"two\"")), HasSubstr("start must be a number"));
+  EXPECT_THAT(refused(replaced(good, "causality=\"input\"", "causality=\"inputs\"")),
+              HasSubstr("no causality of the standard"));
+  EXPECT_THAT(refused(replaced(good, "modelIdentifier=\"model\"", "modelIdentifier=\"../model\"")),
+              HasSubstr("name of the C language"));
+  const auto begin = good.find("<ModelExchange"), end = good.find("/>", begin) + 2;
+  EXPECT_THAT(refused(good.substr(0, begin) + good.substr(end)), HasSubstr("neither Model Exchange"));
+}
+
+TEST(ModelDescription, UnitsGetTheirUsualNames) {
+  const auto name = [](BaseExponents exponents) {
+    return si_name(Unit{.name = {}, .has_base = true, .exponents = exponents});
+  };
+  EXPECT_EQ(name({1, 1, -2, 0, 0, 0, 0, 0}), "N");
+  EXPECT_EQ(name({1, -1, -2, 0, 0, 0, 0, 0}), "Pa");
+  EXPECT_EQ(name({0, 3, -1, 0, 0, 0, 0, 0}), "m3/s");
+  EXPECT_EQ(name({0, 0, -1, 0, 0, 0, 0, 1}), "rad/s");
+  EXPECT_EQ(name({2, 0, -3, 1, 0, 0, 0, 0}), "kg2 A/s3");
+  EXPECT_EQ(name({0, -1, -3, 0, 0, 0, 0, 0}), "1/(m s3)");
+  EXPECT_EQ(si_name(Unit{}), "1");
+}
+
+}  // namespace
+}  // namespace sealwatch::fmi

@@ -1,0 +1,81 @@
+// The analysis ends when its time is up, with what it has, and at once when it is called off.
+#include <gmock/gmock.h>
+
+#include "sealwatch/mismatch/explain.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+AssetConfig actuator() { return load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value(); }
+
+AssetConfig with_a_leak() {
+  AssetConfig truth = actuator();
+  truth.physics.push_back({.id = "external_leakage",
+                           .element = "chamber_a",
+                           .parameters = {{"G", {.value = 1e-13, .min = 0.0, .max = 1e-10}}}});
+  return truth;
+}
+
+std::vector<Recording> two_tests() {
+  const AssetConfig truth = with_a_leak();
+  return {recording_of(truth, 0.8), recording_of(truth, 1.2)};
+}
+
+TEST(TimeLimit, TheReportSaysWhatWasNotAsked) {
+  const auto found = explain(actuator(), two_tests(), {}, {.time_limit_s = 1e-6});
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_EQ(found->verdict, Verdict::undetermined);
+  EXPECT_THAT(found->not_asked, Not(IsEmpty()));
+  EXPECT_THAT(found->summary, HasSubstr("time limit"));
+  EXPECT_THAT(found->effects, IsEmpty());
+  EXPECT_THAT(found->fit.channels, Not(IsEmpty())) << "what the model misses is told all the same";
+}
+
+TEST(TimeLimit, WhereItCutsNothingItChangesNothing) {
+  const std::vector<Recording> one(1, recording_of(with_a_leak(), 1.0));
+  const auto limited = explain(actuator(), one, {}, {.maximum_laws = 1, .threads = 1, .time_limit_s = 1e6}),
+             unlimited = explain(actuator(), one, {}, {.maximum_laws = 1, .threads = 2});
+  ASSERT_TRUE(limited && unlimited);
+  EXPECT_THAT(limited->not_asked, IsEmpty());
+  EXPECT_EQ(limited->summary, unlimited->summary);
+  EXPECT_EQ(limited->p_value, unlimited->p_value);
+  ASSERT_THAT(limited->trace, SizeIs(unlimited->trace.size()));
+  for (std::size_t k = 0; k < limited->trace.size(); ++k)
+    EXPECT_EQ(limited->trace[k].score, unlimited->trace[k].score) << "step " << k;
+}
+
+TEST(TimeLimit, CalledOffInTheMiddleItEndsWithoutAnAnswer) {
+  std::stop_source stop;
+  std::size_t steps_after = 0;
+  const auto found =
+      explain(actuator(), two_tests(), {}, {.cancel = stop.get_token()}, [&](std::string_view step, double /*share*/) {
+        steps_after += stop.stop_requested() ? 1 : 0;
+        if (step == "looking for what is missing") stop.request_stop();
+      });
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().describe(), HasSubstr("called off"));
+  EXPECT_LE(steps_after, 3U) << "what follows finds its time over";
+}
+
+TEST(TimeLimit, ASimulationThatRunsIsEnded) {
+  const Recording recording = recording_of(actuator(), 1.0);
+  const auto simulation = PlantSimulation::create(actuator(), recording.samples).value();
+  Deadline deadline;
+  EXPECT_TRUE(simulation->run(simulation->start(), {}, {.deadline = &deadline}));
+  EXPECT_FALSE(deadline.was_met());
+  deadline.set_in(-1.0);
+  const auto cut = simulation->run(simulation->start(), {}, {.deadline = &deadline});
+  ASSERT_FALSE(cut);
+  EXPECT_THAT(cut.error().describe(), HasSubstr("time was up"));
+  EXPECT_TRUE(deadline.was_met());
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

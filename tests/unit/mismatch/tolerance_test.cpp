@@ -1,0 +1,70 @@
+// What a drawing gives is known within a tolerance: within it nothing is missing, beyond it the value is named.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/tolerance.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+using testing::Contains;
+using testing::Each;
+using testing::Field;
+using testing::IsEmpty;
+using testing::Not;
+
+AssetConfig actuator() { return load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value(); }
+
+AssetConfig with_area(double share) {
+  AssetConfig truth = actuator();
+  truth.parameters.at("A_C").value *= 1.0 + share;
+  return truth;
+}
+
+std::vector<Recording> tests_of(const AssetConfig& truth) {
+  return {recording_of(truth, 0.7), recording_of(truth, 1.0), recording_of(truth, 1.3)};
+}
+
+TEST(Tolerance, FixedValuesHaveTheAssetsToleranceOrThePlants) {
+  AssetConfig asset = actuator();
+  asset.parameters.at("A_C").tolerance = 1e-5;
+  const PlantDescription& plant = **find_plant("eha");
+  for (const KnownValue& known : known_values(asset, plant)) {
+    EXPECT_FALSE(asset.parameters.at(known.name).estimate) << known.name;
+    EXPECT_NE(known.name, "phi");
+    const double usual = plant.find_parameter(known.name)->tolerance * std::abs(known.value);
+    EXPECT_DOUBLE_EQ(known.standard_deviation, known.name == "A_C" ? 1e-5 : usual) << known.name;
+  }
+  EXPECT_THAT(known_values(asset, plant), Contains(Field(&KnownValue::name, "A_C")));
+}
+
+TEST(Tolerance, AFitKeepsAValueWhereItIsKnownAndMovesItWithinThat) {
+  Data data;
+  data.names = {"one"};
+  data.samples = {recording_of(with_area(0.004), 1.0).samples};
+  const AssetConfig asset = actuator();
+  const double area = asset.parameters.at("A_C").value;
+  const FittedModel exact = fit_model(asset, data, nullptr, 1).value();
+  data.known = {{.name = "A_C", .value = area, .standard_deviation = 0.005 * area}};
+  const FittedModel tolerant = fit_model(asset, data, nullptr, 1).value();
+  EXPECT_LT(tolerant.misfit, exact.misfit - 20.0);
+  EXPECT_EQ(tolerant.free_shared, exact.free_shared) << "what is known costs no parameter";
+  EXPECT_NEAR(tolerant.asset.parameters.at("A_C").value, 1.004 * area, 0.002 * area);
+  data.known[0].standard_deviation = 1e-6 * area;
+  EXPECT_NEAR(fit_model(asset, data, nullptr, 1).value().asset.parameters.at("A_C").value, area, 1e-4 * area);
+}
+
+TEST(Tolerance, WithinItNothingIsMissing) {
+  const auto found = explain(actuator(), tests_of(with_area(0.004)), {});
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_FALSE(found->statistically_significant) << found->summary;
+  EXPECT_THAT(found->effects, IsEmpty());
+  EXPECT_THAT(found->asset_values, IsEmpty());
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

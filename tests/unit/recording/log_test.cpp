@@ -1,0 +1,255 @@
+// Somebody's own logs: layouts as loggers write them, read by a channel map to the same samples, and what cannot be
+// understood named with row and column.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <cmath>
+
+#include "services/common/recording/log_layout.hpp"
+#include "services/common/recording/recording_file.hpp"
+#include "tests/unit/recording/plant.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr double kPsi_Pa = 6894.757293168361;
+constexpr double kAtmosphere_Pa = 101325.0;
+constexpr double kTolerance = 1e-9;  // relative; times are written with nine digits at most
+
+ChannelMap map_of(std::map<std::string, ColumnMapping> columns, LogLayout log = {}) {
+  return {std::move(columns), std::move(log)};
+}
+
+LogLayout resets(const char* rule) {
+  LogLayout layout;
+  layout.time_resets = rule;
+  return layout;
+}
+
+const ChannelMap kGermanMap = map_of({{"time", {.column = "Zeit", .unit = "iso8601"}},
+                                      {"pressure_a", {.column = "Druck A", .unit = "barg"}},
+                                      {"position", {.column = "Weg", .unit = {}}}});
+
+class ForeignLog : public ScratchFolder {
+ protected:
+  Recording read(const std::string& text, const ChannelMap& map, const std::string& name = "log.csv") {
+    Result<Recording> result = read_recording(write(name, text), test_plant(), map);
+    EXPECT_TRUE(result) << result.error().describe();
+    return result ? *result : Recording{};
+  }
+  std::string error_of(const std::string& text, const ChannelMap& map) {
+    const Result<std::vector<Recording>> result = read_recordings(write("log.csv", text), test_plant(), map);
+    EXPECT_FALSE(result) << "accepted " << text;
+    return result ? "" : result.error().describe();
+  }
+};
+
+/// Two rows: pressure 1 bar and 1.5 bar above the atmosphere, position 60 and 59 mm, half a second apart.
+void expect_two_rows(const Recording& recording) {
+  ASSERT_THAT(recording.samples.time_s, SizeIs(2));
+  EXPECT_NEAR(recording.samples.time_s[1] - recording.samples.time_s[0], 0.5, kTolerance);
+  ASSERT_TRUE(recording.samples.has("pressure_a") && recording.samples.has("position"));
+  EXPECT_NEAR(recording.samples.find("pressure_a")->values[0], 1.0e5 + kAtmosphere_Pa, 1e-4);
+  EXPECT_NEAR(recording.samples.find("pressure_a")->values[1], 1.5e5 + kAtmosphere_Pa, 1e-4);
+  EXPECT_NEAR(recording.samples.find("position")->values[1], 0.059, 1e-12);
+  EXPECT_EQ(recording.samples.find("position")->unit, "m");
+}
+
+TEST_F(ForeignLog, SemicolonsDecimalCommasAPreambleAndARowOfUnits) {
+  const Recording recording = read(
+      "\xEF\xBB\xBF"
+      "Prüfstand 3\r\nBediener: \"O'Neill\" said \"go\r\n\r\nZeit;Druck A;Weg;Bemerkung\r\n;barg;mm;\r\n"
+      "2031-04-12 03:00:00,000;1,0;60,0;Start\r\n2031-04-12 03:00:00,500;1,5;59,0;\r\n",
+      kGermanMap);
+  expect_two_rows(recording);
+  ASSERT_TRUE(recording.start_time);
+  EXPECT_EQ(format_utc(*recording.start_time), "2031-04-12T03:00:00Z");
+}
+
+TEST_F(ForeignLog, TabsAndLatin1AndUnitsInTheHeader) {
+  const ChannelMap map = map_of({{"time", {.column = "t", .unit = "ms"}},
+                                 {"pressure_a", {.column = "Überdruck", .unit = "barg"}},
+                                 {"position", {.column = "Weg", .unit = {}}}});
+  expect_two_rows(
+      read("t\t\xDC"
+           "berdruck\tWeg (mm)\n0\t1.0\t60\n500\t1.5\t59\n",
+           map));
+}
+
+TEST_F(ForeignLog, BlanksOfAnyLength) {
+  const ChannelMap map = map_of({{"time", {.column = "t", .unit = "s"}},
+                                 {"pressure_a", {.column = "P1", .unit = "barg"}},
+                                 {"position", {.column = "x", .unit = "mm"}}});
+  expect_two_rows(read("# solver output\n  t     P1    x\n 0.0   1.0   60.0\n 0.5   1.5   59.0\n", map));
+}
+
+TEST_F(ForeignLog, CountsHaveScaleAndOffsetBeforeTheirUnit) {
+  const ChannelMap map = map_of({{"time", {.column = "t", .unit = "s"}},
+                                 {"pressure_a", {.column = "AI1", .unit = "barg", .scale = 0.01, .offset = -5.0}},
+                                 {"position", {.column = "AI2", .unit = "m", .scale = 0.001, .offset = 0.0}}});
+  expect_two_rows(read("t,AI1,AI2\n0,600,60\n0.5,650,59\n", map));
+}
+
+TEST_F(ForeignLog, ExcelDaysAndPatterns) {
+  const auto with_time = [](const std::string& unit) {
+    ChannelMap map = kGermanMap;
+    map.columns["time"].unit = unit;
+    return map;
+  };
+  const Recording excel = read("Zeit,Druck A,Weg [mm]\n45000.25,1,60\n45000.250005787037,1.5,59\n", with_time("excel"));
+  ASSERT_THAT(excel.samples.time_s, SizeIs(2));
+  EXPECT_NEAR(excel.samples.time_s[1], 0.5, 1e-6);  // a day's 16th digit
+  EXPECT_EQ(format_utc(*excel.start_time), "2023-03-15T06:00:00Z");
+  const std::string german = "Zeit,Druck A,Weg [mm]\n12.04.2031 03:00:00.25,1,60\n12.04.2031 03:00:00.75,1.5,59\n";
+  const Recording pattern = read(german, with_time("%d.%m.%Y %H:%M:%S"));
+  expect_two_rows(pattern);
+  EXPECT_EQ(format_utc(*pattern.start_time), "2031-04-12T03:00:00.25Z");
+  const Recording clock = read("Zeit,Druck A,Weg [mm]\n03:00:00.25,1,60\n03:00:00.75,1.5,59\n", with_time("%H:%M:%S"));
+  expect_two_rows(clock);
+  EXPECT_FALSE(clock.start_time) << "a time of day does not say which day";
+}
+
+TEST_F(ForeignLog, ATimeThatStartsAnewIsRefusedJoinedOrAnotherTest) {
+  const std::string text = "t,P,x\n0,1,60\n0.5,1,60\n1,1,60\n0,2,50\n0.5,2,50\n";
+  const std::map<std::string, ColumnMapping> columns = {{"time", {.column = "t", .unit = "s"}},
+                                                        {"pressure_a", {.column = "P", .unit = "bar"}},
+                                                        {"position", {.column = "x", .unit = "mm"}}};
+  EXPECT_THAT(
+      error_of(text, map_of(columns)),
+      HasSubstr("log.csv: row 5, column 1 (t, channel time): '0': time goes back: the row before is at 1 s; log: "
+                "{time_resets: join} takes it as one test, split as another test"));
+  EXPECT_THAT(read(text, map_of(columns, resets("join"))).samples.time_s, ElementsAre(0, 0.5, 1, 1.5, 2));
+  const auto split = read_recordings(write("s.csv", text), test_plant(), map_of(columns, resets("split")));
+  ASSERT_TRUE(split) << split.error().describe();
+  ASSERT_THAT(*split, SizeIs(2));
+  EXPECT_EQ((*split)[0].recording_id, "s#1");
+  EXPECT_EQ((*split)[1].samples.find("position")->values.front(), 0.05);
+  EXPECT_NE((*split)[0].content_hash, (*split)[1].content_hash);
+  EXPECT_THAT(read_recording(path("s.csv"), test_plant(), map_of(columns, resets("split"))).error().describe(),
+              HasSubstr("s.csv: holds 2 tests where one is wanted"));
+}
+
+TEST_F(ForeignLog, SeveralFilesAreOneTest) {
+  write("a.csv", "Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60\n");
+  write("b.csv", "Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00.5;1,5;59\n");
+  const auto both = read_recordings(path("a.csv") + "+" + path("b.csv"), test_plant(), kGermanMap);
+  ASSERT_TRUE(both) << both.error().describe();
+  ASSERT_THAT(*both, SizeIs(1));
+  expect_two_rows(both->front());
+  EXPECT_EQ(both->front().recording_id, "a");
+  const auto turned = read_recordings(path("b.csv") + "+" + path("a.csv"), test_plant(), kGermanMap);
+  EXPECT_THAT(turned.error().describe(), HasSubstr("a.csv: row 1, column time: begins before the file before it ends"));
+  EXPECT_THAT(read_recordings(path("a.csv") + "+missing.csv", test_plant(), kGermanMap).error().describe(),
+              HasSubstr("missing.csv: cannot be opened"));
+}
+
+TEST_F(ForeignLog, SectionOnesOwnFormatNeedsNoneOfTheMapsColumns) {
+  const Recording recording = read("time[s],pressure_a[bar],position[mm]\n0,1,60\n0.5,1,60\n", kGermanMap);
+  EXPECT_EQ(recording.samples.find("pressure_a")->values.front(), 1e5);
+}
+
+TEST_F(ForeignLog, OfTheOtherColumnsThoseWithAChannelsNameAreTaken) {
+  const ChannelMap map = map_of({{"time", {.column = "Clock", .unit = "s"}}});
+  const Recording recording = read("Clock,pressure_a[psi],Pressure A,spare\n0,1,7,x\n1,2,8,y\n", map);
+  EXPECT_THAT(recording.samples.channels, SizeIs(1));
+  EXPECT_NEAR(recording.samples.find("pressure_a")->values[1], 2 * kPsi_Pa, 1e-9);
+}
+
+TEST_F(ForeignLog, RowsWithAnEmptyCellAreRefusedOrLeftOutAsTheMapSays) {
+  const std::string text =
+      "Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:00.2;;60\n"
+      "2031-04-12T03:00:00.5;1,5;59\n";
+  EXPECT_THAT(error_of(text, kGermanMap), HasSubstr("row 3, column 2 (Druck A, channel pressure_a): the cell is empty; "
+                                                    "log: {incomplete_rows: skip} leaves such rows out"));
+  ChannelMap skip = kGermanMap;
+  skip.log.incomplete_rows = "skip";
+  expect_two_rows(read(text, skip));
+}
+
+TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {
+  EXPECT_THAT(error_of("Zeit;Druck B;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:01;1;60\n", kGermanMap),
+              HasSubstr("row 1, channel pressure_a: 'Druck A': is no column of this log; did you mean 'Druck B'?"));
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [furlong/x]\n2031-04-12T03:00:00;1;60\n", kGermanMap),
+              HasSubstr("channel position: 'furlong/x': is not a known unit"));
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [bar]\n2031-04-12T03:00:00;1;60\n", kGermanMap),
+              HasSubstr("channel position: 'bar': cannot be converted to m; units of this channel: m, mm"));
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:01;ok;60\n", kGermanMap),
+              HasSubstr("row 3, column 2 (Druck A, channel pressure_a): 'ok': must be a number"));
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60\nEnde;1;60\n", kGermanMap),
+              HasSubstr("row 3, column 1 (Zeit, channel time): 'Ende': must be a UTC time in ISO 8601"));
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:01;1\n", kGermanMap),
+              HasSubstr("row 3, column 3 (Weg [mm], channel position): the row has 2 cells"));
+  EXPECT_THAT(error_of("Druck A;Druck A;Weg\n1;2;3\n", kGermanMap), HasSubstr("stands over columns 1 and 2"));
+  EXPECT_THAT(error_of("nothing but words\nand more\n", kGermanMap), HasSubstr("row 1, column 1"));
+  EXPECT_THAT(error_of("", kGermanMap), HasSubstr("the file is empty"));
+  ChannelMap bad = kGermanMap;
+  bad.columns["time"].unit = "fortnights per bar";
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n1;1;60\n2;1;60\n", bad), HasSubstr("time is iso8601, excel"));
+}
+
+TEST_F(ForeignLog, FilesOfOtherKindsAreRefusedByName) {
+  EXPECT_THAT(read_recording(write("a.parquet", "PAR1"), test_plant()).error().describe(),
+              HasSubstr("a.parquet: .parquet files are not read; export it as CSV, HDF5 or MATLAB"));
+}
+
+void put_vector(hid_t file, const char* path, const std::vector<double>& values, const char* unit) {
+  const hsize_t size = values.size();
+  const hid_t space = H5Screate_simple(1, &size, nullptr);
+  const hid_t create = H5Pcreate(H5P_LINK_CREATE);
+  H5Pset_create_intermediate_group(create, 1);
+  const hid_t data = H5Dcreate2(file, path, H5T_NATIVE_DOUBLE, space, create, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  if (unit != nullptr) {
+    const hid_t text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, std::char_traits<char>::length(unit) + 1);
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t attribute = H5Acreate2(data, "unit", text, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(attribute, text, unit);
+    H5Aclose(attribute), H5Sclose(scalar), H5Tclose(text);
+  }
+  H5Dclose(data), H5Pclose(create), H5Sclose(space);
+}
+
+TEST_F(ForeignLog, Hdf5DataSetsAreColumnsByTheirPathOrItsLastPart) {
+  const hid_t file = H5Fcreate(path("a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  put_vector(file, "run/time", {0.0, 0.5}, nullptr);
+  put_vector(file, "run/P1", {1.0, 1.5}, "barg");
+  put_vector(file, "run/position", {60.0, 59.0}, "mm");
+  put_vector(file, "setup/gains", {1.0, 2.0, 3.0}, nullptr);
+  H5Fclose(file);
+  const ChannelMap map = map_of({{"pressure_a", {.column = "run/P1", .unit = {}}}});
+  const Result<Recording> recording = read_recording(path("a.h5"), test_plant(), map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  expect_two_rows(*recording);
+  EXPECT_THAT(read_recording(write("b.h5", "no HDF5"), test_plant(), map).error().describe(),
+              HasSubstr("b.h5: is no HDF5 file, or it is damaged"));
+}
+
+TEST(HeaderCell, IsANameAndAUnitWhereTheTextBehindIsOne) {
+  const auto split = [](const char* cell) {
+    const NameAndUnitText parts = split_header_cell(cell);
+    return parts.name + "|" + parts.unit;
+  };
+  EXPECT_EQ(split("PT-101 [psig]"), "PT-101|psig");
+  EXPECT_EQ(split("Pressure A (bar)"), "Pressure A|bar");
+  EXPECT_EQ(split("Pressure (supply)"), "Pressure (supply)|");
+  EXPECT_EQ(split("Pressure A / bar"), "Pressure A|bar");
+  EXPECT_EQ(split("Weg in mm"), "Weg|mm");
+  EXPECT_EQ(split("time"), "time|");
+}
+
+TEST(TimeFormatOf, IsRecognisedByTheCells) {
+  EXPECT_EQ(time_format_of({"2031-04-12 03:00:00", "2031-04-12T03:00:01Z"}), "iso8601");
+  EXPECT_EQ(time_format_of({"25.04.2031 03:00:00,5"}), "%d.%m.%Y %H:%M:%S");
+  EXPECT_EQ(time_format_of({"4/25/2031 3:00:00 PM"}), "%m/%d/%Y %I:%M:%S %p");
+  EXPECT_EQ(time_format_of({"4/25/2031 13:00:00"}), "%m/%d/%Y %H:%M:%S");
+  EXPECT_EQ(time_format_of({"0.5", "1"}), "");
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,0 +1,147 @@
+// Which messages a service takes in, and what it says of the others.
+#include "services/common/runtime/admission.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "sealwatch/message/retraction.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::HasSubstr;
+
+const UtcTime kNow = parse_utc("2031-04-12T03:00:00Z").value();
+
+RawSamples live_test(const std::string& start) {
+  RawSamples raw;
+  raw.asset_id = "XT03-MV2";
+  raw.source_id = "mcs";
+  raw.recording_id = "april";
+  raw.start_time_known = true;
+  raw.start_time_ns = parse_utc(start).value().nanoseconds;
+  return raw;
+}
+
+std::string refusal(const Message& message, const Admission& admission = Admission()) {
+  return admission.refusal(message, kNow).value_or("");
+}
+
+TEST(AdmissionOfDates, ALiveTestOfTheFutureIsRefusedAlsoTheFirst) {
+  EXPECT_EQ(refusal(live_test("2031-04-12T20:00:00Z")), "") << "clocks differ";
+  EXPECT_THAT(refusal(live_test("2031-04-14T00:00:00Z")),
+              HasSubstr("recording april of XT03-MV2: its start time, 2031-04-14T00:00:00Z, lies in the future"));
+  Admission admission;
+  admission.note(live_test("2031-04-10T00:00:00Z"));
+  EXPECT_THAT(refusal(live_test("2031-04-14T00:00:00Z"), admission), HasSubstr("set the sender's clock"));
+}
+
+TEST(AdmissionOfDates, WhatIsPlayedBackMayBeOfAnotherTime) {
+  RawSamples played = live_test("2051-04-14T00:00:00Z");
+  played.header.replay = true;
+  EXPECT_EQ(refusal(played), "");
+  Admission admission;
+  admission.note(live_test("2031-03-10T00:00:00Z"));
+  EXPECT_THAT(refusal(played, admission), HasSubstr("more than a year after the asset's newest test"));
+}
+
+TEST(AdmissionOfDates, NoTestIsOlderThanItsAsset) {
+  const Admission admission({{"XT03-MV2", parse_utc("2029-01-01").value()}});
+  EXPECT_EQ(refusal(live_test("2029-01-02T00:00:00Z"), admission), "");
+  EXPECT_THAT(refusal(live_test("2028-12-31T00:00:00Z"), admission),
+              HasSubstr("lies before the asset was commissioned, 2029-01-01T00:00:00Z; correct the start time"));
+}
+
+TEST(AdmissionOfDates, ATimeThatCannotBeCountedWithIsNone) {
+  for (const std::int64_t wild :
+       {std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}}) {
+    RawSamples raw = live_test("2031-04-10T00:00:00Z");
+    raw.start_time_ns = wild;
+    EXPECT_THAT(refusal(raw), HasSubstr("is none from 1970 to 2260"));
+    MaintenanceEvent event;
+    event.header.event_time_known = true;
+    event.header.event_time_ns = wild;
+    EXPECT_THAT(refusal(event), HasSubstr("is none from 1970 to 2260"));
+  }
+}
+
+TEST(AdmissionOfTexts, AnIdIsOneVisibleLineAndAllTextIsUtf8) {
+  RawSamples raw = live_test("2031-04-10T00:00:00Z");
+  raw.asset_id = "XT03\x1B[2J";
+  EXPECT_EQ(refusal(raw), "its asset_id, 'XT03\\x1B[2J', has control characters; send it with a plain name");
+  raw = live_test("2031-04-10T00:00:00Z");
+  raw.recording_id = "one\ntwo";
+  EXPECT_THAT(refusal(raw), HasSubstr("recording_id"));
+  raw.recording_id = std::string(501, 'x');
+  EXPECT_THAT(refusal(raw), HasSubstr("longer than 500 bytes"));
+  raw.recording_id = "caf\xE9";
+  EXPECT_THAT(refusal(raw), HasSubstr("is not UTF-8"));
+  raw = live_test("2031-04-10T00:00:00Z");
+  raw.header.source_ids = {"good", "bad\x07"};
+  EXPECT_THAT(refusal(raw), HasSubstr("its source_ids, 'bad\\x07', has"));
+  Acknowledgement seen;
+  seen.advisory_id = "recommendation/XT03";
+  seen.remark = "two\nlines";
+  EXPECT_EQ(refusal(seen), "");
+  seen.remark = "\xFF";
+  EXPECT_THAT(refusal(seen), HasSubstr("its remark is not UTF-8"));
+}
+
+TEST(AdmissionOfSamples, ABlockOrWindowOfAStrangerKeepsTheLimits) {
+  SampleBlock block;
+  block.samples = {.time_s = {0.0, 0.1}, .channels = {{"position", "m", 0.0, {0.06, 1e308}}}};
+  EXPECT_THAT(refusal(block), HasSubstr("its samples have a number that no sensor gives"));
+  block.samples.channels[0].values[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal(block), "");
+  TestWindow window;
+  EXPECT_EQ(refusal(window), "") << "one without rows says why";
+  window.samples = block.samples;
+  EXPECT_THAT(refusal(window), HasSubstr("no sensor gives"));
+  window.samples = {.time_s = {0.0, 5e-12}, .channels = {}};
+  EXPECT_THAT(refusal(window), HasSubstr("rows 5e-12 s apart"));
+}
+
+TEST(AdmissionOfSamples, BlocksOfATestCountFromZero) {
+  RawSamples raw = live_test("2031-04-10T00:00:00Z");
+  raw.block_number = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_THAT(refusal(raw), HasSubstr("block 18446744073709551615 is none of a test"));
+}
+
+TEST(AdmissionOfMadeUpTests, TheyDoNotMixWithRecordedOnes) {
+  RawSamples made_up = live_test("2031-04-10T00:00:00Z");
+  made_up.source_id = "virtual_bench";
+  Admission admission;
+  SampleBlock block;
+  block.asset_id = "XT03-MV2";
+  block.source_id = "virtual_bench";
+  admission.note(block);
+  EXPECT_EQ(refusal(made_up, admission), "");
+  block.source_id = "mcs";
+  admission.note(block);
+  EXPECT_THAT(refusal(made_up, admission), HasSubstr("made up by the virtual bench, it does not belong"));
+  EXPECT_EQ(refusal(live_test("2031-04-10T00:00:00Z"), admission), "");
+}
+
+TEST(AdmissionOfEvents, OnlyWhatIsKnownIsTakenIn) {
+  const auto said = [](const std::string& kind, const std::string& id) {
+    MaintenanceEvent event;
+    event.asset_id = "XT03-MV2";
+    event.kind = kind;
+    event.header.message_id = id;
+    event.header.event_time_known = true;
+    event.header.event_time_ns = kNow.nanoseconds;
+    return refusal(event);
+  };
+  EXPECT_EQ(said("seal_replaced", "maintenance_event/XT03-MV2/2031"), "");
+  EXPECT_EQ(said("actuator_replaced", ""), "");
+  EXPECT_THAT(said("seal_replace", ""), HasSubstr("its kind, 'seal_replace', is none of actuator_replaced, "));
+  const std::string one = retraction_id("XT03-MV2", kTestRetracted, "XT03-MV2-2031-x", kNow);
+  EXPECT_EQ(said("test_retracted", one), "");
+  EXPECT_THAT(said("tests_retracted", one), HasSubstr("does not say what is retracted"));
+  EXPECT_EQ(said("retraction_withdrawn", retraction_id("XT03-MV2", kRetractionWithdrawn, one, kNow)), "");
+  EXPECT_THAT(said("test_retracted", "retraction/XT04/test/x/y"), HasSubstr("does not say what is retracted"));
+}
+
+}  // namespace
+}  // namespace sealwatch

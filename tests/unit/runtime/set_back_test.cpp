@@ -1,0 +1,87 @@
+// A writer whose journal was replaced by a backup uses its numbers again for other messages: its reader finds out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/runtime/harness.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+class SetBackTest : public ::testing::Test {
+ protected:
+  SetBackTest() { process_.start(); }
+  /// Publishes test `pst` as number `sequence`.
+  void send(std::uint64_t sequence, const std::string& pst) {
+    TestFeatures features;
+    features.asset_id = "A";
+    features.header = header("test_features/" + pst, pst);
+    features.header.writer_id = "upstream";
+    features.header.stream_sequence = sequence;
+    EXPECT_TRUE(writer_.publish(Message(features)));
+    process_.step();
+  }
+  void beat(std::uint64_t written, std::int64_t started_ns) {
+    ServiceStatus status;
+    status.service = status.writer_id = "upstream";
+    status.started_ns = started_ns;
+    status.written = {{"test_features", "upstream", written}};
+    EXPECT_TRUE(writer_.publish(status));
+    process_.step();
+  }
+  /// Tests that were received, whatever their numbers.
+  std::vector<std::string> received() {
+    std::vector<std::string> tests;
+    EXPECT_TRUE(process_.journal().for_each_open_input([&](const Message& input) {
+      tests.push_back(header_of(input).pst_id);
+      return Status();
+    }));
+    return tests;
+  }
+
+  Place place_;
+  std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
+  InMemoryBus writer_{network_};
+  Process process_{network_, [] { return std::make_unique<JoiningLayer>(); }, place_.connection()};
+};
+
+TEST_F(SetBackTest, ANumberThatComesWithAnotherMessageHasTheStreamReadAgain) {
+  beat(0, 1);
+  send(1, "p1");
+  send(2, "p2");
+  send(3, "p3");
+  // restored to p1, then concluded p4, p3 (again) and p5, while this reader was not looking
+  beat(4, 2);
+  send(3, "p3");
+  send(4, "p5");
+  EXPECT_THAT(received(), ::testing::ElementsAre("p1", "p2", "p3", "p5"));
+  send(2, "p4");  // the answer to what is asked for after a start
+  send(1, "p1");
+  send(2, "p4");
+  send(3, "p3");
+  send(4, "p5");
+  EXPECT_THAT(received(), ::testing::ElementsAre("p1", "p2", "p3", "p5", "p4"));
+}
+
+TEST_F(SetBackTest, AKnownMessageUnderAnotherNumberIsEnough) {
+  beat(0, 1);
+  send(1, "p1");
+  send(2, "p2");
+  beat(2, 2);  // now p2, p4
+  send(1, "p2");
+  send(2, "p4");
+  EXPECT_THAT(received(), ::testing::ElementsAre("p1", "p2", "p4"));
+}
+
+TEST_F(SetBackTest, WhatComesAgainAsItWasChangesNothing) {
+  beat(0, 1);
+  send(1, "p1");
+  send(2, "p2");
+  beat(2, 2);
+  send(1, "p1");
+  send(2, "p2");
+  send(3, "p3");
+  EXPECT_THAT(received(), ::testing::ElementsAre("p1", "p2", "p3"));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

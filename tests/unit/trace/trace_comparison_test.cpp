@@ -1,0 +1,206 @@
+// A trace beside a recording: known alterations of real recordings are found with their size, a friction is none of
+// them, coloured noise is no difference.
+#include "sealwatch/trace/trace_comparison.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <random>
+
+#include "sealwatch/model/plant_description.hpp"
+#include "services/common/recording/recording_file.hpp"
+
+namespace sealwatch::trace {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr double kPi = 3.14159265358979;
+
+/// A stroke out and back with a rest before, between and after, smooth: the simulation of these tests.
+TimeSeries stroke(double duration_s = 30.0, double interval_s = 0.01) {
+  TimeSeries out;
+  Series position{.name = "position", .unit = "m", .values = {}},
+      pressure{.name = "pressure", .unit = "Pa", .values = {}};
+  const auto ramp = [](double x) { return x <= 0.0 ? 0.0 : x >= 1.0 ? 1.0 : 0.5 - 0.5 * std::cos(kPi * x); };
+  for (int k = 0; k * interval_s < duration_s; ++k) {
+    const double t = k * interval_s;
+    out.time_s.push_back(t);
+    const double out_and_back = ramp((t - 4.0) / 8.0) - ramp((t - 16.0) / 8.0);
+    position.values.push_back(0.05 * out_and_back);
+    pressure.values.push_back(5e5 + 2e6 * out_and_back + 4e5 * std::sin(0.7 * t) * std::exp(-0.1 * t));
+  }
+  out.channels = {position, pressure};
+  return out;
+}
+
+/// Autoregressive noise of a standard deviation on every channel.
+TimeSeries noisy(TimeSeries series, double share_of_range, double rho, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  for (Series& channel : series.channels) {
+    const auto [low, high] = std::ranges::minmax(channel.values);
+    const double std = share_of_range * (high - low);
+    double e = std * normal(random);
+    for (double& value : channel.values) {
+      value += e;
+      e = rho * e + std * std::sqrt(1.0 - rho * rho) * normal(random);
+    }
+  }
+  return series;
+}
+
+TraceComparison compare(const TimeSeries& recorded, const TimeSeries& simulated) {
+  Result<TraceComparison> result = compare_traces(recorded, simulated, {});
+  EXPECT_TRUE(result) << result.error().describe();
+  return result ? *result : TraceComparison{};
+}
+
+const Alteration& best(const TraceComparison& comparison, std::size_t channel = 0) {
+  static const Alteration none;
+  return comparison.channels[channel].alterations.empty() ? none : comparison.channels[channel].alterations.front();
+}
+
+TimeSeries changed(TimeSeries series, const std::function<double(double, double)>& change) {
+  for (std::size_t k = 0; k < series.time_s.size(); ++k)
+    series.channels[0].values[k] = change(series.channels[0].values[k], series.time_s[k]);
+  return series;
+}
+
+TEST(Trace, TheSameIsConsistent) {
+  const TraceComparison same = compare(stroke(), stroke());
+  EXPECT_TRUE(same.consistent);
+  EXPECT_EQ(same.motion, "position");
+  EXPECT_EQ(same.channels[0].nrmse_percent, 100.0);
+}
+
+/// False alarms, counted: noise from white to a correlation time of half a second, 240 comparisons of two channels.
+TEST(Trace, ColouredNoiseIsNoDifference) {
+  constexpr int kSeeds = 60;
+  const TimeSeries simulated = stroke();
+  int alarms = 0;
+  for (const double rho : {0.0, 0.6, 0.9, 0.98})
+    for (unsigned seed = 0; seed < kSeeds; ++seed)
+      alarms += compare(noisy(simulated, 0.01, rho, seed + 1000), simulated).consistent ? 0 : 1;
+  std::printf("false alarms: %d of %d\n", alarms, 4 * kSeeds);
+  EXPECT_LE(alarms, 8) << "1 % is promised; 8 of 240 would be by chance in one of a thousand runs";
+}
+
+TEST(Trace, AGainIsFoundWithItsSizeAndError) {
+  const TimeSeries recorded = noisy(changed(stroke(), [](double x, double) { return 1.02 * x; }), 0.002, 0.8, 1);
+  const TraceComparison found = compare(recorded, stroke());
+  ASSERT_FALSE(found.consistent);
+  EXPECT_FALSE(found.channels[1].differs) << "only the position was altered";
+  EXPECT_EQ(best(found).id, "sensor_gain");
+  EXPECT_TRUE(best(found).would_do);
+  EXPECT_NEAR(best(found).parameters[0].value, 1.02, 4.0 * best(found).parameters[0].std_error);
+  EXPECT_LT(best(found).parameters[0].std_error, 0.002);
+  EXPECT_GT(best(found).removed_share, 0.95);
+  ASSERT_THAT(found.answer, SizeIs(1));
+}
+
+TEST(Trace, AnOffsetADelayASignAndAPair) {
+  const auto altered = [](const std::function<double(double, double)>& change) {
+    return compare(noisy(changed(stroke(), change), 0.002, 0.8, 2), stroke());
+  };
+  EXPECT_EQ(best(altered([](double x, double) { return x + 0.001; })).id, "sensor_bias");
+  EXPECT_EQ(best(altered([](double x, double) { return -x; })).id, "sign");
+  EXPECT_EQ(best(altered([](double x, double) { return 1.1 * x - 0.003; })).id, "sensor_gain and sensor_bias");
+  TimeSeries late = stroke();
+  for (double& time : late.time_s) time += 0.030;
+  late.channels.resize(1);
+  const TraceComparison delayed = compare(noisy(late, 0.002, 0.8, 3), stroke());
+  EXPECT_EQ(best(delayed).id, "sensor_lag");
+  EXPECT_NEAR(best(delayed).parameters[0].value, 0.030, 4.0 * best(delayed).parameters[0].std_error);
+}
+
+TEST(Trace, AClockIsOneCauseOfAllChannels) {
+  TimeSeries fast = stroke();
+  for (double& time : fast.time_s) time *= 1.01;
+  const TraceComparison found = compare(noisy(fast, 0.002, 0.8, 4), stroke());
+  ASSERT_FALSE(found.consistent);
+  ASSERT_THAT(found.answer, SizeIs(1));
+  EXPECT_EQ(found.answer[0].id, "clock_rate");
+  EXPECT_EQ(found.answer[0].where, "clock");
+  EXPECT_NEAR(found.answer[0].parameters[0].value, 1.01, 4.0 * found.answer[0].parameters[0].std_error);
+}
+
+TEST(Trace, AnInputsDelayMovesAllThatItDrives) {
+  TimeSeries late = stroke();
+  for (double& time : late.time_s) time += 0.08;
+  const TraceComparison found = compare(noisy(late, 0.002, 0.8, 5), stroke());
+  ASSERT_THAT(found.answer, SizeIs(1));
+  EXPECT_EQ(found.answer[0].id, "input_delay");
+  EXPECT_NEAR(found.answer[0].parameters[0].value, 0.08, 4.0 * found.answer[0].parameters[0].std_error);
+}
+
+TEST(Trace, AFrictionIsNoneOfThese) {
+  TimeSeries recorded = stroke();
+  for (std::size_t k = 1; k + 1 < recorded.time_s.size(); ++k) {
+    const double way = recorded.channels[0].values[k + 1] - recorded.channels[0].values[k - 1];
+    recorded.channels[1].values[k] += way > 1e-9 ? 1.5e5 : way < -1e-9 ? -1.5e5 : 0.0;
+  }
+  const TraceComparison found = compare(noisy(recorded, 0.005, 0.8, 6), stroke());
+  ASSERT_FALSE(found.consistent);
+  EXPECT_FALSE(found.channels[0].differs);
+  EXPECT_FALSE(best(found, 1).would_do) << best(found, 1).id;
+  EXPECT_TRUE(found.answer.empty());
+  EXPECT_THAT(found.channels[1].by, ::testing::Contains("motion and level"));
+}
+
+TEST(Trace, WhatCannotBeComparedIsSaid) {
+  TimeSeries other = stroke();
+  other.channels[0].name = "x", other.channels[1].name = "p";
+  EXPECT_THAT(compare_traces(stroke(), other, {}).error().describe(), HasSubstr("the files share no channel"));
+  TimeSeries later = stroke();
+  for (double& time : later.time_s) time += 28.0;
+  EXPECT_THAT(compare_traces(stroke(), later, {}).error().describe(), HasSubstr("less than a quarter"));
+  EXPECT_THAT(compare_traces(stroke(0.5), stroke(), {}).error().describe(), HasSubstr("too few samples"));
+}
+
+/// Real recordings with the same alterations made by hand: the answer is the alteration, with its size.
+class RealRecording : public ::testing::TestWithParam<std::pair<const char*, const char*>> {
+ protected:
+  void SetUp() override {
+    const auto [file, plant] = GetParam();
+    const std::filesystem::path path = std::filesystem::path(SEALWATCH_SHARED_DATA) / file;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    const Result<Recording> read = read_recording(path.string(), **find_plant(plant));
+    ASSERT_TRUE(read) << read.error().describe();
+    for (const Series& channel : read->samples.channels)
+      if (channel.name == "position" || channel.name == "pressure_a" || channel.name == "level_voltage")
+        recorded_.channels.push_back(channel);
+    recorded_.time_s = read->samples.time_s;
+  }
+  TimeSeries recorded_;
+};
+
+TEST_P(RealRecording, KnownAlterationsAreTheAnswer) {
+  const auto answer = [&](const TimeSeries& altered) {
+    const TraceComparison found = compare(altered, recorded_);
+    EXPECT_FALSE(found.consistent);
+    return found.answer.empty() ? Alteration{} : found.answer.front();
+  };
+  const Alteration gain = answer(changed(recorded_, [](double x, double) { return 1.02 * x; }));
+  EXPECT_EQ(gain.id, "sensor_gain");
+  EXPECT_NEAR(gain.parameters.at(0).value, 1.02, 1e-4);
+  EXPECT_EQ(answer(changed(recorded_, [](double x, double) { return -x; })).id, "sign");
+  TimeSeries fast = recorded_;
+  for (double& time : fast.time_s) time *= 1.01;
+  const Alteration clock = answer(fast);
+  EXPECT_EQ(clock.id, "clock_rate");
+  ASSERT_FALSE(clock.parameters.empty());
+  EXPECT_NEAR(clock.parameters[0].value, 1.01, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, RealRecording,
+                         ::testing::Values(std::pair{"bench_cases/consistent/fit_0.csv", "eha"},
+                                           std::pair{"bench_eha/oct21_load2_stroke3.csv", "eha_switched"}),
+                         [](const auto& recording) { return std::string(recording.param.second); });
+
+}  // namespace
+}  // namespace sealwatch::trace

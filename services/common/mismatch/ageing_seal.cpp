@@ -12,15 +12,6 @@ namespace {
 constexpr double kFalls = 3.0;  // standard errors by which a value may lie above the one before it
 constexpr const char* kSealLeakage = "R_CL";
 
-}  // namespace
-
-bool may_age(const AssetConfig& asset, const Data& fit) {
-  const auto leakage = asset.parameters.find(kSealLeakage);
-  return leakage != asset.parameters.end() && leakage->second.estimate && are_of_several_days(fit);
-}
-
-namespace {
-
 Course seal_course(const FittedModel& model, const Data& fit) {
   const std::vector<double> errors = standard_errors(model);
   Course course;
@@ -56,47 +47,44 @@ bool changes(const Course& course) {
   return known && course.standard_errors() >= kChanged;
 }
 
-// The fitted recordings, each with its own R_CL.
-Data each_with_its_own(Data fit) {
-  fit.own_parameter = kSealLeakage;
-  return fit;
-}
-
 }  // namespace
 
-std::optional<AgeingSeal> nothing_but_ageing(const Data& fit, const std::shared_ptr<const FittedModel>& baseline,
-                                             const ExplainOptions& options) {
-  AgeingSeal seal{.fit = each_with_its_own(fit), .baseline = nullptr, .naming = {}};
-  Result<FittedModel> model = fit_model(baseline->asset, seal.fit, baseline.get(), options.threads);
+bool may_age(const AssetConfig& asset, const Data& fit) {
+  const auto leakage = asset.parameters.find(kSealLeakage);
+  return leakage != asset.parameters.end() && leakage->second.estimate && are_of_several_days(fit);
+}
+
+std::optional<AgeingSeal> each_its_own_seal(const Data& fit, const FittedModel& baseline, int threads) {
+  AgeingSeal seal{.fit = fit, .baseline = nullptr, .naming = {}};
+  seal.fit.own_parameter = kSealLeakage;
+  Result<FittedModel> model = fit_model(baseline.asset, seal.fit, &baseline, threads);
   if (!model) return std::nullopt;
   seal.baseline = std::make_shared<const FittedModel>(std::move(*model));
-  const Course course = seal_course(*seal.baseline, seal.fit);
-  seal.wears = wears(course);
-  const Trial common{{}, baseline}, ageing{{}, seal.baseline};
-  if (!seal.wears || !changes(course) || !is_preferred(ageing, common)) return std::nullopt;
-  const auto left = screen(*seal.baseline, seal.fit, {.seed = options.seed, .threads = options.threads});
-  if (!left || differs(left->p_value, *seal.baseline, options.false_alarm_rate)) return std::nullopt;
-  seal.naming = {.baseline = seal.baseline, .best = ageing, .trials = {common, ageing}, .first = *left, .last = *left};
   return seal;
 }
 
-std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const FittedModel& baseline, const Trial& common,
-                                           const ExplainOptions& options, const Progress& progress) {
-  if (!may_age(baseline.asset, fit)) return std::nullopt;
-  AgeingSeal seal{.fit = each_with_its_own(fit), .baseline = nullptr, .naming = {}};
-  Result<FittedModel> with_laws = fit_model(common.model->asset, seal.fit, common.model.get(), options.threads);
-  Result<FittedModel> without = fit_model(baseline.asset, seal.fit, &baseline, options.threads);
-  if (!with_laws || !without) return std::nullopt;
-  if (progress) progress("asking again, with a seal that ages between the tests", 0.5);
-  seal.baseline = std::make_shared<const FittedModel>(std::move(*without));
-  const Trial from{common.effects, std::make_shared<const FittedModel>(std::move(*with_laws))};
-  Result<Naming> naming = name_effects(seal.baseline, seal.fit, options, progress, from);
-  if (!naming || !is_preferred(naming->best, common)) return std::nullopt;
-  const Course course = seal_course(*naming->best.model, seal.fit);
-  if (!changes(course)) return std::nullopt;
-  seal.wears = wears(course);
+Status look_beside(AgeingSeal& seal, const ExplainOptions& options, const Progress& progress) {
+  Result<Naming> naming = name_effects(seal.baseline, seal.fit, options, progress);
+  if (!naming) return fail(naming.error());
   seal.naming = std::move(*naming);
-  return seal;
+  seal.wears = wears(seal_course(*seal.naming.best.model, seal.fit));
+  return {};
+}
+
+bool explains_everything(const AgeingSeal& seal, const ExplainOptions& options) {
+  return seal.wears && changes(seal_course(*seal.naming.best.model, seal.fit)) &&
+         !differs(seal.naming.last.p_value, *seal.naming.best.model, options.false_alarm_rate);
+}
+
+bool is_preferred(const AgeingSeal& seal, const Trial& common) {
+  return changes(seal_course(*seal.naming.best.model, seal.fit)) && is_preferred(seal.naming.best, common);
+}
+
+std::optional<Trial> in_common(const AgeingSeal& seal, const Data& fit, int threads) {
+  const Trial& best = seal.naming.best;
+  Result<FittedModel> model = fit_model(best.model->asset, fit, best.model.get(), threads);
+  if (!model) return std::nullopt;
+  return Trial{best.effects, std::make_shared<const FittedModel>(std::move(*model))};
 }
 
 double predicted_leakage(const FittedModel& model, const Data& fit, std::optional<UtcTime> time) {

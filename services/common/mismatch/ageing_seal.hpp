@@ -1,7 +1,6 @@
-// A seal that ages while physics is missing: each fitted recording keeps a leakage resistance R_CL of its own, and laws
-// are asked for beside it, beginning with those that were found in common. Only tests of different days are asked:
-// within one a seal does not age. By the criterion of the fitted recordings (criterion.hpp), with a parameter more for
-// each,
+// A seal that ages while physics is missing. Laws that all tests have in common bend to what ageing does, so each fitted
+// recording first has a leakage resistance R_CL of its own, and laws are asked for beside it; then in common, beginning
+// with those. Only tests of different days are asked: within one a seal does not age. By the criterion of the fitted recordings (criterion.hpp), with a parameter more for each,
 //
 //   with fewer laws it is preferred unless those that it does without are worth 12 each, as any law must be
 //   with as many it must be better by 12
@@ -28,17 +27,22 @@ struct AgeingSeal {
 /// Whether the tests are of different days, and the asset's R_CL is estimated: within one day a seal does not age.
 [[nodiscard]] bool may_age(const AssetConfig& asset, const Data& fit);
 
-/// The fitted recordings, each with its own R_CL, where that alone explains everything: R_CL falls from test to test and nothing differs beyond the noise any
-/// more. Asked before any law: tests of different months differ by wear, laws in common would bend to it.
-[[nodiscard]] std::optional<AgeingSeal> nothing_but_ageing(const Data& fit,
-                                                           const std::shared_ptr<const FittedModel>& baseline,
-                                                           const ExplainOptions& options);
+/// The model without laws and with an R_CL for each recording, which has not been searched yet; nothing where it cannot
+/// be fitted. How far the values lie apart is not asked yet: what is missing makes their standard errors large.
+[[nodiscard]] std::optional<AgeingSeal> each_its_own_seal(const Data& fit, const FittedModel& baseline, int threads);
 
-/// Nothing where `common`, the best that was found with one R_CL for all of them, is preferred, or where R_CL does not
-/// differ by far more than its standard errors. `baseline`: the model without any law, likewise.
-[[nodiscard]] std::optional<AgeingSeal> with_ageing_seal(const Data& fit, const FittedModel& baseline,
-                                                         const Trial& common, const ExplainOptions& options,
-                                                         const Progress& progress);
+/// Laws beside it; whether the seal wears is known then.
+[[nodiscard]] Status look_beside(AgeingSeal& seal, const ExplainOptions& options, const Progress& progress);
+
+/// Whether nothing is left beyond the noise by a seal that wears and the laws beside it.
+[[nodiscard]] bool explains_everything(const AgeingSeal& seal, const ExplainOptions& options);
+
+/// Whether R_CL differs by far more than its standard errors, and the best with one for each recording is preferred to
+/// the best in common.
+[[nodiscard]] bool is_preferred(const AgeingSeal& seal, const Trial& common);
+
+/// The laws found beside it with one R_CL for all recordings of `fit`; nothing where that cannot be fitted.
+[[nodiscard]] std::optional<Trial> in_common(const AgeingSeal& seal, const Data& fit, int threads);
 
 /// R_CL at a time [Pa s/m3] by its course in `fit`, to which `model` was fitted; the latest where the time is not
 /// known.

@@ -53,7 +53,8 @@ std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset,
   double largest_misfit = 0.0;
   Misfit alone;
   for (std::size_t k = 0; k < fit.samples.size(); ++k) {
-    const Data one = only(fit, k);
+    Data one = only(fit, k);
+    one.own_parameter.clear();
     const Result<FittedModel> model = fit_model(asset, one, nullptr, 1);
     if (!model || model->misfit > kAgrees * model->residuals) return std::nullopt;
     largest_misfit = std::max(largest_misfit, model->misfit / model->residuals);

@@ -71,13 +71,10 @@ class Analysis {
     result_.holdout_recordings = holdout_.names;
     if (auto gross = explain_gross_mismatch(asset_, fit_, holdout_, options_, progress_)) return std::move(*gross);
     if (const Status status = fit_baseline(); !status) return fail(status.error());
-    if (!only_the_seal_aged()) {
-      if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
-      say_how_likely_by_noise(naming_.first);
-    }
+    if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
     if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
     if (!why_none_ && in_time("whether something changed between the tests")) look_for_a_change();
-    if (!why_none_ && in_time("whether the seal aged between the tests")) let_the_seal_age();
+    if (!why_none_ && seal_) say_what_the_seal_did();
     if (!why_none_ && in_time("the values that the asset file fixes")) ask_the_datasheet();
     allow(1.0);
     if (why_none_) best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_};
@@ -109,13 +106,31 @@ class Analysis {
     return false;
   }
 
+  // In tests of different days first beside a seal of its own in each, then in common from what was found there, unless
+  // a seal that wears leaves nothing.
   Status look_for_what_is_missing() {
     tell("looking for what is missing", 0.15);
     ExplainOptions options = options_;
     if (lacks_a_pressure()) options.maximum_laws = 0;
-    Result<Naming> naming = name_effects(baseline_, prepared(fit_), options, progress_);
+    if (!windowed() && may_age(asset_, fit_)) {
+      const auto common = screen(*baseline_, fit_, {.seed = options.seed, .threads = options.threads});
+      if (!common) return fail(common.error());
+      say_how_likely_by_noise(*common);
+      if (result_.statistically_significant) seal_ = each_its_own_seal(fit_, *baseline_, options.threads);
+      if (seal_ && !look_beside(*seal_, options, progress_)) seal_.reset();
+      if (seal_ && explains_everything(*seal_, options)) {
+        take_over(*seal_);
+        return {};
+      }
+    }
+    std::optional<Trial> from;
+    if (seal_ && !seal_->naming.best.effects.empty()) from = in_common(*seal_, fit_, options.threads);
+    if (seal_) tell("looking again, with one seal for all tests", 0.5);
+    Result<Naming> naming =
+        name_effects(baseline_, prepared(fit_), options, progress_, from.value_or(Trial{{}, baseline_}));
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
+    say_how_likely_by_noise(naming_.first);
     std::ranges::copy(naming_.not_asked, std::back_inserter(result_.not_asked));
     // The best of a search that was cut: what it leaves has not been looked at.
     if (!naming_.not_asked.empty() && !naming_.best.effects.empty()) {
@@ -128,6 +143,12 @@ class Analysis {
       allow(kSearchShare);
     }
     best_ = naming_.best;
+    if (!seal_ || !result_.statistically_significant || !is_preferred(*seal_, best_)) {
+      seal_.reset();
+      return {};
+    }
+    if (!seal_->wears) ask_values_in_place_of_seals();
+    if (!why_none_) take_over(*seal_);
     return {};
   }
 
@@ -149,52 +170,39 @@ class Analysis {
     result_.statistically_significant = differs(screening.p_value, *baseline_, options_.false_alarm_rate);
   }
 
-  // Whether the model follows every test once each has its own seal.
-  bool only_the_seal_aged() {
-    if (windowed() || !may_age(asset_, fit_)) return false;
-    const auto screening = screen(*baseline_, fit_, {.seed = options_.seed, .threads = options_.threads});
-    if (!screening || !differs(screening->p_value, *baseline_, options_.false_alarm_rate)) return false;
-    std::optional<AgeingSeal> seal = nothing_but_ageing(fit_, baseline_, options_);
-    if (!seal) return false;
-    say_how_likely_by_noise(*screening);
-    take_over(std::move(*seal));
-    why_none_ = seal_aged_and_no_more(ageing_in_words(*best_.model, fit_));
-    return true;
-  }
-
-  void take_over(AgeingSeal seal) {
-    fit_ = std::move(seal.fit);
-    baseline_ = std::move(seal.baseline);
-    naming_ = std::move(seal.naming);
+  void take_over(const AgeingSeal& seal) {
+    fit_ = seal.fit;
+    baseline_ = seal.baseline;
+    naming_ = seal.naming;
     best_ = naming_.best;
+    std::ranges::copy(naming_.not_asked, std::back_inserter(result_.not_asked));
   }
 
   // Why the recordings differ though no physics is missing: something changed from test to test.
   void look_for_a_change() {
     if (!result_.statistically_significant || windowed() || fit_.samples.size() < 2) return;
+    if (seal_ && leaves_nothing()) return;
     if (const auto change = change_between_tests(asset_, fit_, *best_.model)) why_none_ = something_changed(*change);
   }
 
-  // A seal that ages from test to test, and physics missing beside it: laws in common would bend to the ageing.
-  void let_the_seal_age() {
-    if (!result_.statistically_significant || windowed()) return;
-    std::optional<AgeingSeal> seal = with_ageing_seal(fit_, *baseline_, best_, options_, progress_);
-    if (!seal) return;
-    if (!seal->wears) {
-      const DatasheetQuestion question{asset_, *baseline_, seal->naming.best, fit_, options_.threads};
-      const auto wrong = values_alone(question, fit_.samples.size());
-      if (wrong && wrong->behind <= 0.0) blame_the_asset_file(*wrong, "another seal in each test");
-      if (why_none_) return;
-    }
-    const bool wears = seal->wears;
-    take_over(std::move(*seal));
+  // Why no law is named beside a seal that differs from test to test, where that is so.
+  void say_what_the_seal_did() {
     const std::string course = ageing_in_words(*best_.model, fit_);
-    const bool nothing_else =
-        best_.effects.empty() && !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
-    if (!wears)
+    if (!seal_->wears)
       why_none_ = seal_changed_but_not_by_wear(course);
-    else if (nothing_else)
+    else if (best_.effects.empty() && leaves_nothing())
       why_none_ = seal_aged_and_no_more(course);
+  }
+
+  // What looks like another seal in each test, and not by wear, may be a wrong value in all of them.
+  void ask_values_in_place_of_seals() {
+    const DatasheetQuestion question{asset_, *baseline_, seal_->naming.best, fit_, options_.threads};
+    const auto wrong = values_alone(question, fit_.samples.size());
+    if (wrong && wrong->behind <= 0.0) blame_the_asset_file(*wrong, "another seal in each test");
+  }
+
+  [[nodiscard]] bool leaves_nothing() const {
+    return !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
   }
 
   // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it.
@@ -539,7 +547,7 @@ class Analysis {
   // Nothing significant is left, or at least half of the excess or nine tenths of the evidence is gone: the noise's own
   // estimate is not exact enough for the first two alone where the effect is small.
   [[nodiscard]] bool explains() const {
-    const bool nothing_left = !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
+    const bool nothing_left = leaves_nothing();
     const bool most_gone = explained_share() >= kExplainedAtLeast ||
                            (naming_.best.effects.size() == best_.effects.size() &&
                             evidence(naming_.last.p_value) <= kEvidenceLeft * evidence(result_.p_value));
@@ -617,6 +625,7 @@ class Analysis {
   Deadline deadline_;
   Deadline::Clock::time_point begin_ = Deadline::Clock::now();
   std::shared_ptr<const FittedModel> baseline_;
+  std::optional<AgeingSeal> seal_;  ///< each test has its own, and nothing in common is preferred
   Naming naming_;
   Trial best_;
   Trial tried_;  ///< what was taken back, as it explains too little

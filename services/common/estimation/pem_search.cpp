@@ -9,6 +9,7 @@
 #include <future>
 #include <limits>
 #include <mutex>
+#include <optional>
 
 namespace sealwatch {
 namespace {
@@ -43,6 +44,12 @@ class RecordingCost final : public ceres::CostFunction {
     if (own > 0 && jacobians[block] != nullptr)
       Eigen::Map<Matrix>(jacobians[block], n + 1, own) = compressed_.middleCols(shared, own);
     return true;
+  }
+
+  /// The cost's derivative by the shared unknowns, at the point that was evaluated last.
+  [[nodiscard]] Eigen::VectorXd gradient() const {
+    const auto n = static_cast<Eigen::Index>(shared_.size());
+    return compressed_.leftCols(n).transpose() * compressed_.col(compressed_.cols() - 1);
   }
 
   void remember(const std::vector<double>& shared, const std::vector<double>& own, Linearisation linearisation) {
@@ -144,20 +151,74 @@ class SideBySide final : public ceres::EvaluationCallback {
   std::atomic<bool> failed_ = false;
 };
 
-// Moves unknowns that left their bounds to the bound and adds them to `held`. True when there were any.
-bool hold_at_bounds(const std::vector<Unknown>& unknowns, std::vector<double>& values, std::vector<int>& held) {
-  bool moved = false;
-  for (std::size_t k = 0; k < unknowns.size(); ++k) {
-    if (!(unknowns[k].max > unknowns[k].min)) continue;
-    const double inside =
-        std::clamp(values[k], unknowns[k].to_unknown(unknowns[k].min), unknowns[k].to_unknown(unknowns[k].max));
-    if (inside == values[k]) continue;
-    values[k] = inside;
-    held.push_back(static_cast<int>(k));
-    moved = true;
+// The unknowns that are held at an end of their range, and the others free: an active set. Ceres' own bounds shorten
+// every step that would cross one, which costs dozens of iterations here. Instead the search is free, and what ends
+// outside is held in the next round: a first step may overshoot and come back. What is known beforehand moves little,
+// and almost linearly: it is held as soon as it leaves, and what comes inside again is let go in the end.
+class ActiveSet {
+ public:
+  ActiveSet(const std::vector<Unknown>& unknowns, std::vector<double>& values)
+      : unknowns_(unknowns), values_(values), held_(unknowns.size(), false) {}
+
+  [[nodiscard]] bool a_known_one_left() const {
+    for (std::size_t k = 0; k < values_.size(); ++k)
+      if (unknowns_[k].is_known() && inside(k) != values_[k]) return true;
+    return false;
   }
-  return moved;
-}
+
+  [[nodiscard]] bool holds_any() const { return std::ranges::find(held_, true) != held_.end(); }
+
+  /// Unknowns that left their range, or of these only what is known, are moved to its end and held there. True when
+  /// there were any.
+  bool hold(bool known_only) {
+    bool any = false;
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      if (inside(k) == values_[k] || (known_only && !unknowns_[k].is_known())) continue;
+      values_[k] = inside(k);
+      held_[k] = any = true;
+    }
+    return any;
+  }
+
+  /// Lets go of those that would come back inside, and lower the cost by more than `tolerance` were it linear through
+  /// their range. True when there were any.
+  bool let_go(const Eigen::VectorXd& gradient, double tolerance) {
+    bool any = false;
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      const Unknown& unknown = unknowns_[k];
+      const double slope = gradient(static_cast<Eigen::Index>(k)), lower = unknown.to_unknown(unknown.min);
+      const bool inwards = values_[k] <= lower ? slope < 0.0 : slope > 0.0;
+      const double promised = std::abs(slope) * (unknown.to_unknown(unknown.max) - lower);
+      if (!held_[k] || !inwards || promised <= tolerance) continue;
+      held_[k] = false;
+      any = true;
+    }
+    return any;
+  }
+
+  void apply(ceres::Problem& problem) {
+    if (values_.empty()) return;
+    std::vector<int> held;
+    for (std::size_t k = 0; k < held_.size(); ++k)
+      if (held_[k]) held.push_back(static_cast<int>(k));
+    const bool all = held.size() == held_.size();
+    all ? problem.SetParameterBlockConstant(values_.data()) : problem.SetParameterBlockVariable(values_.data());
+    const bool some = !held.empty() && !all;
+    problem.SetManifold(values_.data(),
+                        some ? new ceres::SubsetManifold(static_cast<int>(held_.size()), held) : nullptr);
+  }
+
+ private:
+  [[nodiscard]] double inside(std::size_t k) const {
+    const Unknown& unknown = unknowns_[k];
+    if (!(unknown.max > unknown.min)) return values_[k];
+    return std::clamp(values_[k], unknown.to_unknown(unknown.min), unknown.to_unknown(unknown.max));
+  }
+
+  const std::vector<Unknown>& unknowns_;
+  std::vector<double>& values_;
+  std::vector<bool> held_;
+};
 
 ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
   ceres::Solver::Options solver;
@@ -166,6 +227,7 @@ ceres::Solver::Options solver_options(const ActuatorFitOptions& options) {
   solver.function_tolerance = 0.0;     // CostResolved decides
   solver.parameter_tolerance = 1e-12;  // unknowns are of the order of one
   solver.logging_type = ceres::SILENT;
+  solver.update_state_every_iteration = true;  // the active set looks at it
   return solver;
 }
 
@@ -185,16 +247,31 @@ class CostResolved final : public ceres::IterationCallback {
     if (iteration.step_is_successful && ++successful_ >= kIterationsForHope && iteration.cost > hopeless_cost_)
       return ceres::SOLVER_ABORT;
     const double promised = iteration.cost_change / iteration.relative_decrease;  // by the linear model
-    const double tolerance = tolerance_ * std::max(1.0, iteration.cost / noise_cost_);
+    const double tolerance = at_cost(iteration.cost);
     const bool resolved = std::abs(iteration.cost_change) <= tolerance || (promised >= 0.0 && promised <= tolerance);
     return resolved ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
+
+  /// What counts as no change of this cost.
+  [[nodiscard]] double at_cost(double cost) const { return tolerance_ * std::max(1.0, cost / noise_cost_); }
 
  private:
   static constexpr int kIterationsForHope = 6;  // fits that come to something are there by then
   double tolerance_, noise_cost_, hopeless_cost_;
   const Deadline* deadline_;
   int successful_ = 0;
+};
+
+// Ends a round of the search once a value is further off than what is known of it.
+class RangeLeft final : public ceres::IterationCallback {
+ public:
+  explicit RangeLeft(const ActiveSet& active) : active_(active) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*iteration*/) override {
+    return active_.a_known_one_left() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const ActiveSet& active_;
 };
 
 // Ceres reports steps into parameter regions that cannot be simulated as warnings; they are ordinary rejected steps
@@ -233,6 +310,20 @@ Result<PemOptimum> as_it_is(const PemProblem& problem, PemPoint point) {
   return optimum;
 }
 
+// The cost's derivative by the shared unknowns; nothing where a recording cannot be simulated.
+std::optional<Eigen::VectorXd> gradient_at(const PemPoint& point, const PemProblem& problem,
+                                           const std::vector<RecordingCost*>& costs) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(point.shared.size()));
+  for (std::size_t k = 0; k < costs.size(); ++k) {
+    if (!costs[k]->update(point.shared.data(), point.own[k].data())) return std::nullopt;
+    gradient += costs[k]->gradient();
+  }
+  for (std::size_t k = 0; k < point.shared.size(); ++k)
+    if (const Unknown& unknown = problem.shared[k]; unknown.is_known())
+      gradient(static_cast<Eigen::Index>(k)) -= unknown.prior_residual(point.shared[k]) / unknown.prior_std;
+  return gradient;
+}
+
 }  // namespace
 
 Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options,
@@ -265,20 +356,30 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   ceres::Solver::Options solver = solver_options(options);
   solver.callbacks.push_back(&resolved);
   ceres::Solver::Summary summary;
-  // Ceres' own bounds shorten every step that would cross one, which costs dozens of iterations here. Instead the
-  // search is free, and what ends outside is held at its bound in the next one.
-  std::vector<int> held;
-  do {
-    const auto shared_size = static_cast<int>(optimum.point.shared.size());
-    if (!held.empty() && static_cast<int>(held.size()) < shared_size)
-      ceres_problem.SetManifold(optimum.point.shared.data(), new ceres::SubsetManifold(shared_size, held));
-    else if (!held.empty())
-      ceres_problem.SetParameterBlockConstant(optimum.point.shared.data());
+  ActiveSet active(problem.shared, optimum.point.shared);
+  RangeLeft range_left(active);
+  solver.callbacks.push_back(&range_left);
+  bool again = true, let_go_of_some = false;  // once some were, iterations are not renewed: the search ends
+  while (again) {
+    active.apply(ceres_problem);
     ceres::Solve(solver, &ceres_problem, &summary);
-    optimum.iterations += static_cast<int>(summary.iterations.size());
-  } while (summary.termination_type != ceres::FAILURE && hold_at_bounds(problem.shared, optimum.point.shared, held));
-  const bool within_tolerance = summary.termination_type == ceres::USER_SUCCESS;
-  optimum.converged = within_tolerance || summary.termination_type == ceres::CONVERGENCE;
+    const auto iterations = static_cast<int>(summary.iterations.size());
+    optimum.iterations += iterations;
+    solver.max_num_iterations -= std::max(1, iterations - 1);
+    const bool known_left = active.hold(true), others_left = !known_left && active.hold(false);
+    optimum.converged =
+        !known_left && !others_left &&
+        (summary.termination_type == ceres::USER_SUCCESS || summary.termination_type == ceres::CONVERGENCE);
+    if (others_left && !let_go_of_some) solver.max_num_iterations = options.maximum_iterations;
+    again = known_left || others_left;
+    if (optimum.converged && active.holds_any() && solver.max_num_iterations > 0) {
+      const auto gradient = gradient_at(optimum.point, problem, costs);
+      again = gradient && active.let_go(*gradient, resolved.at_cost(summary.final_cost));
+      let_go_of_some = let_go_of_some || again;
+    }
+    again = again && solver.max_num_iterations > 0 && summary.termination_type != ceres::FAILURE;
+  }
+  const bool within_tolerance = optimum.converged && summary.termination_type == ceres::USER_SUCCESS;
   optimum.cost = summary.final_cost;
   optimum.hopeless = summary.termination_type == ceres::USER_FAILURE;
   optimum.termination = within_tolerance   ? "converged: the last step changed the cost by less than its tolerance"

@@ -181,7 +181,7 @@ class Analysis {
   // Why the recordings differ though no physics is missing: something changed from test to test.
   void look_for_a_change() {
     if (!result_.statistically_significant || windowed() || fit_.samples.size() < 2) return;
-    if (seal_ && leaves_nothing()) return;
+    if (leaves_nothing()) return;
     if (const auto change = change_between_tests(asset_, fit_, *best_.model)) why_none_ = something_changed(*change);
   }
 

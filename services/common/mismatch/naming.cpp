@@ -130,32 +130,32 @@ void begin_with_what_shows(Naming& naming, const Data& data, const ExplainOption
   naming.last = std::move(*next);
 }
 
-// Whether the best of these trials leaves nothing: the noise's own size is known to a tenth, its scores tell the rest.
-bool leaves_nothing(const std::vector<Trial>& trials, const Naming& naming, const Data& data,
-                    const ExplainOptions& options) {
+// Whether the search goes on from the best of these trials without asking for pairs: it ends a gross misfit, or leaves
+// nothing (the noise's own size is known to a tenth, its scores tell the rest).
+bool one_law_does(const std::vector<Trial>& trials, const Naming& naming, const Data& data,
+                  const ExplainOptions& options) {
   constexpr double kLeft = 1.1;
   const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
-  if (best == nullptr || best->model->misfit > kLeft * best->model->residuals) return false;
+  if (best == nullptr) return false;
+  if (excess(*naming.best.model) > kGross) return excess(*best->model) <= kGross;
+  if (best->model->misfit > kLeft * best->model->residuals) return false;
   const auto left = screen(*best->model, data, {.seed = options.seed, .threads = options.threads});
   return left && !differs(left->p_value, *best->model, options.false_alarm_rate);
 }
 
-// Refits with another law: first the best single laws; where none explains everything, also pairs, and in a gross
-// misfit from second starts.
+// Refits with another law: first the best single laws, in a gross misfit from second starts too; where none does, pairs.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
-  std::vector<std::vector<LawStart>> singles, more;
+  std::vector<std::vector<LawStart>> singles;
   for (LawStart& start : ranked_laws(naming.last, level == 0 || gross ? kSingles : kSingles / 2 + 1))
     singles.push_back({std::move(start)});
+  if (gross)
+    for (LawStart& start : second_starts(naming.last)) singles.push_back({std::move(start)});
   std::vector<Trial> trials = refit(naming.best, singles, data, options.threads);
-  if (!leaves_nothing(trials, naming, data, options)) {
-    if (gross)
-      for (LawStart& start : second_starts(naming.last)) more.push_back({std::move(start)});
-    if (static_cast<int>(level) + 2 <= options.maximum_laws)
-      for (auto& pair : ranked_pairs(naming.last, naming.best.model->misfit)) more.push_back(std::move(pair));
-    for (Trial& trial : refit(naming.best, more, data, options.threads)) trials.push_back(std::move(trial));
-  }
+  if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
+    for (Trial& trial : refit(naming.best, ranked_pairs(naming.last, naming.best.model->misfit), data, options.threads))
+      trials.push_back(std::move(trial));
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return trials;
 }

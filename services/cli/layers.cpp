@@ -34,7 +34,7 @@ Result<LayerSet> LayerSet::make(const Configuration& configuration) {
   add([](const Configuration& c) { return std::make_unique<DataAcquisition>(c.assets); });
   add([](const Configuration& c) { return std::make_unique<DataManipulation>(c.assets); });
   add([simulator = set.simulator_](const Configuration& c) {
-    return std::make_unique<StateDetection>(c.assets, simulator);
+    return std::make_unique<StateDetection>(c.assets, simulator, StateDetectionOptions{.commissioned = c.commissioned});
   });
   add([explainer](const Configuration& c) {
     return std::make_unique<HealthAssessment>(c.assets, HealthAssessmentOptions{}, explainer);

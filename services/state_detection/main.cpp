@@ -7,7 +7,8 @@
 int main(int argc, char** argv) {
   using namespace sealwatch;
   const auto make_layer = [](const Configuration& configuration, const Clock&) {
-    return std::make_unique<StateDetection>(configuration.assets, std::make_shared<ModelSimulator>());
+    return std::make_unique<StateDetection>(configuration.assets, std::make_shared<ModelSimulator>(),
+                                            StateDetectionOptions{.commissioned = configuration.commissioned});
   };
   return run_daemon(argc, argv, {.service = "state_detection", .make_layer = make_layer, .make_bus = make_dds_bus});
 }

@@ -26,6 +26,7 @@ class Schedule {
   void tested(UtcTime time) {
     if (!last_ || *last_ < time) last_ = time;
   }
+  [[nodiscard]] bool has_begun() const { return last_.has_value(); }
   /// Moment from which a test is overdue; nothing before the first test.
   [[nodiscard]] std::optional<UtcTime> overdue_from(const PstSetting& pst, double grace_share) const;
   /// How late `time` is, when it is overdue.

@@ -62,7 +62,11 @@ Status StateDetectionOptions::validate() const {
 StateDetection::StateDetection(std::span<const AssetConfig> assets, std::shared_ptr<const Simulator> simulator,
                                const StateDetectionOptions& options)
     : simulator_(std::move(simulator)), options_(options) {
-  for (const AssetConfig& asset : assets) assets_.emplace(asset.asset_id, asset);
+  for (const AssetConfig& asset : assets) {
+    assets_.emplace(asset.asset_id, asset);
+    // Time passes for it from the start.
+    if (options_.commissioned.contains(asset.asset_id)) static_cast<void>(state_of(asset.asset_id));
+  }
 }
 
 std::span<const Topic> StateDetection::inputs() const {
@@ -237,10 +241,13 @@ std::optional<StateReport> StateDetection::overdue_report(const std::string& ass
   Schedule schedule = state.history.schedule;
   for (const MaintenanceEvent& event : state.events)
     if (event.header.event_time_known) schedule.tested(UtcTime{event.header.event_time_ns});
+  const auto commissioned = options_.commissioned.find(asset_id);
+  const bool never_tested = !schedule.has_begun() && commissioned != options_.commissioned.end();
+  if (never_tested) schedule.tested(commissioned->second);
   const PstSetting& pst = assets_.at(asset_id).pst;
   const auto overdue = schedule.overdue_from(pst, options_.overdue_grace_share);
   if (!overdue || now < *overdue) return std::nullopt;
-  if (add_months(*overdue, kLongestSilence_months) < now) return std::nullopt;
+  if (!never_tested && add_months(*overdue, kLongestSilence_months) < now) return std::nullopt;
   const auto late = schedule.lateness(*overdue, pst, options_.overdue_grace_share);  // says nothing about `now`
   StateReport report;
   report.asset_id = asset_id;
@@ -249,8 +256,9 @@ std::optional<StateReport> StateDetection::overdue_report(const std::string& ass
   if (!state.history.last_judged_id.empty()) report.header.source_ids.push_back(state.history.last_judged_id);
   report.header.event_time_known = true;
   report.header.event_time_ns = overdue->nanoseconds;
-  report.verdict_reasons.push_back("no test has been judged since " + format_date(late->last) + "; one was due on " +
-                                   format_date(late->due));
+  report.verdict_reasons.push_back("no test has been judged since " +
+                                   std::string(never_tested ? "the asset was commissioned on " : "") +
+                                   format_date(late->last) + "; one was due on " + format_date(late->due));
   report.region = std::max(AlertRegion::advisory, state.history.worst_region());
   report.pst_overdue = true;
   report.overdue_days = late->days;

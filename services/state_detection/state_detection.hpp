@@ -22,15 +22,18 @@
 namespace sealwatch {
 
 struct StateDetectionOptions {
-  RegionOptions region;
-  BaselineOptions baseline;
+  RegionOptions region = {};
+  BaselineOptions baseline = {};
   double overdue_grace_share = 0.5;  ///< of the test interval, see schedule.hpp
+  /// By asset, where it is known: one that was never heard is overdue from there.
+  std::map<std::string, UtcTime> commissioned = {};
   [[nodiscard]] Status validate() const;
 };
 
 /// Concludes each asset's tests in the order of their test_features, each as soon as its test_window is there too. A
 /// maintenance_event starts the asset's history anew with the first test after it; it counts as consumed when a test
-/// after it has been judged. While a model_acceptance is in force the accepted model is judged beside the nominal one.
+/// after it has been judged. An asset of which nothing was ever heard is asked for its first test, where it is known when
+/// it was commissioned. While a model_acceptance is in force the accepted model is judged beside the nominal one.
 class StateDetection final : public Layer {
  public:
   /// `simulator` may be null: then there are no residuals. `options` must be valid.

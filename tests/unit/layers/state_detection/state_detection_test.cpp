@@ -274,6 +274,36 @@ TEST(StateDetection, OverdueOncePerDueDateAndNotInReplay) {
   }
 }
 
+TEST(StateDetection, AnAssetThatWasNeverHeardIsOverdueFromItsCommissioning) {
+  const std::vector<AssetConfig> assets = {synthetic::asset("A1"), synthetic::asset("A2")};
+  const auto commissioned_a1 = [&assets](UtcTime time) {
+    return StateDetection(assets, simulator(), {.commissioned = {{"A1", time}}});
+  };
+  StateDetection detection = commissioned_a1(synthetic::month(0));
+  EXPECT_TRUE(detection.tick(synthetic::month(1, 10)).outputs.empty()) << "within the grace";
+  const Conclusion overdue = detection.tick(synthetic::month(30));
+  ASSERT_EQ(overdue.outputs.size(), 1U) << "not A2, of which it is not known; and however long it was silent";
+  const StateReport& report = std::get<StateReport>(overdue.outputs.front());
+  EXPECT_EQ(report.asset_id, "A1");
+  EXPECT_TRUE(report.pst_overdue);
+  EXPECT_NE(
+      report.verdict_reasons.front().find("since the asset was commissioned on " + format_date(synthetic::month(0))),
+      std::string::npos)
+      << report.verdict_reasons.front();
+  EXPECT_TRUE(detection.tick(synthetic::month(31)).outputs.empty()) << "once";
+  StateDetection restarted = commissioned_a1(synthetic::month(0));
+  restarted.restore(report);
+  EXPECT_TRUE(restarted.tick(synthetic::month(31)).outputs.empty()) << "once, also after a restart";
+
+  // A first test years after the commissioning is no late one: from then on it counts from that.
+  Journal journal;
+  StateDetection monitored_later = commissioned_a1(add_months(synthetic::month(0), -60.0));
+  play(monitored_later, journal, {}, {});
+  EXPECT_FALSE(last_report(journal).pst_overdue);
+  EXPECT_TRUE(monitored_later.tick(synthetic::month(1, 10)).outputs.empty());
+  EXPECT_EQ(monitored_later.tick(synthetic::month(2)).outputs.size(), 1U);
+}
+
 TEST(StateDetection, OldRecordingsThatAreTakenInLiveAreNotOverdue) {
   Journal journal;
   StateDetection detection = layer();

@@ -21,6 +21,7 @@ constexpr std::array kTable = {
     Row{kNoHeartbeat, Ne107::failure, "is not heard"},
     Row{"set_aside", Ne107::failure, "set aside after two failures"},
     Row{"rival", Ne107::out_of_specification, "not alone"},
+    Row{"clock_step", Ne107::out_of_specification, "clock was set"},
     Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},
 };
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "services/common/runtime/identity.hpp"
@@ -273,7 +274,22 @@ void LayerRunner::give_memory_back() {
   holds_memory_ = false;
 }
 
+void LayerRunner::watch_clock() {
+  const std::string kind = "clock_step";
+  if (!clock_watch_.look(clock_.now(), steady_clock::now().time_since_epoch())) return;
+  alarms_.clear(kind, {});
+  const auto step_s = clock_watch_.step_s();
+  if (!step_s) return log_event(LogLevel::info, "the clock goes on as it did", {});
+  const std::string text = "this machine's clock was set " + std::string(*step_s > 0.0 ? "forward" : "back") + " by " +
+                           std::to_string(std::llround(std::abs(*step_s))) +
+                           " s, or the machine slept; check the time source: tests are dated by this clock";
+  alarms_.raise(
+      {.kind = kind, .asset_id = {}, .subject = {}, .pst_id = {}, .text = text, .since_ns = clock_.now().nanoseconds});
+  log_event(LogLevel::error, "clock was set", {{"error", text}});
+}
+
 Status LayerRunner::let_time_pass() {
+  if (options_.watches_clock) watch_clock();
   const auto at_rest = [this](const std::string& asset_id) { return lanes_.at_rest(asset_id); };
   if (options_.local_inputs)
     for (Message& message : options_.local_inputs(at_rest)) ready_.push_back(std::move(message));

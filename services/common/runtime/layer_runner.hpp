@@ -29,6 +29,7 @@
 #include "services/common/runtime/admission.hpp"
 #include "services/common/runtime/alarms.hpp"
 #include "services/common/runtime/asset_lanes.hpp"
+#include "services/common/runtime/clock_watch.hpp"
 #include "services/common/runtime/heartbeat.hpp"
 #include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/outbox.hpp"
@@ -58,6 +59,7 @@ struct RunnerOptions {
   AssetLanes::Options lanes = {};
   StreamReader::Limits streams = {};
   std::map<std::string, UtcTime> commissioned = {};  ///< by asset; no test is older
+  bool watches_clock = false;                        ///< that of this machine, by which tests are dated
 };
 
 class LayerRunner {
@@ -91,6 +93,7 @@ class LayerRunner {
   void sort_in(const ServiceStatus& status);
   void sort_in(const ResendRequest& request);
   void note_rival(const ServiceStatus& rival);
+  void watch_clock();
   void note_reused_number(const Message& message);
   void start_anew(const Key& stream);
   /// Runs `work` inside a transaction and publishes what it concluded.
@@ -148,6 +151,7 @@ class LayerRunner {
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
   std::string last_error_;                 ///< with its time
   Alarms alarms_;
+  ClockWatch clock_watch_;
   std::vector<SetAside> set_aside_;
   std::map<std::string, std::set<std::string>> set_aside_elsewhere_;  ///< tests, by the service that did so
   std::uint64_t waiting_in_vain_ = 0;                                 ///< open inputs of those tests

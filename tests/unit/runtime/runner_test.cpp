@@ -516,6 +516,55 @@ TEST_F(RunnerTest, SaysThatAnotherOfItsKindRunsInTheDomain) {
   EXPECT_TRUE(step_until(said, [&] { listener_.listen(milliseconds(5)); }));
 }
 
+TEST(ClockWatch, TellsAStepUntilItIsMendedOrAnHourOld) {
+  using std::chrono::hours;
+  using std::chrono::minutes;
+  using std::chrono::seconds;
+  const auto at = [](ClockWatch& watch, std::chrono::nanoseconds steady, double offset_s) {
+    return watch.look(add_seconds(UtcTime{1'900'000'000'000'000'000 + steady.count()}, offset_s), steady);
+  };
+  ClockWatch watch;
+  EXPECT_FALSE(at(watch, seconds(5), 0.0)) << "where it is at the start is taken as it is";
+  EXPECT_FALSE(at(watch, hours(5), 0.9)) << "slewed";
+  EXPECT_TRUE(at(watch, hours(6), 7200.9));
+  EXPECT_NEAR(watch.step_s().value(), 7200.0, 0.1);
+  EXPECT_FALSE(at(watch, hours(6) + minutes(1), 7200.9)) << "it stands";
+  EXPECT_TRUE(at(watch, hours(6) + minutes(2), 0.9));
+  EXPECT_FALSE(watch.step_s()) << "set back to where it was";
+  EXPECT_TRUE(at(watch, hours(7), -100.0));
+  EXPECT_NEAR(watch.step_s().value(), -100.9, 0.1);
+  EXPECT_FALSE(at(watch, hours(8), -100.0));
+  EXPECT_TRUE(at(watch, hours(8) + seconds(1), -100.0)) << "an hour without another";
+  EXPECT_FALSE(watch.step_s());
+}
+
+TEST_F(RunnerTest, TellsAClockThatWasSetAsAnAlarmUntilItIsSetBack) {
+  RunnerOptions options = fast_options();
+  options.watches_clock = true;
+  Process process(network_, cutting, place_.connection(), Fate(), options);
+  process.start();
+  const UtcTime begin = process.clock().now();
+  const auto steady_begin = std::chrono::steady_clock::now();
+  double set_by_s = 0.0;
+  const auto step = [&] {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - steady_begin;
+    process.clock().set(add_seconds(begin, elapsed.count() + set_by_s));
+    process.step();
+  };
+  const auto alarms = [&] {
+    listener_.listen(milliseconds(5));
+    return listener_.statuses.empty() ? std::vector<ServiceAlarm>{} : listener_.statuses.back().alarms;
+  };
+  step();
+  EXPECT_THAT(alarms(), IsEmpty());
+  set_by_s = -3600.0;
+  ASSERT_TRUE(step_until([&] { return alarms().size() == 1; }, step));
+  EXPECT_EQ(alarms().front().kind, "clock_step");
+  EXPECT_THAT(alarms().front().text, HasSubstr("set back by 3600 s"));
+  set_by_s = 0.0;
+  EXPECT_TRUE(step_until([&] { return alarms().empty(); }, step)) << "return to normal";
+}
+
 TEST_F(RunnerTest, AJournalThatCannotBeWrittenStopsItBeforeAnythingIsPublished) {
   const std::string patient = "sqlite3://timeout=1 dbname=" + (place_.directory() / "journal.db").string();
   Process process(network_, cutting, patient);

@@ -5,6 +5,8 @@
 //   signal jumps:
 //     sigma_hat = 1.4826 MAD(d) / sqrt(20)
 //   where the signal is rounded coarsely, the root mean square of all but the largest tenth of |d| instead
+//   a signal of few samples a period is no parabola over four of them: of white noise, differences of order 12 show the
+//   same sigma, of such a signal far less of it, and where they show clearly less they are believed
 //   quantisation in steps of Delta adds Delta^2 / 12, the least that the noise can be.
 //
 // Noise that is correlated from sample to sample is underestimated: whoever uses the figure must test its residual for
@@ -18,6 +20,7 @@ namespace sealwatch {
 struct NoiseFloor {
   double standard_deviation = 0.0;  ///< in the channel's unit; 0 when the data cannot tell
   double quantisation_step = 0.0;   ///< in the channel's unit; 0 when none was seen
+  bool fast_signal = false;         ///< third differences see the signal: it has few samples a period
 };
 
 /// Uniform or slightly jittered samples. Fewer than 8 samples, or a constant channel, tell nothing.

@@ -21,7 +21,8 @@ struct ChannelDescription {
   double time_constant_s = 0.0;  ///< default first-order low-pass
   double range_min = 0.0;        ///< plausible range, SI; no range when max <= min
   double range_max = 0.0;
-  bool hold = false;  ///< an input that is held between samples, whatever the recording says
+  bool hold = false;          ///< an input that is held between samples, whatever the recording says
+  bool band_limited = false;  ///< an input without anything above half the sampling rate: its samples say all of it
 };
 
 /// What drawings and datasheets give, machined and catalogue parts alike, is seldom off by more than twice this.

@@ -8,11 +8,11 @@ namespace {
 
 constexpr double kMatters = 0.2;  // of the noise: below it the noise grows by less than 2 %
 
-// Nothing lies between the samples of an input that is held.
-bool all_inputs_held(const PlantDescription& plant, const TimeSeries& recorded) {
+// Nothing unrecorded lies between the samples of an input that is held, or that holds nothing faster than they show.
+bool all_inputs_known(const PlantDescription& plant, const TimeSeries& recorded) {
   return recorded.input_hold ||
          std::all_of(plant.channels.begin(), plant.channels.end(), [&recorded](const ChannelDescription& channel) {
-           return !channel.input || channel.hold || !recorded.has(channel.name);
+           return !channel.input || channel.hold || channel.band_limited || !recorded.has(channel.name);
          });
 }
 
@@ -36,7 +36,7 @@ RowMatrix change_without_every_second_sample(const PemProblem& problem, std::siz
                                              const TimeSeries& recorded) {
   const PemRecording& part = problem.recordings[recording];
   RowMatrix none(0, part.noise_std.size());
-  if (all_inputs_held(part.simulation->plant(), recorded)) return none;
+  if (all_inputs_known(part.simulation->plant(), recorded)) return none;
   const auto thinned = PlantSimulation::create(asset, every_second_sample(recorded));
   if (!thinned) return none;
   const ModelValues values = values_at(problem, recording, optimum.point.shared, optimum.point.own[recording]);

@@ -10,9 +10,12 @@ namespace {
 constexpr std::size_t kFewestSamples = 8;
 constexpr double kGaussianStdOverMad = 1.4826;     // standard deviation over median absolute deviation
 constexpr double kThirdDifferenceVariance = 20.0;  // 1 + 9 + 9 + 1
-constexpr double kCoarse = 0.2;                    // a step larger than this share of the noise shows in the median
-constexpr double kLargestShareOffTheGrid = 0.01;   // of steps that are no multiple of the smallest
-constexpr double kGridTolerance = 1e-3;            // of a step: rounding of decimal numbers
+constexpr int kHighOrder = 12;
+constexpr double kHighOrderVariance = 2704156.0;  // 24 over 12
+constexpr double kClearly = 1.5;                  // noise of a first-order sensor shows within 1.1 in both orders
+constexpr double kCoarse = 0.2;                   // a step larger than this share of the noise shows in the median
+constexpr double kLargestShareOffTheGrid = 0.01;  // of steps that are no multiple of the smallest
+constexpr double kGridTolerance = 1e-3;           // of a step: rounding of decimal numbers
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -52,6 +55,16 @@ double find_quantisation_step(std::span<const double> values) {
   return on_the_grid ? step : 0.0;
 }
 
+double from_high_order(std::span<const double> values) {
+  std::vector<double> difference(values.begin(), values.end());
+  for (int order = 0; order < kHighOrder; ++order) {
+    for (std::size_t k = 0; k + 1 < difference.size(); ++k) difference[k] = difference[k + 1] - difference[k];
+    difference.pop_back();
+  }
+  for (double& value : difference) value = std::abs(value);
+  return trimmed_standard_deviation(std::move(difference)) / std::sqrt(kHighOrderVariance);
+}
+
 }  // namespace
 
 NoiseFloor estimate_noise_floor(std::span<const double> values) {
@@ -64,7 +77,13 @@ NoiseFloor estimate_noise_floor(std::span<const double> values) {
   double from_differences = kGaussianStdOverMad * median(difference) / std::sqrt(kThirdDifferenceVariance);
   if (step > kCoarse * from_differences)
     from_differences = trimmed_standard_deviation(std::move(difference)) / std::sqrt(kThirdDifferenceVariance);
-  return {.standard_deviation = std::max(from_differences, step / std::sqrt(12.0)), .quantisation_step = step};
+  const double least = step / std::sqrt(12.0);
+  const bool enough = values.size() >= 10 * kHighOrder;
+  const double high_order = enough ? std::max(from_high_order(values), least) : from_differences;
+  const bool fast = high_order * kClearly < from_differences;
+  return {.standard_deviation = std::max(fast ? high_order : from_differences, least),
+          .quantisation_step = step,
+          .fast_signal = fast};
 }
 
 }  // namespace sealwatch

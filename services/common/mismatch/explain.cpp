@@ -10,6 +10,7 @@
 
 #include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/between_tests.hpp"
+#include "services/common/mismatch/carry_over.hpp"
 #include "services/common/mismatch/datasheet.hpp"
 #include "services/common/mismatch/drawn_terms.hpp"
 #include "services/common/mismatch/effects.hpp"
@@ -37,7 +38,9 @@ constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mis
 constexpr double kSmallestP = 1e-300;      // that is told: the tail's own digits end there
 constexpr double kHeldOutAgrees = 1.5;     // noise-normalised rms of a channel: the noise's own estimate is off by less
 constexpr double kSearchShare = 0.75;      // of the time limit, before what was found is proven and told
-constexpr double kEvidenceLeft = 0.1;      // of the evidence against the model, or so much left
+constexpr std::size_t kMostToCarryOver = 6;
+constexpr double kEnoughRows = 8000.0;  // of windows in a gross misfit
+constexpr double kEvidenceLeft = 0.1;   // of the evidence against the model, or so much left
 
 // -ln p, to the smallest p that a double holds.
 double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)); }
@@ -316,9 +319,21 @@ class Analysis {
     }
     if (!windowed() && !deadline_.passed()) model = weighed_by_what_is_recorded(std::move(*model));
     if (!model) return fail(model.error());
+    model = of_fewer_windows(std::move(*model));
+    if (!model) return fail(model.error());
     if (!deadline_.passed()) model = with_tolerances(std::move(*model));
     baseline_ = std::make_shared<const FittedModel>(std::move(*model));
     return {};
+  }
+
+  // In a gross misfit the model's error decides, and some of the windows show it as well as all.
+  Result<FittedModel> of_fewer_windows(FittedModel model) {
+    double rows = 0.0;
+    for (const TimeSeries& samples : fit_.samples) rows += static_cast<double>(samples.time_s.size());
+    const auto step = static_cast<std::size_t>(rows / kEnoughRows);
+    if (!windowed() || excess(model) <= kGross || step < 2 || deadline_.passed()) return model;
+    fit_.window_step = step;
+    return fit_model(model.asset, prepared(fit_), nullptr, options_.threads);
   }
 
   // Fitted again with every fixed value that shows as an unknown within its tolerance.
@@ -366,8 +381,46 @@ class Analysis {
   [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_}; }
   [[nodiscard]] Data prepared(const Data& data) const { return in_windows(data, window_s_); }
 
+  [[nodiscard]] CarryOver carry_over(const HeldOut& held_out) {
+    return {held_out, {{}, baseline_}, [this](const Trial& trial, std::size_t law) { return without(trial, law); }};
+  }
+
+  // Of the likeliest explanations the one that predicts each fitted recording best from the others.
+  void choose_what_carries_over() {
+    const Data nothing_kept_aside;
+    const CarryOver in_turn = carry_over({fit_, nothing_kept_aside, window_s_, options_});
+    double best = 0.0;
+    for (Trial& trial : likeliest(naming_, kMostToCarryOver)) {
+      const Worth worth = in_turn.of(trial);
+      if (!in_time("which other explanation carries over better")) return;
+      if (!worth.carries_over() || worth.whole.gain <= best) continue;
+      best = worth.whole.gain;
+      best_ = std::move(trial);
+      proven_ = holdout_.samples.empty();
+      if (proven_) note_not_compared({.gain = {}, .not_compared = worth.not_compared});
+    }
+  }
+
+  // The least useful law goes first, until what is left carries over as a whole and by each law.
+  void prove_in_gross_misfit() {
+    choose_what_carries_over();
+    if (proven_) return;
+    const CarryOver kept_aside = carry_over(held_out());
+    while (!best_.effects.empty()) {
+      const Worth worth = kept_aside.of(best_);
+      if (worth.carries_over() && !worth.of_law.empty()) {
+        proven_ = true;
+        return note_not_compared({.gain = {}, .not_compared = worth.not_compared});
+      }
+      const std::size_t least = worth.of_law.empty() ? best_.effects.size() - 1 : worth.least();
+      result_.notes.push_back(does_not_help(best_.effects[least]));
+      best_ = without(best_, least);
+    }
+  }
+
   // Effects that do not help on held-out recordings are taken back, the last first.
   void prove() {
+    if (excess(*best_.model) > kGross && fit_.samples.size() > 1) return prove_in_gross_misfit();
     while (!best_.effects.empty()) {
       Trial fewer = without_last(best_);
       const Result<BlockGains> blocks = held_out().gains(fewer, best_);
@@ -382,12 +435,17 @@ class Analysis {
     }
   }
 
+  static std::string does_not_help(const Effect& effect) {
+    return "A law that fits better (" + law_in_words(law_at(effect)) +
+           ") does not improve the recordings that took no part: it is not claimed.";
+  }
+
   [[nodiscard]] std::string why_not_proven(const Result<BlockGains>& blocks) const {
     const std::string law = "A law that fits better (" + law_in_words(law_at(best_.effects.back())) + ") ";
     if (!blocks)
       return law + "cannot be simulated on the recordings that took no part (" + reason_in_words(blocks.error()) +
              "): it is not claimed.";
-    if (!blocks->gain.empty()) return law + "does not improve the recordings that took no part: it is not claimed.";
+    if (!blocks->gain.empty()) return does_not_help(best_.effects.back());
     if (blocks->not_compared.empty()) return "With one recording nothing can be held out: what fits it is not claimed.";
     return law + "has nothing to be compared with on the recordings that took no part: it is not claimed.";
   }

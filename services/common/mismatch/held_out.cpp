@@ -53,14 +53,24 @@ void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const F
   comparison.gain_high = interval.high;
 }
 
+Predictions HeldOut::predictions(const Trial& trial) const {
+  Predictions models;
+  if (in_turn() && fit.samples.size() < 2) return models;
+  for (std::size_t k = 0; k < predicted().samples.size(); ++k) models.push_back(predict(*this, trial, predicted(), k));
+  return models;
+}
+
 Result<BlockGains> HeldOut::gains(const Trial& before, const Trial& after,
                                   std::vector<RecordingComparison>* kept) const {
+  return gains(predictions(before), predictions(after), *after.model, kept);
+}
+
+Result<BlockGains> HeldOut::gains(const Predictions& before, const Predictions& after, const FittedModel& model_after,
+                                  std::vector<RecordingComparison>* kept) const {
   BlockGains blocks;
-  const bool in_turn = holdout.samples.empty();
-  const Data& data = in_turn ? fit : holdout;
-  if (in_turn && fit.samples.size() < 2) return blocks;
-  for (std::size_t k = 0; k < data.samples.size(); ++k) {
-    const auto old_model = predict(*this, before, data, k), new_model = predict(*this, after, data, k);
+  const Data& data = predicted();
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const Result<FittedModel>&old_model = before[k], &new_model = after[k];
     if (!new_model && kept == nullptr) return fail(new_model.error());
     if (!old_model || !new_model) {
       blocks.not_compared.push_back(data.names[k] + " (" +
@@ -79,8 +89,8 @@ Result<BlockGains> HeldOut::gains(const Trial& before, const Trial& after,
       blocks.not_compared.push_back(data.names[k] + " as a whole (" + reason_in_words(comparison.error()) + ")");
       continue;
     }
-    (in_turn ? comparison->left_out : comparison->holdout) = true;
-    add_gain(*comparison, own, *after.model, options.seed);
+    (in_turn() ? comparison->left_out : comparison->holdout) = true;
+    add_gain(*comparison, own, model_after, options.seed);
     kept->push_back(std::move(*comparison));
   }
   return blocks;

@@ -11,6 +11,9 @@
 
 namespace sealwatch::mismatch {
 
+/// Of each recording that took no part, or in turn takes none.
+using Predictions = std::vector<Result<FittedModel>>;
+
 /// Of an analysis that outlives it.
 struct HeldOut {
   const Data& fit;
@@ -24,6 +27,14 @@ struct HeldOut {
   /// comparisons are kept: then it is not compared either.
   [[nodiscard]] Result<BlockGains> gains(const Trial& before, const Trial& after,
                                          std::vector<RecordingComparison>* kept = nullptr) const;
+  [[nodiscard]] Result<BlockGains> gains(const Predictions& before, const Predictions& after,
+                                         const FittedModel& model_after,
+                                         std::vector<RecordingComparison>* kept = nullptr) const;
+  [[nodiscard]] Predictions predictions(const Trial& trial) const;
+
+ private:
+  [[nodiscard]] bool in_turn() const { return holdout.samples.empty(); }
+  [[nodiscard]] const Data& predicted() const { return in_turn() ? fit : holdout; }
 };
 
 [[nodiscard]] Data in_windows(const Data& data, double window_s);

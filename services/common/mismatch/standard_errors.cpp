@@ -15,7 +15,7 @@ constexpr double kBlock_s = 2.0;      // longer than the transients that a wrong
 constexpr double kLeastBlock = 10.0;  // samples, where they are further apart than a plant for which that is long
 
 struct Normal {
-  Eigen::MatrixXd information, scores;  ///< A, B
+  Eigen::MatrixXd information, scores;  ///< sum_i J_i' J_i, B
   int blocks = 0;
 };
 
@@ -60,29 +60,28 @@ std::vector<double> standard_errors(const FittedModel& model) {
     else if (const auto again = linearise(model.problem, k, model.optimum.point.shared, model.optimum.point.own[k]))
       add_recording(*again, model.problem.recordings[k].time_s, normal);
   }
-  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
-    const Unknown& unknown = model.problem.shared[k];
-    if (!unknown.is_known()) continue;
-    const auto j = static_cast<Eigen::Index>(k);
-    normal.information(j, j) += 1.0 / (unknown.prior_std * unknown.prior_std);
-    normal.scores(j, j) += std::pow(unknown.prior_residual(model.optimum.point.shared[k]) / unknown.prior_std, 2);
-  }
   if (normal.blocks > 1) normal.scores *= normal.blocks / (normal.blocks - 1.0);
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(shared, shared);
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k)
+    if (const Unknown& unknown = model.problem.shared[k]; unknown.is_known())
+      prior(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) = 1.0 / std::pow(unknown.prior_std, 2);
 
-  const std::vector<Eigen::Index> told = told_by_data(model, normal.information);
-  const Eigen::VectorXd scale =
-      subvector(normal.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(), told);
-  Eigen::MatrixXd scaled = scale.asDiagonal() * submatrix(normal.information, told) * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-12;
-  const Eigen::MatrixXd inverse = scaled.inverse();
-  const Eigen::MatrixXd robust =
-      inverse * (scale.asDiagonal() * submatrix(normal.scores, told) * scale.asDiagonal()) * inverse;
   const double phi = dispersion(model);
+  const Eigen::MatrixXd information = normal.information / phi + prior;
+  const std::vector<Eigen::Index> told = told_by_data(model, information);
+  const Eigen::VectorXd scale = subvector(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(), told);
+  const auto scaled = [&](const Eigen::MatrixXd& matrix) -> Eigen::MatrixXd {
+    return scale.asDiagonal() * submatrix(matrix, told) * scale.asDiagonal();
+  };
+  Eigen::MatrixXd a = scaled(information);
+  a.diagonal().array() += 1e-12;
+  const Eigen::MatrixXd inverse = a.inverse();
+  const Eigen::MatrixXd by_scores = inverse * scaled(normal.scores / (phi * phi) + prior) * inverse;
   std::vector<double> errors(model.problem.shared.size(), std::numeric_limits<double>::infinity());
   for (std::size_t j = 0; j < told.size(); ++j) {
     const auto at = static_cast<Eigen::Index>(j);
     const auto k = static_cast<std::size_t>(told[j]);
-    errors[k] = std::sqrt(std::max(phi * inverse(at, at), robust(at, at))) * scale(at) *
+    errors[k] = std::sqrt(std::max(inverse(at, at), by_scores(at, at))) * scale(at) *
                 std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
   }
   return errors;

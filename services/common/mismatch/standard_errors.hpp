@@ -1,11 +1,13 @@
 // Standard errors of a fitted model's shared unknowns, also where it leaves more than noise.
 //
-//   A   = sum_i J_i' J_i          J_i: whitened Jacobian of recording i by the shared unknowns, its own (load, initial
-//                                 state) projected off
-//   s_b = J_b' r_b                score of block b of neighbouring samples, r: whitened residual
-//   B   = n / (n - 1) sum_b s_b s_b'      n blocks
-//   variance = the larger of phi A^-1 (phi: criterion.hpp) and A^-1 B A^-1
+//   A   = sum_i J_i' J_i / phi + P     J_i: whitened Jacobian of recording i by the shared unknowns, its own (load,
+//                                      initial state) projected off; phi: criterion.hpp; P: 1 / sigma^2 of each value
+//                                      that is known within sigma
+//   s_b = J_b' r_b                     score of block b of neighbouring samples, r: whitened residual
+//   B   = n / (n - 1) sum_b s_b s_b'   n blocks
+//   variance = the larger of A^-1 and A^-1 (B / phi^2 + P) A^-1
 //
+// What a model misses grossly says nothing against what is known of a value: phi counts for the recordings alone.
 // The second holds where a law's form is not quite that of the plant: what is left then is a course, which samples
 // beside each other share, and counts once a block (White 1980, "sandwich"; Liang and Zeger 1986 for blocks). Neither
 // knows of a bias that is the same in all blocks.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <utility>
 
 #include "services/common/estimation/channel_noise.hpp"
 
@@ -49,16 +50,17 @@ Data cut_into_windows(const Data& data, double window_s) {
   windows.deadline = data.deadline;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const TimeSeries& samples = data.samples[k];
-    std::size_t begin = 0;
+    std::size_t begin = 0, count = 0;
     while (begin < samples.time_s.size()) {
       const double end_s = samples.time_s[begin] + window_s;
       auto end = static_cast<std::size_t>(std::ranges::lower_bound(samples.time_s, end_s) - samples.time_s.begin());
       if (samples.time_s.back() - end_s < kShortest * window_s) end = samples.time_s.size();
+      const std::size_t first = std::exchange(begin, end);
+      if (count++ % data.window_step != 0) continue;
       windows.names.push_back(data.names[k]);
-      windows.samples.push_back(rows_of(samples, begin, end));
+      windows.samples.push_back(rows_of(samples, first, end));
       if (!data.colour.empty()) windows.colour.push_back(data.colour[k]);
       windows.groups.push_back(static_cast<int>(k));
-      begin = end;
     }
   }
   return windows;

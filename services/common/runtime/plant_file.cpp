@@ -49,6 +49,7 @@ void read_channels(YamlMap& root, TextPlant& plant) {
     if (course == "band_limited") input.course = InputCourse::band_limited;
     if (course == "averaged") input.course = InputCourse::averaged;
     input.channel.hold = course == "held" || course == "averaged";
+    input.channel.band_limited = course == "band_limited";
     map.read("smoothing", input.smoothing_s, kNotNegative);
     plant.inputs.push_back(std::move(input));
   });

@@ -1,0 +1,50 @@
+#include "services/common/mismatch/carry_over.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/other_shapes.hpp"
+
+namespace sealwatch::mismatch {
+
+bool Worth::carries_over() const {
+  return whole.low > 0.0 && std::ranges::all_of(of_law, [](double gain) { return gain > 0.0; });
+}
+
+std::size_t Worth::least() const { return static_cast<std::size_t>(std::ranges::min_element(of_law) - of_law.begin()); }
+
+CarryOver::CarryOver(const HeldOut& held_out, const Trial& nothing, Without without)
+    : held_out_(held_out), before_(held_out.predictions(nothing)), without_(std::move(without)) {}
+
+Worth CarryOver::of(const Trial& trial) const {
+  const Predictions after = held_out_.predictions(trial);
+  Worth worth;
+  const auto whole = held_out_.gains(before_, after, *trial.model);
+  if (!whole || whole->gain.empty()) return worth;
+  worth.whole = gain_interval(*whole, dispersion(*trial.model), held_out_.options.seed);
+  worth.not_compared = whole->not_compared;
+  for (std::size_t k = 0; k < trial.effects.size(); ++k) {
+    const auto own = held_out_.gains(held_out_.predictions(without_(trial, k)), after, *trial.model);
+    worth.of_law.push_back(own ? std::accumulate(own->gain.begin(), own->gain.end(), 0.0) : 0.0);
+  }
+  return worth;
+}
+
+std::vector<Trial> likeliest(const Naming& naming, std::size_t most) {
+  const double phi = smallest_dispersion(naming.trials, *naming.baseline);
+  std::vector<const Trial*> order;
+  for (const Trial& trial : naming.trials)
+    if (!trial.effects.empty()) order.push_back(&trial);
+  std::ranges::stable_sort(order, {}, [phi](const Trial* trial) { return criterion(*trial->model, phi); });
+  std::vector<Trial> found;
+  for (const Trial* trial : order) {
+    if (found.size() == most) break;
+    const auto known = [&](const Trial& one) { return same_effects(one.effects, trial->effects); };
+    if (std::ranges::none_of(found, known)) found.push_back(*trial);
+  }
+  return found;
+}
+
+}  // namespace sealwatch::mismatch

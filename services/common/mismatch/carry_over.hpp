@@ -1,0 +1,45 @@
+// Which explanation of a gross misfit carries over to recordings that took no part.
+//
+// In a gross misfit the models' own errors, not noise, decide which laws fit best, and what fits best may bend to them.
+// There an explanation counts that predicts recordings beyond doubt better than the model without laws does, and each
+// of whose laws helps in that.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "services/common/mismatch/held_out.hpp"
+#include "services/common/mismatch/naming.hpp"
+
+namespace sealwatch::mismatch {
+
+/// Of an explanation, to recordings that took no part: gains of likelihood.
+struct Worth {
+  GainInterval whole;          ///< against the model without laws
+  std::vector<double> of_law;  ///< against the explanation without this law; empty where nothing can be compared
+  std::vector<std::string> not_compared;
+
+  [[nodiscard]] bool carries_over() const;
+  /// The law that helps least, by its place in the explanation.
+  [[nodiscard]] std::size_t least() const;
+};
+
+class CarryOver {
+ public:
+  /// An explanation without one of its laws, the others fitted anew.
+  using Without = std::function<Trial(const Trial&, std::size_t law)>;
+
+  CarryOver(const HeldOut& held_out, const Trial& nothing, Without without);
+
+  [[nodiscard]] Worth of(const Trial& trial) const;
+
+ private:
+  HeldOut held_out_;
+  Predictions before_;
+  Without without_;
+};
+
+/// Of the explanations that were tried, different ones, the likeliest first.
+[[nodiscard]] std::vector<Trial> likeliest(const Naming& naming, std::size_t most);
+
+}  // namespace sealwatch::mismatch

@@ -32,11 +32,20 @@ Worth CarryOver::of(const Trial& trial) const {
   return worth;
 }
 
-std::vector<Trial> likeliest(const Naming& naming, std::size_t most) {
+bool CarryOver::predicts_worse(const Trial& trial, const Trial& best) const {
+  if (predicted_ != best.model) {
+    of_predicted_ = held_out_.predictions(best);
+    predicted_ = best.model;
+  }
+  const auto gains = held_out_.gains(held_out_.predictions(trial), of_predicted_, *best.model);
+  return gains && gain_interval(*gains, dispersion(*best.model), held_out_.options.seed).low > 0.0;
+}
+
+std::vector<Trial> likeliest(const Naming& naming, std::size_t most, std::size_t most_laws) {
   const double phi = smallest_dispersion(naming.trials, *naming.baseline);
   std::vector<const Trial*> order;
   for (const Trial& trial : naming.trials)
-    if (!trial.effects.empty()) order.push_back(&trial);
+    if (!trial.effects.empty() && trial.effects.size() <= most_laws) order.push_back(&trial);
   std::ranges::stable_sort(order, {}, [phi](const Trial* trial) { return criterion(*trial->model, phi); });
   std::vector<Trial> found;
   for (const Trial* trial : order) {

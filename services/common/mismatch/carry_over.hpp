@@ -6,6 +6,9 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "services/common/mismatch/held_out.hpp"
@@ -32,14 +35,19 @@ class CarryOver {
   CarryOver(const HeldOut& held_out, const Trial& nothing, Without without);
 
   [[nodiscard]] Worth of(const Trial& trial) const;
+  /// Whether beyond doubt `trial` predicts worse than `best`, which is predicted once.
+  [[nodiscard]] bool predicts_worse(const Trial& trial, const Trial& best) const;
 
  private:
   HeldOut held_out_;
   Predictions before_;
   Without without_;
+  mutable std::shared_ptr<const FittedModel> predicted_;  ///< the best that was asked for last
+  mutable Predictions of_predicted_;
 };
 
-/// Of the explanations that were tried, different ones, the likeliest first.
-[[nodiscard]] std::vector<Trial> likeliest(const Naming& naming, std::size_t most);
+/// Of the explanations that were tried, different ones of at most so many laws, the likeliest first.
+[[nodiscard]] std::vector<Trial> likeliest(const Naming& naming, std::size_t most,
+                                           std::size_t most_laws = std::numeric_limits<std::size_t>::max());
 
 }  // namespace sealwatch::mismatch

@@ -18,6 +18,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr std::size_t kAlternatives = 5;  // refits in the place of an effect
+constexpr std::size_t kAskedToCarryOver = 3;
 
 bool same(const Effect& a, const Effect& b) { return a.law == b.law && a.element == b.element; }
 
@@ -124,15 +125,38 @@ std::string stands_behind(double behind) {
   return "stands " + number(behind) + " behind (squared misfit and a penalty for each parameter; 12 decides).";
 }
 
+// How far each alternative stands behind the best by the criterion. In a gross misfit that is no proof: the nearest
+// laws count as far behind only where recordings that took no part are predicted worse with them.
+std::vector<double> how_far_behind(const std::vector<Trial>& alternatives, const Trial& best, double phi,
+                                   const CarryOver* carry_over) {
+  std::vector<double> behind;
+  for (const Trial& trial : alternatives) behind.push_back(criterion(*trial.model, phi) - criterion(*best.model, phi));
+  if (carry_over == nullptr) return behind;
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < alternatives.size(); ++k)
+    if (behind[k] >= kCannotTell) order.push_back(k);
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return behind[k]; });
+  std::vector<const Effect*> asked;
+  for (const std::size_t k : order) {
+    const Effect& effect = alternatives[k].effects.back();
+    if (std::ranges::any_of(asked, [&](const Effect* one) { return same(*one, effect); })) continue;
+    if (asked.size() == kAskedToCarryOver) break;
+    asked.push_back(&effect);
+    if (!carry_over->predicts_worse(alternatives[k], best)) behind[k] = 0.0;
+  }
+  return behind;
+}
+
 // Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place.
-void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& alternatives, double best_criterion,
-           double best_misfit, double phi) {
+void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& alternatives,
+           const std::vector<double>& how_far, double best_misfit, double phi) {
   std::map<std::pair<std::string, std::string>, double> weight;  // by id and element
   weight[{effect.what.id, effect.what.element}] = 1.0;
   std::map<std::pair<std::string, std::string>, double> nearest;
-  for (const Trial& trial : alternatives) {
+  for (std::size_t k = 0; k < alternatives.size(); ++k) {
+    const Trial& trial = alternatives[k];
     const Effect& other = trial.effects.back();
-    const double behind = criterion(*trial.model, phi) - best_criterion;
+    const double behind = how_far[k];
     // A richer law of the same element that fits no worse cannot be excluded by data, only by thrift.
     const bool contains =
         other.element == effect.what.element && !other.law->closed_form && trial.model->misfit <= best_misfit + phi;
@@ -194,7 +218,7 @@ bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b) {
 }
 
 std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
-                                          const ExplainOptions& options) {
+                                          const ExplainOptions& options, const CarryOver* carry_over) {
   const std::vector<double> errors = standard_errors(*best.model);
   const PlantDescription& plant = best.model->problem.recordings.front().simulation->plant();
   const Resolution resolution = resolution_of(data, plant);
@@ -207,7 +231,8 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     effect.what = law_at(best.effects[slot]);
     effect.parameters = parameters_of(best.effects[slot], *best.model, errors, resolution);
     effect.engineering_share = engineering_share(effect, best.effects[slot], naming.first.candidates, plant);
-    weigh(effect, best.effects[slot], alternatives, criterion(*best.model, phi), best.model->misfit, phi);
+    weigh(effect, best.effects[slot], alternatives, how_far_behind(alternatives, best, phi, carry_over),
+          best.model->misfit, phi);
     const FittedModel* fewer = naming.baseline.get();
     for (const Trial& trial : naming.trials) {
       std::vector<Effect> rest = best.effects;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/carry_over.hpp"
 #include "services/common/mismatch/naming.hpp"
 
 namespace sealwatch::mismatch {
@@ -9,9 +10,11 @@ namespace sealwatch::mismatch {
 [[nodiscard]] LawAt law_at(const Effect& effect);
 [[nodiscard]] bool same_effects(const std::vector<Effect>& a, const std::vector<Effect>& b);
 
-/// Effects of the best model, most probable first. For each its alternatives are refitted in its place.
+/// Effects of the best model, most probable first. For each its alternatives are refitted in its place; with
+/// `carry_over` the nearest of them are told apart only where they predict other recordings worse.
 [[nodiscard]] std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& best, const Data& data,
-                                                        const ExplainOptions& options);
+                                                        const ExplainOptions& options,
+                                                        const CarryOver* carry_over = nullptr);
 
 [[nodiscard]] std::vector<Location> locate(const std::vector<FoundEffect>& effects);
 /// Where the residual asks for something that no law gives: elements by the gain of their best law.

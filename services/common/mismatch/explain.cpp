@@ -385,26 +385,32 @@ class Analysis {
     return {held_out, {{}, baseline_}, [this](const Trial& trial, std::size_t law) { return without(trial, law); }};
   }
 
-  // Of the likeliest explanations the one that predicts each fitted recording best from the others.
+  // Of the likeliest explanations the one that predicts each fitted recording best from the others; the first of them
+  // is asked whatever time it takes, so that a search that was cut can be proven.
   void choose_what_carries_over() {
+    if (fit_.samples.size() < 2) return;
     const Data nothing_kept_aside;
+    allow_what_is_needed();
     const CarryOver in_turn = carry_over({fit_, nothing_kept_aside, window_s_, options_});
     double best = 0.0;
     for (Trial& trial : likeliest(naming_, kMostToCarryOver)) {
       const Worth worth = in_turn.of(trial);
+      if (worth.carries_over() && worth.whole.gain > best) {
+        best = worth.whole.gain;
+        best_ = std::move(trial);
+        proven_ = holdout_.samples.empty();
+        if (proven_) note_not_compared({.gain = {}, .not_compared = worth.not_compared});
+      }
+      allow(1.0);
       if (!in_time("which other explanation carries over better")) return;
-      if (!worth.carries_over() || worth.whole.gain <= best) continue;
-      best = worth.whole.gain;
-      best_ = std::move(trial);
-      proven_ = holdout_.samples.empty();
-      if (proven_) note_not_compared({.gain = {}, .not_compared = worth.not_compared});
     }
   }
 
-  // The least useful law goes first, until what is left carries over as a whole and by each law.
+  // What does not carry over, as a whole and by each law, gives way to the likeliest explanation with fewer laws.
   void prove_in_gross_misfit() {
     choose_what_carries_over();
     if (proven_) return;
+    allow_what_is_needed();
     const CarryOver kept_aside = carry_over(held_out());
     while (!best_.effects.empty()) {
       const Worth worth = kept_aside.of(best_);
@@ -414,13 +420,14 @@ class Analysis {
       }
       const std::size_t least = worth.of_law.empty() ? best_.effects.size() - 1 : worth.least();
       result_.notes.push_back(does_not_help(best_.effects[least]));
-      best_ = without(best_, least);
+      const std::vector<Trial> fewer = likeliest(naming_, 1, best_.effects.size() - 1);
+      best_ = fewer.empty() ? Trial{{}, baseline_} : fewer.front();
     }
   }
 
   // Effects that do not help on held-out recordings are taken back, the last first.
   void prove() {
-    if (excess(*best_.model) > kGross && fit_.samples.size() > 1) return prove_in_gross_misfit();
+    if (excess(*best_.model) > kGross) return prove_in_gross_misfit();
     while (!best_.effects.empty()) {
       Trial fewer = without_last(best_);
       const Result<BlockGains> blocks = held_out().gains(fewer, best_);
@@ -477,8 +484,11 @@ class Analysis {
   // What is left beside a law says that something is left, not what, where it could as well sit in three other elements
   // or is no more than the law's own form may be off by.
   void describe_what_was_found() {
+    const std::optional<CarryOver> carry_over = excess(*best_.model) > kGross && !best_.effects.empty()
+                                                    ? std::optional(this->carry_over(held_out()))
+                                                    : std::nullopt;
     while (!best_.effects.empty()) {
-      result_.effects = describe_effects(naming_, best_, prepared(fit_), options_);
+      result_.effects = describe_effects(naming_, best_, prepared(fit_), options_, carry_over ? &*carry_over : nullptr);
       if (best_.effects.size() == 1 || excess(*best_.model) > kGross) return;
       const std::optional<Remainder> remainder = remainder_among(result_.effects, law_at(best_.effects.back()));
       if (!remainder) return;

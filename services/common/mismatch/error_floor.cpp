@@ -24,6 +24,7 @@ ChannelScales spread_of(const Data& data) {
 
 Data with_error_floor(const AssetConfig& asset, Data data, const ChannelScales& spread) {
   data.colour.clear();
+  data.start_as_measured = true;  // or a start far from it makes up for what the model lacks
   for (TimeSeries& samples : data.samples)
     for (Series& channel : samples.channels)
       channel.noise_std = std::max(noise_std_of(asset, channel), kErrorFloor * spread.at(channel.name));
@@ -31,7 +32,12 @@ Data with_error_floor(const AssetConfig& asset, Data data, const ChannelScales& 
 }
 
 Data one_of(const Data& data, std::size_t k) {
-  return {.names = {data.names[k]}, .samples = {data.samples[k]}, .colour = {}, .groups = {}, .resolution = 0.0};
+  return {.names = {data.names[k]},
+          .samples = {data.samples[k]},
+          .colour = {},
+          .groups = {},
+          .resolution = 0.0,
+          .start_as_measured = data.start_as_measured};
 }
 
 Data all_but(const Data& data, std::size_t k) {

@@ -57,6 +57,8 @@ Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const 
     PemRecording& recording = problem->recordings[k];
     if (!data.weight.empty()) recording.weight = data.weight[k];
     leave_out(samples_after_jumps(data.samples[k]), recording);
+    if (data.start_as_measured)
+      std::erase_if(recording.own, [](const Unknown& unknown) { return unknown.name.starts_with("initial:"); });
   }
   problem->simulation_options = simulation_options(data.samples, options);
   problem->simulation_options.deadline = data.deadline;

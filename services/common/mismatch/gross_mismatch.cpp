@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kGross = 20.0;  // times the noise: as where a fit is given up (ActuatorFitOptions::hopeless_rms)
 constexpr double kExplainedAtLeast = 0.5;  // of the misfit, as for laws
-constexpr int kPolishIterations = 15;
+constexpr int kPolishIterations = 40;
 constexpr std::size_t kPolished = 4;  // recordings that the simulation is fitted to: those that move furthest
-constexpr int kOwnIterations = 10;    // for load and initial state
+constexpr int kOwnIterations = 20;    // for load and initial state
 
 // Of the mean square misfit, in the median channel: one channel's rare outliers do not speak for all.
 double typical_share(const PooledFit& fit) {
@@ -76,6 +76,7 @@ class GrossMismatch {
     std::ranges::stable_sort(order, std::greater<>(), &std::pair<double, std::size_t>::first);
     Data chosen;
     chosen.deadline = fit_.deadline;
+    chosen.start_as_measured = fit_.start_as_measured;
     for (std::size_t k = 0; k < std::min(kPolished, order.size()); ++k) {
       chosen.names.push_back(fit_.names[order[k].second]);
       chosen.samples.push_back(fit_.samples[order[k].second]);

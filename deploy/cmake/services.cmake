@@ -6,6 +6,10 @@ foreach(service data-acquisition data-manipulation state-detection health-assess
   install(TARGETS sealwatch-${service} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT services)
 endforeach()
 add_subdirectory(systemd)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/deploy/security/make_identities.sh DESTINATION ${CMAKE_INSTALL_DATADIR}/sealwatch/security
+  COMPONENT services)
+install(FILES ${PROJECT_SOURCE_DIR}/deploy/security/governance.xml.in ${PROJECT_SOURCE_DIR}/deploy/security/cyclonedds.xml.in
+  ${PROJECT_SOURCE_DIR}/deploy/systemd/security.conf DESTINATION ${CMAKE_INSTALL_DATADIR}/sealwatch/security COMPONENT services)
 
 set(document_directory ${CMAKE_INSTALL_DATADIR}/doc/sealwatch)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md

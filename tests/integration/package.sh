@@ -54,7 +54,7 @@ check_control() {
   grep -q '^Recommends: libsoci-postgresql4.0' "$scratch/control/control" || fail "does not recommend PostgreSQL"
   for script in postinst prerm postrm; do
     sh -n "$scratch/control/$script"
-    ! grep -E '^[^#]*systemctl.* (start|enable|restart)' "$scratch/control/$script" || fail "$script starts services by itself"
+    ! grep -E '^[^#]*systemctl.* (start|enable|restart) [^$]' "$scratch/control/$script" || fail "$script starts services by itself"
   done
 }
 
@@ -70,6 +70,31 @@ check_units() {
     grep -q "^Wants=.*sealwatch@$service.service" "$root/usr/lib/systemd/system/sealwatch.target" ||
       fail "sealwatch.target does not want $service"
   done
+}
+
+# What a service that was taken over could do to the machine, by systemd's own measure: 0 nothing, 10 everything.
+check_exposure() {
+  have systemd-analyze "how far the services are exposed" || return 0
+  systemd-analyze security --offline=yes --threshold=15 --no-pager "$root/usr/lib/systemd/system/sealwatch@.service" \
+    >"$scratch/exposure" 2>&1 || fail "the services are exposed to more than 1.5" "$scratch/exposure"
+}
+
+# The journals of an older package, all in one directory, go to each service's own.
+check_move() {
+  local old=$scratch/old state=$scratch/old/var/lib/sealwatch
+  mkdir -p "$state/log"
+  touch "$state"/state_detection.{db,db-wal,tries,lock} "$state"/log/state_detection.{log,1.log} "$state/log/other.log"
+  DPKG_ROOT=$old sh "$scratch/control/postinst" configure >"$scratch/moved" 2>&1 || fail "postinst failed" "$scratch/moved"
+  DPKG_ROOT=$old sh "$scratch/control/postinst" configure >"$scratch/moved" 2>&1 || fail "postinst failed again" "$scratch/moved"
+  diff <(cd "$state" && find . -type f | sort) - <<'EOT' || fail "an older package's state is not moved"
+./log/other.log
+./state-detection/log/state_detection.1.log
+./state-detection/log/state_detection.log
+./state-detection/state_detection.db
+./state-detection/state_detection.db-wal
+./state-detection/state_detection.lock
+./state-detection/state_detection.tries
+EOT
 }
 
 check_page() {
@@ -155,6 +180,8 @@ make_packages
 check_contents
 check_control
 check_units
+check_exposure
+check_move
 check_page
 check_lint
 check_completion

@@ -16,3 +16,19 @@ install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PR
   DESTINATION ${document_directory} COMPONENT services)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${document_directory} COMPONENT services
   FILES_MATCHING PATTERN *.md PATTERN examples EXCLUDE)
+
+# The bill of materials is of the programs as they are linked here.
+set(programs sealwatch sealwatch-fmu-host)
+foreach(service data-acquisition data-manipulation state-detection health-assessment prognostic-assessment
+                advisory-generation virtual-bench)
+  list(APPEND programs sealwatch-${service})
+endforeach()
+list(TRANSFORM programs REPLACE "(.+)" "\"$<TARGET_FILE:\\1>\"")
+list(JOIN programs " " programs)
+install(CODE "execute_process(
+    COMMAND \"${PROJECT_SOURCE_DIR}/deploy/sbom.sh\" ${PROJECT_VERSION}
+            \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${document_directory}/sbom.spdx.json\" ${programs}
+    RESULT_VARIABLE failed)
+  if(failed)
+    message(WARNING \"no software bill of materials: deploy/sbom.sh says why\")
+  endif()" COMPONENT services)

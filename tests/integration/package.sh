@@ -97,6 +97,39 @@ check_move() {
 EOT
 }
 
+# Complete and consistent, and it names what two others find: ldd in the unpacked programs, dpkg-shlibdeps for the package.
+check_sbom() {
+  local sbom=$root/usr/share/doc/sealwatch/sbom.spdx.json
+  [ -s "$sbom" ] || fail "there is no software bill of materials"
+  ldd "$root"/usr/bin/* | sed -nE 's/.*=> (\/[^ ]+) .*/\1/p' | sort -u | while read -r file; do
+    dpkg-query -S "$file" 2>/dev/null || dpkg-query -S "/usr$file" 2>/dev/null || dpkg-query -S "$(readlink -f "$file")"
+  done | sed -E 's/:.*//' >"$scratch/libraries"
+  dpkg-deb -f "$scratch"/packages/sealwatch_*.deb Depends | tr ',' '\n' | grep -v '|' | awk '{ print $1 }' >>"$scratch/libraries"
+  python3 - "$sbom" "$scratch/libraries" >"$scratch/sbom" 2>&1 <<'EOT' || fail "the software bill of materials is faulty" "$scratch/sbom"
+import json, re, subprocess, sys
+bill = json.load(open(sys.argv[1]))
+assert bill["spdxVersion"] == "SPDX-2.3" and bill["dataLicense"] == "CC0-1.0" and bill["SPDXID"] == "SPDXRef-DOCUMENT", "document"
+assert bill["name"] and re.match(r"^[a-z]+:[^#\s]+$", bill["documentNamespace"]) and bill["creationInfo"]["creators"], "document"
+assert re.match(r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$", bill["creationInfo"]["created"]), "created"
+ids = [package["SPDXID"] for package in bill["packages"]]
+assert len(ids) == len(set(ids)) and all(re.match(r"^SPDXRef-[A-Za-z0-9.-]+$", one) for one in ids), "ids"
+for package in bill["packages"]:
+    assert package["name"] and package["versionInfo"] and package["downloadLocation"] and package["filesAnalyzed"] is False, package
+for relation in bill["relationships"]:
+    for end in ("spdxElementId", "relatedSpdxElement"):
+        assert relation[end] in ids + ["SPDXRef-DOCUMENT"], relation
+runs_with = {r["relatedSpdxElement"] for r in bill["relationships"] if r["relationshipType"] == "DEPENDS_ON"}
+listed = {package["name"]: package for package in bill["packages"] if package["SPDXID"] in runs_with}
+def ask(name, field):
+    words = subprocess.run(["dpkg-query", "-W", "-f", "${%s}\n" % field, name], capture_output=True, text=True).stdout
+    return words.split("\n")[0]
+provided = {word.split()[0] for name in listed for word in ask(name, "Provides").split(",") if word.strip()}
+for name in sorted(set(open(sys.argv[2]).read().split()) - provided):
+    assert name in listed, name + " is not listed"
+    assert listed[name]["versionInfo"] == ask(name, "Version"), name + ": " + listed[name]["versionInfo"]
+EOT
+}
+
 check_page() {
   have man "the manual page" || return 0
   LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -E UTF-8 -l "$root/usr/share/man/man1/sealwatch.1.gz" \
@@ -182,6 +215,7 @@ check_control
 check_units
 check_exposure
 check_move
+check_sbom
 check_page
 check_lint
 check_completion

@@ -136,6 +136,14 @@ read_arguments() {
   done
 }
 
+# What was chosen when the authorities were made stands in every identity: another choice would be passed over in silence.
+refuse_late_choices() {
+  local option
+  for option in authority-days domain interface tag at; do
+    [ -z "${chosen[$option]+given}" ] || fail "--$option counts only when the authorities are made, and $ca is there: take a new directory"
+  done
+}
+
 check_rights() {
   local right
   [ -n "$may" ] || fail "add needs --may RIGHTS, for example --may read"
@@ -317,9 +325,11 @@ show_list() {
 command -v openssl >/dev/null || fail "there is no openssl: apt install openssl"
 read_arguments "$@"
 ca=$directory/ca
-if [ "$command" = make ]; then
-  [ -e "$ca" ] || make_authorities
-elif [ "$command" != list ] && [ ! -e "$ca" ]; then
+if [ -e "$ca" ]; then
+  refuse_late_choices
+elif [ "$command" = make ]; then
+  make_authorities
+elif [ "$command" != list ]; then
   fail "$ca is not there: $me $directory makes the authorities, or bring their folder here"
 fi
 case $command in

@@ -34,7 +34,7 @@ make_packages() {
 check_contents() {
   local path
   for path in bin/sealwatch bin/sealwatch-virtual-bench "${services[@]/#/bin/sealwatch-}" lib/sysusers.d/sealwatch.conf \
-    lib/systemd/system/sealwatch.target share/doc/sealwatch/{copyright,changelog.gz,README.md,CHANGELOG.md,LICENSE}; do
+    lib/systemd/system/sealwatch.target share/sealwatch/security/security.conf share/doc/sealwatch/{copyright,changelog.gz,README.md,CHANGELOG.md,LICENSE}; do
     [ -s "$root/usr/$path" ] || fail "/usr/$path is not in sealwatch"
   done
   for path in libsealwatch_client.a sealwatchConfig.cmake sealwatch/client/subscriber.hpp idl/advisory_generation.idl; do
@@ -70,6 +70,13 @@ check_units() {
     grep -q "^Wants=.*sealwatch@$service.service" "$root/usr/lib/systemd/system/sealwatch.target" ||
       fail "sealwatch.target does not want $service"
   done
+}
+
+check_identities() {
+  have openssl "the identities" || return 0
+  "$root/usr/share/sealwatch/security/make_identities.sh" "$scratch/identities" >"$scratch/made" 2>&1 ||
+    fail "the installed make_identities.sh fails" "$scratch/made"
+  [ -s "$scratch/identities/state-detection/permissions.p7s" ] || fail "there is no permission" "$scratch/made"
 }
 
 # What a service that was taken over could do to the machine, by systemd's own measure: 0 nothing, 10 everything.
@@ -213,6 +220,7 @@ make_packages
 check_contents
 check_control
 check_units
+check_identities
 check_exposure
 check_move
 check_sbom

@@ -73,8 +73,13 @@ $ours renew opertor|$ours/opertor is no identity
 $ours renew operator --days 0|--days: '0' must be a whole number
 $ours renew operator --days 9000|longer than the authorities hold
 $ours remove operator|'remove' must be make, add, renew, revoke or list
+$ours --domain 3|--domain counts only when the authorities are made
 $ours --dasy 3|'--dasy' is not a known option
 EOT
+  status=0
+  "$bin/sealwatch" up --config "$config" --security "$scratch/none" >"$scratch/said" 2>&1 || status=$?
+  [ $status -eq 2 ] || fail "up starts without identities" "$scratch/said"
+  grep -qF "$scratch/none/subscriber/cyclonedds.xml: is not there" "$scratch/said" || fail "up does not say what is missing" "$scratch/said"
   "$maker" --help | grep 'examples:' >/dev/null || fail "--help has no examples"
   [ -z "$(find "$ours" -name '*.key' -perm /077)$(find "$ours" -name key.pem ! -perm 600)" ] || fail "others can read a private key"
 }

@@ -327,10 +327,10 @@ read_arguments "$@"
 ca=$directory/ca
 if [ -e "$ca" ]; then
   refuse_late_choices
-elif [ "$command" = make ]; then
+elif [ "$command" = make ] && [ -z "$(all_names)" ]; then
   make_authorities
 elif [ "$command" != list ]; then
-  fail "$ca is not there: $me $directory makes the authorities, or bring their folder here"
+  fail "$ca is not there: bring the authorities' folder back, or begin with $me and a new directory"
 fi
 case $command in
   make)

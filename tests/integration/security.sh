@@ -56,6 +56,7 @@ sign() {  # XML FILE
 
 check_usage() {
   local words status said
+  mkdir -p "$scratch/orphans" && cp -r "$ours/operator" "$scratch/orphans"  # the authorities are in the safe
   while IFS='|' read -r words said; do
     status=0
     # shellcheck disable=SC2086  # a line of words
@@ -65,6 +66,7 @@ check_usage() {
   done <<EOT
 |usage: make_identities.sh
 $scratch/none add display --may read|$scratch/none/ca is not there
+$scratch/orphans|$scratch/orphans/ca is not there
 $ours add display|add needs --may RIGHTS
 $ours add display --may write|'write' is not a right
 $ours add Display --may read|'Display' must be a name of small letters

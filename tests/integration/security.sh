@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# security.sh SOURCE_DIR BIN_DIR DDS_RIGHTS: the six services under DDS Security, one recorded test through them, and strangers of every
+# security.sh SOURCE_DIR BIN_DIR DDS_RIGHTS LENIENT_RIGHTS: the six services under DDS Security, one recorded test through them, and strangers of every
 # kind beside them. Everything happens in a temporary directory and a discovery tag of its own. Exit status 77: not checked.
 set -euo pipefail
-source_dir=$1 bin=$2 dds_rights=$3
+source_dir=$1 bin=$2 dds_rights=$3 lenient_rights=$4
 config=$source_dir/config
 maker=$source_dir/deploy/security/make_identities.sh
 layers=(data-acquisition data-manipulation state-detection health-assessment prognostic-assessment advisory-generation)
@@ -16,9 +16,10 @@ tag=security-$$
 ours=$scratch/ours rogue=$scratch/rogue
 up=
 watcher=
+lenient=()
 cleanup() {
   local process
-  for process in $watcher $up; do kill "$process" 2>/dev/null || true; done
+  for process in $watcher "${lenient[@]}" $up; do kill "$process" 2>/dev/null || true; done
   wait
   rm -rf "$scratch"
 }
@@ -124,6 +125,7 @@ check_rights() {
 # ---- the services --------------------------------------------------------------------------------------------------------------
 
 start_services() {
+  : >"$scratch/up"
   "$bin/sealwatch" up --config "$config" --state "$scratch/state" --security "$ours" >"$scratch/up" 2>&1 &
   up=$!
   local attempt
@@ -211,20 +213,57 @@ check_strangers() {
 
 # What one may not write is refused with its reason, and what one may is received.
 check_acts() {
-  local identity act
-  while read -r identity act; do
+  local identity act number
+  local -a acts=("subscriber acknowledge XT03-MV2 $advisory" "maintenance acknowledge XT03-MV2 $advisory"
+    'operator replaced XT03-MV2 --at 2001-01-01' 'operator retract XT03-MV2 --since 2030-01-01 --reason test') tries=()
+  for number in "${!acts[@]}"; do
+    read -r identity act <<<"${acts[$number]}"
     # shellcheck disable=SC2086  # a line of words
-    ! as "$ours/$identity" $act --by tester >"$scratch/act" 2>&1 || fail "$identity may: $act" "$scratch/act"
-    grep -q 'writer of topic .*: DDS says: Not Allowed By Security' "$scratch/act" || fail "$identity, $act: no reason" "$scratch/act"
-  done <<EOT
-subscriber acknowledge XT03-MV2 $advisory
-maintenance acknowledge XT03-MV2 $advisory
-operator replaced XT03-MV2 --at 2001-01-01
-operator retract XT03-MV2 --since 2030-01-01 --reason test
-EOT
+    as "$ours/$identity" $act --by tester >"$scratch/act.$number" 2>&1 &
+    tries+=($!)
+  done
+  for number in "${!acts[@]}"; do
+    ! wait "${tries[$number]}" || fail "one may: ${acts[$number]}" "$scratch/act.$number"
+    grep -q 'writer of topic .*: DDS says: Not Allowed By Security' "$scratch/act.$number" ||
+      fail "${acts[$number]}: no reason" "$scratch/act.$number"
+  done
   as "$ours/operator" acknowledge XT03-MV2 "$advisory" --by tester >"$scratch/act" 2>&1 || fail "an operator cannot acknowledge" "$scratch/act"
   as "$ours/maintenance" replaced XT03-MV2 --at 2001-01-01 --by tester >"$scratch/act" 2>&1 ||
     fail "maintenance cannot report a replacement" "$scratch/act"
+}
+
+# Identities of ours in programs that do not check their own rights. What they write nobody takes, what they may not read nobody
+# gives them; what they may goes on as ever.
+start_lenient() {
+  local name
+  SEALWATCH_ACCESS_CONTROL=$(sed -n 's|.*<Library path="\([^"]*/libdds_security_ac.so\)".*|\1|p' "$ours/operator/cyclonedds.xml")
+  export SEALWATCH_ACCESS_CONTROL
+  for name in subscriber operator sender; do
+    copy_of $name lenient_$name
+    sed -i "s|$SEALWATCH_ACCESS_CONTROL|$lenient_rights|" "$scratch/lenient_$name/cyclonedds.xml"
+  done
+  lenient=()
+  as "$scratch/lenient_subscriber" acknowledge XT03-MV2 "$advisory" --by stranger >"$scratch/lenient_subscriber.said" 2>&1 &
+  lenient+=($!)
+  as "$scratch/lenient_sender" watch advisory --json --seconds 6 >"$scratch/lenient_sender.saw" 2>"$scratch/lenient_sender.said" &
+  lenient+=($!)
+  as "$scratch/lenient_operator" watch advisory --json --seconds 6 >"$scratch/lenient_operator.saw" 2>"$scratch/lenient_operator.said" &
+  lenient+=($!)
+}
+check_lenient() {
+  local process
+  for process in "${lenient[@]}"; do wait "$process" || true; done
+  lenient=()
+  grep -q 'acknowledgement: was not received' "$scratch/lenient_subscriber.said" ||
+    fail "a subscriber that does not check itself is not refused" "$scratch/lenient_subscriber.said"
+  ! grep -q '"topic"' "$scratch/lenient_sender.saw" || fail "a sender that does not check itself reads advice" "$scratch/lenient_sender.saw"
+  [ ! -s "$scratch/lenient_sender.said" ] || ! grep -q 'Not Allowed' "$scratch/lenient_sender.said" ||
+    fail "lenient_rights is not lenient" "$scratch/lenient_sender.said"
+  grep -q '"topic":"advisory"' "$scratch/lenient_operator.saw" ||
+    fail "lenient_rights does not work" "$scratch/lenient_operator.said"
+  as "$scratch/lenient_operator" acknowledge XT03-MV2 "$advisory" --by tester >"$scratch/act" 2>&1 ||
+    fail "an operator cannot acknowledge with lenient_rights" "$scratch/act"
+  unset SEALWATCH_ACCESS_CONTROL
 }
 
 # Who is heard while its permission lasts is cut off when it ends. It listens beside what is checked meanwhile.
@@ -267,7 +306,9 @@ check_rights
 start_services
 check_test
 start_expiry
+start_lenient
 check_strangers
+check_lenient
 check_acts
 check_expiry
 check_revocation

@@ -84,6 +84,7 @@ Result<std::string> identity_settings(const std::string& directory, const std::s
 
 std::vector<std::string> names_of(const std::vector<ServiceProgram>& programs) {
   std::vector<std::string> names;
+  names.reserve(programs.size());
   for (const ServiceProgram& program : programs) names.push_back(program.name);
   return names;
 }
@@ -130,7 +131,7 @@ Status Supervisor::launch(Child& child) {
 
 Status Supervisor::start() {
   for (Child& child : children_)
-    if (const Status launched = launch(child); !launched) return launched;
+    if (Status launched = launch(child); !launched) return launched;
   return {};
 }
 

@@ -11,7 +11,7 @@ usage() {
 usage: $me DIRECTORY [make] [OPTIONS]             what is missing: authorities, six services, roles
        $me DIRECTORY add NAME --may RIGHTS        one more identity
        $me DIRECTORY renew [NAME...] [--days N]   new key, certificate and permissions; all where none is named
-       $me DIRECTORY revoke NAME                  its certificate no longer counts
+       $me DIRECTORY revoke NAME                  its certificates no longer count
        $me DIRECTORY list                         names, expiry, rights
 
 Every identity gets a folder DIRECTORY/NAME; DIRECTORY/ca holds the authorities' keys and belongs on no machine of the plant.
@@ -304,6 +304,14 @@ give_key() {
   fi
 }
 
+# Every certificate that was issued under this name and still holds, those of before a renewal too.
+revoke_all() {  # NAME
+  local serial
+  while read -r serial; do
+    SEALWATCH_CA=$ca quietly ca -config "$ca/openssl.cnf" -revoke "$ca/issued/$serial.pem"
+  done < <(awk -F'\t' -v subject="/O=sealwatch/CN=$1" '$1 == "V" && $6 == subject { print $4 }' "$ca/index.txt")
+}
+
 known() { [ -e "$directory/$1/certificate.pem" ]; }
 must_be_known() { known "$1" || fail "$directory/$1 is no identity; $me $directory list shows those that are"; }
 
@@ -348,7 +356,7 @@ case $command in
     for name in "${names[@]}"; do make_identity "$name" "$(cat "$directory/$name/rights")"; done ;;
   revoke)
     must_be_known "${names[0]}"
-    SEALWATCH_CA=$ca quietly ca -config "$ca/openssl.cnf" -revoke "$directory/${names[0]}/certificate.pem"
+    revoke_all "${names[0]}"
     list_revoked
     rm -rf "${directory:?}/${names[0]}"
     echo "${names[0]} is revoked: bring revoked.pem to every identity's folder and restart the services" ;;

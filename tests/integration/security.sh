@@ -289,6 +289,7 @@ check_expiry() {
 # After a restart with the new list of revoked certificates nobody answers a revoked one; a renewed one is heard.
 check_revocation() {
   copy_of engineer revoked
+  "$maker" "$ours" renew engineer >"$scratch/said" 2>&1 || fail "renew failed" "$scratch/said"  # the older one is revoked, too
   "$maker" "$ours" revoke engineer >"$scratch/said" 2>&1 || fail "revoke failed" "$scratch/said"
   "$maker" "$ours" renew operator data-manipulation --days 30 >"$scratch/said" 2>&1 || fail "renew failed" "$scratch/said"
   stop_services

@@ -41,7 +41,7 @@ ISO 13374, exchange Cyclone DDS topics.")
 set(CPACK_DEBIAN_SERVICES_PACKAGE_SHLIBDEPS ON)
 # SOCI loads its backends at run time, so no program is linked to them. The default journals are SQLite files.
 set(CPACK_DEBIAN_SERVICES_PACKAGE_DEPENDS libsoci-sqlite3-4.0)
-set(CPACK_DEBIAN_SERVICES_PACKAGE_RECOMMENDS libsoci-postgresql4.0)
+set(CPACK_DEBIAN_SERVICES_PACKAGE_RECOMMENDS "libsoci-postgresql4.0, openssl")
 set(CPACK_DEBIAN_SERVICES_PACKAGE_CONTROL_EXTRA
   ${CMAKE_CURRENT_BINARY_DIR}/conffiles ${debian}/postinst ${debian}/prerm ${debian}/postrm)
 

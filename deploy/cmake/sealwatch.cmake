@@ -7,6 +7,10 @@
 add_library(sealwatch_flags INTERFACE)
 target_compile_options(sealwatch_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror>)
+if(SEALWATCH_HARDENED)  # Debian's compiler makes position-independent executables by itself
+  target_compile_options(sealwatch_flags INTERFACE -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -fstack-protector-strong)
+  target_link_options(sealwatch_flags INTERFACE -Wl,-z,relro,-z,now)
+endif()
 if(SEALWATCH_SANITIZE)
   target_compile_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
   target_link_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE})

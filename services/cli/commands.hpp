@@ -143,6 +143,7 @@ int run_show(const ShowOptions& options);
 struct UpOptions {
   std::string config;
   std::string state_directory;  ///< "": the configuration's
+  std::string security;         ///< directory of identities (deploy/security); "": CYCLONEDDS_URI for all
 };
 int run_up(const UpOptions& options);
 

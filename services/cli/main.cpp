@@ -294,6 +294,9 @@ class CommandLine {
                            [this] { return run_up(up_); });
     add_config(up, up_.config);
     up->add_option("--state", up_.state_directory, "state directory instead of the configuration's");
+    up->add_option("--security", up_.security,
+                   "each service under its own identity in this directory (docs/security.md)")
+        ->type_name("DIR");
 
     CLI::App* status = command("status", "show what the services do and the latest advice for every asset",
                                "sealwatch status", [this] { return run_status(status_); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "services/cli/session.hpp"
@@ -30,6 +31,18 @@ void complain_of_none(const std::string& directory) {
                            "/var/lib/sealwatch where the package runs them"});
 }
 
+/// Under systemd each service has a directory of its own in that of all: `state_detection.db` in `state-detection`.
+std::string where_it_lies(const std::string& service, const std::string& connection) {
+  constexpr std::string_view kFile = "sqlite3://";
+  std::error_code none;
+  if (!connection.starts_with(kFile) || fs::exists(Journal::file_of(connection), none)) return connection;
+  const fs::path file = Journal::file_of(connection);
+  std::string folder = service;
+  std::ranges::replace(folder, '_', '-');
+  const fs::path own = file.parent_path() / folder / file.filename();
+  return fs::exists(own, none) ? std::string(kFile) + own.string() : connection;
+}
+
 }  // namespace
 
 std::optional<std::map<std::string, std::string>> journal_connections(const std::string& state_directory,
@@ -39,7 +52,8 @@ std::optional<std::map<std::string, std::string>> journal_connections(const std:
   if (!state_directory.empty()) overrides.state_directory = state_directory;
   const auto configuration = load_configuration(config, overrides);
   if (configuration) {
-    for (const auto& [service, settings] : configuration->services) connections[service] = settings.journal;
+    for (const auto& [service, settings] : configuration->services)
+      connections[service] = where_it_lies(service, settings.journal);
     return connections;
   }
   // A state directory can be looked into where no configuration is at hand.
@@ -47,7 +61,8 @@ std::optional<std::map<std::string, std::string>> journal_connections(const std:
     for (const Error& error : configuration.error()) complain(error);
   if (state_directory.empty()) return std::nullopt;
   for (const std::string& service : service_names())
-    connections[service] = "sqlite3://" + (fs::path(state_directory) / (service + ".db")).string();
+    connections[service] =
+        where_it_lies(service, "sqlite3://" + (fs::path(state_directory) / (service + ".db")).string());
   return connections;
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <thread>
 
 #include "services/cli/commands.hpp"
@@ -22,11 +23,14 @@ namespace {
 /// A service ends by itself within kServiceStops.
 constexpr std::chrono::milliseconds kPatience{1400};
 
-std::string program_name(std::string service) {
-  for (char& letter : service)
-    if (letter == '_') letter = '-';
-  return "sealwatch-" + service;
+constexpr std::string_view kDdsSettings = "CYCLONEDDS_URI=";
+
+std::string with_hyphens(std::string service) {
+  std::ranges::replace(service, '_', '-');
+  return service;
 }
+
+std::string program_name(const std::string& service) { return "sealwatch-" + with_hyphens(service); }
 
 std::string ending(int status) {
   if (WIFSIGNALED(status)) return std::string("was killed by signal ") + strsignal(WTERMSIG(status));
@@ -67,8 +71,20 @@ std::vector<ServiceProgram> service_programs(const std::string& config, const st
   return programs;
 }
 
+Result<std::string> identity_settings(const std::string& directory, const std::string& name) {
+  const std::filesystem::path file = std::filesystem::absolute(directory) / with_hyphens(name) / "cyclonedds.xml";
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) return "file://" + file.string();
+  return fail(Error{.file = file.string(),
+                    .place = {},
+                    .value = {},
+                    .rule = "is not there: " + name + " has no identity",
+                    .advice = "deploy/security/make_identities.sh " + directory + " makes it"});
+}
+
 std::vector<std::string> names_of(const std::vector<ServiceProgram>& programs) {
   std::vector<std::string> names;
+  names.reserve(programs.size());
   for (const ServiceProgram& program : programs) names.push_back(program.name);
   return names;
 }
@@ -86,9 +102,13 @@ Status Supervisor::launch(Child& child) {
   for (std::string& argument : child.program.arguments) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
   std::string supervisor = std::string(kSupervisor) + "=" + std::to_string(::getpid());
+  std::string settings = std::string(kDdsSettings) + child.program.dds_settings;
+  const bool own_settings = !child.program.dds_settings.empty();
   std::vector<char*> environment;
-  for (char** variable = environ; *variable != nullptr; ++variable) environment.push_back(*variable);
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (!own_settings || !std::string_view(*variable).starts_with(kDdsSettings)) environment.push_back(*variable);
   environment.push_back(supervisor.data());
+  if (own_settings) environment.push_back(settings.data());
   environment.push_back(nullptr);
   // A group of its own, so that Ctrl-C in the terminal reaches the supervisor alone, which then stops the services in
   // order.
@@ -111,7 +131,7 @@ Status Supervisor::launch(Child& child) {
 
 Status Supervisor::start() {
   for (Child& child : children_)
-    if (const Status launched = launch(child); !launched) return launched;
+    if (Status launched = launch(child); !launched) return launched;
   return {};
 }
 

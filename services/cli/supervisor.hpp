@@ -19,7 +19,12 @@ namespace sealwatch::cli {
 struct ServiceProgram {
   std::string name;                    ///< "state_detection"
   std::vector<std::string> arguments;  ///< argv, the program's path first
+  std::string dds_settings = {};       ///< its CYCLONEDDS_URI; "": that of this process
 };
+
+/// CYCLONEDDS_URI of `name`, the service or role, among the identities of deploy/security/make_identities.sh; an Error
+/// where it is not there.
+[[nodiscard]] Result<std::string> identity_settings(const std::string& directory, const std::string& name);
 
 /// The programs of the services that `configuration`, read from the file or directory `config`, enables; found beside
 /// this program or in PATH. `state_directory` instead of the configuration's unless it is "".

@@ -1,9 +1,11 @@
 // `sealwatch up`: the six services on this machine, restarted when one ends.
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "services/cli/commands.hpp"
@@ -49,13 +51,40 @@ class Startup {
   bool complained_ = false;
 };
 
+/// Each service takes its own identity; `up` itself only listens.
+Status take_identities(const std::string& directory, std::vector<ServiceProgram>& programs) {
+  for (ServiceProgram& program : programs) {
+    Result<std::string> settings = identity_settings(directory, program.name);
+    if (!settings) return fail(settings.error());
+    program.dds_settings = std::move(*settings);
+  }
+  return {};
+}
+
+Status listen_as_subscriber(const std::string& directory) {
+  const Result<std::string> settings = identity_settings(directory, "subscriber");
+  if (!settings) return fail(settings.error());
+  ::setenv("CYCLONEDDS_URI", settings->c_str(), 1);
+  return {};
+}
+
 }  // namespace
 
 int run_up(const UpOptions& options) {
+  if (!options.security.empty())
+    if (const Status own = listen_as_subscriber(options.security); !own) {
+      complain(own.error());
+      return kBadInput;
+    }
   std::optional<Session> session = open_session(options.config);
   if (!session) return kBadInput;
-  const std::vector<ServiceProgram> programs =
+  std::vector<ServiceProgram> programs =
       service_programs(options.config, options.state_directory, session->configuration);
+  if (!options.security.empty())
+    if (const Status taken = take_identities(options.security, programs); !taken) {
+      complain(taken.error());
+      return kBadInput;
+    }
   catch_interrupts();
   if (!free_to_start(*session, names_of(programs))) return kBadInput;
   if (session->configuration.assets.empty())

@@ -34,7 +34,7 @@ make_packages() {
 check_contents() {
   local path
   for path in bin/sealwatch bin/sealwatch-virtual-bench "${services[@]/#/bin/sealwatch-}" lib/sysusers.d/sealwatch.conf \
-    lib/systemd/system/sealwatch.target share/doc/sealwatch/{copyright,changelog.gz,README.md,CHANGELOG.md,LICENSE}; do
+    lib/systemd/system/sealwatch.target share/sealwatch/security/security.conf share/doc/sealwatch/{copyright,changelog.gz,README.md,CHANGELOG.md,LICENSE}; do
     [ -s "$root/usr/$path" ] || fail "/usr/$path is not in sealwatch"
   done
   for path in libsealwatch_client.a sealwatchConfig.cmake sealwatch/client/subscriber.hpp idl/advisory_generation.idl; do
@@ -54,7 +54,7 @@ check_control() {
   grep -q '^Recommends: libsoci-postgresql4.0' "$scratch/control/control" || fail "does not recommend PostgreSQL"
   for script in postinst prerm postrm; do
     sh -n "$scratch/control/$script"
-    ! grep -E '^[^#]*systemctl.* (start|enable|restart)' "$scratch/control/$script" || fail "$script starts services by itself"
+    ! grep -E '^[^#]*systemctl.* (start|enable|restart) [^$]' "$scratch/control/$script" || fail "$script starts services by itself"
   done
 }
 
@@ -70,6 +70,71 @@ check_units() {
     grep -q "^Wants=.*sealwatch@$service.service" "$root/usr/lib/systemd/system/sealwatch.target" ||
       fail "sealwatch.target does not want $service"
   done
+}
+
+check_identities() {
+  have openssl "the identities" || return 0
+  "$root/usr/share/sealwatch/security/make_identities.sh" "$scratch/identities" >"$scratch/made" 2>&1 ||
+    fail "the installed make_identities.sh fails" "$scratch/made"
+  [ -s "$scratch/identities/state-detection/permissions.p7s" ] || fail "there is no permission" "$scratch/made"
+}
+
+# What a service that was taken over could do to the machine, by systemd's own measure: 0 nothing, 10 everything.
+check_exposure() {
+  have systemd-analyze "how far the services are exposed" || return 0
+  systemd-analyze security --offline=yes --threshold=15 --no-pager "$root/usr/lib/systemd/system/sealwatch@.service" \
+    >"$scratch/exposure" 2>&1 || fail "the services are exposed to more than 1.5" "$scratch/exposure"
+}
+
+# The journals of an older package, all in one directory, go to each service's own.
+check_move() {
+  local old=$scratch/old state=$scratch/old/var/lib/sealwatch
+  mkdir -p "$state/log"
+  touch "$state"/state_detection.{db,db-wal,tries,lock} "$state"/log/state_detection.{log,1.log} "$state/log/other.log"
+  DPKG_ROOT=$old sh "$scratch/control/postinst" configure >"$scratch/moved" 2>&1 || fail "postinst failed" "$scratch/moved"
+  DPKG_ROOT=$old sh "$scratch/control/postinst" configure >"$scratch/moved" 2>&1 || fail "postinst failed again" "$scratch/moved"
+  diff <(cd "$state" && find . -type f | sort) - <<'EOT' || fail "an older package's state is not moved"
+./log/other.log
+./state-detection/log/state_detection.1.log
+./state-detection/log/state_detection.log
+./state-detection/state_detection.db
+./state-detection/state_detection.db-wal
+./state-detection/state_detection.lock
+./state-detection/state_detection.tries
+EOT
+}
+
+# Complete and consistent, and it names what two others find: ldd in the unpacked programs, dpkg-shlibdeps for the package.
+check_sbom() {
+  local sbom=$root/usr/share/doc/sealwatch/sbom.spdx.json
+  [ -s "$sbom" ] || fail "there is no software bill of materials"
+  ldd "$root"/usr/bin/* | sed -nE 's/.*=> (\/[^ ]+) .*/\1/p' | sort -u | while read -r file; do
+    dpkg-query -S "$file" 2>/dev/null || dpkg-query -S "/usr$file" 2>/dev/null || dpkg-query -S "$(readlink -f "$file")"
+  done | sed -E 's/:.*//' >"$scratch/libraries"
+  dpkg-deb -f "$scratch"/packages/sealwatch_*.deb Depends | tr ',' '\n' | grep -v '|' | awk '{ print $1 }' >>"$scratch/libraries"
+  python3 - "$sbom" "$scratch/libraries" >"$scratch/sbom" 2>&1 <<'EOT' || fail "the software bill of materials is faulty" "$scratch/sbom"
+import json, re, subprocess, sys
+bill = json.load(open(sys.argv[1]))
+assert bill["spdxVersion"] == "SPDX-2.3" and bill["dataLicense"] == "CC0-1.0" and bill["SPDXID"] == "SPDXRef-DOCUMENT", "document"
+assert bill["name"] and re.match(r"^[a-z]+:[^#\s]+$", bill["documentNamespace"]) and bill["creationInfo"]["creators"], "document"
+assert re.match(r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$", bill["creationInfo"]["created"]), "created"
+ids = [package["SPDXID"] for package in bill["packages"]]
+assert len(ids) == len(set(ids)) and all(re.match(r"^SPDXRef-[A-Za-z0-9.-]+$", one) for one in ids), "ids"
+for package in bill["packages"]:
+    assert package["name"] and package["versionInfo"] and package["downloadLocation"] and package["filesAnalyzed"] is False, package
+for relation in bill["relationships"]:
+    for end in ("spdxElementId", "relatedSpdxElement"):
+        assert relation[end] in ids + ["SPDXRef-DOCUMENT"], relation
+runs_with = {r["relatedSpdxElement"] for r in bill["relationships"] if r["relationshipType"] == "DEPENDS_ON"}
+listed = {package["name"]: package for package in bill["packages"] if package["SPDXID"] in runs_with}
+def ask(name, field):
+    words = subprocess.run(["dpkg-query", "-W", "-f", "${%s}\n" % field, name], capture_output=True, text=True).stdout
+    return words.split("\n")[0]
+provided = {word.split()[0] for name in listed for word in ask(name, "Provides").split(",") if word.strip()}
+for name in sorted(set(open(sys.argv[2]).read().split()) - provided):
+    assert name in listed, name + " is not listed"
+    assert listed[name]["versionInfo"] == ask(name, "Version"), name + ": " + listed[name]["versionInfo"]
+EOT
 }
 
 check_page() {
@@ -155,6 +220,10 @@ make_packages
 check_contents
 check_control
 check_units
+check_identities
+check_exposure
+check_move
+check_sbom
 check_page
 check_lint
 check_completion

@@ -72,7 +72,8 @@ Result<Participant> Participant::join(const Configuration& configuration) {
   if (handle < 0) {
     domains().leave(id);
     return dds_failure("participant in domain " + std::to_string(configuration.domain), handle,
-                       "check CYCLONEDDS_URI and that its network interface exists");
+                       "check CYCLONEDDS_URI: the network interface exists, with DDS Security its files too; what is "
+                       "wrong stands above, by Cyclone DDS itself");
   }
   return Participant(handle, id);
 }

@@ -1,5 +1,5 @@
-// docs/model.md (eha) and docs/reference/plants.md show the plants' tables as the code has them. When this fails, paste
-// the rows that it prints.
+// docs/model.md (channels of eha) and docs/reference/plants.md show the plants' tables as the code has them. When this
+// fails, paste the rows that it prints.
 #include <gtest/gtest.h>
 
 #include <cstdio>

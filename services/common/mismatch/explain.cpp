@@ -385,21 +385,20 @@ class Analysis {
     return {held_out, {{}, baseline_}, [this](const Trial& trial, std::size_t law) { return without(trial, law); }};
   }
 
-  // Of the likeliest explanations the one that predicts each fitted recording best from the others; the first of them
-  // is asked whatever time it takes, so that a search that was cut can be proven.
+  // Where none was kept aside: of the likeliest explanations the one that predicts each fitted recording best from the
+  // others. The first of them is asked whatever time it takes, so that a search that was cut can be proven.
   void choose_what_carries_over() {
-    if (fit_.samples.size() < 2) return;
-    const Data nothing_kept_aside;
+    if (!holdout_.samples.empty() || fit_.samples.size() < 2) return;
     allow_what_is_needed();
-    const CarryOver in_turn = carry_over({fit_, nothing_kept_aside, window_s_, options_});
+    const CarryOver in_turn = carry_over(held_out());
     double best = 0.0;
     for (Trial& trial : likeliest(naming_, kMostToCarryOver)) {
       const Worth worth = in_turn.of(trial);
       if (worth.carries_over() && worth.whole.gain > best) {
         best = worth.whole.gain;
         best_ = std::move(trial);
-        proven_ = holdout_.samples.empty();
-        if (proven_) note_not_compared({.gain = {}, .not_compared = worth.not_compared});
+        proven_ = true;
+        note_not_compared({.gain = {}, .not_compared = worth.not_compared});
       }
       allow(1.0);
       if (!in_time("which other explanation carries over better")) return;

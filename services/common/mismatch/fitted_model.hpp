@@ -29,7 +29,7 @@ struct Data {
   std::vector<KnownValue> known = {};                   ///< fixed values that may be off within their tolerance
   /// Recordings start from what was measured. Else a recording's initial state is among its own unknowns.
   bool start_as_measured = false;
-  const Deadline* deadline = nullptr;                   ///< of everything that is simulated
+  const Deadline* deadline = nullptr;  ///< of everything that is simulated
 };
 
 struct FittedModel {

@@ -45,6 +45,8 @@ class GrossMismatch {
   std::optional<Explanation> run() {
     Result<SwitchedBalances> balances = SwitchedBalances::create(noise_fit_);
     if (!balances) return std::nullopt;
+    const Result<FittedModel> as_it_is = simulated(asset_, fit_);
+    if (as_it_is && rms_in_noise(*as_it_is, asset_, noise_fit_) < kGross) return std::nullopt;
     tell("what each balance leaves over", 0.05);
     found_ = search_balances(asset_, plant_, *balances, options_.maximum_laws);
     take_back_what_does_not_hold(*balances);

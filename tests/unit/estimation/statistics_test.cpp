@@ -38,6 +38,16 @@ TEST(NoiseFloor, SeesTheNoiseUnderAMovingSignal) {
   EXPECT_NEAR(estimate_noise_floor(values).standard_deviation, 0.02, kNoiseFloorTolerance * 0.02);
 }
 
+// Eight samples a period: third differences show 0.1 of the signal, ten times the noise.
+TEST(NoiseFloor, SeesTheNoiseUnderAFastSignal) {
+  std::vector<double> values = white_noise(4000, 0.01, 2);
+  EXPECT_FALSE(estimate_noise_floor(values).fast_signal);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] += std::sin(0.785 * static_cast<double>(k));
+  const NoiseFloor floor = estimate_noise_floor(values);
+  EXPECT_TRUE(floor.fast_signal);
+  EXPECT_NEAR(floor.standard_deviation, 0.01, 0.1 * 0.01);
+}
+
 TEST(NoiseFloor, IsAtLeastWhatQuantisationMakes) {
   std::vector<double> values;
   for (int k = 0; k < 1000; ++k) values.push_back(0.25 * std::round(2.0 * std::sin(0.002 * k)));

@@ -54,6 +54,24 @@ TEST_P(SlowNoise, HasItsSizeAndItsColour) {
 }
 INSTANTIATE_TEST_SUITE_P(Correlations, SlowNoise, testing::Values(0.3, 0.5, 0.7));
 
+// A signal of ten samples a period stays in every piece: it is not the noise's colour.
+TEST(Noise, HasNoColourWhereTheSignalIsAsFast) {
+  Data data = four_strokes(0.0, 0.0);
+  for (TimeSeries& samples : data.samples)
+    for (std::size_t k = 0; k < samples.time_s.size(); ++k)
+      samples.channels[0].values[k] += std::sin(0.63 * static_cast<double>(k));
+  EXPECT_TRUE(find_noise(data, {"position"}).empty());
+  EXPECT_TRUE(data.colour[0][0].coefficients.empty());
+}
+
+// A sensor that hardly shows noise at rest: its quiet pieces are not those in which it counts.
+TEST(Noise, HasNoColourWhereRestsAreQuieterThanTheRest) {
+  Data data = four_strokes(0.5, 0.0);
+  for (TimeSeries& samples : data.samples)
+    for (std::size_t k = 0; k < 1800; ++k) samples.channels[0].values[k] *= 1e-3;
+  EXPECT_TRUE(find_noise(data, {"position"}).empty());
+}
+
 TEST(Noise, ThatIsWhiteStaysWhite) {
   Data data = four_strokes(0.0, 0.0);
   EXPECT_TRUE(find_noise(data, {"position"}).empty());

@@ -97,6 +97,18 @@ TEST(RealPlants, CascadedTanksRunOverAndTheirSensorSaturates) {
   EXPECT_LT(level.rms_after, 0.8 * level.rms_before);
 }
 
+// The whole record as one file, which is split where it is long enough: the same laws as in halves that were cut by hand.
+TEST(RealPlants, CascadedTanksAsOneRecordingRunOverToo) {
+  const std::optional<Recording> whole = recording_of("cascaded_tanks");
+  if (!whole) GTEST_SKIP() << "no shared recordings: cascaded_tanks";
+  const auto found = explain(naive_model("cascaded_tanks"), std::vector{*whole}, {});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->verdict, Verdict::mismatch) << found->summary;
+  EXPECT_NE(find_effect(*found, "tank_overflow", "upper_outlet"), nullptr) << found->summary;
+  EXPECT_NE(find_effect(*found, "sensor_saturation", "sensor:level_voltage"), nullptr) << found->summary;
+  EXPECT_LT(found->holdout.channels.at(0).rms_after, 0.8 * found->holdout.channels.at(0).rms_before);
+}
+
 TEST(RealPlants, OneRecordingAloneProvesNothing) {
   const std::optional<Recording> whole = recording_of("cascaded_tanks");
   if (!whole) GTEST_SKIP() << "no shared recordings: cascaded_tanks";

@@ -97,6 +97,19 @@ TEST(StandardErrors, HoldWhereACourseIsLeft) {
   EXPECT_LT(course.said, 1.2 * course.really);
 }
 
+// What the model misses grossly is held against the recordings, not against a value that is known beforehand.
+TEST(StandardErrors, OfAKnownValueAreNoLargerThanWhatIsKnown) {
+  std::mt19937_64 random(4);
+  std::vector<Eigen::VectorXd> course = draw(random, 100);
+  for (Eigen::VectorXd& one : course) one *= 1e4;
+  FittedModel model = model_with(course);
+  constexpr double kKnown = 0.01;  // in the unknown's own unit of 2 N
+  model.problem.shared[0].prior_std = kKnown;
+  const double said = standard_errors(model)[0];
+  EXPECT_LE(said, 1.001 * 2.0 * kKnown);
+  EXPECT_GT(said, 0.9 * 2.0 * kKnown);
+}
+
 TEST(StandardErrors, AreInfiniteAtABound) {
   std::mt19937_64 random(4);
   const std::vector<double> errors = standard_errors(model_with(draw(random, 1), 0.0));

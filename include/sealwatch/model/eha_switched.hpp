@@ -2,15 +2,18 @@
 // cylinder and an accumulator as tank. Valve state s = +1 joins pump to chamber A and chamber B to the accumulator (the
 // piston extends, +x), -1 the other way round, 0 blocks all ports. Pressures are above ambient.
 //
-//   winding      L_M di/dt = U_supply |duty| - R_M i - Omega_M omega                           i      winding current
-//   [A] shaft        J_M domega/dt = Omega_M i - f_M omega - alpha_P dp - (T_0 + k_T |dp|) tanh(omega/omega_s)   omega
-//   [rad/s]
-//                dtheta/dt = omega,  dp = p_P - p_T                                            theta  shaft angle [rad]
-//   supply       (V_P/b(p_P)) dp_P/dt = alpha_P omega - dp/R_PL - q_P                          p_P    supply line [Pa]
-//   chamber_a    (V_A/b(p_A)) dp_A/dt = q_A - A_A v - q_CL,  V_A = V_0 + V_pipe + A_A x        p_A    chamber A, piston
-//   side [Pa] chamber_b    (V_B/b(p_B)) dp_B/dt = q_B + A_B v + q_CL,  V_B = V_0 + V_pipe + A_B (x_C - x)    p_B
-//   chamber B, rod side [Pa] accumulator  (C_T + V_P/b(p_T)) dp_T/dt = q_T - alpha_P omega + dp/R_PL p_T    accumulator
-//   [Pa] piston       m_C dv/dt = A_A p_A - A_B p_B - f_C v - F_load(v) - F_stop,  dx/dt = v        v, x   [m/s], [m]
+//   winding      L_M di/dt = U_supply |duty| - R_M i - Omega_M omega
+//   shaft        J_M domega/dt = Omega_M i - f_M omega - alpha_P dp - (T_0 + k_T |dp|) tanh(omega/omega_s)
+//                dtheta/dt = omega,  dp = p_P - p_T
+//   supply       (V_P/b(p_P)) dp_P/dt = alpha_P omega - dp/R_PL - q_P
+//   chamber_a    (V_A/b(p_A)) dp_A/dt = q_A - A_A v - q_CL,  V_A = V_0 + V_pipe + A_A x
+//   chamber_b    (V_B/b(p_B)) dp_B/dt = q_B + A_B v + q_CL,  V_B = V_0 + V_pipe + A_B (x_C - x)
+//   accumulator  (C_T + V_P/b(p_T)) dp_T/dt = q_T - alpha_P omega + dp/R_PL
+//   piston       m_C dv/dt = A_A p_A - A_B p_B - f_C v - F_load(v) - F_stop,  dx/dt = v
+//
+// i: winding current [A]; omega, theta: speed and angle of the shaft [rad/s], [rad]; p_P, p_A, p_B, p_T: pressures of
+// the supply line, of chamber A (piston side), of chamber B (rod side) and of the accumulator [Pa]; v, x: speed and
+// position of the piston [m/s], [m].
 //
 // q_P flows from the supply into the joined chamber, q_T from the other one into the accumulator, each through an
 // orifice and laminar pipes in series; b is the bulk modulus of oil with trapped air; C_T the gas compliance while oil

@@ -39,7 +39,8 @@ constexpr double kSmallestP = 1e-300;      // that is told: the tail's own digit
 constexpr double kHeldOutAgrees = 1.5;     // noise-normalised rms of a channel: the noise's own estimate is off by less
 constexpr double kSearchShare = 0.75;      // of the time limit, before what was found is proven and told
 constexpr std::size_t kMostToCarryOver = 6;
-constexpr double kEnoughRows = 8000.0;  // of windows in a gross misfit
+constexpr double kFarOff = 1e4;         // mean square of a hundred times the noise: evidence abounds
+constexpr double kEnoughRows = 8000.0;  // of windows, where it is far off
 constexpr double kEvidenceLeft = 0.1;   // of the evidence against the model, or so much left
 
 // -ln p, to the smallest p that a double holds.
@@ -326,12 +327,12 @@ class Analysis {
     return {};
   }
 
-  // In a gross misfit the model's error decides, and some of the windows show it as well as all.
+  // Far off, the model's error decides, and some of the windows show it as well as all.
   Result<FittedModel> of_fewer_windows(FittedModel model) {
     double rows = 0.0;
     for (const TimeSeries& samples : fit_.samples) rows += static_cast<double>(samples.time_s.size());
     const auto step = static_cast<std::size_t>(rows / kEnoughRows);
-    if (!windowed() || excess(model) <= kGross || step < 2 || deadline_.passed()) return model;
+    if (!windowed() || excess(model) <= kFarOff || step < 2 || deadline_.passed()) return model;
     fit_.window_step = step;
     return fit_model(model.asset, prepared(fit_), nullptr, options_.threads);
   }

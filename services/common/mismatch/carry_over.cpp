@@ -15,10 +15,11 @@ bool Worth::carries_over() const {
 
 std::size_t Worth::least() const { return static_cast<std::size_t>(std::ranges::min_element(of_law) - of_law.begin()); }
 
-CarryOver::CarryOver(const HeldOut& held_out, const Trial& nothing, Without without)
-    : held_out_(held_out), before_(held_out.predictions(nothing)), without_(std::move(without)) {}
+CarryOver::CarryOver(const HeldOut& held_out, Trial nothing, Without without)
+    : held_out_(held_out), nothing_(std::move(nothing)), without_(std::move(without)) {}
 
 Worth CarryOver::of(const Trial& trial) const {
+  if (before_.empty()) before_ = held_out_.predictions(nothing_);
   const Predictions after = held_out_.predictions(trial);
   Worth worth;
   const auto whole = held_out_.gains(before_, after, *trial.model);
@@ -32,13 +33,14 @@ Worth CarryOver::of(const Trial& trial) const {
   return worth;
 }
 
-bool CarryOver::predicts_worse(const Trial& trial, const Trial& best) const {
+bool CarryOver::predicts_as_well(const Trial& trial, const Trial& best) const {
   if (predicted_ != best.model) {
     of_predicted_ = held_out_.predictions(best);
     predicted_ = best.model;
   }
   const auto gains = held_out_.gains(held_out_.predictions(trial), of_predicted_, *best.model);
-  return gains && gain_interval(*gains, dispersion(*best.model), held_out_.options.seed).low > 0.0;
+  return gains && !gains->gain.empty() && gains->not_compared.empty() &&
+         gain_interval(*gains, dispersion(*best.model), held_out_.options.seed).low <= 0.0;
 }
 
 std::vector<Trial> likeliest(const Naming& naming, std::size_t most, std::size_t most_laws) {

@@ -32,16 +32,18 @@ class CarryOver {
   /// An explanation without one of its laws, the others fitted anew.
   using Without = std::function<Trial(const Trial&, std::size_t law)>;
 
-  CarryOver(const HeldOut& held_out, const Trial& nothing, Without without);
+  CarryOver(const HeldOut& held_out, Trial nothing, Without without);
 
   [[nodiscard]] Worth of(const Trial& trial) const;
-  /// Whether beyond doubt `trial` predicts worse than `best`, which is predicted once.
-  [[nodiscard]] bool predicts_worse(const Trial& trial, const Trial& best) const;
+  /// Whether `trial` predicts as well as `best`, which is predicted once; not where it cannot be simulated, or the time
+  /// for it is up.
+  [[nodiscard]] bool predicts_as_well(const Trial& trial, const Trial& best) const;
 
  private:
   HeldOut held_out_;
-  Predictions before_;
+  Trial nothing_;
   Without without_;
+  mutable Predictions before_;                            ///< of `nothing`, once asked for
   mutable std::shared_ptr<const FittedModel> predicted_;  ///< the best that was asked for last
   mutable Predictions of_predicted_;
 };

@@ -126,7 +126,7 @@ std::string stands_behind(double behind) {
 }
 
 // How far each alternative stands behind the best by the criterion. In a gross misfit that is no proof: the nearest
-// laws count as far behind only where recordings that took no part are predicted worse with them.
+// laws do not count as behind where they predict recordings that took no part as well.
 std::vector<double> how_far_behind(const std::vector<Trial>& alternatives, const Trial& best, double phi,
                                    const CarryOver* carry_over) {
   std::vector<double> behind;
@@ -142,7 +142,7 @@ std::vector<double> how_far_behind(const std::vector<Trial>& alternatives, const
     if (std::ranges::any_of(asked, [&](const Effect* one) { return same(*one, effect); })) continue;
     if (asked.size() == kAskedToCarryOver) break;
     asked.push_back(&effect);
-    if (!carry_over->predicts_worse(alternatives[k], best)) behind[k] = 0.0;
+    if (carry_over->predicts_as_well(alternatives[k], best)) behind[k] = 0.0;
   }
   return behind;
 }

@@ -414,7 +414,7 @@ class Analysis {
     const CarryOver kept_aside = carry_over(held_out());
     while (!best_.effects.empty()) {
       const Worth worth = kept_aside.of(best_);
-      if (worth.carries_over() && !worth.of_law.empty()) {
+      if (worth.carries_over()) {
         proven_ = true;
         return note_not_compared({.gain = {}, .not_compared = worth.not_compared});
       }

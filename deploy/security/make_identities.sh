@@ -291,7 +291,7 @@ make_identity() {  # NAME RIGHTS
   [ ! -e "$directory/$name" ] || mv "$directory/$name" "$directory/.$name.old"
   mv "$folder" "$directory/$name"
   rm -rf "$directory/.$name.old"
-  echo "$name: until $(date -u -d "+$days days" +%F), may write: ${writes:-nothing}"
+  echo "$name: until $(date -u -d "+$days days" +%F), may write:${writes:- nothing}"
 }
 
 # The key belongs to who used it before, or to the service's user where systemd's units are installed.

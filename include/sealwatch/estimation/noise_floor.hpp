@@ -20,7 +20,6 @@ namespace sealwatch {
 struct NoiseFloor {
   double standard_deviation = 0.0;  ///< in the channel's unit; 0 when the data cannot tell
   double quantisation_step = 0.0;   ///< in the channel's unit; 0 when none was seen
-  bool fast_signal = false;         ///< third differences see the signal: it has few samples a period
 };
 
 /// Uniform or slightly jittered samples. Fewer than 8 samples, or a constant channel, tell nothing.

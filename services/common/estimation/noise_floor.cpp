@@ -80,10 +80,9 @@ NoiseFloor estimate_noise_floor(std::span<const double> values) {
   const double least = step / std::sqrt(12.0);
   const bool enough = values.size() >= 10 * kHighOrder;
   const double high_order = enough ? std::max(from_high_order(values), least) : from_differences;
-  const bool fast = high_order * kClearly < from_differences;
-  return {.standard_deviation = std::max(fast ? high_order : from_differences, least),
-          .quantisation_step = step,
-          .fast_signal = fast};
+  const bool signal_shows = high_order * kClearly < from_differences;
+  return {.standard_deviation = std::max(signal_shows ? high_order : from_differences, least),
+          .quantisation_step = step};
 }
 
 }  // namespace sealwatch

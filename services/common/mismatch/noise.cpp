@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "sealwatch/estimation/noise_floor.hpp"
 
@@ -115,15 +114,12 @@ Covariances undo_detrending(const Covariances& seen) {
   return covariance;
 }
 
-// Root mean square of the recordings' floors by differences: of one channel, over all recordings. Nothing where the
-// signal is as fast as its noise: what is left of a piece is then the signal.
-std::optional<double> pooled_floor(const Data& data, const std::string& channel) {
+// Root mean square of the recordings' floors by differences: of one channel, over all recordings.
+double pooled_floor(const Data& data, const std::string& channel) {
   double squares = 0.0, count = 0.0;
   for (const TimeSeries& recorded : data.samples)
     if (const Series* series = recorded.find(channel)) {
-      const NoiseFloor floor = estimate_noise_floor(series->values);
-      if (floor.fast_signal) return std::nullopt;
-      squares += std::pow(floor.standard_deviation, 2);
+      squares += std::pow(estimate_noise_floor(series->values).standard_deviation, 2);
       count += 1.0;
     }
   return std::sqrt(squares / std::max(count, 1.0));
@@ -145,8 +141,7 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
   std::vector<std::string> sentences;
   data.colour.assign(data.samples.size(), NoiseColour(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    const std::optional<double> floor = pooled_floor(data, channels[c]);
-    if (!floor) continue;
+    const double floor = pooled_floor(data, channels[c]);
     Covariances covariance{};
     double samples = 0.0;
     for (const TimeSeries& recorded : data.samples)
@@ -155,12 +150,12 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
     if (!(covariance[0] > 0.0) || samples < 4.0 * kPiece) continue;
     covariance = undo_detrending(covariance);
     for (double& one : covariance) one *= static_cast<double>(kPiece) / samples;
-    if (!is_of_all_samples(covariance, *floor)) continue;
+    if (!is_of_all_samples(covariance, floor)) continue;
     const double correlation = covariance[1] / covariance[0];
     if (std::abs(correlation) < std::max(kLeastCorrelation, kSignificant / std::sqrt(samples))) continue;
     const ChannelColour colour = autoregression(covariance);
     // Differences do not see slow noise; how much louder one recording is than another they do.
-    const double growth = std::sqrt(covariance[0]) / *floor;
+    const double growth = std::sqrt(covariance[0]) / floor;
     for (std::size_t k = 0; k < data.samples.size(); ++k) {
       data.colour[k][c] = colour;
       for (Series& series : data.samples[k].channels)

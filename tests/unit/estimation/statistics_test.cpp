@@ -41,11 +41,8 @@ TEST(NoiseFloor, SeesTheNoiseUnderAMovingSignal) {
 // Eight samples a period: third differences show 0.1 of the signal, ten times the noise.
 TEST(NoiseFloor, SeesTheNoiseUnderAFastSignal) {
   std::vector<double> values = white_noise(4000, 0.01, 2);
-  EXPECT_FALSE(estimate_noise_floor(values).fast_signal);
   for (std::size_t k = 0; k < values.size(); ++k) values[k] += std::sin(0.785 * static_cast<double>(k));
-  const NoiseFloor floor = estimate_noise_floor(values);
-  EXPECT_TRUE(floor.fast_signal);
-  EXPECT_NEAR(floor.standard_deviation, 0.01, 0.1 * 0.01);
+  EXPECT_NEAR(estimate_noise_floor(values).standard_deviation, 0.01, 0.1 * 0.01);
 }
 
 TEST(NoiseFloor, IsAtLeastWhatQuantisationMakes) {

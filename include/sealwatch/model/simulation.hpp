@@ -129,8 +129,8 @@ class PlantSimulation {
                                                      const SimulationOptions& options = {},
                                                      InjectedColumns* injected = nullptr) const = 0;
 
-  /// d values / d strength of a law of the recording that is not in force (is_of_recording), samples x channels, by
-  /// central differences. `input`: index among inputs(); a clock has none.
+  /// d values / d strength of a law of the recording, or of an input's sensor, that is not in force; samples x channels,
+  /// by central differences. `input`: index among inputs(); a clock has none.
   [[nodiscard]] virtual Result<RowMatrix> recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
                                                            const SimulationOptions& options = {}) const = 0;
 };

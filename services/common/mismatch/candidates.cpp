@@ -100,6 +100,12 @@ void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std
   }
 }
 
+// What the plant describes as measured, and drives this simulation: its sensor is asked, not the record.
+bool is_measured(const PlantSimulation& simulation, const std::string& input) {
+  const ChannelDescription* channel = simulation.plant().find_channel(input);
+  return channel != nullptr && !channel->input;
+}
+
 // An input that never changes shows nothing of itself.
 void add_of_recording(const Law& law, const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
                       std::vector<Candidate>& candidates) {
@@ -116,7 +122,9 @@ void add_of_recording(const Law& law, const PlantSimulation& simulation, const s
   for (std::size_t k = 0; k < simulation.inputs().size(); ++k) {
     const auto [least, largest] = simulation.input_range(k);
     const std::string& input = simulation.inputs()[k];
-    if (largest > least) add("input:" + input, input, is_bias(law.kind) ? bias_scale(law, least, largest) : 1.0);
+    if (largest > least && is_measured(simulation, input) == is_sensor(law.kind))
+      add((is_sensor(law.kind) ? "sensor:" : "input:") + input, input,
+          is_bias(law.kind) ? bias_scale(law, least, largest) : 1.0);
   }
 }
 
@@ -127,9 +135,10 @@ std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const 
   std::vector<Candidate> candidates;
   for (const Law& law : all_laws()) {
     if (law.closed_form != closed_forms || !is_of_plant(law, simulation.plant().name)) continue;
-    if (is_of_recording(law.kind))
+    if (is_of_recording(law.kind) || (is_sensor(law.kind) && law.kind != SiteKind::sensor_saturation))
       add_of_recording(law, simulation, present, candidates);
-    else if (is_sensor(law.kind))
+    if (is_of_recording(law.kind)) continue;
+    if (is_sensor(law.kind))
       add_at_sensors(law, simulation, present, candidates);
     else
       add_at_sites(law, simulation, present, candidates);

@@ -119,7 +119,8 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
     const PassColumn& column = columns[static_cast<std::size_t>(k)];
     const Candidate& candidate = candidates[column.candidate];
     if (!candidate.sites.empty()) continue;
-    if (is_of_recording(candidate.law->kind)) {
+    const auto inputs = part.simulation->inputs();
+    if (is_of_recording(candidate.law->kind) || std::ranges::find(inputs, candidate.channel) != inputs.end()) {
       const RowMatrix change =
           recording_column(part, values_at(model.problem, recording, shared, own), candidate, options);
       for (Eigen::Index row = 0; row < samples * channels; ++row)

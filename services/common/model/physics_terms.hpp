@@ -31,7 +31,7 @@ struct SensorTerm {
   std::size_t parameter = 0;  ///< the law's first, in ModelValues::parameters
 };
 
-/// A law of the recording: of an input, or of the clock.
+/// A law of the recording: of an input, of the clock, or of the sensor of a channel that drives the simulation.
 struct RecordingTerm {
   SiteKind kind = SiteKind::input_gain;
   std::string input;          ///< channel; "" of the clock

@@ -5,8 +5,9 @@
 // value.
 //
 // What acted on the plant may differ from what was recorded:
-//   u(t) = (1 + g) u_recorded(t - tau) + b,   t = t_0 + (t_recorded - t_0) / (1 + c)
-//   g gain [1], b bias [channel], tau delay [s] of one channel, c by how much the recording's clock is fast [1]
+//   u(t) = (1 + g) (u_recorded(t - tau) - z) + b,   t = t_0 + (t_recorded - t_0) / (1 + c)
+//   g gain [1], b bias [channel], tau delay [s], z zero of the reading [channel] of one channel, c by how much the
+//   recording's clock is fast [1]
 #pragma once
 
 #include <algorithm>
@@ -27,7 +28,7 @@ struct InputChannel {
 /// By what the recording differs from what acted on the plant.
 struct RecordingErrors {
   struct Input {
-    double gain = 0.0, bias = 0.0, delay_s = 0.0;
+    double gain = 0.0, bias = 0.0, delay_s = 0.0, zero = 0.0;
   };
   std::vector<Input> inputs;
   double clock_rate = 0.0;
@@ -50,8 +51,8 @@ class RecordedInput {
     for (double& time : times) time = times_.front() + (time - times_.front()) / rate;
     std::vector<InputChannel> channels = channels_;
     for (std::size_t k = 0; k < channels.size(); ++k) {
-      const auto [gain, bias, delay_s] = errors.inputs[k];
-      for (double& value : channels[k].values) value = (1.0 + gain) * value + bias;
+      const auto [gain, bias, delay_s, zero] = errors.inputs[k];
+      for (double& value : channels[k].values) value = (1.0 + gain) * (value - zero) + bias;
       for (double& slope : channels[k].slopes) slope *= (1.0 + gain) * rate;
       channels[k].delay_s = delay_s;
     }

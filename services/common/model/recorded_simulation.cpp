@@ -8,11 +8,20 @@
 namespace sealwatch {
 namespace {
 
-double& error_in(RecordingErrors& errors, SiteKind kind, std::size_t input) {
-  if (kind == SiteKind::clock_rate) return errors.clock_rate;
-  RecordingErrors::Input& of_input = errors.inputs[input];
-  if (kind == SiteKind::input_gain) return of_input.gain;
-  return kind == SiteKind::input_bias ? of_input.bias : of_input.delay_s;
+/// Adds a law of that size. A channel that drives the simulation may be measured itself (the flow of `eha`): its
+/// sensor's errors are taken off it, a lag as the delay that it nearly is.
+void add_error(RecordingErrors& errors, SiteKind kind, std::size_t input, double size) {
+  if (kind == SiteKind::clock_rate) {
+    errors.clock_rate += size;
+    return;
+  }
+  RecordingErrors::Input& acted = errors.inputs[input];
+  if (kind == SiteKind::input_gain) acted.gain += size;
+  if (kind == SiteKind::input_bias) acted.bias += size;
+  if (kind == SiteKind::input_delay) acted.delay_s += size;
+  if (kind == SiteKind::sensor_gain) acted.gain += 1.0 / (1.0 + size) - 1.0;
+  if (kind == SiteKind::sensor_bias) acted.zero += size;
+  if (kind == SiteKind::sensor_lag) acted.delay_s -= size;
 }
 
 /// Over what a law of the recording is differentiated: far above what the integrator errs by at kTight, and small
@@ -20,8 +29,8 @@ double& error_in(RecordingErrors& errors, SiteKind kind, std::size_t input) {
 double difference_step(const RecordedInput& recorded, SiteKind kind, std::size_t input) {
   constexpr double kGain = 2e-3, kOfRange = 2e-3, kOfInterval = 0.2, kRate = 2e-4;
   if (kind == SiteKind::clock_rate) return kRate;
-  if (kind == SiteKind::input_gain) return kGain;
-  if (kind == SiteKind::input_delay)
+  if (kind == SiteKind::input_gain || kind == SiteKind::sensor_gain) return kGain;
+  if (kind == SiteKind::input_delay || kind == SiteKind::sensor_lag)
     return kOfInterval * (recorded.times().back() - recorded.times().front()) /
            static_cast<double>(recorded.times().size() - 1);
   const auto [least, largest] = std::ranges::minmax(recorded.channels()[input].values);
@@ -36,16 +45,21 @@ constexpr double kTight = 1e-6;
 RecordedSimulation::RecordedSimulation(const PlantDescription& plant, PhysicsTerms terms,
                                        std::vector<std::string> input_names, RecordedInput input)
     : plant_(plant), terms_(std::move(terms)), input_names_(std::move(input_names)), input_(std::move(input)) {
-  // A recording may be driven by another channel than the one whose law the asset has.
-  std::erase_if(terms_.recording, [&](const RecordingTerm& term) {
-    return !term.input.empty() && std::ranges::find(input_names_, term.input) == input_names_.end();
-  });
+  // A recording may be driven by another channel than the one whose law the asset has, or by one that is measured.
+  const auto drives = [&](const std::string& channel) {
+    return std::ranges::find(input_names_, channel) != input_names_.end();
+  };
+  std::erase_if(terms_.recording,
+                [&](const RecordingTerm& term) { return !term.input.empty() && !drives(term.input); });
+  for (const SensorTerm& term : terms_.sensors)
+    if (drives(term.channel) && term.kind != SiteKind::sensor_saturation)
+      terms_.recording.push_back({term.kind, term.channel, term.parameter});
 }
 
 RecordingErrors RecordedSimulation::errors_at(const ModelValues& values) const {
   RecordingErrors errors{.inputs = std::vector<RecordingErrors::Input>(input_names_.size())};
   for (const RecordingTerm& term : terms_.recording)
-    error_in(errors, term.kind, input_index(term)) += values.parameters[term.parameter];
+    add_error(errors, term.kind, input_index(term), values.parameters[term.parameter]);
   return errors;
 }
 
@@ -65,7 +79,7 @@ Result<SimulatedOutputs> RecordedSimulation::run(const ModelValues& values, std:
   for (std::size_t k = 0; outputs && k < free.size(); ++k)
     for (const RecordingTerm& term : terms_.recording) {
       if (free[k].kind != FreeQuantity::Kind::parameter || free[k].index != term.parameter) continue;
-      const Result<RowMatrix> column = recording_column(values, term.kind, input_index(term), options);
+      const Result<RowMatrix> column = difference(values, term.kind, input_index(term), term.parameter, options);
       if (!column) return fail(column.error());
       outputs->sensitivities.col(static_cast<Eigen::Index>(k)) = column->reshaped<Eigen::RowMajor>();
     }
@@ -74,13 +88,22 @@ Result<SimulatedOutputs> RecordedSimulation::run(const ModelValues& values, std:
 
 Result<RowMatrix> RecordedSimulation::recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
                                                        const SimulationOptions& options) const {
+  return difference(values, kind, input, values.parameters.size(), options);
+}
+
+// `parameter`: the law's, where it is in force; else beyond the last.
+Result<RowMatrix> RecordedSimulation::difference(const ModelValues& values, SiteKind kind, std::size_t input,
+                                                 std::size_t parameter, const SimulationOptions& options) const {
   SimulationOptions tight = options;
   tight.relative_tolerance = std::min(options.relative_tolerance, kTight);
   const double step = difference_step(input_, kind, input);
   std::array<RowMatrix, 2> sides;
   for (const std::size_t side : {0, 1}) {
-    RecordingErrors errors = errors_at(values);
-    error_in(errors, kind, input) += side == 0 ? -step : step;
+    ModelValues changed = values;
+    const double by = side == 0 ? -step : step;
+    if (parameter < changed.parameters.size()) changed.parameters[parameter] += by;
+    RecordingErrors errors = errors_at(changed);
+    if (parameter >= changed.parameters.size()) add_error(errors, kind, input, by);
     auto outputs = run_driven_by(input_.without(errors), values, {}, tight, nullptr);
     if (!outputs) return fail(outputs.error());
     sides[side] = std::move(outputs->values);

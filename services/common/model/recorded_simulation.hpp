@@ -59,6 +59,8 @@ class RecordedSimulation : public PlantSimulation {
  private:
   [[nodiscard]] RecordingErrors errors_at(const ModelValues& values) const;
   [[nodiscard]] std::size_t input_index(const RecordingTerm& term) const;
+  [[nodiscard]] Result<RowMatrix> difference(const ModelValues& values, SiteKind kind, std::size_t input,
+                                             std::size_t parameter, const SimulationOptions& options) const;
 
   const PlantDescription& plant_;
   PhysicsTerms terms_;

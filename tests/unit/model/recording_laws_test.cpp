@@ -128,6 +128,31 @@ TEST(RecordingLaws, SensitivitiesAreThoseOfWholeSimulations) {
   }
 }
 
+/// The cylinder's circuit is driven by the measured flow: its sensor's errors are taken off it.
+TEST(RecordingLaws, ASensorThatDrivesIsPutRight) {
+  const AssetConfig asset = with_error(nominal_asset("eha"), "clock_rate", "clock", "c", 0.0);
+  TimeSeries acted;
+  for (int row = 0; row < 800; ++row) acted.time_s.push_back(0.01 * row);
+  for (const char* name : {"flow", "pressure_a", "velocity", "position"}) {
+    Series series{name, (*find_plant("eha"))->find_channel(name)->unit, 0.0, {}};
+    for (const double t : acted.time_s)
+      series.values.push_back(series.name == "flow"
+                                  ? 8e-6 * std::tanh(4.0 * (t - 1.0)) - 8e-6 * std::tanh(4.0 * (t - 5.0))
+                              : series.name == "pressure_a" ? 1e7
+                              : series.name == "position"   ? 0.03
+                                                            : 0.0);
+    acted.channels.push_back(std::move(series));
+  }
+  TimeSeries recorded = acted;
+  for (double& flow : values_of(recorded, "flow")) flow = 1.03 * flow + 1e-7;
+  const AssetConfig known =
+      with_error(with_error(asset, "sensor_gain", "sensor:flow", "g", 0.03), "sensor_bias", "sensor:flow", "b", 1e-7);
+  const auto simulation = *PlantSimulation::create(known, recorded);
+  ASSERT_NE(std::ranges::find(simulation->inputs(), "flow"), simulation->inputs().end());
+  EXPECT_LT(worst_difference(outputs_of(known, recorded), outputs_of(asset, acted)), kSame);
+  EXPECT_GT(worst_difference(outputs_of(asset, recorded), outputs_of(asset, acted)), 100.0 * kSame) << "it matters";
+}
+
 TEST(RecordingLaws, AnElementThatIsNoneIsAnError) {
   const AssetConfig asset = nominal_asset("eha");
   const TimeSeries recorded = standard_pst(asset, 100.0);

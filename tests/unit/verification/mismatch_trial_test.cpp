@@ -250,6 +250,31 @@ TEST(MismatchTrial, ASmallEffectThatLeavesATenthOfTheEvidenceIsExplained) {
   EXPECT_EQ(set.answer.found[0].element, "piston");
 }
 
+// A clock that was fast by 1.5 % had been named a wrong inertia.
+TEST(MismatchTrial, AFastClockIsNamed) {
+  const MismatchRecord set = answered(TrialStratum::recording, 15);
+  ASSERT_EQ(set.error, "");
+  ASSERT_EQ(set.hidden[0].id, "clock_rate") << set.label;
+  ASSERT_EQ(set.answer.verdict, "mismatch");
+  ASSERT_EQ(set.answer.found.size(), 1U);
+  EXPECT_EQ(set.answer.found[0].id, "clock_rate");
+  EXPECT_EQ(set.answer.found[0].element, "clock");
+  EXPECT_NEAR(set.answer.found[0].value, set.hidden[0].value, 0.05 * std::abs(set.hidden[0].value));
+  EXPECT_LT(set.answer.held_after, 1.05);
+}
+
+// The driver acts 5 ms before what was recorded of it.
+TEST(MismatchTrial, AnEarlyInputIsNamed) {
+  const MismatchRecord set = answered(TrialStratum::recording, 10);
+  ASSERT_EQ(set.error, "");
+  ASSERT_EQ(set.hidden[0].id, "input_delay") << set.label;
+  ASSERT_EQ(set.answer.verdict, "mismatch");
+  ASSERT_EQ(set.answer.found.size(), 1U);
+  EXPECT_EQ(set.answer.found[0].id, "input_delay");
+  EXPECT_EQ(set.answer.found[0].element, "input:motor_voltage");
+  EXPECT_NEAR(set.answer.found[0].value, set.hidden[0].value, 0.1 * std::abs(set.hidden[0].value));
+}
+
 // Nothing is hidden; what the voltage does between two samples looked like a delay of the driver.
 TEST(MismatchTrial, TimingBetweenTwoSamplesIsNoDelay) {
   const MismatchRecord set = answered(TrialStratum::null, 53);

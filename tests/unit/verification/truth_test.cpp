@@ -135,6 +135,31 @@ TEST(Trials, AWrongValueIsThePlantsAndNotTheDatasheets) {
               1e-12);
 }
 
+TEST(Trials, ARecordMayErrOfWhatActed) {
+  const auto first_of = [](TrialPlan plan, std::vector<SensorFault> faults) {
+    plan.faults = std::move(faults);
+    plan.noise.clear();
+    plan.jitter = 0.0;
+    plan.fit.resize(1);
+    plan.holdout.clear();
+    return record_trial(plan)->fit[0].samples;
+  };
+  const TrialPlan plan = plan_trial(TrialStratum::null, 11);
+  const TimeSeries acted = first_of(plan, {});
+  const TimeSeries recorded =
+      first_of(plan, {{"input_gain", "motor_voltage", 0.02}, {"input_bias", "motor_voltage", 0.5}});
+  const TimeSeries late = first_of(plan, {{"input_delay", "motor_voltage", 0.01}});
+  const TimeSeries fast = first_of(plan, {{"clock_rate", "", 0.01}});
+  const std::vector<double>& volts = acted.find("motor_voltage")->values;
+  for (std::size_t row = 10; row + 10 < volts.size(); ++row) {
+    EXPECT_NEAR(1.02 * recorded.find("motor_voltage")->values[row] + 0.5, volts[row], 1e-9) << row;
+    EXPECT_NEAR(late.find("motor_voltage")->values[row], volts[row + 1], 1e-3) << row << ": it acts a sample later";
+    EXPECT_DOUBLE_EQ(late.find("position")->values[row], acted.find("position")->values[row]);
+    EXPECT_NEAR(fast.time_s[row], 1.01 * acted.time_s[row], 1e-12);
+  }
+  EXPECT_EQ(fast.find("position")->values, acted.find("position")->values);
+}
+
 TEST(Trials, ARecordingHasItsNoiseAndItsFault) {
   TrialPlan plan = plan_trial(TrialStratum::null, 11);
   plan.fit.resize(1);

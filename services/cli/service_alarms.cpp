@@ -16,13 +16,17 @@ struct Row {
   std::string_view meaning;
 };
 /// Failure: something is not concluded from. Function check: what is concluded may not be what is meant for use. Out of
-/// specification: something goes on that the configuration does not foresee.
+/// specification: something goes on that the configuration does not foresee. Maintenance required: all is still seen,
+/// and will not be for ever.
 constexpr std::array kTable = {
     Row{kNoHeartbeat, Ne107::failure, "is not heard"},
     Row{"set_aside", Ne107::failure, "set aside after two failures"},
     Row{"rival", Ne107::out_of_specification, "not alone"},
     Row{"clock_step", Ne107::out_of_specification, "clock was set"},
+    Row{"clock_unsynchronised", Ne107::maintenance_required, "clock is not synchronised"},
+    Row{"sensor_lost", Ne107::failure, "sensor lost"},
     Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},
+    Row{"refused_right", Ne107::out_of_specification, "somebody was refused"},
 };
 
 const Row* row_of(std::string_view kind) {
@@ -58,6 +62,11 @@ std::vector<HeardAlarm> alarms_of(const std::vector<ServicesHeard::Service>& ser
       alarms.back().untold = service.last.alarm_count - service.last.alarms.size();
   }
   return alarms;
+}
+
+bool is_blind(const std::vector<HeardAlarm>& alarms) {
+  return std::ranges::any_of(
+      alarms, [](const HeardAlarm& one) { return category_of(one.alarm.kind) != Ne107::maintenance_required; });
 }
 
 std::string one_line(const HeardAlarm& heard) {

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
 #include "services/common/runtime/identity.hpp"
@@ -32,6 +31,7 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       clock_(clock),
       options_(std::move(options)),
       admission_(options_.commissioned),
+      strangers_(options_.strangers),
       lanes_(
           make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
           [&bus] { bus.wake(); }, options_.lanes) {}
@@ -70,6 +70,7 @@ Status LayerRunner::restore_past() {
   std::map<Topic, std::uint64_t> sequence;  // outputs of a topic are numbered from 1 without a gap
   Status outputs = journal_.for_each_output([&](const Message& output) {
     lanes_.restore(output);
+    note_alarms_of(output);
     admission_.note(output);
     latest_.concluded(output, ++sequence[topic_of(output)]);
     replaying_[asset_of(output)] = header_of(output).replay;
@@ -258,6 +259,7 @@ Status LayerRunner::keep(Conclusion conclusion) {
     if (!kept) return fail(kept.error());
     if (!*kept) continue;
     latest_.concluded(**kept, header_of(**kept).stream_sequence);
+    note_alarms_of(**kept);
     outbox_.add(std::move(**kept));
   }
   for (const std::string& id : conclusion.consumed) {
@@ -274,22 +276,8 @@ void LayerRunner::give_memory_back() {
   holds_memory_ = false;
 }
 
-void LayerRunner::watch_clock() {
-  const std::string kind = "clock_step";
-  if (!clock_watch_.look(clock_.now(), steady_clock::now().time_since_epoch())) return;
-  alarms_.clear(kind, {});
-  const auto step_s = clock_watch_.step_s();
-  if (!step_s) return log_event(LogLevel::info, "the clock goes on as it did", {});
-  const std::string text = "this machine's clock was set " + std::string(*step_s > 0.0 ? "forward" : "back") + " by " +
-                           std::to_string(std::llround(std::abs(*step_s))) +
-                           " s, or the machine slept; check the time source: tests are dated by this clock";
-  alarms_.raise(
-      {.kind = kind, .asset_id = {}, .subject = {}, .pst_id = {}, .text = text, .since_ns = clock_.now().nanoseconds});
-  log_event(LogLevel::error, "clock was set", {{"error", text}});
-}
-
 Status LayerRunner::let_time_pass() {
-  if (options_.watches_clock) watch_clock();
+  look_for_trouble();
   const auto at_rest = [this](const std::string& asset_id) { return lanes_.at_rest(asset_id); };
   if (options_.local_inputs)
     for (Message& message : options_.local_inputs(at_rest)) ready_.push_back(std::move(message));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sealwatch/message/retraction.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -17,10 +19,14 @@ std::string words_about(const StateReport& report, const std::string& channel) {
 
 std::optional<StandingAlarms> LostSensors::look(const Message& output) {
   const auto* report = std::get_if<StateReport>(&output);
-  if (report == nullptr || report->header.pst_id.empty()) return std::nullopt;
+  if (report == nullptr) return std::nullopt;
+  const auto& sources = report->header.source_ids;
+  const bool answers_retraction =
+      report->header.pst_id.empty() && !sources.empty() && is_retraction_id(sources.front());
+  if (report->header.pst_id.empty() && !answers_retraction) return std::nullopt;
   if (report->header.event_time_known) {
     std::int64_t& newest = newest_ns_.try_emplace(report->asset_id, report->header.event_time_ns).first->second;
-    if (report->header.event_time_ns < newest) return std::nullopt;
+    if (report->header.event_time_ns < newest && !answers_retraction) return std::nullopt;
     newest = report->header.event_time_ns;
   }
   StandingAlarms alarms{.kind = "sensor_lost", .asset_id = report->asset_id, .standing = {}};

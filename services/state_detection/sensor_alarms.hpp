@@ -14,7 +14,8 @@ namespace sealwatch {
 /// Looks at the layer's outputs in the order in which they were concluded.
 class LostSensors {
  public:
-  /// Nothing where the output says nothing about them: no test, or an older one than was seen.
+  /// Nothing where the output says nothing about them: no test, or an older one than was seen. After a retraction what is
+  /// said of the last test that counts holds.
   [[nodiscard]] std::optional<StandingAlarms> look(const Message& output);
 
  private:

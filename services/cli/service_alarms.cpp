@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sealwatch/core/time.hpp"
+#include "sealwatch/core/visible_text.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -25,6 +26,7 @@ constexpr std::array kTable = {
     Row{"clock_step", Ne107::out_of_specification, "clock was set"},
     Row{"clock_unsynchronised", Ne107::maintenance_required, "clock is not synchronised"},
     Row{"sensor_lost", Ne107::failure, "sensor lost"},
+    Row{"awaits_confirmation", Ne107::maintenance_required, "an act waits for a second person"},
     Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},
     Row{"refused_right", Ne107::out_of_specification, "somebody was refused"},
 };
@@ -78,6 +80,8 @@ std::string one_line(const HeardAlarm& heard) {
   if (alarm.since_ns != 0) line += " since " + format_utc({alarm.since_ns});
   line += ": " + (alarm.subject.empty() ? "" : alarm.subject + ": ") + alarm.text;
   if (alarm.kind == "set_aside") line += " (sealwatch quarantine retry " + alarm.subject + " --by NAME)";
+  if (alarm.kind == "awaits_confirmation")
+    line += " (sealwatch confirm " + shell_word(alarm.asset_id) + " " + shell_word(alarm.subject) + " --by NAME)";
   if (heard.untold > 0) line += "; and " + std::to_string(heard.untold) + " more: sealwatch quarantine list";
   return line;
 }

@@ -50,6 +50,7 @@ Status LayerRunner::start() {
   if (Status status = lanes_.prepare(); !status) return status;
   for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);
   if (Status status = restore_quarantine(); !status) return status;
+  if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
   if (Status status = publish_latest(); !status) return status;
   started_ = steady_clock::now();
@@ -195,19 +196,22 @@ Status LayerRunner::take(Message message) {
     return {};
   }
   header_of(message).message_id = **id;
-  InputState state = is_set_aside(message) ? InputState::set_aside : InputState::open;
-  if (const auto refused = admission_.refusal(message, clock_.now())) {
+  auto refused = admission_.refusal(message, clock_.now());
+  if (!refused) refused = refusal_of_confirmation(message);
+  if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
     if (topic_of(message) == Topic::raw_samples) return {};
-    state = InputState::consumed;
   }
+  const InputState state = note_act(message, refused, is_set_aside(message) ? InputState::set_aside : InputState::open);
   const std::string asset_id = asset_of(message);
   taken_ids_[**id] = taken_.size();
   if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;
   const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
   taken_.push_back({input, stream, state});
+  if (state == InputState::awaiting) await(input);
+  if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
   admission_.note(*input);
   replaying_[asset_id] = header_of(*input).replay;
@@ -239,6 +243,7 @@ Status LayerRunner::store_batch() {
         taken_[taken->second].state = InputState::consumed;
   for (const Taken& one : taken_)
     if (Status status = journal_.add_input(*one.message, one.stream, clock_.now(), one.state); !status) return status;
+  if (Status status = record_acts(); !status) return status;
   for (const auto& [stream, sequence] : uncommitted_)
     if (Status status = journal_.set_position({stream.first, stream.second, sequence}); !status) return status;
   for (LaneResult& result : results_)

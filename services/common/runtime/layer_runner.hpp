@@ -64,6 +64,7 @@ struct RunnerOptions {
   bool watches_clock = false;                        ///< that of this machine, by which tests are dated
   /// Whether that clock follows a time source; nothing where it cannot be asked. Asked about once a second.
   std::function<std::optional<bool>()> clock_is_synchronised = {};
+  bool acts_confirmed_by_second = false;  ///< see message/confirmation.hpp
   StrangerWatch::Options strangers = {};
   std::chrono::milliseconds strangers_stand{3'600'000};  ///< how long an alarm of who is heard no more stands
   /// What the bus has refused to others since the last call, in words; nothing when it was nothing.
@@ -132,6 +133,18 @@ class LayerRunner {
   void note_alarms_of(const Message& output);
   void look_for_trouble();
 
+  // What people say (layer_runner_acts.cpp).
+  [[nodiscard]] Status restore_awaiting();
+  void await(std::shared_ptr<const Message> act);
+  [[nodiscard]] std::optional<std::string> refusal_of_confirmation(const Message& message) const;
+  [[nodiscard]] bool waits_for_second(const Message& message) const;
+  /// Writes down who said it, and what becomes of it: `state` for what no person said.
+  [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused,
+                                    InputState state);
+  /// Gives the layer what this confirms.
+  void confirm(const Message& message);
+  [[nodiscard]] Status record_acts();
+
   // What is set aside (layer_runner_quarantine.cpp).
   [[nodiscard]] Status restore_quarantine();
   [[nodiscard]] bool is_set_aside(const Message& message) const;
@@ -156,7 +169,10 @@ class LayerRunner {
   std::map<std::string, std::size_t> taken_ids_;
   std::vector<Message> renumbered_;  ///< known inputs that came under another number
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
-  std::vector<LaneResult> results_;                                       ///< not yet in the journal
+  std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
+  std::vector<std::string> confirmed_;  ///< ids of those whose wait is over, of this batch
+  std::vector<OperatorAct> acts_;       ///< of the running batch
+  std::vector<LaneResult> results_;     ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch

@@ -1,5 +1,6 @@
 // What is set aside (journal.hpp): inputs in state set_aside, and why, in table quarantine.
 #include "services/common/message/json.hpp"
+#include "services/common/store/audit_rows.hpp"
 #include "services/common/store/database.hpp"
 
 namespace sealwatch {
@@ -104,6 +105,44 @@ Status Journal::release(const SetAside& message) {
     const long long moved = move(database_->sql, message, InputState::set_aside, InputState::open);
     database_->open_inputs += static_cast<std::uint64_t>(moved);
     ++database_->batch_rows;
+  });
+}
+
+Result<std::vector<Message>> Journal::awaiting() {
+  auto ids = database_->guard("looking for acts that wait", [&] {
+    std::vector<std::string> found;
+    std::string id;
+    soci::statement statement =
+        (database_->sql.prepare << "SELECT message_id FROM inputs WHERE consumed = 3 ORDER BY receipt", into(id));
+    statement.execute();
+    while (statement.fetch()) found.push_back(id);
+    return found;
+  });
+  if (!ids) return fail(ids.error());
+  std::vector<Message> messages;
+  for (const std::string& id : *ids) {
+    auto message = input(id);
+    if (!message) return fail(message.error());
+    if (*message) messages.push_back(std::move(**message));
+  }
+  return messages;
+}
+
+Status Journal::open_awaiting(const std::string& message_id) {
+  return database_->guard("opening what waited", [&] {
+    soci::statement statement = (database_->sql.prepare << "UPDATE inputs SET consumed = 0 WHERE consumed = 3 AND"
+                                                           " message_id = :id",
+                                 use(message_id, "id"));
+    statement.execute(true);
+    database_->open_inputs += static_cast<std::uint64_t>(statement.get_affected_rows());
+    ++database_->batch_rows;
+  });
+}
+
+Result<AuditEntry> Journal::record(const OperatorAct& act) {
+  return database_->guard("recording an act", [&] {
+    ++database_->batch_rows;
+    return append_act(database_->sql, database_->service, act);
   });
 }
 

@@ -29,6 +29,8 @@ Result<BenchPhysics> BenchPhysics::create(const AssetConfig& asset, const PlantD
         {.channel = term.channel,
          .kind = term.kind,
          .parameters = numbers(term.parameter, term.kind == SiteKind::sensor_saturation ? 2U : 1U)});
+  for (const RecordingTerm& term : resolved->recording)
+    physics.recording_.push_back({.channel = term.input, .kind = term.kind, .parameters = numbers(term.parameter, 1U)});
   return physics;
 }
 
@@ -66,6 +68,18 @@ SensorError BenchPhysics::error_of(const std::string& channel) const {
       error.cut = term.parameters[0];
       error.end = term.parameters[1];
     }
+  }
+  return error;
+}
+
+RecordError BenchPhysics::record_error_of(const std::string& channel) const {
+  RecordError error;
+  for (const SensorTerm& term : recording_) {
+    if (term.kind == SiteKind::clock_rate) error.clock_rate = term.parameters[0];
+    if (term.channel != channel) continue;
+    if (term.kind == SiteKind::input_gain) error.gain = term.parameters[0];
+    if (term.kind == SiteKind::input_bias) error.bias = term.parameters[0];
+    if (term.kind == SiteKind::input_delay) error.delay_s = term.parameters[0];
   }
   return error;
 }

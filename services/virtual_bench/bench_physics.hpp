@@ -25,6 +25,15 @@ struct SensorError {
   double cut = 0.0, end = 0.0;
 };
 
+/// How a recording errs of what acted on the actuator:  u(t) = (1 + gain) u_recorded(t - delay) + bias, and a clock
+/// that is fast by clock_rate.
+struct RecordError {
+  double gain = 0.0;
+  double bias = 0.0;  ///< channel's unit
+  double delay_s = 0.0;
+  double clock_rate = 0.0;
+};
+
 class BenchPhysics {
  public:
   using Added = std::array<double, Eha::kSites.size()>;
@@ -43,6 +52,8 @@ class BenchPhysics {
   [[nodiscard]] Added added(const Eha::State<double>& y, const Eha::Input& input, const EhaParameters<double>& p,
                             const double* hidden, double* rates) const;
   [[nodiscard]] SensorError error_of(const std::string& channel) const;
+  /// Of a channel that is recorded as an input, and of the clock.
+  [[nodiscard]] RecordError record_error_of(const std::string& channel) const;
 
  private:
   struct Term {
@@ -61,7 +72,7 @@ class BenchPhysics {
                                           const Added& added);
 
   std::vector<Term> terms_;
-  std::vector<SensorTerm> sensors_;
+  std::vector<SensorTerm> sensors_, recording_;  ///< the clock's channel is ""
   std::vector<double> scales_;
   std::vector<bool> settled_;
 };

@@ -1,5 +1,6 @@
 #include "services/virtual_bench/simulate_test.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -83,6 +84,21 @@ std::vector<double> sample_times(double duration_s, double rate_Hz) {
   return times;
 }
 
+/// A channel as it was recorded of what acted: values at `delay_s` later, linear between the samples.
+std::vector<double> recorded_of(const std::vector<double>& acted, const std::vector<double>& time_s,
+                                const RecordError& error) {
+  std::vector<double> recorded;
+  for (const double time : time_s) {
+    const double at = std::clamp(time + error.delay_s, time_s.front(), time_s.back());
+    const auto after =
+        std::clamp<std::ptrdiff_t>(std::ranges::lower_bound(time_s, at) - time_s.begin(), 1, std::ssize(time_s) - 1);
+    const auto k = static_cast<std::size_t>(after);
+    const double share = (at - time_s[k - 1]) / (time_s[k] - time_s[k - 1]);
+    recorded.push_back((std::lerp(acted[k - 1], acted[k], share) - error.bias) / (1.0 + error.gain));
+  }
+  return recorded;
+}
+
 }  // namespace
 
 Result<Recording> simulate_test(const AssetConfig& asset, const Profile& profile, const TestConditions& conditions,
@@ -109,8 +125,12 @@ Result<Recording> simulate_test(const AssetConfig& asset, const Profile& profile
   recording.samples.time_s = sample_times(profile.duration_s(), setting.sample_rate_Hz);
   Result<std::vector<std::vector<double>>> values = integrate(loop, profile, recording.samples.time_s);
   if (!values) return fail(values.error());
-  for (std::size_t k = 0; k < loop.sensors.size(); ++k)
-    recording.samples.channels.push_back(measure(loop.sensors[k], std::move((*values)[k]), setting.seed));
+  for (std::size_t k = 0; k < loop.sensors.size(); ++k) {
+    const RecordError error = loop.physics.record_error_of(loop.sensors[k].channel);
+    recording.samples.channels.push_back(
+        measure(loop.sensors[k], recorded_of((*values)[k], recording.samples.time_s, error), setting.seed));
+  }
+  for (double& time : recording.samples.time_s) time *= 1.0 + loop.physics.record_error_of({}).clock_rate;
   return recording;
 }
 

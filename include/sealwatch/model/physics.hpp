@@ -45,12 +45,18 @@ namespace sealwatch {
 ///   tank_flow        V/s        level                                      (of the tank that the flow leaves)
 ///   own              plant's    the plant's (a balance of none of these kinds, for laws of the plant's own)
 ///   sensor_*         channel    the simulated channel
+///   input_*          channel    the recorded input
+///   clock_rate       1          none
 SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_slip, line_drop, valve_crack, outflow,
                compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, own, sensor_bias,
-               sensor_gain, sensor_lag, sensor_saturation)
+               sensor_gain, sensor_lag, sensor_saturation, input_gain, input_bias, input_delay, clock_rate)
 
-/// Laws of one measurement, which the simulation applies itself.
-[[nodiscard]] constexpr bool is_sensor(SiteKind kind) { return kind >= SiteKind::sensor_bias; }
+/// Laws of one measurement, which the simulation applies itself to what it simulated.
+[[nodiscard]] constexpr bool is_sensor(SiteKind kind) {
+  return kind >= SiteKind::sensor_bias && kind <= SiteKind::sensor_saturation;
+}
+/// Laws of the recorded input and of the recording's clock, which the simulation applies to the recording itself.
+[[nodiscard]] constexpr bool is_of_recording(SiteKind kind) { return kind > SiteKind::sensor_saturation; }
 
 inline constexpr std::size_t kSiteSignals = 4;
 inline constexpr std::size_t kLawParameters = 4;
@@ -101,7 +107,7 @@ struct Law {
   bool closed_form = false;  ///< searched only where the other laws leave something beyond the noise
   std::vector<LawParameter> parameters;
   std::optional<HiddenState> hidden = {};
-  std::function<LawOutput(const LawInput&)> evaluate = {};  ///< empty for sensors, which the simulation applies itself
+  std::function<LawOutput(const LawInput&)> evaluate = {};  ///< empty where the simulation applies the law itself
   /// Elements that the law fits beside its kind; empty: all of that kind.
   std::vector<std::string_view> elements = {};
   /// Id of the plainer law that it comes to where its way is too short or its extra strength too small to be seen.

@@ -19,6 +19,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
@@ -111,6 +112,10 @@ class PlantSimulation {
   [[nodiscard]] virtual const RowMatrix& recorded() const = 0;
   /// Where laws may act; empty: nowhere in this plant.
   [[nodiscard]] virtual std::span<const Site> sites() const = 0;
+  /// The recorded channels that drive the simulation.
+  [[nodiscard]] virtual std::span<const std::string> inputs() const = 0;
+  /// Smallest and largest recorded value of an input.
+  [[nodiscard]] virtual std::pair<double, double> input_range(std::size_t input) const = 0;
   /// Parameters of the asset's physics, in the order in which they follow the plant's in ModelValues::parameters.
   [[nodiscard]] virtual std::span<const PhysicsParameter> physics_parameters() const = 0;
 
@@ -123,6 +128,11 @@ class PlantSimulation {
   [[nodiscard]] virtual Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
                                                      const SimulationOptions& options = {},
                                                      InjectedColumns* injected = nullptr) const = 0;
+
+  /// d values / d strength of a law of the recording that is not in force (is_of_recording), samples x channels, by
+  /// central differences. `input`: index among inputs(); a clock has none.
+  [[nodiscard]] virtual Result<RowMatrix> recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
+                                                           const SimulationOptions& options = {}) const = 0;
 };
 
 }  // namespace sealwatch

@@ -66,6 +66,11 @@ void add_at_sites(const Law& law, const PlantSimulation& simulation, const std::
   candidates.insert(candidates.end(), found.begin(), found.end());
 }
 
+// Of a channel in the recording: the law's usual size is a share of its range.
+double bias_scale(const Law& law, double least, double largest) {
+  return kBiasShare * std::max(largest - least, 1e-12) / law.parameters.front().start.front();
+}
+
 // A channel that stays at its largest value shows the end of its sensor's range. Without that there is nothing to see.
 bool clipped(const Eigen::Ref<const Eigen::VectorXd>& column) {
   const double end = column.maxCoeff();
@@ -90,11 +95,28 @@ void add_at_sensors(const Law& law, const PlantSimulation& simulation, const std
       if (!clipped(column)) continue;
       for (std::vector<double>& point : candidate.grid) point[1] = column.maxCoeff();
     }
-    if (law.kind == SiteKind::sensor_bias) {
-      const double size = std::max(column.maxCoeff() - column.minCoeff(), 1e-12);
-      candidate.strength_scale = kBiasShare * size / law.parameters.front().start.front();
-    }
+    if (is_bias(law.kind)) candidate.strength_scale = bias_scale(law, column.minCoeff(), column.maxCoeff());
     candidates.push_back(std::move(candidate));
+  }
+}
+
+// An input that never changes shows nothing of itself.
+void add_of_recording(const Law& law, const PlantSimulation& simulation, const std::vector<PhysicsTerm>& present,
+                      std::vector<Candidate>& candidates) {
+  const auto add = [&](const std::string& element, const std::string& input, double strength_scale) {
+    if (!present_already(present, law, element))
+      candidates.push_back({.law = &law,
+                            .element = element,
+                            .sites = {},
+                            .channel = input,
+                            .grid = shape_grid(law, simulation.plant()),
+                            .strength_scale = strength_scale});
+  };
+  if (law.kind == SiteKind::clock_rate) return add("clock", {}, 1.0);
+  for (std::size_t k = 0; k < simulation.inputs().size(); ++k) {
+    const auto [least, largest] = simulation.input_range(k);
+    const std::string& input = simulation.inputs()[k];
+    if (largest > least) add("input:" + input, input, is_bias(law.kind) ? bias_scale(law, least, largest) : 1.0);
   }
 }
 
@@ -105,7 +127,9 @@ std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const 
   std::vector<Candidate> candidates;
   for (const Law& law : all_laws()) {
     if (law.closed_form != closed_forms || !is_of_plant(law, simulation.plant().name)) continue;
-    if (law.evaluate == nullptr)
+    if (is_of_recording(law.kind))
+      add_of_recording(law, simulation, present, candidates);
+    else if (is_sensor(law.kind))
       add_at_sensors(law, simulation, present, candidates);
     else
       add_at_sites(law, simulation, present, candidates);
@@ -115,7 +139,7 @@ std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const 
 
 double significant_size(const Candidate& candidate, const PlantDescription& plant) {
   const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
-  if (candidate.law->kind == SiteKind::sensor_bias) return candidate.strength_scale * strength.start.front();
+  if (is_bias(candidate.law->kind)) return candidate.strength_scale * strength.start.front();
   return plant.law_size(strength.unit) * strength.significant;
 }
 

@@ -12,8 +12,8 @@ namespace sealwatch::mismatch {
 struct Candidate {
   const Law* law = nullptr;
   std::string element;
-  std::vector<std::size_t> sites;  ///< empty for a sensor's law
-  std::string channel;             ///< of a sensor's law
+  std::vector<std::size_t> sites;  ///< empty for a law of a sensor or of the recording
+  std::string channel;             ///< of a sensor's or an input's law
   std::vector<std::vector<double>> grid;
   double strength_scale = 1.0;  ///< usual sizes are multiplied by it (a sensor's bias goes by its channel's range)
 };
@@ -25,6 +25,11 @@ struct Candidate {
 
 /// The same law, or one of them comes to the other at the end of its range (Law::limit).
 [[nodiscard]] bool overlap(const Law& a, const Law& b);
+
+/// Whether usual sizes of its strength go by its channel's range.
+[[nodiscard]] constexpr bool is_bias(SiteKind kind) {
+  return kind == SiteKind::sensor_bias || kind == SiteKind::input_bias;
+}
 
 /// Size of its first strength from which an engineer of this plant would care.
 [[nodiscard]] double significant_size(const Candidate& candidate, const PlantDescription& plant);

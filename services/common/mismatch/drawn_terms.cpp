@@ -48,7 +48,7 @@ void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Da
   for (const Effect& effect : best.effects) {
     const SiteKind kind = effect.law->kind;
     const std::vector<double> parameters = parameters_of(effect, best.model->asset);
-    if (parameters.empty()) continue;
+    if (parameters.empty() || is_of_recording(kind)) continue;  // the equation of a recording's error says all
     const std::vector<TermPath> paths = term_paths(*best.model, effect.element, *effect.law, parameters);
     const std::size_t signal = deciding_signal(paths, kind, signals_seen(paths, *effect.law, parameters));
     std::optional<MissingTerm> drawn;

@@ -36,7 +36,7 @@ Eigen::VectorXd resolution_of(const Screening& screening, const Variant& variant
         candidate.law->parameters[strengths[std::min(static_cast<std::size_t>(k), strengths.size() - 1)]];
     const double unit =
         std::abs(screening.unit[static_cast<std::size_t>(variant.columns[static_cast<std::size_t>(k)])]);
-    const bool bias = candidate.law->kind == SiteKind::sensor_bias;
+    const bool bias = is_bias(candidate.law->kind);
     least(k) = bias ? resolution.share : resolution.of(strength) / unit;
   }
   return least;

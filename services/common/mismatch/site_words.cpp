@@ -35,6 +35,7 @@ constexpr SiteWords kViscosity{
     "relative change of viscosity", "1", {SignalWords{"dissipated power", "W"}, kNone, kNone, kNone}};
 constexpr SiteWords kTank{"flow out of the tank", "V/s", {SignalWords{"level", "V"}, kNone, kNone, kNone}};
 constexpr SiteWords kOwn{"what is lost", "", {SignalWords{"first signal", ""}, kNone, kNone, kNone}};
+constexpr SiteWords kRecording{"error of the recording", "", {kNone, kNone, kNone, kNone}};
 constexpr SiteWords kSensor{"shift of the reading", "", {kNone, kNone, kNone, kNone}};
 
 }  // namespace
@@ -74,6 +75,11 @@ const SiteWords& words_of(SiteKind kind) {
     case SiteKind::sensor_lag:
     case SiteKind::sensor_saturation:
       break;
+    case SiteKind::input_gain:
+    case SiteKind::input_bias:
+    case SiteKind::input_delay:
+    case SiteKind::clock_rate:
+      return kRecording;
   }
   return kSensor;
 }

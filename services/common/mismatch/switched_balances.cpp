@@ -52,8 +52,8 @@ struct Terms {
       std::vector<std::string> names;
       for (const auto& [name, setting] : physics.parameters) names.push_back(name);
       const auto law = find_law(physics.id, names, asset.model);
-      if (!law) continue;
-      if ((*law)->evaluate == nullptr) {
+      if (!law || is_of_recording((*law)->kind)) continue;
+      if (is_sensor((*law)->kind)) {
         add_sensor(**law, physics);
         continue;
       }

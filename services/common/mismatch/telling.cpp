@@ -91,6 +91,9 @@ std::string reason_in_words(const Error& error) {
 std::string element_in_words(const std::string& element) {
   constexpr std::string_view kSensor = "sensor:";
   if (element.starts_with(kSensor)) return "the sensor of " + in_words(element.substr(kSensor.size()));
+  constexpr std::string_view kInput = "input:";
+  if (element.starts_with(kInput)) return "the recorded input " + in_words(element.substr(kInput.size()));
+  if (element == "clock") return "the recording's clock";
   const bool numbered = element.size() > 2 && element[element.size() - 2] == '_';  // "chamber A", "valve 1"
   return (numbered ? "" : "the ") + in_words(element);
 }

@@ -24,6 +24,13 @@ void add_parameters(PhysicsTerms& terms, const Law& law, const PhysicsTerm& term
                                 .setting = term.parameters.at(std::string(parameter.name))});
 }
 
+/// "flow" of "sensor:flow", where the plant has such a channel; "" otherwise.
+std::string channel_at(const PlantDescription& plant, std::string_view prefix, std::string_view element) {
+  if (!element.starts_with(prefix)) return {};
+  std::string channel(element.substr(prefix.size()));
+  return plant.find_channel(channel) == nullptr ? std::string() : channel;
+}
+
 }  // namespace
 
 std::string physics_parameter_name(std::string_view element, std::string_view id, std::string_view parameter) {
@@ -42,11 +49,17 @@ Result<PhysicsTerms> resolve_physics(const PlantDescription& plant, std::span<co
     if (!law) return misplaced(asset, term, law.error().rule, law.error().advice);
     const std::size_t first = plant.parameters.size() + terms.parameters.size();
     if (is_sensor((*law)->kind)) {
-      constexpr std::string_view kPrefix = "sensor:";
-      const std::string channel = term.element.starts_with(kPrefix) ? term.element.substr(kPrefix.size()) : "";
-      if (plant.find_channel(channel) == nullptr)
+      const std::string channel = channel_at(plant, "sensor:", term.element);
+      if (channel.empty())
         return misplaced(asset, term, "is a law of a sensor", "give the element as sensor:<channel>");
       terms.sensors.push_back({(*law)->kind, channel, first});
+    } else if (is_of_recording((*law)->kind)) {
+      const bool clock = (*law)->kind == SiteKind::clock_rate;
+      const std::string input = channel_at(plant, "input:", term.element);
+      if (clock ? term.element != "clock" : input.empty())
+        return misplaced(asset, term, clock ? "is a law of the recording's clock" : "is a law of a recorded input",
+                         clock ? "give the element as clock" : "give the element as input:<channel>");
+      terms.recording.push_back({(*law)->kind, input, first});
     } else {
       ActiveTerm active{.law = *law, .sites = {}, .first_parameter = first};
       for (std::size_t k = 0; k < sites.size(); ++k)

@@ -31,9 +31,17 @@ struct SensorTerm {
   std::size_t parameter = 0;  ///< the law's first, in ModelValues::parameters
 };
 
+/// A law of the recording: of an input, or of the clock.
+struct RecordingTerm {
+  SiteKind kind = SiteKind::input_gain;
+  std::string input;          ///< channel; "" of the clock
+  std::size_t parameter = 0;  ///< in ModelValues::parameters
+};
+
 struct PhysicsTerms {
   std::vector<ActiveTerm> active;
   std::vector<SensorTerm> sensors;
+  std::vector<RecordingTerm> recording;
   std::vector<PhysicsParameter> parameters;  ///< in the order of ModelValues::parameters behind the plant's
   std::vector<std::string> hidden_names;
   std::vector<double> hidden_scales;

@@ -9,12 +9,13 @@ namespace sealwatch {
 inline constexpr int kPhysicsWidth = 8;
 
 template <class Model>
-Result<SimulatedOutputs> PlantSimulationOf<Model>::run_with_physics(const ModelValues& values,
+Result<SimulatedOutputs> PlantSimulationOf<Model>::run_with_physics(const RecordedInput& input,
+                                                                    const ModelValues& values,
                                                                     std::span<const FreeQuantity> free,
                                                                     const SimulationOptions& options,
                                                                     InjectedColumns* injected) const {
   if constexpr (requires { Model::Equations::kSites; })
-    return run_with<kPhysicsWidth, true>(values, free, options, injected);
+    return run_with<kPhysicsWidth, true>(input, values, free, options, injected);
   return fail("plant " + plant().name + " has no sites for laws");
 }
 

@@ -20,7 +20,7 @@ class PlantSimulationOf final : public RecordedSimulation {
  public:
   PlantSimulationOf(const PlantDescription& plant, const AssetConfig& asset, const TimeSeries& recorded,
                     PhysicsTerms terms)
-      : RecordedSimulation(plant, std::move(terms)), input_(recorded.time_s, input_channels(recorded)) {
+      : RecordedSimulation(plant, std::move(terms), input_names(), {recorded.time_s, input_channels(recorded)}) {
     std::vector<OutputName> outputs;
     for (const auto& [channel, state] : Model::kOutputs) outputs.push_back({std::string(channel), state});
     select_channels(outputs, asset, recorded);
@@ -30,15 +30,6 @@ class PlantSimulationOf final : public RecordedSimulation {
 
   [[nodiscard]] std::span<const Site> sites() const override { return sites_of_plant(); }
 
-  [[nodiscard]] Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
-                                             const SimulationOptions& options,
-                                             InjectedColumns* injected) const override {
-    if (!physics_parameters().empty() || injected != nullptr) return run_with_physics(values, free, options, injected);
-    if (free.size() <= 4) return run_with<4, false>(values, free, options, nullptr);
-    if (free.size() <= 8) return run_with<8, false>(values, free, options, nullptr);
-    return run_with<12, false>(values, free, options, nullptr);
-  }
-
   /// Empty where the equations have none.
   [[nodiscard]] static std::span<const Site> sites_of_plant() {
     if constexpr (requires { Model::Equations::kSites; }) return Model::Equations::kSites;
@@ -46,6 +37,22 @@ class PlantSimulationOf final : public RecordedSimulation {
   }
 
  private:
+  [[nodiscard]] Result<SimulatedOutputs> run_driven_by(const RecordedInput& input, const ModelValues& values,
+                                                       std::span<const FreeQuantity> free,
+                                                       const SimulationOptions& options,
+                                                       InjectedColumns* injected) const override {
+    if (!physics_parameters().empty() || injected != nullptr)
+      return run_with_physics(input, values, free, options, injected);
+    if (free.size() <= 4) return run_with<4, false>(input, values, free, options, nullptr);
+    if (free.size() <= 8) return run_with<8, false>(input, values, free, options, nullptr);
+    return run_with<12, false>(input, values, free, options, nullptr);
+  }
+
+  static std::vector<std::string> input_names() {
+    std::vector<std::string> names;
+    for (const auto& input : Model::kInputs) names.emplace_back(input.name);
+    return names;
+  }
   static std::vector<InputChannel> input_channels(const TimeSeries& recorded) {
     std::vector<InputChannel> channels;
     for (const auto& input : Model::kInputs)
@@ -54,19 +61,19 @@ class PlantSimulationOf final : public RecordedSimulation {
   }
 
   template <int Width, bool WithPhysics>
-  [[nodiscard]] Result<SimulatedOutputs> run_with(const ModelValues& values, std::span<const FreeQuantity> free,
-                                                  const SimulationOptions& options, InjectedColumns* injected) const {
+  [[nodiscard]] Result<SimulatedOutputs> run_with(const RecordedInput& input, const ModelValues& values,
+                                                  std::span<const FreeQuantity> free, const SimulationOptions& options,
+                                                  InjectedColumns* injected) const {
     using System = RecordedPlantSystem<Model, Width, WithPhysics>;
-    return RecordingRun<System>(*this, input_, System(input_, terms(), values, free, injected), values, free, options,
+    return RecordingRun<System>(*this, input, System(input, terms(), values, free, injected), values, free, options,
                                 injected)
         .simulate(values);
   }
   /// With the laws in force and columns injected: in a translation unit of its own (plant_physics.hpp).
-  [[nodiscard]] Result<SimulatedOutputs> run_with_physics(const ModelValues& values, std::span<const FreeQuantity> free,
+  [[nodiscard]] Result<SimulatedOutputs> run_with_physics(const RecordedInput& input, const ModelValues& values,
+                                                          std::span<const FreeQuantity> free,
                                                           const SimulationOptions& options,
                                                           InjectedColumns* injected) const;
-
-  RecordedInput input_;
 };
 
 }  // namespace sealwatch

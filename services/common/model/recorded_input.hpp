@@ -3,6 +3,10 @@
 // A held channel jumps; the times at which any does cut the recording into segments, within which the input is smooth
 // enough for a multistep integrator. Within a segment, and shortly beyond its end, a held channel keeps the segment's
 // value.
+//
+// What acted on the plant may differ from what was recorded:
+//   u(t) = (1 + g) u_recorded(t - tau) + b,   t = t_0 + (t_recorded - t_0) / (1 + c)
+//   g gain [1], b bias [channel], tau delay [s] of one channel, c by how much the recording's clock is fast [1]
 #pragma once
 
 #include <algorithm>
@@ -17,29 +21,57 @@ struct InputChannel {
   bool hold = false;
   std::vector<double> slopes = {};  ///< at the samples; empty: those of the values' course
   bool cubic = false;               ///< the course between samples has these slopes; else slopes are linear
+  double delay_s = 0.0;
+};
+
+/// By what the recording differs from what acted on the plant.
+struct RecordingErrors {
+  struct Input {
+    double gain = 0.0, bias = 0.0, delay_s = 0.0;
+  };
+  std::vector<Input> inputs;
+  double clock_rate = 0.0;
 };
 
 class RecordedInput {
  public:
   RecordedInput(std::vector<double> times, std::vector<InputChannel> channels)
-      : times_(std::move(times)), channels_(std::move(channels)), segments_{0} {
-    for (std::size_t row = 1; row + 1 < times_.size(); ++row)
-      if (jumps(row)) segments_.push_back(row);
+      : times_(std::move(times)), channels_(std::move(channels)), segments_{times_.front()} {
+    for (const InputChannel& channel : channels_) add_jumps(channel);
+    std::ranges::sort(segments_);
+    segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
+    for (const InputChannel& channel : channels_) held_.push_back(held_values(channel));
+  }
+
+  /// The input as it acted.
+  [[nodiscard]] RecordedInput without(const RecordingErrors& errors) const {
+    const double rate = 1.0 + errors.clock_rate;
+    std::vector<double> times = times_;
+    for (double& time : times) time = times_.front() + (time - times_.front()) / rate;
+    std::vector<InputChannel> channels = channels_;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const auto [gain, bias, delay_s] = errors.inputs[k];
+      for (double& value : channels[k].values) value = (1.0 + gain) * value + bias;
+      for (double& slope : channels[k].slopes) slope *= (1.0 + gain) * rate;
+      channels[k].delay_s = delay_s;
+    }
+    return {std::move(times), std::move(channels)};
   }
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  [[nodiscard]] const std::vector<InputChannel>& channels() const { return channels_; }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
-  [[nodiscard]] double segment_begin(std::size_t segment) const { return times_[segments_[segment]]; }
+  [[nodiscard]] double segment_begin(std::size_t segment) const { return segments_[segment]; }
   [[nodiscard]] double segment_end(std::size_t segment) const {
-    return segment + 1 < segments_.size() ? times_[segments_[segment + 1]] : times_.back();
+    return segment + 1 < segments_.size() ? segments_[segment + 1] : times_.back();
   }
 
   /// Value of a channel at time t in a segment. `cursor` remembers where the last look-up was.
   [[nodiscard]] double value(std::size_t channel, double t, std::size_t segment, std::size_t& cursor) const {
     const InputChannel& input = channels_[channel];
-    if (input.hold) return input.values[segments_[segment]];
-    seek(t, cursor);
-    const double share = share_at(t, cursor);
+    if (input.hold) return held_[channel][segment];
+    seek(t - input.delay_s, cursor);
+    const double share = share_at(t - input.delay_s, cursor);
     const double linear = input.values[cursor] + share * (input.values[cursor + 1] - input.values[cursor]);
     return input.cubic ? linear + bow(input, share, cursor) : linear;
   }
@@ -48,7 +80,7 @@ class RecordedInput {
     const InputChannel& input = channels_[channel];
     if (input.hold) return 0.0;
     if (!input.slopes.empty()) {
-      const double share = share_at(t, cursor);
+      const double share = share_at(t - input.delay_s, cursor);
       const double linear = input.slopes[cursor] + share * (input.slopes[cursor + 1] - input.slopes[cursor]);
       return input.cubic ? linear + slope_of_bow(input, share, cursor) : linear;
     }
@@ -70,10 +102,22 @@ class RecordedInput {
     const double line = (input.values[k + 1] - input.values[k]) / (times_[k + 1] - times_[k]);
     return 3.0 * s * (1.0 - s) * (2.0 * line - input.slopes[k] - input.slopes[k + 1]);
   }
-  [[nodiscard]] bool jumps(std::size_t row) const {
-    return std::any_of(channels_.begin(), channels_.end(), [row](const InputChannel& input) {
-      return input.hold && input.values[row] != input.values[row - 1];
-    });
+  void add_jumps(const InputChannel& input) {
+    for (std::size_t row = 1; input.hold && row < times_.size(); ++row) {
+      const double at = times_[row] + input.delay_s;
+      if (input.values[row] != input.values[row - 1] && at > times_.front() && at < times_.back())
+        segments_.push_back(at);
+    }
+  }
+  /// Of one channel in each segment; empty where it is not held.
+  [[nodiscard]] std::vector<double> held_values(const InputChannel& input) const {
+    std::vector<double> values;
+    std::size_t row = 0;
+    for (std::size_t segment = 0; input.hold && segment < segments_.size(); ++segment) {
+      while (row + 1 < times_.size() && times_[row + 1] + input.delay_s <= segments_[segment]) ++row;
+      values.push_back(input.values[row]);
+    }
+    return values;
   }
   void seek(double t, std::size_t& cursor) const {
     while (cursor + 2 < times_.size() && t >= times_[cursor + 1]) ++cursor;
@@ -82,7 +126,8 @@ class RecordedInput {
 
   std::vector<double> times_;
   std::vector<InputChannel> channels_;
-  std::vector<std::size_t> segments_;  ///< first row of each
+  std::vector<double> segments_;           ///< where each begins
+  std::vector<std::vector<double>> held_;  ///< by channel and segment
 };
 
 }  // namespace sealwatch

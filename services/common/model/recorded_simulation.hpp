@@ -8,6 +8,7 @@
 
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/model/physics_terms.hpp"
+#include "services/common/model/recorded_input.hpp"
 
 namespace sealwatch {
 
@@ -33,19 +34,36 @@ class RecordedSimulation : public PlantSimulation {
   [[nodiscard]] const ModelValues& start() const override { return start_; }
   [[nodiscard]] const RowMatrix& recorded() const override { return recorded_; }
   [[nodiscard]] std::span<const PhysicsParameter> physics_parameters() const override { return terms_.parameters; }
+  [[nodiscard]] std::span<const std::string> inputs() const override { return input_names_; }
+  [[nodiscard]] std::pair<double, double> input_range(std::size_t input) const override;
+  [[nodiscard]] Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
+                                             const SimulationOptions& options, InjectedColumns* injected) const final;
+  [[nodiscard]] Result<RowMatrix> recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
+                                                   const SimulationOptions& options) const final;
   [[nodiscard]] std::span<const SimulatedChannel> simulated_channels() const { return channels_; }
   [[nodiscard]] const PhysicsTerms& terms() const { return terms_; }
 
  protected:
-  RecordedSimulation(const PlantDescription& plant, PhysicsTerms terms);
+  RecordedSimulation(const PlantDescription& plant, PhysicsTerms terms, std::vector<std::string> input_names,
+                     RecordedInput input);
+  /// One run, driven by `input`; laws of the recording have done their work.
+  [[nodiscard]] virtual Result<SimulatedOutputs> run_driven_by(const RecordedInput& input, const ModelValues& values,
+                                                               std::span<const FreeQuantity> free,
+                                                               const SimulationOptions& options,
+                                                               InjectedColumns* injected) const = 0;
   /// Takes the outputs that are recorded.
   void select_channels(std::span<const OutputName> outputs, const AssetConfig& asset, const TimeSeries& recorded);
   /// The plant's states and start, to which those of the laws are added.
   void set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start);
 
  private:
+  [[nodiscard]] RecordingErrors errors_at(const ModelValues& values) const;
+  [[nodiscard]] std::size_t input_index(const RecordingTerm& term) const;
+
   const PlantDescription& plant_;
   PhysicsTerms terms_;
+  std::vector<std::string> input_names_;
+  RecordedInput input_;
   std::vector<std::string> state_names_, slow_state_names_, channel_names_;
   std::vector<SimulatedChannel> channels_;
   RowMatrix recorded_;

@@ -119,13 +119,20 @@ class RecordingRun {
 
   [[nodiscard]] bool run_samples(std::size_t segment) {
     const std::vector<double>& times = input_.times();
-    for (; next_ < times.size() && times[next_] <= input_.segment_end(segment); ++next_) {
-      const double last = times[next_ - 1], distance = times[next_] - last;
-      const int points = filtered_ ? static_cast<int>(std::ceil(distance / kLongestPointDistance_s)) : 1;
-      for (int k = 1; k <= points; ++k)
-        if (!advance_to(k == points ? times[next_] : last + distance * k / points, distance / points)) return false;
+    const double end = input_.segment_end(segment);
+    double last = input_.segment_begin(segment);
+    for (; next_ < times.size() && times[next_] <= end; last = times[next_++]) {
+      if (!pass_points(last, times[next_])) return false;
       sample(next_);
     }
+    return last == end || pass_points(last, end);  // a held input that acts late jumps between samples
+  }
+
+  [[nodiscard]] bool pass_points(double begin, double end) {
+    const double distance = end - begin;
+    const int points = filtered_ ? static_cast<int>(std::ceil(distance / kLongestPointDistance_s)) : 1;
+    for (int k = 1; k <= points; ++k)
+      if (!advance_to(k == points ? end : begin + distance * k / points, distance / points)) return false;
     return true;
   }
 

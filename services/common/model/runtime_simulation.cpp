@@ -34,6 +34,12 @@ std::vector<InputChannel> input_channels(const RuntimePlant& plant, const TimeSe
   return channels;
 }
 
+std::vector<std::string> input_names(const RuntimePlant& plant) {
+  std::vector<std::string> names;
+  for (const RuntimeInput& input : plant.inputs) names.push_back(input.channel);
+  return names;
+}
+
 double mean_distance_s(const std::vector<double>& times) {
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
@@ -48,9 +54,9 @@ tl::unexpected<Error> without_derivatives(const PlantDescription& plant) {
 RuntimePlantSimulation::RuntimePlantSimulation(std::shared_ptr<const RuntimePlant> plant,
                                                const PlantDescription& description, const TimeSeries& recorded,
                                                PhysicsTerms terms)
-    : RecordedSimulation(description, std::move(terms)),
-      runtime_(std::move(plant)),
-      input_(recorded.time_s, input_channels(*runtime_, recorded)) {}
+    : RecordedSimulation(description, std::move(terms), input_names(*plant),
+                         {recorded.time_s, input_channels(*plant, recorded)}),
+      runtime_(std::move(plant)) {}
 
 Result<std::unique_ptr<PlantSimulation>> RuntimePlantSimulation::create(std::shared_ptr<const RuntimePlant> plant,
                                                                         const PlantDescription& description,
@@ -75,21 +81,22 @@ Result<std::unique_ptr<PlantSimulation>> RuntimePlantSimulation::create(std::sha
   return simulation;
 }
 
-Result<SimulatedOutputs> RuntimePlantSimulation::run(const ModelValues& values, std::span<const FreeQuantity> free,
-                                                     const SimulationOptions& options,
-                                                     InjectedColumns* injected) const {
+Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInput& input, const ModelValues& values,
+                                                               std::span<const FreeQuantity> free,
+                                                               const SimulationOptions& options,
+                                                               InjectedColumns* injected) const {
   FreeColumns columns = free_columns(plant(), values, free);
   auto evaluator = runtime_->equations->evaluator(effective_parameters(plant(), values), columns.differentiated);
   if (!evaluator) return fail(evaluator.error());
-  RuntimeSystem system(*runtime_, std::move(*evaluator), input_, terms(), values, std::move(columns), injected);
+  RuntimeSystem system(*runtime_, std::move(*evaluator), input, terms(), values, std::move(columns), injected);
   // Laws in an output act between samples at once: the steps follow the samples.
   SimulationOptions stepping = options;
   if (runtime_->equations->outputs_see_added() && injected != nullptr)
-    stepping.maximum_step_s = std::min(options.maximum_step_s, mean_distance_s(input_.times()));
-  RecordingRun<RuntimeSystem> recording(*this, input_, std::move(system), values, free, stepping, injected);
+    stepping.maximum_step_s = std::min(options.maximum_step_s, mean_distance_s(input.times()));
+  RecordingRun<RuntimeSystem> recording(*this, input, std::move(system), values, free, stepping, injected);
   auto outputs = recording.simulate(values);
   if (recording.stopped_by_event()) {
-    if (injected == nullptr) return run_by_differences(values, free, options);
+    if (injected == nullptr) return run_by_differences(input, values, free, options);
     return fail("plant " + plant().name + " jumps at events, across which missing physics cannot be looked for",
                 "fit and validate work; a model without such events (friction and stops rounded) can be explained");
   }
@@ -98,12 +105,13 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run(const ModelValues& values, 
   return outputs;
 }
 
-Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const ModelValues& values,
+Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const RecordedInput& input,
+                                                                    const ModelValues& values,
                                                                     std::span<const FreeQuantity> free,
                                                                     const SimulationOptions& options) const {
   SimulationOptions tight = options;
   tight.relative_tolerance = std::min(options.relative_tolerance, 1e-7);
-  auto outputs = run(values, {}, tight, nullptr);
+  auto outputs = run_driven_by(input, values, {}, tight, nullptr);
   if (!outputs) return outputs;
   const Eigen::Index rows = outputs->values.size(), columns = static_cast<Eigen::Index>(free.size());
   outputs->sensitivities.resize(rows, columns);
@@ -113,9 +121,9 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const ModelV
     const double value = quantity.in(values), size = std::abs(value) > 0.0 ? std::abs(value) : 1.0;
     ModelValues changed = values;
     quantity.in(changed) = value + kShare * size;
-    const auto above = run(changed, {}, tight, nullptr);
+    const auto above = run_driven_by(input, changed, {}, tight, nullptr);
     quantity.in(changed) = value - kShare * size;
-    const auto below = run(changed, {}, tight, nullptr);
+    const auto below = run_driven_by(input, changed, {}, tight, nullptr);
     if (!above) return above;
     if (!below) return below;
     for (Eigen::Index row = 0; row < rows; ++row)

@@ -17,20 +17,20 @@ class RuntimePlantSimulation final : public RecordedSimulation {
                                                                        const TimeSeries& recorded, PhysicsTerms terms);
 
   [[nodiscard]] std::span<const Site> sites() const override { return plant().sites; }
-  [[nodiscard]] Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
-                                             const SimulationOptions& options,
-                                             InjectedColumns* injected) const override;
 
  private:
+  [[nodiscard]] Result<SimulatedOutputs> run_driven_by(const RecordedInput& input, const ModelValues& values,
+                                                       std::span<const FreeQuantity> free,
+                                                       const SimulationOptions& options,
+                                                       InjectedColumns* injected) const override;
   /// Sensitivities that events interrupt, by simulations with changed values.
-  [[nodiscard]] Result<SimulatedOutputs> run_by_differences(const ModelValues& values,
+  [[nodiscard]] Result<SimulatedOutputs> run_by_differences(const RecordedInput& input, const ModelValues& values,
                                                             std::span<const FreeQuantity> free,
                                                             const SimulationOptions& options) const;
   RuntimePlantSimulation(std::shared_ptr<const RuntimePlant> plant, const PlantDescription& description,
                          const TimeSeries& recorded, PhysicsTerms terms);
 
   std::shared_ptr<const RuntimePlant> runtime_;
-  RecordedInput input_;
 };
 
 }  // namespace sealwatch

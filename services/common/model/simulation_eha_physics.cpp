@@ -4,7 +4,8 @@
 
 namespace sealwatch {
 
-template Result<SimulatedOutputs> PlantSimulationOf<EhaModel>::run_with_physics(const ModelValues&,
+template Result<SimulatedOutputs> PlantSimulationOf<EhaModel>::run_with_physics(const RecordedInput&,
+                                                                                const ModelValues&,
                                                                                 std::span<const FreeQuantity>,
                                                                                 const SimulationOptions&,
                                                                                 InjectedColumns*) const;

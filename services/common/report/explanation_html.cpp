@@ -51,7 +51,7 @@ std::string list_of(const std::vector<std::string>& names) {
 /// What to look at for one effect, and how soon.
 std::string step_for(const mismatch::FoundEffect& effect) {
   const std::string& element = effect.what.element;
-  const bool sensor = element.starts_with("sensor:");
+  const bool sensor = element.starts_with("sensor:") || element.starts_with("input:") || element == "clock";
   std::string step = (sensor ? "Check the " : "Inspect the ") + element_name(element) +
                      (sensor ? " against a reference: " : " for ") + law_name(effect.what);
   if (!effect.what.meaning.empty()) step += " (" + effect.what.meaning + ")";
@@ -128,6 +128,8 @@ std::string law_name(const mismatch::LawAt& what) {
 
 std::string element_name(const std::string& element) {
   constexpr std::string_view kSensor = "sensor:";
+  constexpr std::string_view kInput = "input:";
+  if (element.starts_with(kInput)) return "recorded input " + words_of(element.substr(kInput.size()));
   return element.starts_with(kSensor) ? "sensor of " + words_of(element.substr(kSensor.size())) : words_of(element);
 }
 

@@ -112,8 +112,11 @@ void read_parameter(YamlMap& parameters, const ParameterDescription& description
 
 void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
   std::vector<std::string> elements = names_of_rows(plant.elements);
-  for (const ChannelDescription& channel : plant.channels)
+  for (const ChannelDescription& channel : plant.channels) {
     elements.push_back(std::string("sensor:").append(channel.name));
+    elements.push_back(std::string("input:").append(channel.name));
+  }
+  elements.emplace_back("clock");
   std::size_t index = 0;
   for (const YAML::Node& node : asset.list("physics")) {
     YamlMap map = asset.inside(node, "physics", index++);

@@ -39,10 +39,10 @@ void add_mismatch(CLI::App* trial, VerifyMismatchOptions& o) {
   trial->add_option("--out", o.directory, "directory for records and results (made if absent)")->required();
   trial->add_option("--sets", o.sets, "sets of each stratum")->check(CLI::Range(0, 100000))->capture_default_str();
   trial
-      ->add_option(
-          "--strata", o.strata,
-          "null, single, pair, outside, sensor, source_sensors, concealed, inseparable, nominal_only, asset_file "
-          "(default: all)")
+      ->add_option("--strata", o.strata,
+                   "null, single, pair, outside, sensor, recording, source_sensors, concealed, inseparable, "
+                   "nominal_only, asset_file "
+                   "(default: all)")
       ->delimiter(',');
   trial->add_option("--seed", o.seed, "of the first set; the next has the next")
       ->check(not_negative)

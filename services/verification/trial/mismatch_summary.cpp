@@ -268,7 +268,7 @@ int named_effects(const MismatchRecord& record) {
 
 std::vector<TrialTally> summarise_trials(std::span<const MismatchRecord> records) {
   std::vector<TrialTally> tallies;
-  for (const char* stratum : {"null", "single", "pair", "outside", "sensor", "source_sensors", "concealed",
+  for (const char* stratum : {"null", "single", "pair", "outside", "sensor", "recording", "source_sensors", "concealed",
                               "inseparable", "nominal_only", "asset_file"}) {
     const auto own = [&](const MismatchRecord& r) { return r.stratum == stratum; };
     const Records all = those(records, own);

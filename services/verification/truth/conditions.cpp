@@ -110,6 +110,32 @@ std::string_view unit_of(const std::string& channel) {
   return channel == "velocity" ? "m/s" : "Pa";
 }
 
+double fault_size(const TrialPlan& plan, std::string_view kind) {
+  for (const SensorFault& fault : plan.faults)
+    if (fault.kind == kind) return fault.size;
+  return 0.0;
+}
+
+/// What the record says of the voltage: u acted, and u(t) = (1 + g) u_recorded(t - tau) + b.
+Status record_input(const TrialPlan& plan, const TruthTest& test, const PlannedTrialTest& planned,
+                    const std::vector<double>& time_s, std::vector<double>& voltage) {
+  if (const double delay_s = fault_size(plan, "input_delay"); delay_s != 0.0) {
+    std::vector<double> asked = {0.0};  // before the test and behind it the voltage rests
+    std::vector<std::size_t> row_of;
+    for (const double time : time_s) {
+      const double at = std::clamp(time + delay_s, 0.0, planned.profile.duration_s());
+      if (at > asked.back()) asked.push_back(at);
+      row_of.push_back(asked.size() - 1);
+    }
+    const auto acted = run_truth(test, planned.profile, asked);
+    if (!acted) return fail(acted.error());
+    for (std::size_t k = 0; k < row_of.size(); ++k) voltage[k] = acted->front()[row_of[k]];
+  }
+  for (double& volts : voltage)
+    volts = (volts - fault_size(plan, "input_bias")) / (1.0 + fault_size(plan, "input_gain"));
+  return {};
+}
+
 Result<Recording> record(const TrialPlan& plan, const PlannedTrialTest& planned, std::string name) {
   const TruthTest test = truth_test(plan, planned);
   Recording recording;
@@ -119,6 +145,10 @@ Result<Recording> record(const TrialPlan& plan, const PlannedTrialTest& planned,
   recording.samples.time_s = sample_times(planned.profile.duration_s(), plan.jitter, planned.seed);
   auto values = run_truth(test, planned.profile, recording.samples.time_s);
   if (!values) return fail(values.error());
+  if (plan.channels.front() == "motor_voltage")
+    if (const Status ok = record_input(plan, test, planned, recording.samples.time_s, values->front()); !ok)
+      return fail(ok.error());
+  for (double& time : recording.samples.time_s) time *= 1.0 + fault_size(plan, "clock_rate");
   for (std::size_t k = 0; k < plan.channels.size(); ++k) {
     Series series = measured(plan.channels[k], std::move((*values)[k]), plan, planned.seed);
     series.unit = unit_of(plan.channels[k]);

@@ -88,6 +88,25 @@ SensorFault draw_fault(std::uint64_t seed, const std::vector<std::string>& chann
           .size = sign * std::min(barely_fault(kind, channel) * times, largest_fault(kind, channel))};
 }
 
+/// The driver's voltage is not what was recorded of it, or the recording's clock is not true. Such tests begin to show
+/// the smallest of these.
+double barely_recorded(const std::string& kind) {
+  constexpr double kGain = 1e-3, kBias_V = 0.02, kDelay_s = 5e-4, kRate = 5e-4;
+  if (kind == "input_gain") return kGain;
+  if (kind == "input_bias") return kBias_V;
+  return kind == "input_delay" ? kDelay_s : kRate;
+}
+
+SensorFault draw_recording_fault(std::uint64_t seed) {
+  static constexpr std::array<std::string_view, 4> kKinds = {"input_gain", "input_bias", "input_delay", "clock_rate"};
+  const std::string kind(kKinds[seed % kKinds.size()]);
+  const std::uint64_t round = seed / kKinds.size();
+  const double times = kTimesBarely[(round + round / kTimesBarely.size()) % kTimesBarely.size()];
+  return {.kind = kind,
+          .channel = kind == "clock_rate" ? "" : "motor_voltage",
+          .size = (round % 2 == 0 ? 1.0 : -1.0) * times * barely_recorded(kind)};
+}
+
 void make_wrong(TrialPlan& plan) {
   static constexpr std::array<std::pair<std::string_view, double TruthParameters::*>, 12> kValues = {
       {{"A_C", &TruthParameters::piston_area},
@@ -137,6 +156,9 @@ void hide(TrialPlan& plan, forecast::UniformRandom& random) {
     }
     case TrialStratum::sensor:
       plan.faults.push_back(draw_fault(seed, plan.channels));
+      return;
+    case TrialStratum::recording:
+      plan.faults.push_back(draw_recording_fault(seed));
       return;
     case TrialStratum::source_sensors: {
       static const std::vector<Place> places = [] {
@@ -220,19 +242,22 @@ std::vector<TrialTruth> TrialPlan::truths() const {
                      .strength_value = e.size * e.form->strength_factor,
                      .times_barely = e.size / e.form->barely});
   for (const SensorFault& f : faults) {
-    const bool bias = f.kind == "sensor_bias", lag = f.kind == "sensor_lag";
-    found.push_back({.id = f.kind,
-                     .element = "sensor:" + f.channel,
-                     .form = "constant",
-                     .size = f.size,
-                     .unit = bias  ? "channel"
-                             : lag ? "s"
-                                   : "1",
-                     .strength = bias  ? "b"
-                                 : lag ? "tau"
+    const bool bias = f.kind.ends_with("_bias"), lag = f.kind == "sensor_lag" || f.kind == "input_delay";
+    const bool sensor = f.kind.starts_with("sensor");
+    found.push_back(
+        {.id = f.kind,
+         .element = f.channel.empty() ? "clock" : (sensor ? "sensor:" : "input:") + f.channel,
+         .form = "constant",
+         .size = f.size,
+         .unit = bias  ? "channel"
+                 : lag ? "s"
+                       : "1",
+         .strength = f.channel.empty() ? "c"
+                     : bias            ? "b"
+                     : lag             ? "tau"
                                        : "g",
-                     .strength_value = f.size,
-                     .times_barely = std::abs(f.size) / barely_fault(f.kind, f.channel)});
+         .strength_value = f.size,
+         .times_barely = std::abs(f.size) / (sensor ? barely_fault(f.kind, f.channel) : barely_recorded(f.kind))});
   }
   return found;
 }

@@ -5,6 +5,7 @@
 //   pair            two effects at once
 //   outside         physics without a name in the catalogue
 //   sensor          bias, gain or lag of one sensor
+//   recording       gain, bias or delay of the recorded input, or a clock that is fast or slow
 //   source_sensors  flow, pressures, position and velocity alone; with nothing, an effect or a sensor's fault
 //   concealed       two nominal tests, on which free parameters absorb the effect, and two under other conditions
 //   inseparable     two explanations that these channels and tests cannot tell apart
@@ -26,8 +27,8 @@
 
 namespace sealwatch {
 
-SEALWATCH_ENUM(TrialStratum, null, single, pair, outside, sensor, source_sensors, concealed, inseparable, nominal_only,
-               asset_file)
+SEALWATCH_ENUM(TrialStratum, null, single, pair, outside, sensor, recording, source_sensors, concealed, inseparable,
+               nominal_only, asset_file)
 
 }  // namespace sealwatch
 
@@ -41,9 +42,9 @@ struct TrialNoise {
 };
 
 struct SensorFault {
-  std::string kind;  ///< sensor_bias, sensor_gain, sensor_lag
-  std::string channel;
-  double size = 0.0;  ///< channel's unit, 1, s
+  std::string kind;     ///< sensor_bias, sensor_gain, sensor_lag; input_bias, input_gain, input_delay; clock_rate
+  std::string channel;  ///< "" of the clock
+  double size = 0.0;    ///< channel's unit, 1, s
 };
 
 /// Another explanation.

@@ -20,6 +20,7 @@ PhysicsTerm usual(const Law& law, const std::string& element) {
   // Sizes for a velocity of 1.33 mm/s.
   if (law.kind == SiteKind::sensor_bias) term.parameters["b"].value = 1e-4;
   if (law.kind == SiteKind::sensor_saturation) term.parameters["y_max"].value = 1e-3;
+  if (law.kind == SiteKind::input_bias) term.parameters["b"].value = 1.0;
   return term;
 }
 
@@ -49,6 +50,7 @@ TEST(BenchPhysics, EveryLawActsAsTheEstimatorKnowsIt) {
   int laws = 0, shown = 0;
   for (const Law& law : all_laws()) {
     std::string element = is_sensor(law.kind) ? "sensor:velocity" : "";
+    if (is_of_recording(law.kind)) element = law.kind == SiteKind::clock_rate ? "clock" : "input:motor_voltage";
     for (const Site& site : plant.sites)
       if (element.empty() && site.kind == law.kind &&
           (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end()))

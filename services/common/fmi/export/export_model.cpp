@@ -94,6 +94,9 @@ class Exporter {
       const ChannelDescription* channel = plant.find_channel(output.channel);
       outputs_.push_back({channel->name, channel->unit, channel->meaning, 0.0});
     }
+    for (const RecordingTerm& term : terms_.recording)
+      left_out_.push_back(term.input.empty() ? "the rate of the recording's clock"
+                                             : "the law of the recorded input " + term.input);
     for (const SensorTerm& term : terms_.sensors) left_out_.push_back("the law of the sensor of " + term.channel);
     return {};
   }

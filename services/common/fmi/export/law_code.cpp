@@ -105,9 +105,10 @@ LawCode law_code(const PlantDescription& plant, const AssetConfig& asset) {
     const auto law = find_law(term.id, names, plant.name);
     const LawFormula* formula = law ? find_formula(**law) : nullptr;
     if (formula == nullptr) {
-      code.c += "/* " + term.id + " at " + term.element + ": of a sensor, or the plant's own: not written here. */\n";
-      code.modelica +=
-          "  // " + term.id + " at " + term.element + ": of a sensor, or the plant's own: not written here.\n";
+      code.c += "/* " + term.id + " at " + term.element +
+                ": of a sensor or of the recording, or the plant's own: not written here. */\n";
+      code.modelica += "  // " + term.id + " at " + term.element +
+                       ": of a sensor or of the recording, or the plant's own: not written here.\n";
       continue;
     }
     const std::vector<Argument> arguments = arguments_of(**law, term);

@@ -1,0 +1,145 @@
+// Laws of the recording (input:<channel>, clock): a simulation with one in force equals a simulation, without it, of the
+// recording as it should have been.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sealwatch/model/simulation.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+#include "tests/unit/model/standard_pst.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr SimulationOptions kTight = {.relative_tolerance = 1e-8}, kVeryTight = {.relative_tolerance = 1e-10};
+
+/// Of a channel's range: what the integrator's steps leave, which differ with the last digit of the input.
+constexpr double kSame = 1e-4;
+
+AssetConfig with_error(AssetConfig asset, const std::string& id, const std::string& element,
+                       const std::string& parameter, double value) {
+  asset.physics.push_back({.id = id, .element = element, .parameters = {{parameter, {value, -1e9, 1e9, true}}}});
+  return asset;
+}
+
+RowMatrix outputs_of(const AssetConfig& asset, const TimeSeries& recorded) {
+  const auto simulation = PlantSimulation::create(asset, recorded);
+  EXPECT_TRUE(simulation) << simulation.error().describe();
+  const auto outputs = (*simulation)->run((*simulation)->start(), {}, kTight);
+  EXPECT_TRUE(outputs) << outputs.error().describe();
+  return outputs->values;
+}
+
+/// Largest difference of a channel, of its range.
+double worst_difference(const RowMatrix& a, const RowMatrix& b) {
+  double worst = 0.0;
+  for (Eigen::Index c = 0; c < a.cols(); ++c) {
+    const double range = std::max(b.col(c).maxCoeff() - b.col(c).minCoeff(), 1e-12);
+    worst = std::max(worst, (a.col(c) - b.col(c)).cwiseAbs().maxCoeff() / range);
+  }
+  return worst;
+}
+
+std::vector<double>& values_of(TimeSeries& samples, const std::string& name) {
+  return std::ranges::find(samples.channels, name, &Series::name)->values;
+}
+
+TEST(RecordingLaws, GainAndBiasAreTheRecordsOwn) {
+  const AssetConfig asset = with_error(nominal_asset("eha"), "clock_rate", "clock", "c", 0.0);
+  const TimeSeries recorded = standard_pst(asset, 100.0);
+  TimeSeries acted = recorded;
+  for (double& volts : values_of(acted, "motor_voltage")) volts = 1.02 * volts + 0.3;
+  const AssetConfig both = with_error(with_error(asset, "input_gain", "input:motor_voltage", "g", 0.02), "input_bias",
+                                      "input:motor_voltage", "b", 0.3);
+  EXPECT_LT(worst_difference(outputs_of(both, recorded), outputs_of(asset, acted)), kSame);
+  EXPECT_GT(worst_difference(outputs_of(asset, recorded), outputs_of(asset, acted)), 100.0 * kSame) << "they matter";
+}
+
+TEST(RecordingLaws, AFastClockShowsMoreTimeThanThereWas) {
+  const AssetConfig asset = with_error(nominal_asset("eha"), "input_gain", "input:motor_voltage", "g", 0.0);
+  const TimeSeries acted = standard_pst(asset, 100.0);
+  TimeSeries recorded = acted;
+  for (double& time : recorded.time_s) time = acted.time_s.front() + 1.02 * (time - acted.time_s.front());
+  const AssetConfig fast = with_error(asset, "clock_rate", "clock", "c", 0.02);
+  EXPECT_LT(worst_difference(outputs_of(fast, recorded), outputs_of(asset, acted)), kSame);
+  EXPECT_GT(worst_difference(outputs_of(asset, recorded), outputs_of(asset, acted)), 100.0 * kSame) << "it matters";
+}
+
+/// Held inputs jump: a delay of whole samples moves the record's rows, one of half a sample cuts the step in two.
+TEST(RecordingLaws, AHeldInputActsLate) {
+  const AssetConfig asset = nominal_asset("cascaded_tanks");
+  TimeSeries recorded{.time_s = {}, .channels = {{"pump_voltage", "V", 0.0, {}}, {"level_voltage", "V", 0.0, {}}}};
+  for (int row = 0; row < 200; ++row) {
+    recorded.time_s.push_back(4.0 * row);
+    recorded.channels[0].values.push_back(3.0 + std::sin(0.05 * row) + (row / 20 % 2));
+    recorded.channels[1].values.push_back(5.0);
+  }
+  TimeSeries late = recorded;
+  std::vector<double>& volts = values_of(late, "pump_voltage");
+  std::rotate(volts.rbegin(), volts.rbegin() + 1, volts.rend());
+  volts.front() = values_of(recorded, "pump_voltage").front();
+  const AssetConfig whole = with_error(asset, "input_delay", "input:pump_voltage", "tau", 4.0),
+                    half = with_error(asset, "input_delay", "input:pump_voltage", "tau", 2.0);
+  const RowMatrix now = outputs_of(asset, recorded), one_late = outputs_of(asset, late);
+  EXPECT_LT(worst_difference(outputs_of(whole, recorded), one_late), 1e-6);
+  EXPECT_GT(worst_difference(now, one_late), 1e-3) << "it matters";
+  EXPECT_LT(worst_difference(2.0 * outputs_of(half, recorded) - now, one_late), 0.05) << "half of it in between";
+}
+
+/// An input that is linear between samples acts late by any time: a delay forth and a recording that was moved back.
+TEST(RecordingLaws, ALinearInputActsLate) {
+  const AssetConfig asset = nominal_asset("eha");
+  const TimeSeries acted = standard_pst(asset, 100.0);
+  TimeSeries early = acted;
+  std::vector<double>& volts = values_of(early, "motor_voltage");
+  std::rotate(volts.begin(), volts.begin() + 3, volts.end());
+  std::fill(volts.end() - 3, volts.end(), values_of(const_cast<TimeSeries&>(acted), "motor_voltage").back());
+  const AssetConfig late = with_error(asset, "input_delay", "input:motor_voltage", "tau", 0.03);
+  EXPECT_LT(worst_difference(outputs_of(late, early), outputs_of(asset, acted)), 1e-3);
+  EXPECT_GT(worst_difference(outputs_of(asset, early), outputs_of(asset, acted)), 1e-2) << "it matters";
+}
+
+TEST(RecordingLaws, SensitivitiesAreThoseOfWholeSimulations) {
+  AssetConfig asset = nominal_asset("eha");
+  asset = with_error(asset, "input_gain", "input:motor_voltage", "g", 0.01);
+  asset = with_error(asset, "input_delay", "input:motor_voltage", "tau", 0.004);
+  asset = with_error(asset, "clock_rate", "clock", "c", 0.01);
+  const auto simulation = *PlantSimulation::create(asset, standard_pst(asset, 100.0));
+  const std::vector<FreeQuantity> free = {*simulation->find("input:motor_voltage.input_gain.g"),
+                                          *simulation->find("input:motor_voltage.input_delay.tau"),
+                                          *simulation->find("clock.clock_rate.c")};
+  const auto outputs = simulation->run(simulation->start(), free);
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  const std::vector<double> steps = {1e-3, 1e-3, 1e-4};
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    ModelValues up = simulation->start(), down = simulation->start();
+    free[k].in(up) += steps[k];
+    free[k].in(down) -= steps[k];
+    const RowMatrix after = simulation->run(up, {}, kVeryTight)->values,
+                    before = simulation->run(down, {}, kVeryTight)->values;
+    for (Eigen::Index c = 0; c < after.cols(); ++c) {
+      const Eigen::VectorXd difference = (after.col(c) - before.col(c)) / (2.0 * steps[k]);
+      Eigen::VectorXd slope(difference.size());
+      for (Eigen::Index row = 0; row < slope.size(); ++row)
+        slope(row) = outputs->sensitivities(row * after.cols() + c, static_cast<Eigen::Index>(k));
+      EXPECT_LT((slope - difference).norm(), 0.1 * difference.norm()) << k << " " << simulation->channels()[c];
+    }
+  }
+}
+
+TEST(RecordingLaws, AnElementThatIsNoneIsAnError) {
+  const AssetConfig asset = nominal_asset("eha");
+  const TimeSeries recorded = standard_pst(asset, 100.0);
+  for (const auto& [id, element] : {std::pair{"input_gain", "input:nowhere"}, {"input_gain", "piston"}})
+    EXPECT_NE(PlantSimulation::create(with_error(asset, id, element, "g", 0.1), recorded)
+                  .error()
+                  .describe()
+                  .find("input:<channel>"),
+              std::string::npos);
+  const auto clock = PlantSimulation::create(with_error(asset, "clock_rate", "shaft", "c", 0.1), recorded);
+  EXPECT_NE(clock.error().describe().find("as clock"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sealwatch

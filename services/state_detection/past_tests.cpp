@@ -8,9 +8,8 @@
 namespace sealwatch {
 
 std::uint16_t PastTests::index_of(const RegionJudgement& judgement) {
-  const auto found = std::ranges::find_if(names_, [&](const Name& name) {
-    return name.quantity == judgement.quantity && name.unit == judgement.unit;
-  });
+  const auto found = std::ranges::find_if(
+      names_, [&](const Name& name) { return name.quantity == judgement.quantity && name.unit == judgement.unit; });
   const auto index = static_cast<std::uint16_t>(found - names_.begin());
   if (found == names_.end()) names_.push_back({judgement.quantity, judgement.unit});
   return index;

@@ -154,7 +154,7 @@ TEST_P(AuditTest, AJournalOfAnOlderProgramGetsTheTableWhenItsServiceStarts) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Databases, AuditTest, ::testing::Values("sqlite3", "postgresql"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& database) { return std::string(database.param); });
 
 /// Not what stops an attacker, but what stops a slip.
 TEST(AuditTable, SqliteRefusesToChangeARow) {

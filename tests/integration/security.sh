@@ -211,6 +211,13 @@ check_strangers() {
   done
 }
 
+# Who was refused is an alarm, in every service that refused it.
+check_alarm() {
+  as "$ours/subscriber" status --json --seconds 3 >"$scratch/alarms" 2>"$scratch/alarm_errors" || true
+  grep -q '"kind": *"refused_right"' "$scratch/alarms" || fail "strangers are no alarm" "$scratch/alarms" "$scratch/up"
+  ! grep -q '"kind": *"unknown_writer"' "$scratch/alarms" || fail "one of ours is taken for a stranger" "$scratch/alarms"
+}
+
 # What one may not write is refused with its reason, and what one may is received.
 check_acts() {
   local identity act number
@@ -310,6 +317,7 @@ start_expiry
 start_lenient
 check_strangers
 check_lenient
+check_alarm
 check_acts
 check_expiry
 check_revocation

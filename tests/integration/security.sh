@@ -211,6 +211,14 @@ check_strangers() {
   done
 }
 
+# Among ourselves nobody is refused or unknown.
+check_no_alarm() {
+  as "$ours/subscriber" status --json --seconds 3 >"$scratch/alarms" 2>"$scratch/alarm_errors" || true
+  saw_state=$(grep -c '"state": *"running"' "$scratch/alarms" || true)
+  [ "$saw_state" -eq 6 ] || fail "not all services are heard" "$scratch/alarms" "$scratch/alarm_errors"
+  ! grep -qE '"kind": *"(refused_right|unknown_writer)"' "$scratch/alarms" || fail "one of ours is refused" "$scratch/alarms" "$scratch/up"
+}
+
 # Who was refused is an alarm, in every service that refused it.
 check_alarm() {
   as "$ours/subscriber" status --json --seconds 3 >"$scratch/alarms" 2>"$scratch/alarm_errors" || true
@@ -313,6 +321,7 @@ check_usage
 check_rights
 start_services
 check_test
+check_no_alarm
 start_expiry
 start_lenient
 check_strangers

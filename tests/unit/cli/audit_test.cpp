@@ -15,6 +15,7 @@ using ::testing::HasSubstr;
 class AuditCommand : public ::testing::Test {
  protected:
   void SetUp() override {
+    options_.config = std::string(SEALWATCH_SOURCE_DIR) + "/config";
     options_.state_directory = place_.directory().string();
     for (const char* service : {"state_detection", "advisory_generation"}) {
       auto journal = Journal::open(connection(service), service);

@@ -47,6 +47,9 @@ Status LayerRunner::start() {
   // Nothing is missing yet; from now on it knows the time, by which it forgets whom it does not hear.
   (void)reader_->requests(std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count());
 
+  // While this process joined, DDS refused whoever came before there was anything to compare them with.
+  if (options_.refused_by_bus) (void)options_.refused_by_bus();
+
   if (Status status = lanes_.prepare(); !status) return status;
   for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);
   if (Status status = restore_quarantine(); !status) return status;

@@ -26,6 +26,7 @@ Refusals& refusals() {
 void take_line(void* /*unused*/, const dds_log_data_t* data) {
   const std::string_view line(data->message, data->size);
   std::fwrite(line.data(), 1, line.size(), stderr);
+  if (!line.ends_with('\n')) std::fputc('\n', stderr);
   if (!transport::tells_a_refusal(line)) return;
   Refusals& known = refusals();
   const std::lock_guard lock(known.mutex);
@@ -39,14 +40,10 @@ namespace transport {
 
 // By Cyclone 0.10: in ddsi_security_omg.c, ddsi_handshake.c and its three plugins.
 bool tells_a_refusal(std::string_view line) {
-  constexpr std::array<std::string_view, 8> kWords = {"not allowed",
-                                                      "denied by",
-                                                      "permission denied",
-                                                      "No Permissions",
-                                                      "does not have permissions",
-                                                      "non secure remote",
-                                                      "Could not validate remote",
-                                                      "handshake failed"};
+  constexpr std::array<std::string_view, 7> kWords = {"handshake reply failed",    "handshake request failed",
+                                                      "process handshake failed",  "could not get remote participant",
+                                                      "does not have permissions", "non secure remote",
+                                                      "not allowed by security"};
   const auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
   };

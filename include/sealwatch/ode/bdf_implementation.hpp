@@ -225,14 +225,17 @@ void Bdf<System>::change_step(double factor) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       for (int k = 0; k < n; ++k) product[i][j] += r[i][k] * u[k][j];
-  const std::size_t count = size();
-  for (std::size_t position = 0; position < count; ++position) {
-    std::array<double, kMaximumOrder + 1> old{};
-    for (int k = 0; k < n; ++k) old[k] = differences_[k][position];
+  // Some positions at a time: all differences of these stay in the nearest cache, and each row is one vector operation.
+  constexpr std::size_t kTogether = 32;
+  std::array<std::array<double, kTogether>, kMaximumOrder + 1> old;
+  for (std::size_t first = 0; first < size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, size() - first);
+    for (int k = 1; k <= kMaximumOrder; ++k) std::copy_n(differences_[k].data() + first, count, old[k].data());
     for (int j = 1; j < n; ++j) {
-      double sum = 0.0;
-      for (int k = 1; k < n; ++k) sum += product[k][j] * old[k];
-      differences_[j][position] = sum;
+      double* difference = differences_[j].data() + first;
+      for (std::size_t p = 0; p < count; ++p) difference[p] = product[1][j] * old[1][p];
+      for (int k = 2; k < n; ++k)
+        for (std::size_t p = 0; p < count; ++p) difference[p] += product[k][j] * old[k][p];
     }
   }
   step_ *= factor;

@@ -132,18 +132,18 @@ void begin_with_what_shows(Naming& naming, const Data& data, const ExplainOption
 
 // Whether the search goes on from the best of these trials without asking for pairs: it ends a gross misfit, or leaves
 // nothing (the noise's own size is known to a tenth, its scores tell the rest).
-bool one_law_does(const std::vector<Trial>& trials, const Naming& naming, const Data& data,
-                  const ExplainOptions& options) {
+bool one_law_does(const std::vector<Trial>& trials, Naming& naming, const Data& data, const ExplainOptions& options) {
   constexpr double kLeft = 1.1;
   const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
   if (best == nullptr) return false;
   if (excess(*naming.best.model) > kGross) return excess(*best->model) <= kGross;
   if (best->model->misfit > kLeft * best->model->residuals) return false;
-  const auto left = screen(*best->model, data, {.seed = options.seed, .threads = options.threads});
+  const auto left = look(naming, best->model, data, options);
   return left && !differs(left->p_value, *best->model, options.false_alarm_rate);
 }
 
-// Refits with another law: first the best single laws, in a gross misfit from second starts too; where none does, pairs.
+// Refits with another law: first the single laws that promise most, where none of them does the others, in a gross
+// misfit from second starts too; where none does, pairs.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
@@ -152,10 +152,17 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     singles.push_back({std::move(start)});
   if (gross)
     for (LawStart& start : second_starts(naming.last)) singles.push_back({std::move(start)});
-  std::vector<Trial> trials = refit(naming.best, singles, data, options.threads);
+  std::vector<Trial> trials;
+  const auto refit_also = [&](const std::vector<std::vector<LawStart>>& starts) {
+    for (Trial& trial : refit(naming.best, starts, data, options.threads)) trials.push_back(std::move(trial));
+  };
+  const auto first =
+      static_cast<std::ptrdiff_t>(gross ? singles.size() : nearly_as_promising(naming.last, singles.size()));
+  refit_also({singles.begin(), singles.begin() + first});
+  if (first < std::ssize(singles) && !one_law_does(trials, naming, data, options))
+    refit_also({singles.begin() + first, singles.end()});
   if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
-    for (Trial& trial : refit(naming.best, ranked_pairs(naming.last, naming.best.model->misfit), data, options.threads))
-      trials.push_back(std::move(trial));
+    refit_also(ranked_pairs(naming.last, naming.best.model->misfit));
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return trials;
 }

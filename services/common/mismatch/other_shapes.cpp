@@ -72,10 +72,20 @@ std::string laws_in_words(const std::vector<Effect>& effects) {
 
 }  // namespace
 
+Result<Screening> look(Naming& naming, const std::shared_ptr<const FittedModel>& model, const Data& data,
+                       const ExplainOptions& options) {
+  if (naming.looked_at == model) return naming.seen;
+  Result<Screening> screening = screen(*model, data, {.seed = options.seed, .threads = options.threads});
+  if (!screening) return screening;
+  naming.looked_at = model;
+  naming.seen = *screening;
+  return screening;
+}
+
 bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options) {
   Trial taken = polished(trial, data, options.threads);
   naming.trials.push_back(taken);
-  Result<Screening> next = screen(*taken.model, data, {.seed = options.seed, .threads = options.threads});
+  Result<Screening> next = look(naming, taken.model, data, options);
   if (!next) {
     naming.remarks.push_back("A model with " + laws_in_words(taken.effects) +
                              " fits better, but what it leaves cannot be looked at (" + reason_in_words(next.error()) +

@@ -18,6 +18,10 @@ void from_other_shapes(Naming& naming, std::size_t before, const Screening& aske
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
 
+/// What a model leaves; that of the last one asked is remembered, as a search asks twice before it takes a model.
+[[nodiscard]] Result<Screening> look(Naming& naming, const std::shared_ptr<const FittedModel>& model, const Data& data,
+                                     const ExplainOptions& options);
+
 /// Goes on with the search for the trial's values; the trial becomes the best, with a new last screening. False, and a
 /// remark, where what it leaves cannot be looked at: then the best stays what it was.
 [[nodiscard]] bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options);

@@ -65,6 +65,19 @@ std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most) 
   return starts;
 }
 
+std::size_t nearly_as_promising(const Screening& screening, std::size_t most) {
+  constexpr std::size_t kLeast = 3;
+  constexpr double kShare = 0.5, kFarBehind = 2.0 * kWorthAnother;
+  const std::vector<const Variant*> ranked = best_of_each(screening);
+  std::size_t count = 0;
+  while (count < std::min(most, ranked.size())) {
+    const double best = ranked.front()->gain, gain = ranked[count]->gain;
+    if (count >= kLeast && gain < kShare * best && gain < best - kFarBehind) break;
+    ++count;
+  }
+  return count;
+}
+
 std::vector<LawStart> second_starts(const Screening& screening) {
   std::vector<LawStart> starts;
   for (const Variant* best : best_of_each(screening)) {

@@ -14,6 +14,10 @@ namespace sealwatch::mismatch {
 /// Best variants by gain, no law at the same element twice; with start values from the linear step.
 [[nodiscard]] std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most);
 
+/// How many of the first `most` ranked laws promise nearly as much as the best, at least three: half as much, or less by
+/// no more than twice what decides between models.
+[[nodiscard]] std::size_t nearly_as_promising(const Screening& screening, std::size_t most);
+
 /// Of the best laws another point of their shape's grid: far from a recording the linearised gain says little about
 /// where a refit ends, and from one start it may end in a hollow beside the best.
 [[nodiscard]] std::vector<LawStart> second_starts(const Screening& screening);

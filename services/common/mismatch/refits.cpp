@@ -1,14 +1,13 @@
 #include "services/common/mismatch/refits.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <ranges>
-#include <thread>
 
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/in_parallel.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -71,20 +70,6 @@ std::vector<Trial> trials_of(std::vector<Refit> refits) {
     trials.push_back({std::move(refit.effects), std::move(refit.model)});
   }
   return trials;
-}
-
-// f(0), f(1), ... on several threads, in this order.
-template <class Item, class F>
-std::vector<Item> in_parallel(std::size_t count, int threads, const F& f) {
-  std::vector<Item> results(count);
-  std::atomic<std::size_t> next = 0;
-  std::vector<std::jthread> workers;
-  for (int worker = 0; worker < threads; ++worker)
-    workers.emplace_back([&] {
-      for (std::size_t k = next++; k < count; k = next++) results[k] = f(k);
-    });
-  workers.clear();
-  return results;
 }
 
 }  // namespace

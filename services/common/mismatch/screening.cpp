@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
+#include <optional>
 #include <utility>
 
+#include "services/common/mismatch/in_parallel.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/screening_scores.hpp"
 #include "services/common/mismatch/sensitivity_pass.hpp"
@@ -146,19 +147,58 @@ Eigen::MatrixXd stacked(const std::vector<Eigen::MatrixXd>& parts, Eigen::Index 
 
 Result<std::vector<Reduced>> reduce_all(const FittedModel& model, const std::vector<Candidate>& candidates,
                                         const std::vector<PassColumn>& columns, const ScreeningOptions& options) {
-  const int threads = options.threads;
+  using Part = std::optional<Result<Reduced>>;
+  std::vector<Part> parts = in_parallel<Part>(model.problem.recordings.size(), options.threads, [&](std::size_t k) {
+    return reduce(model, k, candidates, columns, options.block_s);
+  });
   std::vector<Reduced> all;
-  const std::size_t count = model.problem.recordings.size();
-  for (std::size_t first = 0; first < count; first += static_cast<std::size_t>(threads)) {
-    std::vector<std::future<Result<Reduced>>> running;
-    for (std::size_t k = first; k < std::min(count, first + static_cast<std::size_t>(threads)); ++k)
-      running.push_back(
-          std::async(std::launch::async, [&, k] { return reduce(model, k, candidates, columns, options.block_s); }));
-    for (auto& one : running) {
-      Result<Reduced> reduced = one.get();
-      if (!reduced) return fail(reduced.error());
-      all.push_back(std::move(*reduced));
-    }
+  for (Part& part : parts) {
+    if (!*part) return fail(part->error());
+    all.push_back(std::move(**part));
+  }
+  return all;
+}
+
+// What one recording adds to the normal equations of the shared unknowns, S, and the laws, L:  S'S, S'L, S'r.
+struct Normal {
+  Eigen::MatrixXd gram, cross;
+  Eigen::VectorXd right;
+};
+
+// And to what is left of laws and residual once the shared unknowns are taken off them.
+struct Left {
+  Eigen::MatrixXd gram, sums, grams;
+};
+
+Left without_shared(Reduced& part, const Normal& all, const std::vector<Variant>& variants) {
+  if (part.shared.cols() > 0) {
+    const Projection projection(part.shared, all.gram);
+    part.laws.noalias() -= part.shared * projection.coefficients(all.cross);
+    part.residual.noalias() -= part.shared * projection.coefficients(all.right);
+  }
+  Left left{.gram = Eigen::MatrixXd::Zero(part.laws.cols(), part.laws.cols()),
+            .sums = block_sums(part.laws, part.residual, part.rows_per_block),
+            .grams = block_grams(part.laws, variants, part.rows_per_block)};
+  left.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.laws.transpose());
+  part.laws.resize(0, 0);
+  return left;
+}
+
+// Of all recordings, whose laws are laid out in columns of all; `recordings` of the parts are such, the last may be what
+// is known beforehand.
+Normal normal_equations_of(std::vector<Reduced>& parts, std::size_t recordings, const Layout& layout, int threads) {
+  const std::vector<Normal> normals = in_parallel<Normal>(parts.size(), threads, [&](std::size_t k) {
+    Reduced& part = parts[k];
+    part.laws = k < recordings ? spread(part.laws, layout, k) : RowMatrix::Zero(part.laws.rows(), layout.size);
+    return Normal{.gram = part.shared.transpose() * part.shared,
+                  .cross = part.shared.transpose() * part.laws,
+                  .right = part.shared.transpose() * part.residual};
+  });
+  Normal all = normals.front();
+  for (std::size_t k = 1; k < normals.size(); ++k) {
+    all.gram += normals[k].gram;
+    all.cross += normals[k].cross;
+    all.right += normals[k].right;
   }
   return all;
 }
@@ -182,39 +222,29 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
     parts->push_back(known_beforehand(model, static_cast<Eigen::Index>(columns.size())));
 
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(shared, shared), cross = Eigen::MatrixXd::Zero(shared, layout.size);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(shared), raw_norm = Eigen::VectorXd::Zero(layout.size);
-  for (std::size_t k = 0; k < parts->size(); ++k) {
-    Reduced& part = (*parts)[k];
-    part.laws = k < recordings ? spread(part.laws, layout, k) : RowMatrix::Zero(part.laws.rows(), layout.size);
-    gram += part.shared.transpose() * part.shared;
-    cross += part.shared.transpose() * part.laws;
-    right += part.shared.transpose() * part.residual;
+  const Normal all = normal_equations_of(*parts, recordings, layout, options.threads);
+  Eigen::VectorXd raw_norm = Eigen::VectorXd::Zero(layout.size);
+  for (std::size_t k = 0; k < parts->size(); ++k)
     for (std::size_t c = 0; c < columns.size(); ++c)
       for (std::size_t j = 0; j < layout.of_pass[c].size(); ++j)
         if (layout.of_pass[c].size() == 1 || j == k)
-          raw_norm(layout.of_pass[c][j]) += part.raw_norm(static_cast<Eigen::Index>(c));
-  }
+          raw_norm(layout.of_pass[c][j]) += (*parts)[k].raw_norm(static_cast<Eigen::Index>(c));
+  std::vector<Left> left = in_parallel<Left>(parts->size(), options.threads, [&](std::size_t k) {
+    return without_shared((*parts)[k], all, screening.variants);
+  });
   screening.gram = Eigen::MatrixXd::Zero(layout.size, layout.size);
   std::vector<Eigen::MatrixXd> sums, grams;
   Eigen::Index blocks = 0;
-  for (std::size_t k = 0; k < parts->size(); ++k) {
-    Reduced& part = (*parts)[k];
-    if (shared > 0) {
-      const Projection projection(part.shared, gram);
-      part.laws.noalias() -= part.shared * projection.coefficients(cross);
-      part.residual.noalias() -= part.shared * projection.coefficients(right);
-    }
-    screening.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.laws.transpose());
-    sums.push_back(block_sums(part.laws, part.residual, part.rows_per_block));
-    grams.push_back(block_grams(part.laws, screening.variants, part.rows_per_block));
-    blocks += sums.back().rows();
-    part.laws.resize(0, 0);
+  for (Left& part : left) {
+    screening.gram += part.gram;
+    blocks += part.sums.rows();
+    sums.push_back(std::move(part.sums));
+    grams.push_back(std::move(part.grams));
   }
   screening.gram.triangularView<Eigen::StrictlyUpper>() = screening.gram.transpose();
   screening.block_scores = stacked(sums, blocks);
   screening.gradient = screening.block_scores.colwise().sum();
-  if (shared > 0) find_leakage_shifts(screening, model, gram, cross);
+  if (shared > 0) find_leakage_shifts(screening, model, all.gram, all.cross);
   evaluate(screening, raw_norm, stacked(grams, blocks),
            resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);

@@ -46,15 +46,17 @@ void fill_sensor_column(const Candidate& candidate, const PassColumn& column, co
   }
 }
 
-// d(channels)/d(strength) of a law of the recording: by two simulations, once for all points of its grid. No column where
-// another channel drives this recording.
-Result<RowMatrix> recording_column(const PemRecording& part, const ModelValues& values, const Candidate& candidate,
-                                   const SimulationOptions& options) {
+// d(channels)/d(strength) of a law of the recording, by two simulations. No column, so that the law is not asked, where
+// another channel drives this recording or these simulations fail.
+RowMatrix recording_column(const PemRecording& part, const ModelValues& values, const Candidate& candidate,
+                           const SimulationOptions& options) {
   const auto inputs = part.simulation->inputs();
   const auto input = static_cast<std::size_t>(std::ranges::find(inputs, candidate.channel) - inputs.begin());
-  if (candidate.law->kind != SiteKind::clock_rate && input == inputs.size())
-    return RowMatrix(RowMatrix::Zero(part.simulation->recorded().rows(), part.simulation->recorded().cols()));
-  return part.simulation->recording_column(values, candidate.law->kind, input, options);
+  const bool drives = candidate.law->kind == SiteKind::clock_rate || input < inputs.size();
+  Result<RowMatrix> column = fail("is not driven by it");
+  if (drives) column = part.simulation->recording_column(values, candidate.law->kind, input, options);
+  if (column) return std::move(*column);
+  return RowMatrix::Zero(part.simulation->recorded().rows(), part.simulation->recorded().cols());
 }
 
 }  // namespace
@@ -118,11 +120,10 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
     const Candidate& candidate = candidates[column.candidate];
     if (!candidate.sites.empty()) continue;
     if (is_of_recording(candidate.law->kind)) {
-      const Result<RowMatrix> change =
+      const RowMatrix change =
           recording_column(part, values_at(model.problem, recording, shared, own), candidate, options);
-      if (!change) return fail(change.error());
       for (Eigen::Index row = 0; row < samples * channels; ++row)
-        all.jacobian(row, unknowns + k) = column.unit * change->data()[row] / part.noise_std(row % channels);
+        all.jacobian(row, unknowns + k) = column.unit * change.data()[row] / part.noise_std(row % channels);
       continue;
     }
     for (Eigen::Index c = 0; c < channels; ++c) {

@@ -169,6 +169,7 @@ struct ConfirmOptions {
   std::string config;
   std::string asset_id;
   std::string act_id;
+  bool reject = false;
   std::string by;
   std::string remark;
 };

@@ -60,7 +60,7 @@ int run_confirm(const ConfirmOptions& options) {
     return complain_of(options, "waits for nobody", "`sealwatch status` shows what waits, with its id");
   MaintenanceEvent event;
   event.asset_id = options.asset_id;
-  event.kind = kActConfirmed;
+  event.kind = options.reject ? kActRejected : kActConfirmed;
   event.reported_by = options.by;
   event.remark = options.remark;
   event.header.event_time_known = true;
@@ -73,9 +73,10 @@ int run_confirm(const ConfirmOptions& options) {
   const Statuses after = listen(*session->bus);
   for (const auto& [service, status] : after)
     if (waits(status, options.act_id))
-      return complain_of(options, "is not confirmed",
+      return complain_of(options, options.reject ? "is not rejected" : "is not confirmed",
                          status.last_error.empty() ? "see `sealwatch audit`" : status.last_error);
-  std::printf("confirmed by %s: it counts now\n", options.by.c_str());
+  std::printf("%s by %s: it %s\n", options.reject ? "rejected" : "confirmed", options.by.c_str(),
+              options.reject ? "never counts" : "counts now");
   return kOk;
 }
 

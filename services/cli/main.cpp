@@ -372,6 +372,7 @@ class CommandLine {
     add_config(confirm, confirm_.config);
     confirm->add_option("asset", confirm_.asset_id, "asset id")->required();
     confirm->add_option("act", confirm_.act_id, "id of what waits, as `status` shows it")->required();
+    confirm->add_flag("--reject", confirm_.reject, "it never counts; whoever reported it may say so, too");
     confirm->add_option("--by", confirm_.by, "who: not the one who reported it")->required();
     confirm->add_option("--remark", confirm_.remark, "free text");
   }

@@ -3,6 +3,7 @@
 // It travels as a maintenance_event of this kind, with who and when; its message_id says what is confirmed:
 //
 //   act_confirmed          confirmation/<asset>/<when>/<message id of the act>
+//   act_rejected           the same: the act never counts. Whoever reported it may say so, too
 #pragma once
 
 #include <optional>
@@ -16,12 +17,13 @@
 namespace sealwatch {
 
 inline constexpr std::string_view kActConfirmed = "act_confirmed";
+inline constexpr std::string_view kActRejected = "act_rejected";
 
 [[nodiscard]] inline std::string confirmation_id(const std::string& asset_id, const std::string& act_id, UtcTime when) {
   return "confirmation/" + asset_id + "/" + format_utc(when) + "/" + act_id;
 }
 
-/// Message id of the act that the event of this id confirms; nothing when it is no such event.
+/// Message id of the act that the event of this id confirms or rejects; nothing when it is no such event.
 [[nodiscard]] inline std::optional<std::string> confirmed_act(const std::string& asset_id,
                                                               const std::string& message_id) {
   const std::string begin = "confirmation/" + asset_id + "/";

@@ -213,7 +213,7 @@ Status LayerRunner::take(Message message) {
   if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;
   const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
   taken_.push_back({input, stream, state});
-  if (state == InputState::awaiting) await(input);
+  if (state == InputState::awaiting) await(input, clock_.now());
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
   admission_.note(*input);

@@ -135,13 +135,13 @@ class LayerRunner {
 
   // What people say (layer_runner_acts.cpp).
   [[nodiscard]] Status restore_awaiting();
-  void await(std::shared_ptr<const Message> act);
+  void await(std::shared_ptr<const Message> act, UtcTime since);
   [[nodiscard]] std::optional<std::string> refusal_of_confirmation(const Message& message) const;
   [[nodiscard]] bool waits_for_second(const Message& message) const;
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
   [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused,
                                     InputState state);
-  /// Gives the layer what this confirms.
+  /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
 
@@ -170,9 +170,9 @@ class LayerRunner {
   std::vector<Message> renumbered_;  ///< known inputs that came under another number
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
   std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
-  std::vector<std::string> confirmed_;  ///< ids of those whose wait is over, of this batch
-  std::vector<OperatorAct> acts_;       ///< of the running batch
-  std::vector<LaneResult> results_;     ///< not yet in the journal
+  std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
+  std::vector<OperatorAct> acts_;                         ///< of the running batch
+  std::vector<LaneResult> results_;                       ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch

@@ -27,9 +27,16 @@ std::string plain(const std::string& who) {
   return name;
 }
 
+/// Whether it rejects what it speaks of.
+bool rejects(const Message& message) {
+  const auto* event = std::get_if<MaintenanceEvent>(&message);
+  return event != nullptr && event->kind == kActRejected;
+}
+
+/// The act that it confirms or rejects.
 std::optional<std::string> act_confirmed_by(const Message& message) {
   const auto* event = std::get_if<MaintenanceEvent>(&message);
-  if (event == nullptr || event->kind != kActConfirmed) return std::nullopt;
+  if (event == nullptr || (event->kind != kActConfirmed && event->kind != kActRejected)) return std::nullopt;
   return confirmed_act(event->asset_id, event->header.message_id);
 }
 
@@ -38,11 +45,11 @@ std::optional<std::string> act_confirmed_by(const Message& message) {
 Status LayerRunner::restore_awaiting() {
   const auto waiting = journal_.awaiting();
   if (!waiting) return fail(waiting.error());
-  for (const Message& message : *waiting) await(std::make_shared<const Message>(message));
+  for (const Journal::Awaiting& one : *waiting) await(std::make_shared<const Message>(one.message), one.received);
   return {};
 }
 
-void LayerRunner::await(std::shared_ptr<const Message> act) {
+void LayerRunner::await(std::shared_ptr<const Message> act, UtcTime since) {
   const Header& header = header_of(*act);
   const auto told = act_of(*act, clock_.now(), {});
   alarms_.raise({.kind = kAwaitsConfirmation,
@@ -50,7 +57,7 @@ void LayerRunner::await(std::shared_ptr<const Message> act) {
                  .subject = header.message_id,
                  .pst_id = {},
                  .text = told->kind + " by " + told->who + " counts once another person confirms it",
-                 .since_ns = clock_.now().nanoseconds});
+                 .since_ns = since.nanoseconds});
   awaiting_[header.message_id] = std::move(act);
 }
 
@@ -64,7 +71,7 @@ std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& m
   const auto waiting = awaiting_.find(*act_id);
   if (waiting == awaiting_.end() || asset_of(*waiting->second) != asset_of(message))
     return "nothing of the id '" + *act_id + "' waits for a confirmation";
-  if (plain(who_said(message)) == plain(who_said(*waiting->second)))
+  if (!rejects(message) && plain(who_said(message)) == plain(who_said(*waiting->second)))
     return who_said(message) + " said so in the first place; it takes another person to confirm it";
   return std::nullopt;
 }
@@ -89,9 +96,10 @@ void LayerRunner::confirm(const Message& message) {
   awaiting_.erase(waiting);
   alarms_.clear(kAwaitsConfirmation, asset_of(*act), *act_id);
   if (const auto taken = taken_ids_.find(*act_id); taken != taken_ids_.end())
-    taken_[taken->second].state = InputState::open;  // both came in one batch
+    taken_[taken->second].state = rejects(message) ? InputState::consumed : InputState::open;  // both in one batch
   else
-    confirmed_.push_back(*act_id);
+    no_longer_awaiting_[*act_id] = rejects(message) ? InputState::consumed : InputState::open;
+  if (rejects(message)) return;
   admission_.note(*act);
   lanes_.add(asset_of(*act), *act_id, act);
 }
@@ -110,8 +118,8 @@ Status LayerRunner::record_acts() {
                {"entry", std::to_string(entry->sequence)},
                {"hash", entry->hash}});
   }
-  for (const std::string& act_id : std::exchange(confirmed_, {}))
-    if (Status opened = journal_.open_awaiting(act_id); !opened) return opened;
+  for (const auto& [act_id, state] : std::exchange(no_longer_awaiting_, {}))
+    if (Status ended = journal_.end_awaiting(act_id, state); !ended) return ended;
   return {};
 }
 

@@ -117,10 +117,14 @@ class Journal {
   /// Adds what somebody did to the audit trail.
   [[nodiscard]] Result<AuditEntry> record(const OperatorAct& act);
 
+  struct Awaiting {
+    Message message;
+    UtcTime received;
+  };
   /// What waits for a second person, in the order of receipt.
-  [[nodiscard]] Result<std::vector<Message>> awaiting();
-  /// Opens one of them.
-  [[nodiscard]] Status open_awaiting(const std::string& message_id);
+  [[nodiscard]] Result<std::vector<Awaiting>> awaiting();
+  /// Ends the wait of one of them: open or consumed.
+  [[nodiscard]] Status end_awaiting(const std::string& message_id, InputState state);
 
   // The quarantine. It is written between begin and commit; askers write to it from other processes (quarantine_desk.hpp).
 

@@ -108,33 +108,37 @@ Status Journal::release(const SetAside& message) {
   });
 }
 
-Result<std::vector<Message>> Journal::awaiting() {
-  auto ids = database_->guard("looking for acts that wait", [&] {
-    std::vector<std::string> found;
+Result<std::vector<Journal::Awaiting>> Journal::awaiting() {
+  auto rows = database_->guard("looking for acts that wait", [&] {
+    std::vector<std::pair<std::string, long long>> found;
     std::string id;
+    long long received = 0;
     soci::statement statement =
-        (database_->sql.prepare << "SELECT message_id FROM inputs WHERE consumed = 3 ORDER BY receipt", into(id));
+        (database_->sql.prepare << "SELECT message_id, received FROM inputs WHERE consumed = 3 ORDER BY receipt",
+         into(id), into(received));
     statement.execute();
-    while (statement.fetch()) found.push_back(id);
+    while (statement.fetch()) found.emplace_back(id, received);
     return found;
   });
-  if (!ids) return fail(ids.error());
-  std::vector<Message> messages;
-  for (const std::string& id : *ids) {
+  if (!rows) return fail(rows.error());
+  std::vector<Awaiting> waiting;
+  for (const auto& [id, received] : *rows) {
     auto message = input(id);
     if (!message) return fail(message.error());
-    if (*message) messages.push_back(std::move(**message));
+    if (*message) waiting.push_back({std::move(**message), UtcTime{received}});
   }
-  return messages;
+  return waiting;
 }
 
-Status Journal::open_awaiting(const std::string& message_id) {
-  return database_->guard("opening what waited", [&] {
-    soci::statement statement = (database_->sql.prepare << "UPDATE inputs SET consumed = 0 WHERE consumed = 3 AND"
-                                                           " message_id = :id",
-                                 use(message_id, "id"));
+Status Journal::end_awaiting(const std::string& message_id, InputState state) {
+  return database_->guard("ending an act's wait", [&] {
+    const bool opened = state == InputState::open;
+    const std::string change = opened ? "consumed = 0" : "consumed = 1, payload = NULL";
+    soci::statement statement =
+        (database_->sql.prepare << "UPDATE inputs SET " + change + " WHERE consumed = 3 AND message_id = :id",
+         use(message_id, "id"));
     statement.execute(true);
-    database_->open_inputs += static_cast<std::uint64_t>(statement.get_affected_rows());
+    if (opened) database_->open_inputs += static_cast<std::uint64_t>(statement.get_affected_rows());
     ++database_->batch_rows;
   });
 }

@@ -166,24 +166,52 @@ TEST_F(SecondPerson, ARestartChangesNothing) {
   EXPECT_EQ(process->journal().open_inputs(), 0U);
 }
 
-TEST_F(SecondPerson, WhatWaitsIsAnAlarm) {
+TEST_F(SecondPerson, WhatIsRejectedNeverCountsAlsoByWhoReportedIt) {
+  {
+    const auto process = start(asking());
+    say(*process, replaced_);
+    MaintenanceEvent rejection = confirmation(replaced_, "J. Silva");
+    rejection.kind = kActRejected;
+    say(*process, rejection);
+    say(*process, confirmation(replaced_, "M. Okoye"));
+    EXPECT_TRUE(process->outputs().empty());
+    EXPECT_EQ(acts()[1].act.kind, "act_rejected");
+  }
+  const auto process = start(asking());
+  say(*process, confirmation(replaced_, "M. Okoye"));
+  EXPECT_TRUE(process->outputs().empty());
+  EXPECT_TRUE(process->journal().awaiting().value().empty());
+}
+
+TEST_F(SecondPerson, WhatWaitsIsAnAlarmFromItsReceiptOn) {
   InMemoryBus listener(network_);
   ASSERT_TRUE(listener.subscribe_service_topics());
   std::vector<ServiceAlarm> alarms;
-  const auto process = start(asking());
+  auto process = start(asking());
   const auto are = [&](std::size_t count) {
     return step_until(
         [&] {
           for (const BusItem& item : listener.receive(std::chrono::milliseconds(5), 1000))
-            if (const auto* status = std::get_if<ServiceStatus>(&item)) alarms = status->alarms;
+            if (const auto* status = std::get_if<ServiceStatus>(&item); status && status->state == "running")
+              alarms = status->alarms;
           return alarms.size() == count;
         },
         [&] { process->step(); });
   };
+  const UtcTime received = process->clock().now();
   say(*process, replaced_);
   ASSERT_TRUE(are(1));
   EXPECT_EQ(alarms[0].kind, "awaits_confirmation");
   EXPECT_EQ(alarms[0].subject, replaced_.header.message_id);
+  EXPECT_EQ(alarms[0].since_ns, received.nanoseconds);
+  process.reset();
+  alarms.clear();
+  process = std::make_unique<Process>(
+      network_, [] { return std::make_unique<ListeningLayer>(); }, place_.connection(), Fate(), asking());
+  process->clock().set(add_months(received, 1.0));
+  process->start();
+  ASSERT_TRUE(are(1));
+  EXPECT_EQ(alarms[0].since_ns, received.nanoseconds) << "a restart does not begin it anew";
   say(*process, confirmation(replaced_, "M. Okoye"));
   EXPECT_TRUE(are(0));
 }

@@ -11,6 +11,8 @@
 #include <mutex>
 #include <optional>
 
+#include "services/common/estimation/minimum_in_box.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -51,6 +53,9 @@ class RecordingCost final : public ceres::CostFunction {
     const auto n = static_cast<Eigen::Index>(shared_.size());
     return compressed_.leftCols(n).transpose() * compressed_.col(compressed_.cols() - 1);
   }
+
+  /// d residual / d (shared, own), residual: as many rows as columns.
+  [[nodiscard]] const Eigen::MatrixXd& compressed() const { return compressed_; }
 
   void remember(const std::vector<double>& shared, const std::vector<double>& own, Linearisation linearisation) {
     shared_ = shared;
@@ -244,14 +249,16 @@ class CostResolved final : public ceres::IterationCallback {
     // A step to where nothing can be simulated says nothing of the cost: Ceres tries a shorter one.
     const bool simulated = iteration.step_is_valid && iteration.cost_change > -std::numeric_limits<double>::max() / 2.0;
     if (iteration.iteration == 0 || !simulated) return ceres::SOLVER_CONTINUE;
-    if (iteration.step_is_successful && ++successful_ >= kIterationsForHope && iteration.cost > hopeless_cost_)
-      return ceres::SOLVER_ABORT;
+    if (iteration.step_is_successful && is_hopeless(iteration.cost, ++successful_)) return ceres::SOLVER_ABORT;
     const double promised = iteration.cost_change / iteration.relative_decrease;  // by the linear model
     const double tolerance = at_cost(iteration.cost);
     const bool resolved = std::abs(iteration.cost_change) <= tolerance || (promised >= 0.0 && promised <= tolerance);
     return resolved ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
+  [[nodiscard]] bool is_hopeless(double cost, int iterations) const {
+    return iterations >= kIterationsForHope && cost > hopeless_cost_;
+  }
   /// What counts as no change of this cost.
   [[nodiscard]] double at_cost(double cost) const { return tolerance_ * std::max(1.0, cost / noise_cost_); }
 
@@ -279,6 +286,120 @@ class RangeLeft final : public ceres::IterationCallback {
 void silence_ceres() {
   static std::once_flag once;
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
+}
+
+// Gauss-Newton's steps within the ranges. Near an optimum the residuals are nearly linear in the unknowns, and what is
+// nonlinear is which of them end at an end of their range: minimum_in_box() finds that without a simulation.
+class NearSearch {
+ public:
+  NearSearch(const PemProblem& problem, PemPoint& point, const std::vector<RecordingCost*>& costs, SideBySide& all)
+      : problem_(problem), point_(point), costs_(costs), all_(all) {
+    size_ = static_cast<Eigen::Index>(point.shared.size());
+    for (const std::vector<double>& own : point.own) size_ += static_cast<Eigen::Index>(own.size());
+  }
+
+  enum class End { converged, too_far, out_of_iterations, hopeless, out_of_time };
+  /// Ends `too_far` at the last point from which the linear model still kept what it promised.
+  End run(const CostResolved& resolved, int maximum_iterations, const Deadline* deadline);
+
+  [[nodiscard]] int iterations() const { return iterations_; }
+  [[nodiscard]] double cost() const { return cost_; }
+
+ private:
+  static constexpr double kKept = 0.5;  // of what the linear model promises
+
+  struct Step {
+    Eigen::VectorXd by;
+    double promised = 0.0;  ///< fall of the cost
+  };
+
+  /// At the point; infinite where a recording cannot be simulated.
+  [[nodiscard]] double evaluate() {
+    ++iterations_;
+    all_.PrepareForEvaluation(true, true);
+    if (all_.failed()) return std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    for (const RecordingCost* cost : costs_) sum += 0.5 * cost->compressed().rightCols(1).squaredNorm();
+    for (std::size_t k = 0; k < point_.shared.size(); ++k)
+      if (problem_.shared[k].is_known()) sum += 0.5 * std::pow(problem_.shared[k].prior_residual(point_.shared[k]), 2);
+    return sum;
+  }
+
+  [[nodiscard]] Step step() const {
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size_, size_);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size_);
+    const auto shared = static_cast<Eigen::Index>(point_.shared.size());
+    Eigen::Index first_own = shared;
+    for (const RecordingCost* cost : costs_) {
+      const Eigen::MatrixXd& all = cost->compressed();
+      const Eigen::Index n = all.cols() - 1;
+      std::vector<Eigen::Index> place(static_cast<std::size_t>(n));
+      for (Eigen::Index k = 0; k < n; ++k) place[static_cast<std::size_t>(k)] = k < shared ? k : first_own + k - shared;
+      gram(place, place) += all.leftCols(n).transpose() * all.leftCols(n);
+      gradient(place) += all.leftCols(n).transpose() * all.col(n);
+      first_own += n - shared;
+    }
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd low = Eigen::VectorXd::Constant(size_, -kInfinite), high = -low;
+    for (Eigen::Index k = 0; k < shared; ++k) {
+      const Unknown& unknown = problem_.shared[static_cast<std::size_t>(k)];
+      const double at = point_.shared[static_cast<std::size_t>(k)];
+      if (unknown.is_known()) {
+        gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
+        gradient(k) -= unknown.prior_residual(at) / unknown.prior_std;
+      }
+      if (!(unknown.max > unknown.min)) continue;
+      low(k) = unknown.to_unknown(unknown.min) - at;
+      high(k) = unknown.to_unknown(unknown.max) - at;
+    }
+    Step found{.by = minimum_in_box(gram, gradient, low, high)};
+    found.promised = -found.by.dot(gradient + 0.5 * gram * found.by);
+    return found;
+  }
+
+  void move(const Eigen::VectorXd& by) {
+    Eigen::Index k = 0;
+    for (std::size_t j = 0; j < point_.shared.size(); ++j) {
+      const Unknown& unknown = problem_.shared[j];
+      point_.shared[j] += by(k++);
+      if (unknown.max > unknown.min)  // rounding
+        point_.shared[j] =
+            std::clamp(point_.shared[j], unknown.to_unknown(unknown.min), unknown.to_unknown(unknown.max));
+    }
+    for (std::vector<double>& own : point_.own)
+      for (double& value : own) value += by(k++);
+  }
+
+  const PemProblem& problem_;
+  PemPoint& point_;
+  const std::vector<RecordingCost*>& costs_;
+  SideBySide& all_;
+  Eigen::Index size_ = 0;
+  int iterations_ = 0;
+  double cost_ = 0.0;
+};
+
+NearSearch::End NearSearch::run(const CostResolved& resolved, int maximum_iterations, const Deadline* deadline) {
+  cost_ = evaluate();
+  if (!std::isfinite(cost_)) return End::too_far;
+  while (iterations_ <= maximum_iterations) {
+    if (passed(deadline)) return End::out_of_time;
+    if (resolved.is_hopeless(cost_, iterations_)) return End::hopeless;
+    const Step next = step();
+    if (!next.by.allFinite()) return End::too_far;
+    const double tolerance = resolved.at_cost(cost_);
+    if (next.promised <= tolerance) return End::converged;
+    const PemPoint before = point_;
+    move(next.by);
+    const double after = evaluate(), change = cost_ - after;
+    if (!(change >= kKept * next.promised)) {
+      point_ = before;
+      return End::too_far;
+    }
+    cost_ = after;
+    if (change <= tolerance) return End::converged;
+  }
+  return End::out_of_iterations;
 }
 
 }  // namespace
@@ -359,7 +480,15 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   ActiveSet active(problem.shared, optimum.point.shared);
   RangeLeft range_left(active);
   solver.callbacks.push_back(&range_left);
-  bool again = true, let_go_of_some = false;  // once some were, iterations are not renewed: the search ends
+  NearSearch near(problem, optimum.point, costs, side_by_side);
+  const NearSearch::End end = near.run(resolved, options.maximum_iterations, problem.simulation_options.deadline);
+  optimum.iterations = near.iterations();
+  optimum.converged = end == NearSearch::End::converged;
+  optimum.hopeless = end == NearSearch::End::hopeless;
+  summary.final_cost = near.cost();
+  solver.max_num_iterations -= near.iterations() - 1;
+  bool again = end == NearSearch::End::too_far && solver.max_num_iterations > 0;
+  bool let_go_of_some = false;  // once some were, iterations are not renewed: the search ends
   while (again) {
     active.apply(ceres_problem);
     ceres::Solve(solver, &ceres_problem, &summary);
@@ -379,12 +508,15 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
     }
     again = again && solver.max_num_iterations > 0 && summary.termination_type != ceres::FAILURE;
   }
-  const bool within_tolerance = optimum.converged && summary.termination_type == ceres::USER_SUCCESS;
+  const bool within_tolerance =
+      optimum.converged && (end == NearSearch::End::converged || summary.termination_type == ceres::USER_SUCCESS);
   optimum.cost = summary.final_cost;
-  optimum.hopeless = summary.termination_type == ceres::USER_FAILURE;
+  optimum.hopeless = optimum.hopeless || summary.termination_type == ceres::USER_FAILURE;
   optimum.termination = within_tolerance   ? "converged: the last step changed the cost by less than its tolerance"
                         : optimum.hopeless ? "given up: the model does not come near the recording"
-                                           : summary.message;
+                        : end == NearSearch::End::out_of_iterations ? "not converged: out of iterations"
+                        : end == NearSearch::End::out_of_time       ? "not converged: out of time"
+                                                                    : summary.message;
   for (std::size_t k = 0; k < costs.size(); ++k) {
     Result<Linearisation> linearisation = costs[k]->take_linearisation(optimum.point.shared, optimum.point.own[k]);
     if (!linearisation) return fail(linearisation.error());

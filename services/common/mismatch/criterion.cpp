@@ -9,6 +9,10 @@ namespace {
 // Of a parameter (Akaike), where so little is explained that ln(N / phi) is less.
 constexpr double kLeastPenalty = 2.0;
 
+// -2 ln(prior odds): an error of the recorded input or of the clock is taken for a third as likely as physics of the plant.
+// It decides where both do the same (a constant force, or an offset of the voltage that makes the force).
+constexpr double kOfRecording = 2.2;
+
 // tau: how many neighbouring whitened residuals say the same.
 double correlation_time(const FittedModel& model) {
   std::vector<const Linearisation*> parts;
@@ -63,7 +67,10 @@ bool differs(double p_value, const FittedModel& model, double false_alarm_rate) 
 }
 
 double criterion(const FittedModel& model, double dispersion) {
-  return model.misfit / dispersion +
+  const auto laws = model.problem.recordings.front().simulation->physics_parameters();
+  const auto of_recording = std::ranges::count_if(
+      laws, [](const PhysicsParameter& parameter) { return is_of_recording(parameter.law->kind); });
+  return model.misfit / dispersion + kOfRecording * static_cast<double>(of_recording) +
          static_cast<double>(model.free_shared) * std::max(kLeastPenalty, std::log(model.residuals / dispersion));
 }
 

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kLongestHiddenStep_s = 2e-3;
 constexpr int kNewtonIterations = 4;
+constexpr double kNext = 1e-4;  // of the hidden state: Newton's next change would be about its square
 constexpr double kSettling_s = 10.0;
 
 std::vector<double> without_strengths(const LawColumn& column) {
@@ -52,7 +53,7 @@ void LawColumns::advance(std::size_t law, double step_s, Signals signals) {
       const LawScalar rate = column.law->evaluate(law_input(at, hidden, column.parameters)).rate;
       const double change = (before + h * rate.value - hidden) / (1.0 - h * rate.derivative[kSiteSignals]);
       hidden += change;
-      if (std::abs(change) <= 1e-9 * (std::abs(hidden) + column.law->hidden->scale)) break;
+      if (std::abs(change) <= kNext * (std::abs(hidden) + column.law->hidden->scale)) break;
     }
   }
 }

@@ -6,7 +6,6 @@
 namespace sealwatch {
 namespace {
 
-constexpr double kFlat = 1e-8;   // of the diagonal
 constexpr double kWorth = 1e-9;  // slope, of the largest at the start, for which an entry leaves the end of its range
 constexpr Eigen::Index kTurns = 10;  // for each entry
 
@@ -49,12 +48,12 @@ Eigen::Index first_blocked(const Eigen::VectorXd& d, Eigen::VectorXd& target, co
 }  // namespace
 
 Eigen::VectorXd minimum_in_box(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
-                               const Eigen::VectorXd& high) {
+                               const Eigen::VectorXd& high, double damping) {
   const Eigen::Index n = gradient.size();
   const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const auto shrink = scale.cwiseInverse().asDiagonal();
   Eigen::MatrixXd g = shrink * gram * shrink;
-  g.diagonal().array() += kFlat;
+  g.diagonal().array() += damping;
   const Eigen::VectorXd slope = shrink * gradient, least = scale.cwiseProduct(low), most = scale.cwiseProduct(high);
   Eigen::VectorXd d = Eigen::VectorXd::Zero(n).cwiseMax(least).cwiseMin(most);
   std::vector<bool> held(static_cast<std::size_t>(n), false);

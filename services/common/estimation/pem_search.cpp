@@ -307,10 +307,19 @@ class NearSearch {
 
  private:
   static constexpr double kKept = 0.5;  // of what the linear model promises
+  // Far from the optimum a shape that is hardly seen yet must not run to the end of its range: Ceres' own first damping,
+  // and how it falls.
+  static constexpr double kDamping = 1e-4, kFalls = 1.0 / 3.0, kUndamped = 1e-8;
 
-  struct Step {
-    Eigen::VectorXd by;
-    double promised = 0.0;  ///< fall of the cost
+  /// The linear model at the point.
+  struct Model {
+    Eigen::MatrixXd gram;
+    Eigen::VectorXd gradient, low, high;
+    [[nodiscard]] Eigen::VectorXd step(double damping) const {
+      return minimum_in_box(gram, gradient, low, high, damping);
+    }
+    /// Fall of the cost.
+    [[nodiscard]] double promised(const Eigen::VectorXd& by) const { return -by.dot(gradient + 0.5 * gram * by); }
   };
 
   /// At the point; infinite where a recording cannot be simulated.
@@ -325,9 +334,12 @@ class NearSearch {
     return sum;
   }
 
-  [[nodiscard]] Step step() const {
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size_, size_);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size_);
+  [[nodiscard]] Model model() const {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    Model here{.gram = Eigen::MatrixXd::Zero(size_, size_),
+               .gradient = Eigen::VectorXd::Zero(size_),
+               .low = Eigen::VectorXd::Constant(size_, -kInfinite),
+               .high = Eigen::VectorXd::Constant(size_, kInfinite)};
     const auto shared = static_cast<Eigen::Index>(point_.shared.size());
     Eigen::Index first_own = shared;
     for (const RecordingCost* cost : costs_) {
@@ -335,26 +347,22 @@ class NearSearch {
       const Eigen::Index n = all.cols() - 1;
       std::vector<Eigen::Index> place(static_cast<std::size_t>(n));
       for (Eigen::Index k = 0; k < n; ++k) place[static_cast<std::size_t>(k)] = k < shared ? k : first_own + k - shared;
-      gram(place, place) += all.leftCols(n).transpose() * all.leftCols(n);
-      gradient(place) += all.leftCols(n).transpose() * all.col(n);
+      here.gram(place, place) += all.leftCols(n).transpose() * all.leftCols(n);
+      here.gradient(place) += all.leftCols(n).transpose() * all.col(n);
       first_own += n - shared;
     }
-    constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd low = Eigen::VectorXd::Constant(size_, -kInfinite), high = -low;
     for (Eigen::Index k = 0; k < shared; ++k) {
       const Unknown& unknown = problem_.shared[static_cast<std::size_t>(k)];
       const double at = point_.shared[static_cast<std::size_t>(k)];
       if (unknown.is_known()) {
-        gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
-        gradient(k) -= unknown.prior_residual(at) / unknown.prior_std;
+        here.gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
+        here.gradient(k) -= unknown.prior_residual(at) / unknown.prior_std;
       }
       if (!(unknown.max > unknown.min)) continue;
-      low(k) = unknown.to_unknown(unknown.min) - at;
-      high(k) = unknown.to_unknown(unknown.max) - at;
+      here.low(k) = unknown.to_unknown(unknown.min) - at;
+      here.high(k) = unknown.to_unknown(unknown.max) - at;
     }
-    Step found{.by = minimum_in_box(gram, gradient, low, high)};
-    found.promised = -found.by.dot(gradient + 0.5 * gram * found.by);
-    return found;
+    return here;
   }
 
   void move(const Eigen::VectorXd& by) {
@@ -382,17 +390,22 @@ class NearSearch {
 NearSearch::End NearSearch::run(const CostResolved& resolved, int maximum_iterations, const Deadline* deadline) {
   cost_ = evaluate();
   if (!std::isfinite(cost_)) return End::too_far;
+  double damping = kDamping;
   while (iterations_ <= maximum_iterations) {
     if (passed(deadline)) return End::out_of_time;
     if (resolved.is_hopeless(cost_, iterations_)) return End::hopeless;
-    const Step next = step();
-    if (!next.by.allFinite()) return End::too_far;
+    const Model here = model();
     const double tolerance = resolved.at_cost(cost_);
-    if (next.promised <= tolerance) return End::converged;
+    Eigen::VectorXd by = here.step(kUndamped);
+    if (!by.allFinite()) return End::too_far;
+    if (here.promised(by) <= tolerance) return End::converged;
+    if (const Eigen::VectorXd damped = here.step(damping); here.promised(damped) > tolerance) by = damped;
+    damping = std::max(kUndamped, kFalls * damping);
     const PemPoint before = point_;
-    move(next.by);
+    const double promised = here.promised(by);
+    move(by);
     const double after = evaluate(), change = cost_ - after;
-    if (!(change >= kKept * next.promised)) {
+    if (!(change >= kKept * promised)) {
       point_ = before;
       return End::too_far;
     }

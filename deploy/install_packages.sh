@@ -14,6 +14,7 @@ build_packages=(
   libudunits2-dev                                  # units of foreign logs
   libzip-dev libpugixml-dev                        # Functional Mock-up Units: archive and description
   libsystemd-dev                                   # readiness and watchdog
+  libssl-dev                                       # SHA-256 of the audit trail
   openssl                                          # identities for DDS Security
 )
 test_packages=(

@@ -11,6 +11,7 @@ set(SEALWATCH_BINDIR ${prefix}/${bindir})
 set(units ${source_directory}/deploy/systemd)
 configure_file(${units}/sealwatch@.service.in ${binary_directory}/sealwatch@.service @ONLY)
 file(INSTALL ${binary_directory}/sealwatch@.service ${units}/sealwatch.target DESTINATION ${prefix}/lib/systemd/system)
+file(INSTALL ${units}/clock.conf DESTINATION ${prefix}/lib/systemd/system/sealwatch@data-acquisition.service.d)
 file(INSTALL ${units}/sealwatch.sysusers DESTINATION ${prefix}/lib/sysusers.d RENAME sealwatch.conf)
 
 # A configuration that somebody may have changed is left alone.

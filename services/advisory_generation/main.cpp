@@ -8,5 +8,9 @@ int main(int argc, char** argv) {
   const auto make_layer = [](const Configuration& configuration, const Clock&) -> std::unique_ptr<Layer> {
     return advisory_generation::AdvisoryGeneration::make(configuration, configuration.advice).value();
   };
-  return run_daemon(argc, argv, {.service = "advisory_generation", .make_layer = make_layer, .make_bus = make_dds_bus});
+  return run_daemon(argc, argv,
+                    {.service = "advisory_generation",
+                     .make_layer = make_layer,
+                     .make_bus = make_dds_bus,
+                     .refused_by_bus = refused_by_security});
 }

@@ -165,6 +165,25 @@ struct QuarantineOptions {
 int run_quarantine_list(const QuarantineOptions& options);
 int run_quarantine_retry(const QuarantineOptions& options);
 
+struct ConfirmOptions {
+  std::string config;
+  std::string asset_id;
+  std::string act_id;
+  bool reject = false;
+  std::string by;
+  std::string remark;
+};
+int run_confirm(const ConfirmOptions& options);
+
+struct AuditOptions {
+  std::string config;
+  std::string state_directory;
+  std::string asset_id;  ///< "" all
+  std::string contains;  ///< a hash that was noted earlier; "" none
+  bool json = false;
+};
+int run_audit(const AuditOptions& options);
+
 struct AcknowledgeOptions {
   std::string config;
   std::string asset_id;

@@ -40,7 +40,9 @@ class CommandLine {
     add_show();
     add_operator();
     add_retract();
+    add_confirm();
     add_quarantine();
+    add_audit();
     add_accept();
     add_plant();
     add_fleet();
@@ -361,6 +363,20 @@ class CommandLine {
     retract->add_option("--reason", retract_.reason, "why")->required();
   }
 
+  void add_confirm() {
+    CLI::App* confirm =
+        command("confirm",
+                "confirm what another person reported: a replacement, a retraction, an accepted model, "
+                "where the configuration asks for a second person",
+                "sealwatch confirm XT03-MV2 ACT_ID --by 'M. Okoye'", [this] { return run_confirm(confirm_); });
+    add_config(confirm, confirm_.config);
+    confirm->add_option("asset", confirm_.asset_id, "asset id")->required();
+    confirm->add_option("act", confirm_.act_id, "id of what waits, as `status` shows it")->required();
+    confirm->add_flag("--reject", confirm_.reject, "it never counts; whoever reported it may say so, too");
+    confirm->add_option("--by", confirm_.by, "who: not the one who reported it")->required();
+    confirm->add_option("--remark", confirm_.remark, "free text");
+  }
+
   void add_quarantine() {
     CLI::App* quarantine = app_.add_subcommand(
         "quarantine",
@@ -390,6 +406,23 @@ class CommandLine {
       one->add_option("--state", quarantine_.state_directory,
                       "state directory of the services, which need not run, instead of the configuration's");
     }
+  }
+
+  void add_audit() {
+    CLI::App* audit =
+        command("audit",
+                "what people did (acknowledged, retracted, replaced, accepted, had tried again), from the "
+                "services' journals, and whether that record is as it was written",
+                "sealwatch audit --state STATE\n  sealwatch audit --asset XT03-MV2 --json\n  sealwatch "
+                "audit --contains HASH",
+                [this] { return run_audit(audit_); });
+    add_config(audit, audit_.config);
+    audit->add_option("--state", audit_.state_directory,
+                      "state directory of the services, which need not run, instead of the configuration's");
+    audit->add_option("--asset", audit_.asset_id, "acts about one asset; the whole record is checked all the same");
+    audit->add_option("--contains", audit_.contains,
+                      "a hash that was told earlier: where no record has it any more, its end was cut off");
+    audit->add_flag("--json", audit_.json, "machine-readable result (schema sealwatch.audit/1)");
   }
 
   void add_accept() {
@@ -508,6 +541,8 @@ class CommandLine {
   StatusOptions status_;
   AcknowledgeOptions acknowledge_;
   QuarantineOptions quarantine_;
+  ConfirmOptions confirm_;
+  AuditOptions audit_;
   ReplacedOptions replaced_;
   RetractOptions retract_;
   AcceptOptions accept_;

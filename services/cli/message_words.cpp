@@ -82,7 +82,8 @@ std::string content(const TestFeatures& m) {
   return text;
 }
 std::string content(const StateReport& m) {
-  std::string text = m.header.pst_id.empty() ? "test overdue" : "PST " + words(name_of(m.verdict));
+  std::string text = "PST " + words(name_of(m.verdict));
+  if (m.header.pst_id.empty()) text = m.pst_overdue ? "test overdue" : "judged anew";
   if (!m.verdict_reasons.empty()) text += " (" + join(m.verdict_reasons) + ")";
   text += ", region " + std::string(name_of(m.region));
   if (m.pst_overdue) text += ", " + number(m.overdue_days, 2) + " days overdue";

@@ -150,6 +150,7 @@ int run_accept(const AcceptOptions& options) {
     message.header.source_ids = {explained.latest->header.message_id};
   }
   const int sent = send(session, message, {"state_detection", "prognostic_assessment"});
+  if (sent == kOk && !options.revoke && says_that_it_waits(*session, message)) return kOk;
   if (sent == kOk)
     std::printf(
         "received: from the next test on %s is simulated with %s\n", options.asset_id.c_str(),
@@ -222,6 +223,7 @@ int run_replaced(const ReplacedOptions& options) {
                    .advice = {}});
     return kAnswerIsNo;
   }
+  if (sent == kOk && says_that_it_waits(*session, message)) return kOk;
   if (sent == kOk)
     std::printf("received: only tests of %s since %s count for the new %s\n", options.asset_id.c_str(),
                 date(at->nanoseconds).c_str(), options.what.c_str());

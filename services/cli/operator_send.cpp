@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/port/patient_publish.hpp"
 #include "services/cli/commands.hpp"
 
@@ -44,6 +47,13 @@ std::optional<Session> open_for(const std::string& config, const std::string& as
     return std::nullopt;
   }
   return session;
+}
+
+bool says_that_it_waits(const Session& session, const Message& act) {
+  if (!session.configuration.acts_confirmed_by_second || !may_lower_an_advisory(act)) return false;
+  std::printf("received: it counts once another person confirms it: sealwatch confirm %s %s --by NAME\n",
+              shell_word(asset_of(act)).c_str(), shell_word(header_of(act).message_id).c_str());
+  return true;
 }
 
 int send(std::optional<Session>& session, Message message, std::vector<std::string> readers,

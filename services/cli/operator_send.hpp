@@ -22,4 +22,7 @@ namespace sealwatch::cli {
 [[nodiscard]] int send(std::optional<Session>& session, Message message, std::vector<std::string> readers,
                        const std::function<void(const Message&)>& look = {});
 
+/// Says so where an act counts only once another person confirms it. False where it counts by itself.
+bool says_that_it_waits(const Session& session, const Message& act);
+
 }  // namespace sealwatch::cli

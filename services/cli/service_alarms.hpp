@@ -25,6 +25,8 @@ struct HeardAlarm {
 };
 /// Those that stand, service by service.
 [[nodiscard]] std::vector<HeardAlarm> alarms_of(const std::vector<ServicesHeard::Service>& services);
+/// Whether something is not seen now: any alarm but those that only ask for maintenance.
+[[nodiscard]] bool is_blind(const std::vector<HeardAlarm>& alarms);
 [[nodiscard]] std::string one_line(const HeardAlarm& heard);
 
 }  // namespace sealwatch::cli

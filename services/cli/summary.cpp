@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/retraction.hpp"
 #include "services/cli/forecast_text.hpp"
 #include "services/cli/message_words.hpp"
 #include "services/cli/terminal.hpp"
@@ -13,12 +14,12 @@ namespace sealwatch::cli {
 namespace {
 
 /// Keeps the word on the latest test: a test that is replayed late does not take its place, nor does one without a
-/// date.
+/// date. What is concluded anew after a retraction does.
 template <typename T>
 void keep_latest(std::optional<T>& kept, const T& next) {
   const bool earlier = kept && kept->header.event_time_known &&
                        (!next.header.event_time_known || next.header.event_time_ns < kept->header.event_time_ns);
-  if (!earlier) kept = next;
+  if (!earlier || answers_retraction(next.header)) kept = next;
 }
 
 }  // namespace

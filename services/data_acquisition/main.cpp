@@ -36,5 +36,6 @@ int main(int argc, char** argv) {
                      .make_layer = [](const Configuration& configuration,
                                       const Clock&) { return std::make_unique<DataAcquisition>(configuration.assets); },
                      .make_bus = make_dds_bus,
-                     .make_local_inputs = watch_folder});
+                     .make_local_inputs = watch_folder,
+                     .refused_by_bus = refused_by_security});
 }

@@ -10,5 +10,6 @@ int main(int argc, char** argv) {
       {.service = "data_manipulation",
        .make_layer = [](const Configuration& configuration,
                         const Clock&) { return std::make_unique<DataManipulation>(configuration.assets); },
-       .make_bus = make_dds_bus});
+       .make_bus = make_dds_bus,
+       .refused_by_bus = refused_by_security});
 }

@@ -123,6 +123,22 @@ void DiscrepancyWatch::take(const StateReport& report, bool admissible, bool fir
   release(conclusion);
 }
 
+void DiscrepancyWatch::forget(const std::function<bool(const std::string& pst_id)>& is_retracted,
+                              Conclusion& conclusion) {
+  for (Era& era : eras_)
+    if (std::ranges::any_of(era.analysed, is_retracted)) era.analysed.clear();
+  for (const StoredTest& test : row_) {
+    if (!is_retracted(test.report.header.pst_id)) continue;
+    no_longer_needed_.push_back(test.report.header.message_id);
+    no_longer_needed_.push_back(test.window->header.message_id);
+  }
+  std::erase_if(row_, [&](const StoredTest& test) { return is_retracted(test.report.header.pst_id); });
+  for (const StateReport& report : deviating_)
+    if (is_retracted(report.header.pst_id)) settle(report);
+  std::erase_if(deviating_, [&](const StateReport& report) { return is_retracted(report.header.pst_id); });
+  release(conclusion);
+}
+
 void DiscrepancyWatch::end_row() {
   for (const StoredTest& test : row_) {
     no_longer_needed_.push_back(test.report.header.message_id);

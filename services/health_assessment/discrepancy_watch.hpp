@@ -51,6 +51,8 @@ class DiscrepancyWatch {
   /// second time, after a restart.
   void take(const StateReport& report, bool admissible, bool first_after_replacement, const AssetConfig& asset,
             const Explainer& explainer, Conclusion& conclusion);
+  /// Takes tests out that no longer count, an analysis of them included: the next one is of others.
+  void forget(const std::function<bool(const std::string& pst_id)>& is_retracted, Conclusion& conclusion);
   /// Inputs that wait for nothing and are kept for the next analysis.
   [[nodiscard]] std::size_t held() const { return 2 * row_.size(); }
 

@@ -47,15 +47,18 @@ void take_grade(std::optional<double> grade, HealthReport& report) {
   report.health_grade = grade.value_or(0.0);
 }
 
-/// Grade, trend and proposals of the last test that had any.
-void carry_over(const std::optional<HealthReport>& last, HealthReport& report) {
-  if (!last) return;
-  report.health_grade_known = last->health_grade_known;
-  report.health_grade = last->health_grade;
-  report.no_fault_likelihood = last->no_fault_likelihood;
-  report.ambiguity_group = last->ambiguity_group;
-  for (ProposedFault& fault : report.ambiguity_group)
-    fault.evidence = {"carried over from " + last->header.message_id + ": this test does not tell"};
+/// The retraction that a report of no test answers; its id comes first among the sources.
+std::optional<Retraction> answered_retraction(const std::string& asset_id, const Header& header) {
+  if (!header.pst_id.empty() || header.source_ids.empty()) return std::nullopt;
+  const auto named = std::ranges::find_if(header.source_ids, is_retraction_id);
+  return named == header.source_ids.end() ? std::nullopt : retraction_of(asset_id, *named);
+}
+
+void add_trend(const std::vector<GradeAt>& grades, HealthReport& report) {
+  const auto trend = trend_of(grades);
+  report.trend_known = trend.has_value();
+  report.health_trend_per_year = trend ? trend->slope_per_year : 0.0;
+  report.health_trend_std_per_year = trend ? trend->std_per_year : 0.0;
 }
 
 }  // namespace
@@ -81,11 +84,22 @@ std::span<const Topic> HealthAssessment::outputs() const {
   return std::span(kOutputs).first(explainer_ ? 2 : 1);
 }
 
+HealthAssessment::AssetState& HealthAssessment::state_of(const std::string& asset_id) {
+  const auto trend_tests = static_cast<std::size_t>(options_.trend_tests);
+  return states_.try_emplace(asset_id, AssetState{{}, {}, PastHealth(trend_tests), {}}).first->second;
+}
+
 void HealthAssessment::restore(const Message& own_output) {
-  AssetState& state = states_[asset_of(own_output)];
+  AssetState& state = state_of(asset_of(own_output));
   if (const auto* found = std::get_if<ModelDiscrepancy>(&own_output)) state.discrepancies.restore(*found);
   const auto* report = std::get_if<HealthReport>(&own_output);
   if (!report) return;
+  if (const auto retraction = answered_retraction(report->asset_id, report->header)) {
+    state.past.apply(*retraction);
+    Conclusion released;  // what it frees is consumed already
+    state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, released);
+    return;
+  }
   learn(state, *report);
   state.discrepancies.restore(*report, is_first_after_replacement(report->header));
 }
@@ -98,7 +112,7 @@ std::size_t HealthAssessment::held() const {
 
 Conclusion HealthAssessment::receive(const Message& input) {
   Conclusion conclusion;
-  AssetState& state = states_[asset_of(input)];
+  AssetState& state = state_of(asset_of(input));
   if (const auto* features = std::get_if<TestFeatures>(&input))
     state.features.emplace(features->header.pst_id, *features);
   if (const auto* report = std::get_if<StateReport>(&input)) take_report(state, *report, conclusion);
@@ -111,6 +125,11 @@ Conclusion HealthAssessment::receive(const Message& input) {
   }
   while (!state.reports.empty()) {
     const StateReport report = state.reports.front();
+    if (report.header.pst_id.empty()) {
+      retract(state, report, conclusion);
+      state.reports.pop_front();
+      continue;
+    }
     const auto features = state.features.find(report.header.pst_id);
     if (features == state.features.end()) break;
     const HealthReport health = conclude(state, report, features->second);
@@ -126,7 +145,9 @@ Conclusion HealthAssessment::receive(const Message& input) {
 /// One whose health is concluded already comes again after a restart because its test was kept.
 void HealthAssessment::take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const {
   const std::optional<bool> admissible = state.discrepancies.concluded(report.header.pst_id);
-  if (report.header.pst_id.empty())
+  if (answered_retraction(report.asset_id, report.header))
+    state.reports.push_back(report);  // it speaks of the tests before it, which may wait for their features
+  else if (report.header.pst_id.empty())
     conclusion.consumed.push_back(report.header.message_id);
   else if (admissible && explainer_)
     settle(state, report, *admissible, conclusion);
@@ -137,9 +158,10 @@ void HealthAssessment::take_report(AssetState& state, const StateReport& report,
 void HealthAssessment::settle(AssetState& state, const StateReport& report, bool admissible,
                               Conclusion& conclusion) const {
   const auto asset = assets_.find(report.asset_id);
+  const bool counts = state.past.counts(report.header.pst_id);
   if (explainer_ && asset != assets_.end())
-    state.discrepancies.take(report, admissible, is_first_after_replacement(report.header), asset->second, *explainer_,
-                             conclusion);
+    state.discrepancies.take(report, admissible && counts, is_first_after_replacement(report.header), asset->second,
+                             *explainer_, conclusion);
   else
     conclusion.consumed.push_back(report.header.message_id);
 }
@@ -147,17 +169,18 @@ void HealthAssessment::settle(AssetState& state, const StateReport& report, bool
 HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& state_report,
                                         const TestFeatures& features) const {
   HealthReport report = begin_report(state_report, features);
-  if (is_first_after_replacement(report.header)) state.last.reset();
+  if (is_first_after_replacement(report.header)) state.past.restart();
+  const std::optional<HealthReport> last = state.past.last();
   report.inadmissible_reasons = inadmissible_reasons(state_report, features);
   report.admissible_for_prognosis = report.inadmissible_reasons.empty();
   const auto asset = assets_.find(state_report.asset_id);
   if (state_report.judgements.empty() || is_poor_recording(state_report) || asset == assets_.end()) {
-    carry_over(state.last, report);
+    carry_over(last, report);
     if (state_report.verdict == PstVerdict::failed) take_grade(0.0, report);
   } else {
     const std::vector<Deviation> deviations = deviations_of(state_report);
-    const bool graded = state.last && state.last->health_grade_known;
-    const std::optional<double> last_grade = graded ? std::optional(state.last->health_grade) : std::nullopt;
+    const bool graded = last && last->health_grade_known;
+    const std::optional<double> last_grade = graded ? std::optional(last->health_grade) : std::nullopt;
     take_grade(health_grade(asset->second, state_report, deviations, last_grade), report);
     const bool failed = state_report.verdict == PstVerdict::failed && !state_report.verdict_reasons.empty();
     const SensorRemarks remarks = sensor_remarks(state_report, features);
@@ -174,20 +197,30 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
                                  "model explains but does not change");
   }
   learn(state, report);
-  if (const auto trend = trend_of(state.grades)) {
-    report.trend_known = true;
-    report.health_trend_per_year = trend->slope_per_year;
-    report.health_trend_std_per_year = trend->std_per_year;
-  }
+  add_trend(state.past.grades(), report);
   return report;
 }
 
-void HealthAssessment::learn(AssetState& state, const HealthReport& report) const {
-  if (is_first_after_replacement(report.header)) state.grades.clear();
-  state.last = report;
-  if (!report.admissible_for_prognosis || !report.health_grade_known || !report.header.event_time_known) return;
-  state.grades.push_back({UtcTime{report.header.event_time_ns}, report.health_grade});
-  if (state.grades.size() > static_cast<std::size_t>(options_.trend_tests)) state.grades.erase(state.grades.begin());
+void HealthAssessment::learn(AssetState& state, const HealthReport& report) {
+  if (is_first_after_replacement(report.header)) state.past.restart();
+  state.past.add(report);
+}
+
+void HealthAssessment::retract(AssetState& state, const StateReport& answer, Conclusion& conclusion) {
+  const auto retraction = answered_retraction(answer.asset_id, answer.header);
+  conclusion.consumed.push_back(answer.header.message_id);
+  state.past.apply(*retraction);
+  state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, conclusion);
+  const std::optional<HealthReport> last = state.past.last();
+  HealthReport report = last.value_or(HealthReport{});
+  report.asset_id = answer.asset_id;
+  report.header = answer.header;
+  report.header.message_id = "health_report/" + retraction->id;
+  report.header.producer = kProducer;
+  report.header.source_ids = {retraction->id, answer.header.message_id};
+  if (last) report.header.source_ids.push_back(last->header.message_id);
+  add_trend(state.past.grades(), report);
+  conclusion.outputs.emplace_back(std::move(report));
 }
 
 }  // namespace sealwatch

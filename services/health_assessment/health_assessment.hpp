@@ -15,7 +15,7 @@
 #include "sealwatch/port/explainer.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/health_assessment/discrepancy_watch.hpp"
-#include "services/health_assessment/trend.hpp"
+#include "services/health_assessment/past_health.hpp"
 
 namespace sealwatch {
 
@@ -29,6 +29,8 @@ struct HealthAssessmentOptions {
 ///
 /// A test that was not judged says nothing about health: its report carries over the grade and the proposals of the
 /// last one that did, and says so. A state report concluded from a maintenance_event starts the asset's history anew.
+/// After a retraction, which comes as state detection's answer to it, the history is that of the tests that count, and a
+/// report of no test says what they say.
 /// With an explainer, tests whose residuals persist are kept and analysed (discrepancy_watch.hpp).
 class HealthAssessment final : public Layer {
  public:
@@ -47,15 +49,17 @@ class HealthAssessment final : public Layer {
   struct AssetState {
     std::deque<StateReport> reports;               // not concluded yet, in order of receipt
     std::map<std::string, TestFeatures> features;  // by pst_id
-    std::vector<GradeAt> grades;                   // of admissible tests since the last replacement, oldest first
-    std::optional<HealthReport> last;
+    PastHealth past;
     DiscrepancyWatch discrepancies;
   };
 
   void take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const;
   void settle(AssetState& state, const StateReport& report, bool admissible, Conclusion& conclusion) const;
   [[nodiscard]] HealthReport conclude(AssetState& state, const StateReport& report, const TestFeatures& features) const;
-  void learn(AssetState& state, const HealthReport& report) const;
+  static void learn(AssetState& state, const HealthReport& report);
+  [[nodiscard]] AssetState& state_of(const std::string& asset_id);
+  /// The health that the tests which count say, after `answer`, with which state detection answered a retraction.
+  static void retract(AssetState& state, const StateReport& answer, Conclusion& conclusion);
 
   std::map<std::string, AssetConfig> assets_;
   HealthAssessmentOptions options_;

@@ -11,5 +11,9 @@ int main(int argc, char** argv) {
   const auto make_layer = [&](const Configuration& configuration, const Clock&) {
     return std::make_unique<HealthAssessment>(configuration.assets, HealthAssessmentOptions{}, explainer);
   };
-  return run_daemon(argc, argv, {.service = "health_assessment", .make_layer = make_layer, .make_bus = make_dds_bus});
+  return run_daemon(argc, argv,
+                    {.service = "health_assessment",
+                     .make_layer = make_layer,
+                     .make_bus = make_dds_bus,
+                     .refused_by_bus = refused_by_security});
 }

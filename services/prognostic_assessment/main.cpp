@@ -14,5 +14,8 @@ int main(int argc, char** argv) {
         .value();
   };
   return run_daemon(argc, argv,
-                    {.service = "prognostic_assessment", .make_layer = make_layer, .make_bus = make_dds_bus});
+                    {.service = "prognostic_assessment",
+                     .make_layer = make_layer,
+                     .make_bus = make_dds_bus,
+                     .refused_by_bus = refused_by_security});
 }

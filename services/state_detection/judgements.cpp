@@ -75,6 +75,19 @@ std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset, const std
   return judgements;
 }
 
+std::optional<RegionJudgement> judge_again(const AssetConfig& asset, const Quantity& quantity, Reference reference,
+                                           const Baseline& baseline, const Baseline& accepted_baseline) {
+  if (reference == Reference::limit || reference == Reference::nominal_model) {
+    const auto limits = fixed_limits(asset, quantity.name);
+    if (!limits) return std::nullopt;
+    return judgement_of(quantity, reference, on_side_of(quantity.value, quantity, *limits));
+  }
+  const auto rule = baseline_rule(asset, quantity.name);
+  if (!rule) return std::nullopt;
+  const bool accepted = reference == Reference::accepted_model;
+  return judge_by_baseline(quantity, *rule, accepted ? accepted_baseline : baseline, reference);
+}
+
 std::vector<RegionJudgement> judge_channels(const AssetConfig& asset, const std::vector<ChannelStatus>& channels,
                                             const std::set<std::string>& expected) {
   std::set<std::string> judged = expected;

@@ -1,6 +1,7 @@
 // All judgements of one test, before hysteresis and delay.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ namespace sealwatch {
 [[nodiscard]] std::vector<RegionJudgement> judge_residuals(const AssetConfig& asset,
                                                            const std::vector<ResidualSummary>& residuals,
                                                            const Baseline& baseline, const Baseline& accepted_baseline);
+
+/// A value that was judged before, by what is the baseline now; nothing where no rule is about it any more.
+[[nodiscard]] std::optional<RegionJudgement> judge_again(const AssetConfig& asset, const Quantity& quantity,
+                                                         Reference reference, const Baseline& baseline,
+                                                         const Baseline& accepted_baseline);
 
 /// Values of "channel.<name>".
 inline constexpr double kChannelThere = 0.0;

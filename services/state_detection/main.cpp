@@ -2,6 +2,7 @@
 #include "services/common/model/model_simulator.hpp"
 #include "services/common/runtime/daemon.hpp"
 #include "services/common/transport/dds_bus.hpp"
+#include "services/state_detection/sensor_alarms.hpp"
 #include "services/state_detection/state_detection.hpp"
 
 int main(int argc, char** argv) {
@@ -10,5 +11,14 @@ int main(int argc, char** argv) {
     return std::make_unique<StateDetection>(configuration.assets, std::make_shared<ModelSimulator>(),
                                             StateDetectionOptions{.commissioned = configuration.commissioned});
   };
-  return run_daemon(argc, argv, {.service = "state_detection", .make_layer = make_layer, .make_bus = make_dds_bus});
+  const auto make_alarms = [] {
+    const auto lost = std::make_shared<LostSensors>();
+    return [lost](const Message& output) { return lost->look(output); };
+  };
+  return run_daemon(argc, argv,
+                    {.service = "state_detection",
+                     .make_layer = make_layer,
+                     .make_bus = make_dds_bus,
+                     .refused_by_bus = refused_by_security,
+                     .make_alarms_of_output = make_alarms});
 }

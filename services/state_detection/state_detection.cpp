@@ -34,6 +34,12 @@ bool is_first_after_replacement(const StateReport& report) {
                      [](const std::string& id) { return id.starts_with(kEventPrefix); });
 }
 
+/// What the report answers, if it answers a retraction: an id of the event comes first among its sources.
+std::optional<Retraction> answered_retraction(const StateReport& report) {
+  if (!report.header.pst_id.empty() || report.header.source_ids.empty()) return std::nullopt;
+  return retraction_of(report.asset_id, report.header.source_ids.front());
+}
+
 /// Whether the maintenance was done before this test; unknown times count as before.
 bool is_before(const MaintenanceEvent& event, const TestFeatures& test) {
   if (!event.header.event_time_known || !test.header.event_time_known) return true;
@@ -81,19 +87,27 @@ std::span<const Topic> StateDetection::outputs() const {
 }
 
 StateDetection::AssetState& StateDetection::state_of(const std::string& asset_id) {
-  return states_.try_emplace(asset_id, AssetState{AssetHistory(options_.region, options_.baseline), {}, {}, {}, {}})
+  return states_.try_emplace(asset_id, AssetState{AssetHistory(options_.region, options_.baseline), {}, {}, {}, {}, {}})
       .first->second;
 }
 
 void StateDetection::restore(const Message& own_output) {
   const auto* report = std::get_if<StateReport>(&own_output);
   if (report == nullptr) return;
-  AssetHistory& history = state_of(report->asset_id).history;
+  AssetState& state = state_of(report->asset_id);
+  if (const auto retraction = answered_retraction(*report)) {
+    state.past.apply(*retraction);
+    static_cast<void>(judge_anew(report->asset_id, state));
+    return;
+  }
+  AssetHistory& history = state.history;
   if (is_first_after_replacement(*report)) history.restart();
   if (!report->header.pst_id.empty()) history.use_accepted(report->accepted_discrepancy);
   if (std::vector<RegionJudgement> judgements = report->judgements; is_judged(report->verdict))
     history.judge(judgements);
   history.learn(*report);
+  if (!report->header.pst_id.empty() && !state.past.add(*report, is_first_after_replacement(*report)))
+    static_cast<void>(judge_anew(report->asset_id, state));
 }
 
 Conclusion StateDetection::receive(const Message& input) {
@@ -102,15 +116,48 @@ Conclusion StateDetection::receive(const Message& input) {
   if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.push_back(*features);
   if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.emplace(window->header.pst_id, *window);
   Conclusion conclusion;
-  if (const auto* event = std::get_if<MaintenanceEvent>(&input); event && !is_replacement(*event)) {
-    conclusion.consumed = {event->header.message_id};  // no replacement: it parts no history
-    return conclusion;
-  }
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input); event && !is_replacement(*event))
+    return retracted(*event, state);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.events.push_back(*event);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) conclusion.consumed = state.accepted.take(*event);
   if (const auto* acceptance = std::get_if<ModelAcceptance>(&input))
     conclusion.consumed = state.accepted.take(*acceptance);
   conclude_ready_tests(state, conclusion);
+  return conclusion;
+}
+
+std::optional<StateReport> StateDetection::judge_anew(const std::string& asset_id, AssetState& state) const {
+  AssetConfig unknown;
+  unknown.asset_id = asset_id;
+  const auto asset = assets_.find(asset_id);
+  AssetHistory fresh(options_.region, options_.baseline);
+  std::optional<StateReport> last = state.past.judge_anew(asset == assets_.end() ? unknown : asset->second, fresh);
+  fresh.last_was_replay = state.history.last_was_replay;
+  fresh.last_overdue_id = state.history.last_overdue_id;
+  state.history = std::move(fresh);
+  return last;
+}
+
+/// The answer is a report of no test: on the last test that counts, as it is judged now.
+Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& state) {
+  Conclusion conclusion{.outputs = {}, .consumed = {event.header.message_id}};
+  const auto retraction = retraction_of(event.asset_id, event.header.message_id);
+  if (!retraction) return conclusion;
+  state.past.apply(*retraction);
+  StateReport report = judge_anew(event.asset_id, state).value_or(StateReport{});
+  const std::string about = report.header.pst_id.empty() ? "no test counts" : "this is test " + report.header.pst_id;
+  const Header judged = report.header;
+  report.asset_id = event.asset_id;
+  report.header = event.header;
+  report.header.message_id = "state_report/" + event.header.message_id;
+  report.header.producer = kProducer;
+  report.header.source_ids = {event.header.message_id};
+  if (!judged.message_id.empty()) report.header.source_ids.push_back(judged.message_id);
+  if (judged.event_time_known) report.header.event_time_ns = judged.event_time_ns;
+  report.verdict_reasons = {(retraction->withdrawn_id.empty() ? "tests retracted by " : "tests count again by ") +
+                            event.reported_by + (event.remark.empty() ? "" : " (" + event.remark + ")") +
+                            ": judged anew; " + about};
+  conclusion.outputs.emplace_back(std::move(report));
   return conclusion;
 }
 
@@ -152,6 +199,8 @@ void StateDetection::conclude(AssetState& state, const TestFeatures& features, c
     judge(state, asset->second, features, window, report);
   report.region = state.history.worst_region();
   state.history.learn(report);
+  if (!state.past.add(report, is_first_after_replacement(report)))
+    static_cast<void>(judge_anew(report.asset_id, state));  // it was retracted before it came
   if (is_judged(report.verdict))
     std::erase_if(state.events, [&](const MaintenanceEvent& event) {
       if (!is_before(event, features)) return false;

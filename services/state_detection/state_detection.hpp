@@ -17,6 +17,7 @@
 #include "sealwatch/port/layer.hpp"
 #include "services/state_detection/baseline.hpp"
 #include "services/state_detection/history.hpp"
+#include "services/state_detection/past_tests.hpp"
 #include "services/state_detection/region.hpp"
 
 namespace sealwatch {
@@ -33,7 +34,8 @@ struct StateDetectionOptions {
 /// Concludes each asset's tests in the order of their test_features, each as soon as its test_window is there too. A
 /// maintenance_event starts the asset's history anew with the first test after it; it counts as consumed when a test
 /// after it has been judged. An asset of which nothing was ever heard is asked for its first test, where it is known when
-/// it was commissioned. While a model_acceptance is in force the accepted model is judged beside the nominal one.
+/// it was commissioned. After a retraction the asset's tests are judged anew from those that count (past_tests.hpp), and
+/// a report of no test says so. While a model_acceptance is in force the accepted model is judged beside the nominal one.
 class StateDetection final : public Layer {
  public:
   /// `simulator` may be null: then there are no residuals. `options` must be valid.
@@ -55,11 +57,15 @@ class StateDetection final : public Layer {
     std::map<std::string, TestWindow> windows;  // by pst_id
     std::vector<MaintenanceEvent> events;       // not consumed yet
     AcceptedModel accepted;
+    PastTests past;
   };
 
   [[nodiscard]] AssetState& state_of(const std::string& asset_id);
   void conclude_ready_tests(AssetState& state, Conclusion& conclusion);
   void conclude(AssetState& state, const TestFeatures& features, const TestWindow& window, Conclusion& conclusion);
+  [[nodiscard]] Conclusion retracted(const MaintenanceEvent& event, AssetState& state);
+  /// Makes the history what the tests that count make of it, and returns the last of these.
+  std::optional<StateReport> judge_anew(const std::string& asset_id, AssetState& state) const;
   void judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
              StateReport& report) const;
   void add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,

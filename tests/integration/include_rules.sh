@@ -47,6 +47,7 @@ rules() {
   owner '^(zip\.h|pugixml\.hpp|dlfcn\.h)' services/common/fmi/ || failed=1
   owner '^spdlog/' services/common/runtime/ || failed=1
   owner '^soci/' services/common/store/ || failed=1
+  owner '^openssl/' services/common/store/ || failed=1
   owner '^matio' services/common/recording/ || failed=1
   owner '^udunits' services/common/units/ || failed=1
   # Each has a command line of its own; the bench's has nothing in common with that of the layers.

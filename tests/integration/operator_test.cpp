@@ -207,5 +207,90 @@ TEST_F(Operator, IsToldWhatBecameOfIt) {
   }
 }
 
+TEST_F(Operator, KeepsARecordOfWhatPeopleDidThatShowsChanges) {
+  const std::string state = state_directory("state").string();
+  const auto audit = [&](const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"sealwatch", "audit", "--config", config(), "--state", state};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  ASSERT_EQ(acknowledge(advisory_in_force()).status, 0);
+  const json shown = json::parse(run({"sealwatch", "show", "XT03-MV2", "--state", state, "--json"}).output);
+  const std::string pst_id = shown["message"]["header"]["pst_id"];
+  const Finished retracted = run({"sealwatch", "retract", "--config", config(), "XT03-MV2", "--test", pst_id, "--by",
+                                  "J. Silva", "--reason", "wrong valve"});
+  ASSERT_EQ(retracted.status, 0) << retracted.output;
+  const Finished whole = audit({"--json"});
+  EXPECT_EQ(whole.status, 0) << whole.output;
+  std::map<std::string, json> acts;
+  const json record = json::parse(whole.output);
+  for (const json& service : record["services"]) acts[service["service"]] = service["acts"];
+  ASSERT_EQ(acts["advisory_generation"].size(), 2U) << whole.output;
+  EXPECT_EQ(acts["advisory_generation"][0]["kind"], "acknowledgement");
+  EXPECT_EQ(acts["advisory_generation"][0]["who"], "operator");
+  ASSERT_EQ(acts["state_detection"].size(), 1U);
+  EXPECT_EQ(acts["state_detection"][0]["kind"], "test_retracted");
+  EXPECT_EQ(acts["state_detection"][0]["text"], "wrong valve");
+
+  const std::string changes = "DROP TRIGGER acts_no_UPDATE; UPDATE acts SET who = 'nobody' WHERE sequence = 1";
+  ASSERT_EQ(std::system(("sqlite3 " + state + "/state_detection.db \"" + changes + "\"").c_str()), 0);
+  const Finished changed = audit();
+  EXPECT_EQ(changed.status, 1) << changed.output;
+  EXPECT_THAT(changed.output, AllOf(HasSubstr("state_detection: BROKEN at entry 1"),
+                                    HasSubstr("advisory_generation: 2 acts, as they were written")));
+}
+
+/// A retraction reaches every layer: what the status says of regions and health is said anew at once.
+TEST_F(Operator, ConcludesHealthAndStateAnewWithoutARetractedTest) {
+  const std::string state = state_directory("state").string();
+  const json shown = json::parse(run({"sealwatch", "show", "XT03-MV2", "--state", state, "--json"}).output);
+  const std::string pst_id = shown["message"]["header"]["pst_id"];
+  ASSERT_EQ(run({"sealwatch", "retract", "--config", config(), "XT03-MV2", "--test", pst_id, "--by", "J. Silva",
+                 "--reason", "wrong valve"})
+                .status,
+            0);
+  json asset;
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    asset = json::parse(run({"sealwatch", "status", "--config", config(), "--json"}).output)["assets"]["XT03-MV2"];
+    if (asset["health_report"]["header"]["pst_id"] == "") break;
+  }
+  for (const char* topic : {"state_report", "health_report", "remaining_life"}) {
+    EXPECT_EQ(asset[topic]["header"]["pst_id"], "") << topic;
+    EXPECT_THAT(asset[topic]["header"]["message_id"].get<std::string>(),
+                HasSubstr("retraction/XT03-MV2/test/" + pst_id));
+  }
+}
+
+/// Services that ask for a second person.
+TEST_F(Operator, CountsAReplacementOnceAnotherPersonConfirmsIt) {
+  kill(up_, SIGTERM);
+  waitpid(up_, nullptr, 0);
+  const std::string strict = (folder_ / "strict").string();
+  std::filesystem::copy(config(), strict, std::filesystem::copy_options::recursive);
+  std::ofstream(strict + "/sealwatch.yaml", std::ios::app) << "\noperator_acts: {confirmed_by_second: true}\n";
+  up_ = start({"sealwatch", "up", "--config", strict, "--state", state_directory("state").string()},
+              folder_ / "strict.log");
+  Finished said;
+  for (int attempt = 0; attempt < 30 && said.output.find("counts once") == std::string::npos; ++attempt)
+    said = run({"sealwatch", "replaced", "--config", strict, "XT03-MV2", "--at", "2020-01-01", "--by", "J. Silva"});
+  ASSERT_EQ(said.status, 0) << said.output;
+  const std::string act = "maintenance_event/XT03-MV2/2020-01-01T00:00:00Z";
+  const Finished waits = run({"sealwatch", "status", "--config", strict});
+  EXPECT_EQ(waits.status, 0) << waits.output;
+  EXPECT_THAT(waits.output, AllOf(HasSubstr("sealwatch confirm XT03-MV2 " + act + " --by NAME"),
+                                  Not(HasSubstr("replaced on 2020-01-01"))));
+  const auto confirm = [&](const std::string& who, const std::string& what) {
+    return run({"sealwatch", "confirm", "--config", strict, "XT03-MV2", what, "--by", who});
+  };
+  EXPECT_THAT(confirm("M. Okoye", "maintenance_event/XT03-MV2/other").output, HasSubstr("waits for nobody"));
+  const Finished himself = confirm("J. Silva", act);
+  EXPECT_EQ(himself.status, 1);
+  EXPECT_THAT(himself.output, HasSubstr("it takes another person"));
+  const Finished another = confirm("M. Okoye", act);
+  EXPECT_EQ(another.status, 0) << another.output;
+  EXPECT_THAT(run({"sealwatch", "status", "--config", strict}).output,
+              AllOf(HasSubstr("replaced on 2020-01-01"), Not(HasSubstr("sealwatch confirm"))));
+}
+
 }  // namespace
 }  // namespace sealwatch::testing

@@ -34,7 +34,7 @@ make_packages() {
 check_contents() {
   local path
   for path in bin/sealwatch bin/sealwatch-virtual-bench "${services[@]/#/bin/sealwatch-}" lib/sysusers.d/sealwatch.conf \
-    lib/systemd/system/sealwatch.target share/sealwatch/security/security.conf share/doc/sealwatch/{copyright,changelog.gz,README.md,CHANGELOG.md,LICENSE}; do
+    lib/systemd/system/sealwatch.target lib/systemd/system/sealwatch@data-acquisition.service.d/clock.conf share/sealwatch/security/security.conf share/doc/sealwatch/{copyright,changelog.gz,README.md,CHANGELOG.md,LICENSE}; do
     [ -s "$root/usr/$path" ] || fail "/usr/$path is not in sealwatch"
   done
   for path in libsealwatch_client.a sealwatchConfig.cmake sealwatch/client/subscriber.hpp idl/advisory_generation.idl; do

@@ -211,6 +211,21 @@ check_strangers() {
   done
 }
 
+# Among ourselves nobody is refused or unknown.
+check_no_alarm() {
+  as "$ours/subscriber" status --json --seconds 3 >"$scratch/alarms" 2>"$scratch/alarm_errors" || true
+  saw_state=$(grep -c '"state": *"running"' "$scratch/alarms" || true)
+  [ "$saw_state" -eq 6 ] || fail "not all services are heard" "$scratch/alarms" "$scratch/alarm_errors"
+  ! grep -qE '"kind": *"(refused_right|unknown_writer)"' "$scratch/alarms" || fail "one of ours is refused" "$scratch/alarms" "$scratch/up"
+}
+
+# Who was refused is an alarm, in every service that refused it.
+check_alarm() {
+  as "$ours/subscriber" status --json --seconds 3 >"$scratch/alarms" 2>"$scratch/alarm_errors" || true
+  grep -q '"kind": *"refused_right"' "$scratch/alarms" || fail "strangers are no alarm" "$scratch/alarms" "$scratch/up"
+  ! grep -q '"kind": *"unknown_writer"' "$scratch/alarms" || fail "one of ours is taken for a stranger" "$scratch/alarms"
+}
+
 # What one may not write is refused with its reason, and what one may is received.
 check_acts() {
   local identity act number
@@ -306,10 +321,12 @@ check_usage
 check_rights
 start_services
 check_test
+check_no_alarm
 start_expiry
 start_lenient
 check_strangers
 check_lenient
+check_alarm
 check_acts
 check_expiry
 check_revocation

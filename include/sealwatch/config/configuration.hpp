@@ -68,6 +68,8 @@ struct Configuration {
   std::map<std::string, SiteDecision> decisions;  ///< by site; none: neither costs nor proof tests are known
   std::vector<AssetConfig> assets;
   std::map<std::string, UtcTime> commissioned;  ///< by asset id, where it is known: no test is older
+  std::vector<std::string> senders;             ///< sources of raw samples that are expected; none: all are
+  bool acts_confirmed_by_second = false;        ///< what lowers an advisory counts once a second person confirms it
 
   [[nodiscard]] const AssetConfig* find_asset(const std::string& asset_id) const {
     for (const AssetConfig& asset : assets)

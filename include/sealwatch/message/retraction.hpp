@@ -9,6 +9,7 @@
 // Nothing is deleted: what is retracted stays in the record, and counts again when the retraction is withdrawn.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +34,12 @@ struct Retraction {
 
 [[nodiscard]] inline bool is_retraction_id(std::string_view message_id) {
   return message_id.starts_with("retraction/");
+}
+
+/// Whether a message of no test was concluded anew from those that count after a retraction: it then stands for the
+/// latest, though it speaks of an earlier test than the one retracted.
+[[nodiscard]] inline bool answers_retraction(const Header& header) {
+  return header.pst_id.empty() && std::ranges::any_of(header.source_ids, is_retraction_id);
 }
 
 /// What the event of this id retracts or withdraws; nothing when it is no such event.

@@ -29,7 +29,7 @@ struct Naming {
   Screening first;            ///< of the baseline
   Screening last;             ///< of the best model
   std::vector<Forbidden> forbidden = {};
-  std::vector<std::string> remarks = {};    ///< what was not taken for a reason of computation
+  std::vector<std::string> remarks = {};              ///< what was not taken for a reason of computation
   std::shared_ptr<const FittedModel> looked_at = {};  ///< the model that was screened last,
   Screening seen = {};                                ///< and what that showed
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`

@@ -4,6 +4,7 @@
 
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/made_up.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "sealwatch/message/texts.hpp"
@@ -66,9 +67,14 @@ std::optional<std::string> refusal_of_samples(const Message& message) {
 std::optional<std::string> refusal_of_kind(const Message& message) {
   const auto* event = std::get_if<MaintenanceEvent>(&message);
   if (event == nullptr || event->kind == "actuator_replaced" || event->kind == "seal_replaced") return std::nullopt;
+  if (event->kind == kActConfirmed || event->kind == kActRejected) {
+    if (confirmed_act(event->asset_id, event->header.message_id)) return std::nullopt;
+    return "its message_id, '" + event->header.message_id + "', does not say what is confirmed; use sealwatch confirm";
+  }
   if (event->kind != kTestRetracted && event->kind != kTestsRetracted && event->kind != kRetractionWithdrawn)
     return "its kind, '" + event->kind + "', is none of actuator_replaced, seal_replaced, " +
-           std::string(kTestRetracted) + ", " + std::string(kTestsRetracted) + ", " + std::string(kRetractionWithdrawn);
+           std::string(kTestRetracted) + ", " + std::string(kTestsRetracted) + ", " +
+           std::string(kRetractionWithdrawn) + ", " + std::string(kActConfirmed) + ", " + std::string(kActRejected);
   const auto retraction = retraction_of(event->asset_id, event->header.message_id);
   const bool same = retraction && (event->kind == kTestRetracted    ? !retraction->pst_id.empty()
                                    : event->kind == kTestsRetracted ? retraction->since.has_value()

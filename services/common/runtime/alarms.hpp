@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,25 +13,60 @@ namespace sealwatch {
 
 class Alarms {
  public:
-  /// True when it did not stand before.
-  bool raise(ServiceAlarm alarm) {
-    for (const ServiceAlarm& standing : standing_)
-      if (standing.kind == alarm.kind && standing.subject == alarm.subject) return false;
-    standing_.push_back(std::move(alarm));
+  using Steady = std::chrono::nanoseconds;  ///< since some fixed moment, by a clock that nobody sets
+
+  /// True when it did not stand before. One with an `end` stands until then, or for longer when it is raised again.
+  /// Strangers choose some subjects: of one kind only so many stand, but for what is set aside, which is in the journal.
+  bool raise(ServiceAlarm alarm, std::optional<Steady> end = {}) {
+    for (Standing& standing : standing_)
+      if (is(standing, alarm.kind, alarm.asset_id, alarm.subject)) return standing.end = end, false;
+    const auto of_kind = std::ranges::count_if(
+        standing_, [&](const Standing& standing) { return standing.end && standing.alarm.kind == alarm.kind; });
+    if (end && of_kind >= kMostOfAKind) return false;
+    standing_.push_back({std::move(alarm), end});
     return true;
   }
-  void clear(const std::string& kind, const std::string& subject) {
-    std::erase_if(standing_, [&](const ServiceAlarm& alarm) { return alarm.kind == kind && alarm.subject == subject; });
+  /// True when it stood.
+  bool clear(const std::string& kind, const std::string& asset_id, const std::string& subject) {
+    return std::erase_if(standing_, [&](const Standing& one) { return is(one, kind, asset_id, subject); }) > 0;
+  }
+  /// Takes away those whose end has come.
+  std::vector<ServiceAlarm> expire(Steady now) {
+    std::vector<ServiceAlarm> over;
+    for (const Standing& one : standing_)
+      if (one.end && *one.end <= now) over.push_back(one.alarm);
+    std::erase_if(standing_, [&](const Standing& one) { return one.end && *one.end <= now; });
+    return over;
+  }
+  /// Those of a kind about an asset, in the order in which they were raised.
+  [[nodiscard]] std::vector<ServiceAlarm> of(const std::string& kind, const std::string& asset_id) const {
+    std::vector<ServiceAlarm> found;
+    for (const Standing& one : standing_)
+      if (one.alarm.kind == kind && one.alarm.asset_id == asset_id) found.push_back(one.alarm);
+    return found;
   }
   void tell(ServiceStatus& status) const {
     const std::size_t told = std::min(standing_.size(), kMostTold);
-    status.alarms.assign(standing_.end() - static_cast<std::ptrdiff_t>(told), standing_.end());
+    status.alarms.clear();
+    for (std::size_t i = standing_.size() - told; i < standing_.size(); ++i)
+      status.alarms.push_back(standing_[i].alarm);
     status.alarm_count = standing_.size();
   }
 
  private:
+  struct Standing {
+    ServiceAlarm alarm;
+    std::optional<Steady> end;
+  };
+  static bool is(const Standing& standing, const std::string& kind, const std::string& asset_id,
+                 const std::string& subject) {
+    const ServiceAlarm& alarm = standing.alarm;
+    return alarm.kind == kind && alarm.asset_id == asset_id && alarm.subject == subject;
+  }
+
   static constexpr std::size_t kMostTold = 32;  ///< a heartbeat stays small
-  std::vector<ServiceAlarm> standing_;          ///< in the order in which they were raised
+  static constexpr std::ptrdiff_t kMostOfAKind = 256;
+  std::vector<Standing> standing_;  ///< in the order in which they were raised
 };
 
 }  // namespace sealwatch

@@ -90,6 +90,23 @@ void read_topics(YamlMap& root, Configuration& configuration) {
   topics->finish();
 }
 
+/// Who is expected to send tests.
+void read_senders(YamlMap& root, Configuration& configuration) {
+  for (const YAML::Node& node : root.list("senders")) {
+    if (node.IsScalar() && !node.Scalar().empty())
+      configuration.senders.push_back(node.Scalar());
+    else
+      root.fault("senders", {}, "must be a list of names: the source_id of raw samples");
+  }
+}
+
+void read_operator_acts(YamlMap& root, Configuration& configuration) {
+  auto map = root.map("operator_acts");
+  if (!map) return;
+  map->read("confirmed_by_second", configuration.acts_confirmed_by_second);
+  map->finish();
+}
+
 void read_campaigns(YamlMap& site, SiteConfig& config) {
   std::size_t index = 0;
   for (const YAML::Node& node : site.list("campaigns")) {
@@ -262,6 +279,8 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   read_logging(map, configuration.logging);
   read_services(map, configuration);
   read_topics(map, configuration);
+  read_senders(map, configuration);
+  read_operator_acts(map, configuration);
   read_sites(map, overrides.now, configuration);
   const std::vector<std::string> files = asset_files(map, file.parent_path());
   auto commissioned = map.map("commissioned");

@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct DaemonParts {
   std::function<Result<std::unique_ptr<Bus>>(const Configuration&)> make_bus;
   /// Optional: inputs that come from no bus, see RunnerOptions::local_inputs.
   std::function<decltype(RunnerOptions::local_inputs)(const Configuration&)> make_local_inputs = {};
+  /// Optional: see RunnerOptions.
+  std::function<std::optional<std::string>()> refused_by_bus = {};
+  std::function<AlarmsOfOutput()> make_alarms_of_output = {};
 };
 
 [[nodiscard]] int run_daemon(int argc, const char* const* argv, const DaemonParts& parts);

@@ -1,5 +1,7 @@
 #include "services/common/runtime/latest_outputs.hpp"
 
+#include "sealwatch/message/retraction.hpp"
+
 namespace sealwatch {
 
 void LatestOutputs::concluded(const Message& output, std::uint64_t sequence) {
@@ -7,7 +9,8 @@ void LatestOutputs::concluded(const Message& output, std::uint64_t sequence) {
   const Key key{topic_of(output), asset_of(output)};
   const auto known = latest_.find(key);
   const bool may_be_late = key.first != Topic::advisory && known != latest_.end() && known->second.time_known;
-  const bool late = may_be_late && (!header.event_time_known || header.event_time_ns < known->second.event_time_ns);
+  const bool late = may_be_late && !answers_retraction(header) &&
+                    (!header.event_time_known || header.event_time_ns < known->second.event_time_ns);
   if (late) return;
   latest_[key] = {header.event_time_known, header.event_time_ns, sequence};
   hidden_.insert(key);

@@ -18,7 +18,7 @@ class LatestOutputs {
 
   /// An own output of that sequence number was concluded. Of two on the same event the one that was concluded later
   /// counts, and one without a time only where none has any; so it does of advisories: what was advised last stands,
-  /// whatever it answers to.
+  /// whatever it answers to; and what is concluded anew after a retraction, as the test it takes the place of was later.
   void concluded(const Message& output, std::uint64_t sequence);
   /// A stamped output went out.
   void published(const Message& output);

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
 #include "services/common/runtime/identity.hpp"
@@ -32,6 +31,7 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       clock_(clock),
       options_(std::move(options)),
       admission_(options_.commissioned),
+      strangers_(options_.strangers),
       lanes_(
           make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
           [&bus] { bus.wake(); }, options_.lanes) {}
@@ -47,9 +47,13 @@ Status LayerRunner::start() {
   // Nothing is missing yet; from now on it knows the time, by which it forgets whom it does not hear.
   (void)reader_->requests(std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count());
 
+  // While this process joined, DDS refused whoever came before there was anything to compare them with.
+  if (options_.refused_by_bus) (void)options_.refused_by_bus();
+
   if (Status status = lanes_.prepare(); !status) return status;
   for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);
   if (Status status = restore_quarantine(); !status) return status;
+  if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
   if (Status status = publish_latest(); !status) return status;
   started_ = steady_clock::now();
@@ -70,6 +74,7 @@ Status LayerRunner::restore_past() {
   std::map<Topic, std::uint64_t> sequence;  // outputs of a topic are numbered from 1 without a gap
   Status outputs = journal_.for_each_output([&](const Message& output) {
     lanes_.restore(output);
+    note_alarms_of(output);
     admission_.note(output);
     latest_.concluded(output, ++sequence[topic_of(output)]);
     replaying_[asset_of(output)] = header_of(output).replay;
@@ -194,19 +199,22 @@ Status LayerRunner::take(Message message) {
     return {};
   }
   header_of(message).message_id = **id;
-  InputState state = is_set_aside(message) ? InputState::set_aside : InputState::open;
-  if (const auto refused = admission_.refusal(message, clock_.now())) {
+  auto refused = admission_.refusal(message, clock_.now());
+  if (!refused) refused = refusal_of_confirmation(message);
+  if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
     if (topic_of(message) == Topic::raw_samples) return {};
-    state = InputState::consumed;
   }
+  const InputState state = note_act(message, refused, is_set_aside(message) ? InputState::set_aside : InputState::open);
   const std::string asset_id = asset_of(message);
   taken_ids_[**id] = taken_.size();
   if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;
   const auto input = std::make_shared<const Message>(without_stamps(std::move(message)));
   taken_.push_back({input, stream, state});
+  if (state == InputState::awaiting) await(input, clock_.now());
+  if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
   admission_.note(*input);
   replaying_[asset_id] = header_of(*input).replay;
@@ -238,6 +246,7 @@ Status LayerRunner::store_batch() {
         taken_[taken->second].state = InputState::consumed;
   for (const Taken& one : taken_)
     if (Status status = journal_.add_input(*one.message, one.stream, clock_.now(), one.state); !status) return status;
+  if (Status status = record_acts(); !status) return status;
   for (const auto& [stream, sequence] : uncommitted_)
     if (Status status = journal_.set_position({stream.first, stream.second, sequence}); !status) return status;
   for (LaneResult& result : results_)
@@ -258,6 +267,7 @@ Status LayerRunner::keep(Conclusion conclusion) {
     if (!kept) return fail(kept.error());
     if (!*kept) continue;
     latest_.concluded(**kept, header_of(**kept).stream_sequence);
+    note_alarms_of(**kept);
     outbox_.add(std::move(**kept));
   }
   for (const std::string& id : conclusion.consumed) {
@@ -274,22 +284,8 @@ void LayerRunner::give_memory_back() {
   holds_memory_ = false;
 }
 
-void LayerRunner::watch_clock() {
-  const std::string kind = "clock_step";
-  if (!clock_watch_.look(clock_.now(), steady_clock::now().time_since_epoch())) return;
-  alarms_.clear(kind, {});
-  const auto step_s = clock_watch_.step_s();
-  if (!step_s) return log_event(LogLevel::info, "the clock goes on as it did", {});
-  const std::string text = "this machine's clock was set " + std::string(*step_s > 0.0 ? "forward" : "back") + " by " +
-                           std::to_string(std::llround(std::abs(*step_s))) +
-                           " s, or the machine slept; check the time source: tests are dated by this clock";
-  alarms_.raise(
-      {.kind = kind, .asset_id = {}, .subject = {}, .pst_id = {}, .text = text, .since_ns = clock_.now().nanoseconds});
-  log_event(LogLevel::error, "clock was set", {{"error", text}});
-}
-
 Status LayerRunner::let_time_pass() {
-  if (options_.watches_clock) watch_clock();
+  look_for_trouble();
   const auto at_rest = [this](const std::string& asset_id) { return lanes_.at_rest(asset_id); };
   if (options_.local_inputs)
     for (Message& message : options_.local_inputs(at_rest)) ready_.push_back(std::move(message));

@@ -26,6 +26,7 @@
 
 #include "sealwatch/port/bus.hpp"
 #include "sealwatch/port/layer.hpp"
+#include "sealwatch/port/standing_alarms.hpp"
 #include "services/common/runtime/admission.hpp"
 #include "services/common/runtime/alarms.hpp"
 #include "services/common/runtime/asset_lanes.hpp"
@@ -34,6 +35,7 @@
 #include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/outbox.hpp"
 #include "services/common/runtime/resend_queue.hpp"
+#include "services/common/runtime/stranger_watch.hpp"
 #include "services/common/runtime/stream_reader.hpp"
 #include "services/common/store/journal.hpp"
 
@@ -60,6 +62,14 @@ struct RunnerOptions {
   StreamReader::Limits streams = {};
   std::map<std::string, UtcTime> commissioned = {};  ///< by asset; no test is older
   bool watches_clock = false;                        ///< that of this machine, by which tests are dated
+  /// Whether that clock follows a time source; nothing where it cannot be asked. Asked about once a second.
+  std::function<std::optional<bool>()> clock_is_synchronised = {};
+  bool acts_confirmed_by_second = false;  ///< see message/confirmation.hpp
+  StrangerWatch::Options strangers = {};
+  std::chrono::milliseconds strangers_stand{3'600'000};  ///< how long an alarm of who is heard no more stands
+  /// What the bus has refused to others since the last call, in words; nothing when it was nothing.
+  std::function<std::optional<std::string>()> refused_by_bus = {};
+  AlarmsOfOutput alarms_of_output = {};
 };
 
 class LayerRunner {
@@ -92,8 +102,6 @@ class LayerRunner {
   void sort_in(Message message);
   void sort_in(const ServiceStatus& status);
   void sort_in(const ResendRequest& request);
-  void note_rival(const ServiceStatus& rival);
-  void watch_clock();
   void note_reused_number(const Message& message);
   void start_anew(const Key& stream);
   /// Runs `work` inside a transaction and publishes what it concluded.
@@ -115,6 +123,27 @@ class LayerRunner {
   void send_outbox();
   void note_error(const std::string& text);
   void report_progress();
+
+  // What keeps the service from seeing (layer_runner_alarms.cpp).
+  void note_rival(const ServiceStatus& rival);
+  void hear_name(const ServiceStatus& status);
+  void note_strangers(const std::vector<StrangerWatch::Stranger>& strangers);
+  void watch_clock();
+  void watch_synchronisation();
+  void note_alarms_of(const Message& output);
+  void look_for_trouble();
+
+  // What people say (layer_runner_acts.cpp).
+  [[nodiscard]] Status restore_awaiting();
+  void await(std::shared_ptr<const Message> act, UtcTime since);
+  [[nodiscard]] std::optional<std::string> refusal_of_confirmation(const Message& message) const;
+  [[nodiscard]] bool waits_for_second(const Message& message) const;
+  /// Writes down who said it, and what becomes of it: `state` for what no person said.
+  [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused,
+                                    InputState state);
+  /// Gives the layer what this confirms, and forgets what it rejects.
+  void confirm(const Message& message);
+  [[nodiscard]] Status record_acts();
 
   // What is set aside (layer_runner_quarantine.cpp).
   [[nodiscard]] Status restore_quarantine();
@@ -140,7 +169,10 @@ class LayerRunner {
   std::map<std::string, std::size_t> taken_ids_;
   std::vector<Message> renumbered_;  ///< known inputs that came under another number
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
-  std::vector<LaneResult> results_;                                       ///< not yet in the journal
+  std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
+  std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
+  std::vector<OperatorAct> acts_;                         ///< of the running batch
+  std::vector<LaneResult> results_;                       ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch
@@ -152,6 +184,7 @@ class LayerRunner {
   std::string last_error_;                 ///< with its time
   Alarms alarms_;
   ClockWatch clock_watch_;
+  StrangerWatch strangers_;
   std::vector<SetAside> set_aside_;
   std::map<std::string, std::set<std::string>> set_aside_elsewhere_;  ///< tests, by the service that did so
   std::uint64_t waiting_in_vain_ = 0;                                 ///< open inputs of those tests

@@ -89,7 +89,7 @@ Status LayerRunner::try_again_what_was_asked() {
     const SetAside message = *found;
     if (Status released = in_batch([&] { return journal_.release(message); }); !released) return released;
     set_aside_.erase(found);
-    alarms_.clear(kSetAside, message_id);
+    alarms_.clear(kSetAside, message.asset_id, message_id);
     log_event(LogLevel::info, "tried again", {{"message", message_id}, {"asset", message.asset_id}});
     if (Status begun = begin_anew(message.asset_id); !begun) return begun;
   }

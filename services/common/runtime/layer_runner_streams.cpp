@@ -34,6 +34,7 @@ void LayerRunner::sort_in(BusItem item) {
 
 void LayerRunner::sort_in(Message message) {
   if (!contains(kind_->inputs(), topic_of(message))) return;
+  note_strangers(strangers_.hear(message, std::chrono::steady_clock::now().time_since_epoch()));
   if (!is_numbered(message)) {
     ready_.push_back(std::move(message));
     return;
@@ -60,6 +61,7 @@ void LayerRunner::note_reused_number(const Message& message) {
 
 void LayerRunner::sort_in(const ServiceStatus& status) {
   if (status.writer_id == journal_.writer_id()) return;
+  hear_name(status);
   if (status.service == kind_->name()) note_rival(status);
   note_set_aside_elsewhere(status);
   for (Message& next : reader_->note_start(status.writer_id, status.started_ns, steady_seconds()))
@@ -80,23 +82,6 @@ void LayerRunner::start_anew(const Key& stream) {
   });
   log_event(LogLevel::warn, "writer was set back, reading its stream again from the start",
             {{"writer", stream.second}, {"topic", stream.first}});
-}
-
-/// Both conclude from the same messages, each under its own name: readers take what comes first, people see both.
-void LayerRunner::note_rival(const ServiceStatus& rival) {
-  constexpr const char* kRival = "rival";
-  if (rival.state != "running") return alarms_.clear(kRival, rival.writer_id);
-  const std::string text = "another " + rival.service + ", process " + std::to_string(rival.process_id) +
-                           ", runs in this domain; stop one of the two, or give it another domain";
-  const bool is_new = alarms_.raise({.kind = kRival,
-                                     .asset_id = {},
-                                     .subject = rival.writer_id,
-                                     .pst_id = {},
-                                     .text = text,
-                                     .since_ns = clock_.now().nanoseconds});
-  if (!is_new) return;
-  last_error_ = text;
-  log_event(LogLevel::error, "not alone", {{"error", text}, {"writer", rival.writer_id}});
 }
 
 void LayerRunner::sort_in(const ResendRequest& request) {

@@ -5,6 +5,8 @@
 #include <random>
 #include <string_view>
 
+#include "services/common/store/audit_rows.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -89,6 +91,7 @@ void Journal::Database::open(const std::string& connection) {
   if (!has_table("meta")) create_schema();
   check_schema();
   if (!has_table("quarantine")) sql << kQuarantine;
+  make_acts_table(sql);
   load_counters();
   statements.emplace(sql);
 }

@@ -1,7 +1,7 @@
 // The journal of one service: what it received and what it concluded, kept before anything is published.
 //
 // Tables (docs/operations.md): inputs and outputs with their messages as exact JSON, positions of the streams that were
-// read, quarantine with what is set aside and why, meta with the schema's version, the service and its writer id. All changes happen between begin and commit, so
+// read, quarantine with what is set aside and why, acts with what people did, meta with the schema's version, the service and its writer id. All changes happen between begin and commit, so
 // that a process killed at any instant leaves whole batches only.
 //
 // The connection string is SOCI's: "sqlite3://FILE" (write-ahead log, one file for each service) or
@@ -20,6 +20,7 @@
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/topics.hpp"
+#include "services/common/store/audit_trail.hpp"
 
 namespace sealwatch {
 
@@ -44,7 +45,7 @@ struct SetAside {
   std::string reason;
 };
 
-enum class InputState { open, consumed, set_aside };
+enum class InputState { open, consumed, set_aside, awaiting };  // awaiting: kept until a second person confirms it
 
 class Journal {
  public:
@@ -112,6 +113,18 @@ class Journal {
   [[nodiscard]] Status set_position(const StreamPosition& position);
   /// Notes that its writer now sends a known input under this number.
   [[nodiscard]] Status renumber_input(const Message& message);
+
+  /// Adds what somebody did to the audit trail.
+  [[nodiscard]] Result<AuditEntry> record(const OperatorAct& act);
+
+  struct Awaiting {
+    Message message;
+    UtcTime received;
+  };
+  /// What waits for a second person, in the order of receipt.
+  [[nodiscard]] Result<std::vector<Awaiting>> awaiting();
+  /// Ends the wait of one of them: open or consumed.
+  [[nodiscard]] Status end_awaiting(const std::string& message_id, InputState state);
 
   // The quarantine. It is written between begin and commit; askers write to it from other processes (quarantine_desk.hpp).
 

@@ -1,5 +1,6 @@
 // What is set aside (journal.hpp): inputs in state set_aside, and why, in table quarantine.
 #include "services/common/message/json.hpp"
+#include "services/common/store/audit_rows.hpp"
 #include "services/common/store/database.hpp"
 
 namespace sealwatch {
@@ -104,6 +105,48 @@ Status Journal::release(const SetAside& message) {
     const long long moved = move(database_->sql, message, InputState::set_aside, InputState::open);
     database_->open_inputs += static_cast<std::uint64_t>(moved);
     ++database_->batch_rows;
+  });
+}
+
+Result<std::vector<Journal::Awaiting>> Journal::awaiting() {
+  auto rows = database_->guard("looking for acts that wait", [&] {
+    std::vector<std::pair<std::string, long long>> found;
+    std::string id;
+    long long received = 0;
+    soci::statement statement =
+        (database_->sql.prepare << "SELECT message_id, received FROM inputs WHERE consumed = 3 ORDER BY receipt",
+         into(id), into(received));
+    statement.execute();
+    while (statement.fetch()) found.emplace_back(id, received);
+    return found;
+  });
+  if (!rows) return fail(rows.error());
+  std::vector<Awaiting> waiting;
+  for (const auto& [id, received] : *rows) {
+    auto message = input(id);
+    if (!message) return fail(message.error());
+    if (*message) waiting.push_back({std::move(**message), UtcTime{received}});
+  }
+  return waiting;
+}
+
+Status Journal::end_awaiting(const std::string& message_id, InputState state) {
+  return database_->guard("ending an act's wait", [&] {
+    const bool opened = state == InputState::open;
+    const std::string change = opened ? "consumed = 0" : "consumed = 1, payload = NULL";
+    soci::statement statement =
+        (database_->sql.prepare << "UPDATE inputs SET " + change + " WHERE consumed = 3 AND message_id = :id",
+         use(message_id, "id"));
+    statement.execute(true);
+    if (opened) database_->open_inputs += static_cast<std::uint64_t>(statement.get_affected_rows());
+    ++database_->batch_rows;
+  });
+}
+
+Result<AuditEntry> Journal::record(const OperatorAct& act) {
+  return database_->guard("recording an act", [&] {
+    ++database_->batch_rows;
+    return append_act(database_->sql, database_->service, act);
   });
 }
 

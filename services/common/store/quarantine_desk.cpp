@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "services/common/store/audit_rows.hpp"
 #include "services/common/store/journal_reader.hpp"
 
 namespace sealwatch {
@@ -12,8 +13,41 @@ namespace sealwatch {
 using soci::into;
 using soci::use;
 
+namespace {
+
+/// SQLite is told at once that it will write: one that began by reading may be refused (database.cpp).
+class Transaction {
+ public:
+  explicit Transaction(soci::session& sql) : sql_(sql) {
+    if (sql_.get_backend_name() == "sqlite3")
+      sql_ << "BEGIN IMMEDIATE";
+    else
+      sql_.begin();
+  }
+  ~Transaction() {
+    if (!open_) return;
+    try {
+      sql_ << "ROLLBACK";
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): the reason is being told already
+    }
+  }
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit() {
+    sql_ << "COMMIT";
+    open_ = false;
+  }
+
+ private:
+  soci::session& sql_;
+  bool open_ = true;
+};
+
+}  // namespace
+
 struct QuarantineDesk::Session {
   std::string place;
+  std::string service;
   soci::session sql;
   bool has_table = false;  ///< a journal of an older program has none, until its service runs again
 
@@ -51,6 +85,7 @@ Result<QuarantineDesk> QuarantineDesk::open(const std::string& connection, const
   if (const auto readable = JournalReader::open(connection, service); !readable) return fail(readable.error());
   auto session = std::make_unique<Session>();
   session->place = without_password(connection);
+  session->service = service;
   const auto opened = session->guard([&] {
     session->sql.open(connection);
     std::string answer;
@@ -87,13 +122,28 @@ Result<std::vector<QuarantineDesk::Entry>> QuarantineDesk::list() {
 Result<bool> QuarantineDesk::ask_again(const std::string& message_id, const std::string& who, UtcTime now) {
   return session_->guard([&] {
     if (!session_->has_table) return false;
+    make_acts_table(session_->sql);
     const long long asked = now.nanoseconds;
+    Transaction transaction(session_->sql);
     soci::statement statement = (session_->sql.prepare << "UPDATE quarantine SET state = 'retry', asked_by = :who,"
                                                           " asked = :asked WHERE message_id = :id AND"
                                                           " state <> 'released'",
                                  use(who, "who"), use(asked, "asked"), use(message_id, "id"));
     statement.execute(true);
-    return statement.get_affected_rows() > 0;
+    const bool is_set_aside = statement.get_affected_rows() > 0;
+    std::string asset_id;
+    session_->sql << "SELECT asset_id FROM quarantine WHERE message_id = :id", use(message_id, "id"), into(asset_id);
+    if (is_set_aside)
+      append_act(session_->sql, session_->service,
+                 {.at = now,
+                  .kind = "quarantine_retry",
+                  .asset_id = asset_id,
+                  .who = who,
+                  .subject = message_id,
+                  .text = {},
+                  .outcome = "taken"});
+    transaction.commit();
+    return is_set_aside;
   });
 }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sealwatch/config/configuration.hpp"
@@ -36,6 +37,10 @@ class DdsBus : public Bus {
 /// Whether Cyclone DDS takes these settings (configuration.cyclonedds_uri); what it has against them it says on
 /// standard error.
 [[nodiscard]] Status check_dds_settings(const std::string& cyclonedds_uri);
+
+/// Others whom Cyclone DDS refused since the last call, by DDS Security, in its own words; nothing when it was nobody. One
+/// caller in a process.
+[[nodiscard]] std::optional<std::string> refused_by_security();
 
 /// The same as the plain port.
 [[nodiscard]] Result<std::unique_ptr<Bus>> make_dds_bus(const Configuration& configuration);

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <utility>
 
+#include "services/common/transport/refusals.hpp"
+
 namespace sealwatch::transport {
 namespace {
 
@@ -66,6 +68,7 @@ tl::unexpected<Error> dds_failure(std::string what, dds_return_t code, std::stri
 }
 
 Result<Participant> Participant::join(const Configuration& configuration) {
+  listen_to_cyclone();
   const auto id = static_cast<dds_domainid_t>(configuration.domain);
   if (Status entered = domains().enter(id, configuration.cyclonedds_uri); !entered) return fail(entered.error());
   const dds_entity_t handle = dds_create_participant(id, nullptr, nullptr);

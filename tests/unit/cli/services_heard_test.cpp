@@ -93,5 +93,23 @@ TEST_F(Listening, TellsWhatServicesCannotMendByThemselvesWithItsCategory) {
   EXPECT_TRUE(alarms_of(heard_.list(now_)).empty()) << "it is over";
 }
 
+TEST_F(Listening, OnlyWhatIsNotSeenNowCountsAsBlind) {
+  ServiceStatus status = beat("data_acquisition", 7);
+  const auto alarm_of = [&](const std::string& kind) {
+    status.alarms = {{.kind = kind, .asset_id = {}, .subject = {}, .pst_id = {}, .text = "why", .since_ns = 0}};
+    status.alarm_count = 1;
+    heard_.take(status, now_);
+    heard_.take(beat("health_assessment", 8), now_);
+    return alarms_of(heard_.list(now_));
+  };
+  EXPECT_EQ(one_line(alarm_of("clock_unsynchronised")[0]),
+            "ALARM (maintenance required)  data_acquisition  clock is not synchronised: why");
+  EXPECT_FALSE(is_blind(alarm_of("clock_unsynchronised"))) << "it is right still, and will not be for ever";
+  for (const char* kind : {"sensor_lost", "unknown_writer", "refused_right", "clock_step", "rival", "set_aside"})
+    EXPECT_TRUE(is_blind(alarm_of(kind))) << kind;
+  EXPECT_EQ(category_of("sensor_lost"), Ne107::failure);
+  EXPECT_EQ(category_of("refused_right"), Ne107::out_of_specification);
+}
+
 }  // namespace
 }  // namespace sealwatch::cli

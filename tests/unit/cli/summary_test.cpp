@@ -301,5 +301,33 @@ TEST(AssetView, KeepsTheActiveAdvisoryAndNamesWhatWasLeftOut) {
   EXPECT_THAT(view.screen(), HasSubstr("cut after 7 s (and 1 more"));
 }
 
+TEST(AssetView, WhatIsConcludedAnewAfterARetractionTakesThePlaceOfALaterTest) {
+  AssetView view;
+  HealthReport retracted;
+  retracted.asset_id = "A";
+  retracted.header.pst_id = "A-2";
+  retracted.header.event_time_known = true;
+  retracted.header.event_time_ns = 20;
+  retracted.health_grade_known = true;
+  retracted.health_grade = 0.1;
+  HealthReport anew = retracted;
+  anew.header.pst_id.clear();
+  anew.header.source_ids = {"retraction/A/test/A-2/2031-01-01T00:00:00Z"};
+  anew.header.event_time_ns = 10;
+  anew.health_grade = 0.9;
+  view.take(Message(retracted));
+  view.take(Message(anew));
+  EXPECT_THAT(view.screen(), HasSubstr("grade 0.90"));
+}
+
+TEST(OneLine, ToldOfNoTestAStateReportIsOverdueOrJudgedAnew) {
+  StateReport report;
+  report.asset_id = "A";
+  report.verdict_reasons = {"tests retracted by J. Silva"};
+  EXPECT_THAT(one_line(Message(report)), HasSubstr("judged anew (tests retracted by J. Silva)"));
+  report.pst_overdue = true;
+  EXPECT_THAT(one_line(Message(report)), HasSubstr("test overdue"));
+}
+
 }  // namespace
 }  // namespace sealwatch::cli

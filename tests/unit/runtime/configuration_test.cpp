@@ -119,12 +119,30 @@ const BadCase kBadCases[] = {
     {"not_a_list", "sites: north\n", "sealwatch.yaml: line 1, key sites: 'north': must be a list"},
     {"not_a_map", "logging: loud\n",
      "sealwatch.yaml: line 1, key logging: 'loud': must be a mapping of keys to values"},
+    {"senders", "senders: [[a]]\n",
+     "sealwatch.yaml: line 1, key senders: must be a list of names: the source_id of raw samples"},
+    {"second_person", "operator_acts: {confirmed_by_two: true}\n",
+     "sealwatch.yaml: line 1, key operator_acts.confirmed_by_two: 'confirmed_by_two': is not a known key; did you mean "
+     "'confirmed_by_second'?"},
     {"root_not_a_map", "- a\n- b\n", "sealwatch.yaml: line 1: must be a mapping of keys to values"},
     {"twice", "domain: 1\ndomain: 2\n", "sealwatch.yaml: line 2, key domain: 'domain': stands twice; keep one of them"},
     {"empty_state_directory", "state_directory: \"\"\n",
      "sealwatch.yaml: line 1, key state_directory: must not be empty"},
     {"asset_missing", "assets: [none.yaml]\n", "none.yaml: cannot be read; check that the file exists and may be read"},
 };
+
+TEST(Configuration, NamesItsSendersAndAsksForASecondPersonWhereItSaysSo) {
+  const YamlPlace place;
+  const auto plain = load_configuration(place.write("sealwatch.yaml", "domain: 1\n"), {});
+  ASSERT_TRUE(plain);
+  EXPECT_TRUE(plain->senders.empty());
+  EXPECT_FALSE(plain->acts_confirmed_by_second) << "one-step commands go on working";
+  const auto strict = load_configuration(
+      place.write("sealwatch.yaml", "senders: [MCS-1, MCS-2]\noperator_acts: {confirmed_by_second: true}\n"), {});
+  ASSERT_TRUE(strict);
+  EXPECT_THAT(strict->senders, ElementsAre("MCS-1", "MCS-2"));
+  EXPECT_TRUE(strict->acts_confirmed_by_second);
+}
 
 INSTANTIATE_TEST_SUITE_P(All, BadConfiguration, ::testing::ValuesIn(kBadCases),
                          [](const auto& bad) { return std::string(bad.param.name); });

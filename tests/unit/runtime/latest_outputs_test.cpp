@@ -54,6 +54,13 @@ TEST(LatestOutputs, OneWithoutTimeIsNotTheLatestOfThoseThatHaveOne) {
   EXPECT_THAT(after({of_event(1, 10), of_event(2, {})}).to_publish(), ElementsAre(Pair(kKey, 1)));
 }
 
+TEST(LatestOutputs, WhatIsConcludedAnewAfterARetractionIsTheLatestThoughItSpeaksOfAnEarlierTest) {
+  Message anew = of_event(3, 10);
+  header_of(anew).source_ids = {"retraction/A/test/A-2/2031-01-01T00:00:00Z"};
+  EXPECT_THAT(after({of_event(1, 10), of_event(2, 20), anew}).to_publish(), IsEmpty());
+  EXPECT_THAT(after({of_event(1, 10), of_event(2, 20), anew, of_event(4, 15)}).to_publish(), IsEmpty());
+}
+
 TEST(LatestOutputs, WhatWasConcludedAndNotPublishedIsToBePublished) {
   LatestOutputs latest;
   latest.concluded(of_event(1, 10), 1);

@@ -189,6 +189,12 @@ TEST_F(QuarantineTest, IsTriedAgainWhereSomebodyAsksForIt) {
   EXPECT_EQ(record[0].state, "released");
   EXPECT_EQ(record[0].asked_by, "J. Silva");
   EXPECT_EQ(record[0].asked_ns, 77);
+  const auto acts = read_audit_trail(place_.connection(), "state_detection").value();
+  ASSERT_THAT(acts, SizeIs(1)) << "and cannot be changed unseen";
+  EXPECT_EQ(acts[0].act.kind, "quarantine_retry");
+  EXPECT_EQ(acts[0].act.who, "J. Silva");
+  EXPECT_EQ(acts[0].act.asset_id, "A");
+  EXPECT_EQ(acts[0].act.subject, "test_features/a1");
 }
 
 TEST_F(QuarantineTest, AsksForNothingOfAJournalOfAnOlderProgram) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "services/common/message/json.hpp"
+#include "services/state_detection/sensor_alarms.hpp"
 #include "tests/unit/layers/state_detection/fake_simulator.hpp"
 #include "tests/unit/layers/state_detection/synthetic_test.hpp"
 
@@ -361,6 +362,28 @@ TEST(StateDetection, ALostChannelIsStaleAndAnAdvisory) {
                 Contains(HasSubstr(absent ? "flow, OK in most earlier tests, was not recorded"
                                           : "is FAILED: frozen for 4.0 s")));
   }
+}
+
+TEST(StateDetection, ALostChannelIsAnAlarmFromItsFirstTestUntilItIsBack) {
+  Journal journal;
+  StateDetection detection = layer();
+  LostSensors lost;
+  for (int number = 0; number < 6; ++number) {
+    Circumstances circumstances;
+    circumstances.number = number;
+    if (number == 3 || number == 4) circumstances.failed_channel = "flow";
+    play(detection, journal, {}, circumstances);
+    const auto said = lost.look(journal.concluded.back());
+    ASSERT_TRUE(said) << number;
+    EXPECT_EQ(said->asset_id, "A1");
+    ASSERT_EQ(said->standing.size(), number == 3 || number == 4 ? 1U : 0U) << number;
+    if (number != 3) continue;
+    EXPECT_EQ(said->standing[0].kind, "sensor_lost");
+    EXPECT_EQ(said->standing[0].subject, "flow");
+    EXPECT_EQ(said->standing[0].since_ns, last_report(journal).header.event_time_ns);
+    EXPECT_THAT(said->standing[0].text, HasSubstr("is FAILED: frozen for 4.0 s"));
+  }
+  EXPECT_FALSE(lost.look(journal.concluded[3])) << "an older test says nothing about today";
 }
 
 /// Adds a channel to a test as a recording with one more column would.

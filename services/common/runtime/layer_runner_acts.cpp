@@ -1,0 +1,126 @@
+// The runner's part in what people say: each act stands in the audit trail, and one that waits for a second person is
+// kept from the layer until another one confirms it (message/confirmation.hpp).
+#include <algorithm>
+#include <cctype>
+
+#include "sealwatch/message/confirmation.hpp"
+#include "services/common/runtime/layer_runner.hpp"
+#include "services/common/runtime/log.hpp"
+#include "services/common/runtime/operator_acts.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
+
+std::string who_said(const Message& message) {
+  const auto act = act_of(message, {}, {});
+  return act ? act->who : std::string();
+}
+
+/// "J. Silva " and "j. silva" are one person.
+std::string plain(const std::string& who) {
+  std::string name;
+  for (const char letter : who)
+    if (std::isspace(static_cast<unsigned char>(letter)) == 0)
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return name;
+}
+
+/// Whether it rejects what it speaks of.
+bool rejects(const Message& message) {
+  const auto* event = std::get_if<MaintenanceEvent>(&message);
+  return event != nullptr && event->kind == kActRejected;
+}
+
+/// The act that it confirms or rejects.
+std::optional<std::string> act_confirmed_by(const Message& message) {
+  const auto* event = std::get_if<MaintenanceEvent>(&message);
+  if (event == nullptr || (event->kind != kActConfirmed && event->kind != kActRejected)) return std::nullopt;
+  return confirmed_act(event->asset_id, event->header.message_id);
+}
+
+}  // namespace
+
+Status LayerRunner::restore_awaiting() {
+  const auto waiting = journal_.awaiting();
+  if (!waiting) return fail(waiting.error());
+  for (const Journal::Awaiting& one : *waiting) await(std::make_shared<const Message>(one.message), one.received);
+  return {};
+}
+
+void LayerRunner::await(std::shared_ptr<const Message> act, UtcTime since) {
+  const Header& header = header_of(*act);
+  const auto told = act_of(*act, clock_.now(), {});
+  alarms_.raise({.kind = kAwaitsConfirmation,
+                 .asset_id = asset_of(*act),
+                 .subject = header.message_id,
+                 .pst_id = {},
+                 .text = told->kind + " by " + told->who + " counts once another person confirms it",
+                 .since_ns = since.nanoseconds});
+  awaiting_[header.message_id] = std::move(act);
+}
+
+/// Why a confirmation confirms nothing; none for all other messages.
+std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& message) const {
+  const auto act_id = act_confirmed_by(message);
+  if (!act_id) return std::nullopt;
+  const bool is_read_here = !act_id->starts_with("model_acceptance/") ||
+                            std::ranges::find(kind_->inputs(), Topic::model_acceptance) != kind_->inputs().end();
+  if (!is_read_here) return std::nullopt;
+  const auto waiting = awaiting_.find(*act_id);
+  if (waiting == awaiting_.end() || asset_of(*waiting->second) != asset_of(message))
+    return "nothing of the id '" + *act_id + "' waits for a confirmation";
+  if (!rejects(message) && plain(who_said(message)) == plain(who_said(*waiting->second)))
+    return who_said(message) + " said so in the first place; it takes another person to confirm it";
+  return std::nullopt;
+}
+
+bool LayerRunner::waits_for_second(const Message& message) const {
+  return options_.acts_confirmed_by_second && may_lower_an_advisory(message);
+}
+
+InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state) {
+  const bool waits = !refused && waits_for_second(message);
+  const std::string outcome = refused ? *refused : waits ? "waits for a second person" : "taken";
+  if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
+  if (refused || act_confirmed_by(message)) return InputState::consumed;
+  return waits ? InputState::awaiting : state;
+}
+
+void LayerRunner::confirm(const Message& message) {
+  const auto act_id = act_confirmed_by(message);
+  const auto waiting = act_id ? awaiting_.find(*act_id) : awaiting_.end();
+  if (waiting == awaiting_.end()) return;
+  const std::shared_ptr<const Message> act = waiting->second;
+  awaiting_.erase(waiting);
+  alarms_.clear(kAwaitsConfirmation, asset_of(*act), *act_id);
+  if (const auto taken = taken_ids_.find(*act_id); taken != taken_ids_.end())
+    taken_[taken->second].state = rejects(message) ? InputState::consumed : InputState::open;  // both in one batch
+  else
+    no_longer_awaiting_[*act_id] = rejects(message) ? InputState::consumed : InputState::open;
+  if (rejects(message)) return;
+  admission_.note(*act);
+  lanes_.add(asset_of(*act), *act_id, act);
+}
+
+/// Their last hash stands in the log as well: whoever changes the journal must change that too.
+Status LayerRunner::record_acts() {
+  for (const OperatorAct& act : std::exchange(acts_, {})) {
+    const auto entry = journal_.record(act);
+    if (!entry) return fail(entry.error());
+    log_event(LogLevel::info, "act recorded",
+              {{"kind", act.kind},
+               {"asset", act.asset_id},
+               {"by", act.who},
+               {"subject", act.subject},
+               {"outcome", act.outcome},
+               {"entry", std::to_string(entry->sequence)},
+               {"hash", entry->hash}});
+  }
+  for (const auto& [act_id, state] : std::exchange(no_longer_awaiting_, {}))
+    if (Status ended = journal_.end_awaiting(act_id, state); !ended) return ended;
+  return {};
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,131 @@
+// The runner's part in telling what keeps it from seeing: another service of its kind, strangers, a clock that nobody
+// can trust, sensors that are gone. Each is an alarm for as long as it stands.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "services/common/runtime/layer_runner.hpp"
+#include "services/common/runtime/log.hpp"
+
+namespace sealwatch {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr const char* kRival = "rival";
+constexpr const char* kUnknownWriter = "unknown_writer";
+constexpr const char* kRefusedRight = "refused_right";
+constexpr const char* kClockStep = "clock_step";
+constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
+/// A service beats once a second.
+constexpr std::chrono::seconds kRivalIsSilent{10};
+
+Alarms::Steady steady_now() { return steady_clock::now().time_since_epoch(); }
+
+}  // namespace
+
+/// Both conclude from the same messages, each under its own name: readers take what comes first, people see both.
+void LayerRunner::note_rival(const ServiceStatus& rival) {
+  if (rival.state != "running") {
+    alarms_.clear(kRival, {}, rival.writer_id);
+    return;
+  }
+  const std::string text = "another " + rival.service + ", process " + std::to_string(rival.process_id) +
+                           ", runs in this domain; stop one of the two, or give it another domain";
+  const bool is_new = alarms_.raise({.kind = kRival,
+                                     .asset_id = {},
+                                     .subject = rival.writer_id,
+                                     .pst_id = {},
+                                     .text = text,
+                                     .since_ns = clock_.now().nanoseconds},
+                                    steady_now() + kRivalIsSilent);
+  if (!is_new) return;
+  last_error_ = text;
+  log_event(LogLevel::error, "not alone", {{"error", text}, {"writer", rival.writer_id}});
+}
+
+void LayerRunner::hear_name(const ServiceStatus& status) {
+  note_strangers(strangers_.hear(status, steady_now()));
+  if (strangers_.knows(status.writer_id) && alarms_.clear(kUnknownWriter, {}, status.writer_id))
+    log_event(LogLevel::info, "writer is known now", {{"writer", status.writer_id}, {"service", status.service}});
+}
+
+void LayerRunner::note_strangers(const std::vector<StrangerWatch::Stranger>& strangers) {
+  for (const StrangerWatch::Stranger& one : strangers) {
+    const bool is_new = alarms_.raise({.kind = kUnknownWriter,
+                                       .asset_id = {},
+                                       .subject = one.name,
+                                       .pst_id = {},
+                                       .text = one.text,
+                                       .since_ns = clock_.now().nanoseconds},
+                                      steady_now() + options_.strangers_stand);
+    if (is_new) log_event(LogLevel::error, "unknown writer", {{"writer", one.name}, {"error", one.text}});
+  }
+}
+
+void LayerRunner::watch_clock() {
+  if (!clock_watch_.look(clock_.now(), steady_now())) return;
+  alarms_.clear(kClockStep, {}, {});
+  const auto step_s = clock_watch_.step_s();
+  if (!step_s) return log_event(LogLevel::info, "the clock goes on as it did", {});
+  const std::string text = "this machine's clock was set " + std::string(*step_s > 0.0 ? "forward" : "back") + " by " +
+                           std::to_string(std::llround(std::abs(*step_s))) +
+                           " s, or the machine slept; check the time source: tests are dated by this clock";
+  alarms_.raise({.kind = kClockStep,
+                 .asset_id = {},
+                 .subject = {},
+                 .pst_id = {},
+                 .text = text,
+                 .since_ns = clock_.now().nanoseconds});
+  log_event(LogLevel::error, "clock was set", {{"error", text}});
+}
+
+void LayerRunner::watch_synchronisation() {
+  const std::optional<bool> synchronised = options_.clock_is_synchronised();
+  if (!synchronised) return;  // what stood, stands: nothing was learnt
+  if (*synchronised) {
+    if (alarms_.clear(kClockUnsynchronised, {}, {})) log_event(LogLevel::info, "the clock is synchronised", {});
+    return;
+  }
+  const std::string text =
+      "this machine's clock follows no time source and drifts; tests are dated by it: let chrony or "
+      "systemd-timesyncd set it";
+  const bool is_new = alarms_.raise({.kind = kClockUnsynchronised,
+                                     .asset_id = {},
+                                     .subject = {},
+                                     .pst_id = {},
+                                     .text = text,
+                                     .since_ns = clock_.now().nanoseconds});
+  if (is_new) log_event(LogLevel::warn, "clock is not synchronised", {{"error", text}});
+}
+
+void LayerRunner::note_alarms_of(const Message& output) {
+  const auto said = options_.alarms_of_output ? options_.alarms_of_output(output) : std::nullopt;
+  if (!said) return;
+  for (const ServiceAlarm& stood : alarms_.of(said->kind, said->asset_id))
+    if (std::ranges::find(said->standing, stood.subject, &ServiceAlarm::subject) == said->standing.end())
+      alarms_.clear(stood.kind, stood.asset_id, stood.subject);
+  for (const ServiceAlarm& one : said->standing)
+    if (alarms_.raise(one))
+      log_event(LogLevel::warn, one.kind, {{"asset", one.asset_id}, {"subject", one.subject}, {"error", one.text}});
+}
+
+/// About once a second.
+void LayerRunner::look_for_trouble() {
+  if (options_.watches_clock) watch_clock();
+  if (options_.clock_is_synchronised) watch_synchronisation();
+  note_strangers(strangers_.look(steady_now()));
+  const auto refused = options_.refused_by_bus ? options_.refused_by_bus() : std::nullopt;
+  if (refused)
+    alarms_.raise({.kind = kRefusedRight,
+                   .asset_id = {},
+                   .subject = {},
+                   .pst_id = {},
+                   .text = *refused,
+                   .since_ns = clock_.now().nanoseconds},
+                  steady_now() + options_.strangers_stand);
+  for (const ServiceAlarm& over : alarms_.expire(steady_now()))
+    log_event(LogLevel::info, "alarm is over", {{"kind", over.kind}, {"subject", over.subject}});
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,30 @@
+#include "services/common/runtime/operator_acts.hpp"
+
+namespace sealwatch {
+
+std::optional<OperatorAct> act_of(const Message& message, UtcTime received, std::string outcome) {
+  OperatorAct act{.at = received,
+                  .kind = std::string(name_of(topic_of(message))),
+                  .asset_id = asset_of(message),
+                  .who = {},
+                  .subject = header_of(message).message_id,
+                  .text = {},
+                  .outcome = std::move(outcome)};
+  if (const auto* seen = std::get_if<Acknowledgement>(&message)) {
+    act.who = seen->acknowledged_by;
+    act.text = seen->remark;
+  } else if (const auto* event = std::get_if<MaintenanceEvent>(&message)) {
+    act.kind = event->kind;
+    act.who = event->reported_by;
+    act.text = event->remark;
+  } else if (const auto* acceptance = std::get_if<ModelAcceptance>(&message)) {
+    if (acceptance->revoked) act.kind = "model_revoked";
+    act.who = acceptance->accepted_by;
+    act.text = acceptance->discrepancy_id + (acceptance->remark.empty() ? "" : ": " + acceptance->remark);
+  } else {
+    return std::nullopt;
+  }
+  return act;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,73 @@
+#include "services/common/runtime/stranger_watch.hpp"
+
+#include <algorithm>
+
+namespace sealwatch {
+namespace {
+
+constexpr std::size_t kMostKnown = 1024;
+constexpr std::size_t kMostWaiting = 256;
+/// A service that has been silent for so long makes room for another name.
+constexpr std::chrono::minutes kForgotten{10};
+
+/// What people and their systems write; all else comes from services alone.
+bool is_from_outside(Topic topic) {
+  return topic == Topic::raw_samples || topic == Topic::acknowledgement || topic == Topic::maintenance_event ||
+         topic == Topic::model_acceptance;
+}
+
+StrangerWatch::Stranger nameless(const Message& message) {
+  return {"no name", std::string(name_of(topic_of(message))) + " about " + asset_of(message) +
+                         " came without a writer's name; only services write that topic"};
+}
+
+}  // namespace
+
+bool StrangerWatch::remember(const std::string& writer_id, Steady now) {
+  if (!known_.contains(writer_id) && known_.size() >= kMostKnown)
+    std::erase_if(known_, [&](const auto& entry) { return now - entry.second > kForgotten; });
+  if (!known_.contains(writer_id) && known_.size() >= kMostKnown) return false;
+  known_[writer_id] = now;
+  return true;
+}
+
+std::vector<StrangerWatch::Stranger> StrangerWatch::hear(const ServiceStatus& status, Steady now) {
+  if (options_.services.empty()) return {};
+  if (std::ranges::find(options_.services, status.service) == options_.services.end())
+    return {{"service " + status.service, "it sends heartbeats and is none of the services"}};
+  if (remember(status.writer_id, now)) waiting_.erase(status.writer_id);
+  return {};
+}
+
+std::vector<StrangerWatch::Stranger> StrangerWatch::hear(const Message& message, Steady now) {
+  if (const auto* raw = std::get_if<RawSamples>(&message)) {
+    const bool expected =
+        options_.senders.empty() || std::ranges::find(options_.senders, raw->source_id) != options_.senders.end();
+    if (expected) return {};
+    return {{"sender " + raw->source_id,
+             "it sends raw samples of " + raw->asset_id + " and is none of the configured senders"}};
+  }
+  if (options_.services.empty() || is_from_outside(topic_of(message))) return {};
+  const std::string& writer_id = header_of(message).writer_id;
+  if (writer_id.empty()) return {nameless(message)};
+  if (known_.contains(writer_id) || waiting_.contains(writer_id) || waiting_.size() >= kMostWaiting) return {};
+  waiting_[writer_id] = {now, asset_of(message), std::string(name_of(topic_of(message)))};
+  return {};
+}
+
+std::vector<StrangerWatch::Stranger> StrangerWatch::look(Steady now) {
+  std::vector<Stranger> strangers;
+  for (auto entry = waiting_.begin(); entry != waiting_.end();) {
+    const auto& [name, waiting] = *entry;
+    if (now - waiting.since < options_.patience) {
+      ++entry;
+      continue;
+    }
+    strangers.push_back({name, "it writes " + waiting.topic + " about " + waiting.asset_id +
+                                   ", and no service's heartbeat has said this name"});
+    entry = waiting_.erase(entry);
+  }
+  return strangers;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,15 @@
+// Table `acts` (audit_trail.hpp) in a database that is open, for those who write to it.
+#pragma once
+
+#include <soci/soci.h>
+
+#include "services/common/store/audit_trail.hpp"
+
+namespace sealwatch {
+
+/// Makes the table where there is none. SQLite then refuses to change or remove a row.
+void make_acts_table(soci::session& sql);
+/// Between begin and commit. Returns the entry. Throws what SOCI throws.
+AuditEntry append_act(soci::session& sql, const std::string& service, const OperatorAct& act);
+
+}  // namespace sealwatch

@@ -1,0 +1,54 @@
+// What health assessment remembers of one asset's tests: the grades that the trend looks back on, and the last report,
+// which a test that tells nothing carries over. Both without the tests that an operator retracted.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/health_assessment.hpp"
+#include "sealwatch/message/retraction.hpp"
+#include "services/health_assessment/trend.hpp"
+
+namespace sealwatch {
+
+/// Grade, likelihood and proposals of `last`, put into a report on a test that does not tell.
+void carry_over(const std::optional<HealthReport>& last, HealthReport& report);
+
+class PastHealth {
+ public:
+  explicit PastHealth(std::size_t trend_tests = 24) : trend_tests_(trend_tests) {}
+
+  /// The actuator is a new one.
+  void restart();
+  void add(const HealthReport& report);
+  /// From now on the tests that it means do not count, or count again.
+  void apply(const Retraction& retraction);
+  [[nodiscard]] bool counts(const std::string& pst_id) const;
+
+  /// The last report that counts since the last replacement.
+  [[nodiscard]] std::optional<HealthReport> last() const;
+  /// Of admissible tests that count, the newest trend_tests, oldest first.
+  [[nodiscard]] std::vector<GradeAt> grades() const;
+
+ private:
+  struct Test {
+    std::string pst_id;
+    std::optional<UtcTime> time;
+    bool graded = false;  ///< admissible, with a grade and a date
+    double grade = 0.0;
+    std::set<std::string> retractions = {};  ///< ids of those in force: while there is one, the test does not count
+  };
+  [[nodiscard]] bool counts(const Test& test) const { return test.retractions.empty(); }
+
+  std::size_t trend_tests_;
+  std::vector<Test> tests_;                       ///< since the last replacement
+  std::deque<HealthReport> reports_;              ///< the last of them in full
+  std::map<std::string, std::string> retracted_;  ///< single tests: PST id by the retraction's id
+};
+
+}  // namespace sealwatch

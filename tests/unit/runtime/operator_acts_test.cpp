@@ -1,0 +1,248 @@
+// What people tell a service stands in its audit trail: what was taken, once, and what was refused.
+#include "services/common/runtime/operator_acts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sealwatch/message/confirmation.hpp"
+#include "tests/unit/runtime/harness.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+/// Concludes from what people say that it was said.
+class ListeningLayer final : public Layer {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "advisory_generation"; }
+  [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
+  [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
+  void restore(const Message& /*own*/) override {}
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    Advisory advisory;
+    advisory.asset_id = asset_of(input);
+    advisory.header = header("advisory/" + header_of(input).message_id, "");
+    return {{advisory}, {header_of(input).message_id}};
+  }
+
+ private:
+  static constexpr std::array kInputs = {Topic::acknowledgement, Topic::maintenance_event, Topic::model_acceptance};
+  static constexpr std::array kOutputs = {Topic::advisory};
+};
+
+class ActsTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<Process> start(RunnerOptions options = fast_options()) {
+    auto process = std::make_unique<Process>(
+        network_, [] { return std::make_unique<ListeningLayer>(); }, place_.connection(), Fate(), std::move(options));
+    process->start();
+    return process;
+  }
+  void say(Process& process, const Message& message) {
+    EXPECT_TRUE(operator_.publish(message));
+    for (int k = 0; k < 5; ++k) process.step();
+  }
+  std::vector<AuditEntry> acts() { return read_audit_trail(place_.connection(), "advisory_generation").value(); }
+
+  Place place_;
+  std::shared_ptr<InMemoryNetwork> network_ = std::make_shared<InMemoryNetwork>();
+  InMemoryBus operator_{network_};
+};
+
+Acknowledgement seen(const std::string& who) {
+  Acknowledgement message;
+  message.asset_id = "A";
+  message.header = header("acknowledgement/x/1", "");
+  message.advisory_id = "x";
+  message.acknowledged_by = who;
+  message.remark = "booked";
+  return message;
+}
+
+MaintenanceEvent replaced(const std::string& who, UtcTime at) {
+  MaintenanceEvent event;
+  event.asset_id = "A";
+  event.kind = "seal_replaced";
+  event.reported_by = who;
+  event.header = header("maintenance_event/A/" + format_utc(at), "");
+  event.header.event_time_known = true;
+  event.header.event_time_ns = at.nanoseconds;
+  return event;
+}
+
+TEST_F(ActsTest, EachIsRecordedOnceWithWhoAndWhat) {
+  const auto process = start();
+  say(*process, seen("J. Silva"));
+  say(*process, seen("J. Silva"));  // the same message again
+  say(*process, replaced("M. Okoye", add_months(process->clock().now(), -1.0)));
+  ModelAcceptance acceptance;
+  acceptance.asset_id = "A";
+  acceptance.header = header("model_acceptance/A/1", "");
+  acceptance.discrepancy_id = "model_discrepancy/7";
+  acceptance.accepted_by = "R. Engineer";
+  acceptance.revoked = true;
+  say(*process, acceptance);
+  ASSERT_THAT(acts(), SizeIs(3));
+  EXPECT_EQ(acts()[0].act.who, "J. Silva");
+  EXPECT_EQ(acts()[0].act.kind, "acknowledgement");
+  EXPECT_EQ(acts()[0].act.subject, "acknowledgement/x/1");
+  EXPECT_EQ(acts()[0].act.text, "booked");
+  EXPECT_EQ(acts()[0].act.at, process->clock().now());
+  EXPECT_EQ(acts()[1].act.kind, "seal_replaced");
+  EXPECT_EQ(acts()[1].act.who, "M. Okoye");
+  EXPECT_EQ(acts()[2].act.kind, "model_revoked");
+  EXPECT_THAT(acts()[2].act.text, HasSubstr("model_discrepancy/7"));
+  EXPECT_FALSE(find_break("advisory_generation", acts()));
+}
+
+TEST_F(ActsTest, WhatIsRefusedIsRecordedWithTheReason) {
+  const auto process = start();
+  say(*process, replaced("M. Okoye", add_months(process->clock().now(), 1.0)));
+  ASSERT_THAT(acts(), SizeIs(1));
+  EXPECT_THAT(acts()[0].act.outcome, HasSubstr("lies in the future"));
+  EXPECT_TRUE(process->outputs().empty());
+}
+
+/// Where a second person's word is asked for.
+class SecondPerson : public ActsTest {
+ protected:
+  static RunnerOptions asking() {
+    RunnerOptions options = fast_options();
+    options.acts_confirmed_by_second = true;
+    return options;
+  }
+  MaintenanceEvent confirmation(const Message& act, const std::string& who) {
+    MaintenanceEvent event;
+    event.asset_id = "A";
+    event.kind = kActConfirmed;
+    event.reported_by = who;
+    const UtcTime when{1'900'000'000'000'000'000 + ++said_};
+    event.header = header(confirmation_id("A", header_of(act).message_id, when), "");
+    event.header.event_time_known = true;
+    event.header.event_time_ns = when.nanoseconds;
+    return event;
+  }
+  const MaintenanceEvent replaced_ = replaced("J. Silva", UtcTime{1'899'000'000'000'000'000});
+  int said_ = 0;
+};
+
+TEST_F(SecondPerson, NothingComesOfAnActUntilAnotherPersonConfirmsIt) {
+  const auto process = start(asking());
+  say(*process, replaced_);
+  EXPECT_TRUE(process->outputs().empty());
+  EXPECT_EQ(process->journal().open_inputs(), 0U) << "it waits for a person, not for the service";
+  say(*process, confirmation(replaced_, " j.silva"));
+  EXPECT_TRUE(process->outputs().empty()) << "the same person";
+  say(*process, confirmation(replaced_, "M. Okoye"));
+  ASSERT_THAT(process->outputs(), SizeIs(1));
+  EXPECT_EQ(header_of(process->outputs()[0]).message_id, "advisory/" + replaced_.header.message_id);
+  EXPECT_EQ(process->journal().open_inputs(), 0U);
+  say(*process, confirmation(replaced_, "R. Third"));
+  EXPECT_THAT(process->outputs(), SizeIs(1)) << "it counts once";
+  ASSERT_THAT(acts(), SizeIs(4));
+  EXPECT_THAT(acts()[0].act.outcome, HasSubstr("waits for a second person"));
+  EXPECT_THAT(acts()[1].act.outcome, HasSubstr("it takes another person"));
+  EXPECT_EQ(acts()[2].act.outcome, "taken");
+  EXPECT_THAT(acts()[3].act.outcome, HasSubstr("waits for a confirmation"));
+}
+
+TEST_F(SecondPerson, ARestartChangesNothing) {
+  {
+    const auto process = start(asking());
+    say(*process, replaced_);
+  }
+  {
+    const auto process = start(asking());
+    for (int k = 0; k < 5; ++k) process->step();
+    EXPECT_TRUE(process->outputs().empty());
+    say(*process, confirmation(replaced_, "M. Okoye"));
+    EXPECT_THAT(process->outputs(), SizeIs(1));
+  }
+  const auto process = start(asking());
+  for (int k = 0; k < 5; ++k) process->step();
+  EXPECT_THAT(process->outputs(), SizeIs(1));
+  EXPECT_EQ(process->journal().open_inputs(), 0U);
+}
+
+TEST_F(SecondPerson, WhatIsRejectedNeverCountsAlsoByWhoReportedIt) {
+  {
+    const auto process = start(asking());
+    say(*process, replaced_);
+    MaintenanceEvent rejection = confirmation(replaced_, "J. Silva");
+    rejection.kind = kActRejected;
+    say(*process, rejection);
+    say(*process, confirmation(replaced_, "M. Okoye"));
+    EXPECT_TRUE(process->outputs().empty());
+    EXPECT_EQ(acts()[1].act.kind, "act_rejected");
+  }
+  const auto process = start(asking());
+  say(*process, confirmation(replaced_, "M. Okoye"));
+  EXPECT_TRUE(process->outputs().empty());
+  EXPECT_TRUE(process->journal().awaiting().value().empty());
+}
+
+TEST_F(SecondPerson, WhatWaitsIsAnAlarmFromItsReceiptOn) {
+  InMemoryBus listener(network_);
+  ASSERT_TRUE(listener.subscribe_service_topics());
+  std::vector<ServiceAlarm> alarms;
+  auto process = start(asking());
+  const auto are = [&](std::size_t count) {
+    return step_until(
+        [&] {
+          for (const BusItem& item : listener.receive(std::chrono::milliseconds(5), 1000))
+            if (const auto* status = std::get_if<ServiceStatus>(&item); status && status->state == "running")
+              alarms = status->alarms;
+          return alarms.size() == count;
+        },
+        [&] { process->step(); });
+  };
+  const UtcTime received = process->clock().now();
+  say(*process, replaced_);
+  ASSERT_TRUE(are(1));
+  EXPECT_EQ(alarms[0].kind, "awaits_confirmation");
+  EXPECT_EQ(alarms[0].subject, replaced_.header.message_id);
+  EXPECT_EQ(alarms[0].since_ns, received.nanoseconds);
+  process.reset();
+  alarms.clear();
+  process = std::make_unique<Process>(
+      network_, [] { return std::make_unique<ListeningLayer>(); }, place_.connection(), Fate(), asking());
+  process->clock().set(add_months(received, 1.0));
+  process->start();
+  ASSERT_TRUE(are(1));
+  EXPECT_EQ(alarms[0].since_ns, received.nanoseconds) << "a restart does not begin it anew";
+  say(*process, confirmation(replaced_, "M. Okoye"));
+  EXPECT_TRUE(are(0));
+}
+
+TEST_F(SecondPerson, WhatTakesAnActBackAndWhatOnlyLooksCountsAtOnce) {
+  const auto process = start(asking());
+  say(*process, seen("J. Silva"));
+  EXPECT_THAT(process->outputs(), SizeIs(1));
+  MaintenanceEvent withdrawn = replaced("J. Silva", process->clock().now());
+  withdrawn.kind = kRetractionWithdrawn;
+  const std::string retraction = retraction_id("A", kTestRetracted, "A-1", process->clock().now());
+  withdrawn.header.message_id = retraction_id("A", kRetractionWithdrawn, retraction, process->clock().now());
+  say(*process, withdrawn);
+  EXPECT_THAT(process->outputs(), SizeIs(2));
+  ModelAcceptance acceptance;
+  acceptance.asset_id = "A";
+  acceptance.header = header("model_acceptance/A/1", "");
+  acceptance.accepted_by = "R. Engineer";
+  say(*process, acceptance);
+  EXPECT_THAT(process->outputs(), SizeIs(2)) << "an accepted model waits";
+  acceptance.revoked = true;
+  acceptance.header.message_id = "model_acceptance/A/2";
+  say(*process, acceptance);
+  EXPECT_THAT(process->outputs(), SizeIs(3));
+}
+
+TEST_F(SecondPerson, OneStepIsEnoughWhereNobodyAsksForTwo) {
+  const auto process = start();
+  say(*process, replaced_);
+  EXPECT_THAT(process->outputs(), SizeIs(1));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

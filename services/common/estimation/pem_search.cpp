@@ -171,6 +171,7 @@ class ActiveSet {
     return false;
   }
 
+  [[nodiscard]] bool holds(Eigen::Index k) const { return held_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] bool holds_any() const { return std::ranges::find(held_, true) != held_.end(); }
 
   /// Unknowns that left their range, or of these only what is known, are moved to its end and held there. True when
@@ -288,12 +289,14 @@ void silence_ceres() {
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
 }
 
-// Gauss-Newton's steps within the ranges. Near an optimum the residuals are nearly linear in the unknowns, and what is
-// nonlinear is which of them end at an end of their range: minimum_in_box() finds that without a simulation.
+// Gauss-Newton's steps. Near an optimum the residuals are nearly linear in the unknowns, and what is nonlinear is which
+// of the values that are known beforehand end at an end of their range: minimum_in_box() finds that without a simulation.
+// The others are free here (a strength that overshoots its end comes back), but for those that are held.
 class NearSearch {
  public:
-  NearSearch(const PemProblem& problem, PemPoint& point, const std::vector<RecordingCost*>& costs, SideBySide& all)
-      : problem_(problem), point_(point), costs_(costs), all_(all) {
+  NearSearch(const PemProblem& problem, PemPoint& point, const std::vector<RecordingCost*>& costs, SideBySide& all,
+             const ActiveSet& active)
+      : problem_(problem), point_(point), costs_(costs), all_(all), active_(active) {
     size_ = static_cast<Eigen::Index>(point.shared.size());
     for (const std::vector<double>& own : point.own) size_ += static_cast<Eigen::Index>(own.size());
   }
@@ -358,7 +361,8 @@ class NearSearch {
         here.gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
         here.gradient(k) -= unknown.prior_residual(at) / unknown.prior_std;
       }
-      if (!(unknown.max > unknown.min)) continue;
+      if (active_.holds(k)) here.low(k) = here.high(k) = 0.0;
+      if (active_.holds(k) || !unknown.is_known() || !(unknown.max > unknown.min)) continue;
       here.low(k) = unknown.to_unknown(unknown.min) - at;
       here.high(k) = unknown.to_unknown(unknown.max) - at;
     }
@@ -370,7 +374,7 @@ class NearSearch {
     for (std::size_t j = 0; j < point_.shared.size(); ++j) {
       const Unknown& unknown = problem_.shared[j];
       point_.shared[j] += by(k++);
-      if (unknown.max > unknown.min)  // rounding
+      if (unknown.is_known() && unknown.max > unknown.min)  // rounding
         point_.shared[j] =
             std::clamp(point_.shared[j], unknown.to_unknown(unknown.min), unknown.to_unknown(unknown.max));
     }
@@ -382,16 +386,18 @@ class NearSearch {
   PemPoint& point_;
   const std::vector<RecordingCost*>& costs_;
   SideBySide& all_;
+  const ActiveSet& active_;
   Eigen::Index size_ = 0;
   int iterations_ = 0;
   double cost_ = 0.0;
 };
 
 NearSearch::End NearSearch::run(const CostResolved& resolved, int maximum_iterations, const Deadline* deadline) {
+  const int end = iterations_ + maximum_iterations;
   cost_ = evaluate();
   if (!std::isfinite(cost_)) return End::too_far;
   double damping = kDamping;
-  while (iterations_ <= maximum_iterations) {
+  while (iterations_ <= end) {
     if (passed(deadline)) return End::out_of_time;
     if (resolved.is_hopeless(cost_, iterations_)) return End::hopeless;
     const Model here = model();
@@ -458,6 +464,27 @@ std::optional<Eigen::VectorXd> gradient_at(const PemPoint& point, const PemProbl
   return gradient;
 }
 
+// Near searches until nothing is outside its range, and nothing held would come back inside. Iterations are renewed where
+// something is held; once some were let go, the search ends.
+NearSearch::End search_near(NearSearch& near, ActiveSet& active, const CostResolved& resolved, int maximum_iterations,
+                            const PemProblem& problem, const PemPoint& point,
+                            const std::vector<RecordingCost*>& costs) {
+  using End = NearSearch::End;
+  const Deadline* deadline = problem.simulation_options.deadline;
+  End end = near.run(resolved, maximum_iterations, deadline);
+  bool let_go_of_some = false;
+  while (end == End::converged || end == End::out_of_iterations) {
+    if (!active.hold(false)) {
+      if (end == End::out_of_iterations || let_go_of_some || !active.holds_any()) break;
+      const auto gradient = gradient_at(point, problem, costs);
+      if (!gradient || !active.let_go(*gradient, resolved.at_cost(near.cost()))) break;
+      let_go_of_some = true;
+    }
+    end = near.run(resolved, maximum_iterations, deadline);
+  }
+  return end;
+}
+
 }  // namespace
 
 Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options,
@@ -493,13 +520,14 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   ActiveSet active(problem.shared, optimum.point.shared);
   RangeLeft range_left(active);
   solver.callbacks.push_back(&range_left);
-  NearSearch near(problem, optimum.point, costs, side_by_side);
-  const NearSearch::End end = near.run(resolved, options.maximum_iterations, problem.simulation_options.deadline);
+  NearSearch near(problem, optimum.point, costs, side_by_side, active);
+  const NearSearch::End end =
+      search_near(near, active, resolved, options.maximum_iterations, problem, optimum.point, costs);
   optimum.iterations = near.iterations();
   optimum.converged = end == NearSearch::End::converged;
   optimum.hopeless = end == NearSearch::End::hopeless;
   summary.final_cost = near.cost();
-  solver.max_num_iterations -= near.iterations() - 1;
+  solver.max_num_iterations -= std::min(near.iterations(), options.maximum_iterations) - 1;
   bool again = end == NearSearch::End::too_far && solver.max_num_iterations > 0;
   bool let_go_of_some = false;  // once some were, iterations are not renewed: the search ends
   while (again) {

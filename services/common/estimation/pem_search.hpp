@@ -1,4 +1,4 @@
-// The search for the minimum of a PemProblem with Ceres (bounded Levenberg-Marquardt).
+// The search for the minimum of a PemProblem.
 #pragma once
 
 #include <string>

@@ -1,0 +1,175 @@
+#include "services/common/estimation/box_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "services/common/estimation/minimum_in_box.hpp"
+
+namespace sealwatch {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+// Far from the optimum a shape that is hardly seen yet must not run to the end of its range: the first damping, and how
+// it falls and grows (K. Madsen, H. B. Nielsen, O. Tingleff, Methods for Non-Linear Least Squares Problems, 2004).
+constexpr double kDamping = 1e-4, kUndamped = 1e-8, kFalls = 1.0 / 3.0, kGrows = 4.0, kLargest = 1e4;
+constexpr double kKept = 1e-3;  // of what the linear model promises: a step that keeps less is taken back
+constexpr double kLinear = 0.25;
+
+bool has_range(const Unknown& unknown) { return unknown.max > unknown.min; }
+
+double inside(const Unknown& unknown, double value) {
+  return has_range(unknown) ? std::clamp(value, unknown.to_unknown(unknown.min), unknown.to_unknown(unknown.max))
+                            : value;
+}
+
+}  // namespace
+
+struct BoxSearch::LinearModel {
+  Eigen::MatrixXd gram;
+  Eigen::VectorXd gradient, low, high;
+
+  [[nodiscard]] Eigen::VectorXd step(double damping) const {
+    return minimum_in_box(gram, gradient, low, high, damping);
+  }
+  /// Fall of the cost.
+  [[nodiscard]] double promised(const Eigen::VectorXd& by) const { return -by.dot(gradient + 0.5 * gram * by); }
+};
+
+BoxSearch::BoxSearch(const PemProblem& problem, PemPoint& point, SideBySide& costs)
+    : problem_(problem), point_(point), costs_(costs), held_(point.shared.size(), false) {
+  size_ = static_cast<Eigen::Index>(point.shared.size());
+  for (const std::vector<double>& own : point.own) size_ += static_cast<Eigen::Index>(own.size());
+}
+
+double BoxSearch::evaluate() {
+  ++iterations_;
+  costs_.PrepareForEvaluation(true, true);
+  if (costs_.failed()) return kInfinite;
+  double sum = 0.0;
+  for (const RecordingCost* cost : costs_.costs()) sum += 0.5 * cost->compressed().rightCols(1).squaredNorm();
+  for (std::size_t k = 0; k < point_.shared.size(); ++k)
+    if (problem_.shared[k].is_known()) sum += 0.5 * std::pow(problem_.shared[k].prior_residual(point_.shared[k]), 2);
+  return sum;
+}
+
+BoxSearch::LinearModel BoxSearch::linear_model() const {
+  LinearModel here{.gram = Eigen::MatrixXd::Zero(size_, size_),
+                   .gradient = Eigen::VectorXd::Zero(size_),
+                   .low = Eigen::VectorXd::Constant(size_, -kInfinite),
+                   .high = Eigen::VectorXd::Constant(size_, kInfinite)};
+  const auto shared = static_cast<Eigen::Index>(point_.shared.size());
+  Eigen::Index first_own = shared;
+  for (const RecordingCost* cost : costs_.costs()) {
+    const Eigen::MatrixXd& all = cost->compressed();
+    const Eigen::Index n = all.cols() - 1;
+    std::vector<Eigen::Index> place(static_cast<std::size_t>(n));
+    for (Eigen::Index k = 0; k < n; ++k) place[static_cast<std::size_t>(k)] = k < shared ? k : first_own + k - shared;
+    here.gram(place, place) += all.leftCols(n).transpose() * all.leftCols(n);
+    here.gradient(place) += all.leftCols(n).transpose() * all.col(n);
+    first_own += n - shared;
+  }
+  for (Eigen::Index k = 0; k < shared; ++k) {
+    const Unknown& unknown = problem_.shared[static_cast<std::size_t>(k)];
+    const double at = point_.shared[static_cast<std::size_t>(k)];
+    if (held_[static_cast<std::size_t>(k)]) here.low(k) = here.high(k) = 0.0;
+    if (!unknown.is_known()) continue;
+    here.gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
+    here.gradient(k) -= unknown.prior_residual(at) / unknown.prior_std;
+    if (held_[static_cast<std::size_t>(k)] || !has_range(unknown)) continue;
+    here.low(k) = unknown.to_unknown(unknown.min) - at;
+    here.high(k) = unknown.to_unknown(unknown.max) - at;
+  }
+  return here;
+}
+
+void BoxSearch::move(const Eigen::VectorXd& by) {
+  Eigen::Index k = 0;
+  for (std::size_t j = 0; j < point_.shared.size(); ++j) {
+    point_.shared[j] += by(k++);
+    if (problem_.shared[j].is_known()) point_.shared[j] = inside(problem_.shared[j], point_.shared[j]);  // rounding
+  }
+  for (std::vector<double>& own : point_.own)
+    for (double& value : own) value += by(k++);
+}
+
+bool BoxSearch::hold_outside() {
+  bool any = false;
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    const double end = inside(problem_.shared[k], point_.shared[k]);
+    if (end == point_.shared[k]) continue;
+    point_.shared[k] = end;
+    held_[k] = any = true;
+  }
+  return any;
+}
+
+bool BoxSearch::let_go(double tolerance) {
+  const Eigen::VectorXd gradient = linear_model().gradient;
+  bool any = false;
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    const Unknown& unknown = problem_.shared[k];
+    const double slope = gradient(static_cast<Eigen::Index>(k)), lower = unknown.to_unknown(unknown.min);
+    const bool inwards = point_.shared[k] <= lower ? slope < 0.0 : slope > 0.0;
+    const double promised = std::abs(slope) * (unknown.to_unknown(unknown.max) - lower);
+    if (!held_[k] || !inwards || promised <= tolerance) continue;
+    held_[k] = false;
+    any = true;
+  }
+  return any;
+}
+
+SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
+  const int end = iterations_ + maximum_iterations;
+  cost_ = evaluate();
+  if (!std::isfinite(cost_)) return SearchEnd::stuck;
+  double damping = kDamping, grows = kGrows;
+  LinearModel here = linear_model();
+  while (iterations_ <= end) {
+    if (passed(rule.deadline)) return SearchEnd::out_of_time;
+    if (rule.is_hopeless(cost_, iterations_)) return SearchEnd::hopeless;
+    const double tolerance = rule.at_cost(cost_);
+    Eigen::VectorXd by = here.step(kUndamped);
+    if (!by.allFinite()) return SearchEnd::stuck;
+    if (here.promised(by) <= tolerance) return SearchEnd::converged;
+    const Eigen::VectorXd damped = here.step(damping);
+    const bool shortened = grows > kGrows, promises = here.promised(damped) > tolerance;
+    if (shortened && !promises) return SearchEnd::converged;  // the slope is known no better than that
+    if (promises) by = damped;
+    const PemPoint before = point_;
+    const double promised = here.promised(by);
+    move(by);
+    const double after = evaluate(), change = cost_ - after, kept = change / promised;
+    if (!(kept >= kKept)) {
+      point_ = before;
+      if (damping > kLargest) return SearchEnd::stuck;
+      damping *= grows;
+      grows *= 2.0;
+      continue;
+    }
+    damping = std::max(kUndamped, damping * std::max(kFalls, 1.0 - std::pow(2.0 * kept - 1.0, 3)));
+    grows = kGrows;
+    cost_ = after;
+    if (change <= tolerance && kept > kLinear) return SearchEnd::converged;
+    here = linear_model();
+  }
+  return SearchEnd::out_of_iterations;
+}
+
+SearchEnd BoxSearch::run(const StoppingRule& rule, int maximum_iterations) {
+  SearchEnd end = descend(rule, maximum_iterations);
+  bool let_go_of_some = false;  // once: what is held and let go in turns would never end
+  while (end == SearchEnd::converged || end == SearchEnd::out_of_iterations) {
+    if (!hold_outside()) {
+      if (end == SearchEnd::out_of_iterations || let_go_of_some) break;
+      costs_.PrepareForEvaluation(true, true);  // a step that was taken back may have been the last one
+      if (!let_go(rule.at_cost(cost_))) break;
+      let_go_of_some = true;
+    }
+    end = descend(rule, maximum_iterations);
+  }
+  hold_outside();
+  return end;
+}
+
+}  // namespace sealwatch

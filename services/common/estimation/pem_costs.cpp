@@ -1,0 +1,102 @@
+#include "services/common/estimation/pem_costs.hpp"
+
+#include <algorithm>
+#include <future>
+
+namespace sealwatch {
+namespace {
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
+
+RecordingCost::RecordingCost(const PemProblem& problem, std::size_t recording, const std::atomic<bool>& failed)
+    : problem_(problem), recording_(recording), point_failed_(failed) {
+  shared_.resize(problem.shared.size());
+  own_.resize(problem.recordings[recording].own.size());
+  set_num_residuals(static_cast<int>(shared_.size() + own_.size()) + 1);
+  if (!shared_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(shared_.size()));
+  if (!own_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(own_.size()));
+}
+
+bool RecordingCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  if (point_failed_ ||
+      !update(shared_.empty() ? nullptr : parameters[0], own_.empty() ? nullptr : parameters[shared_.empty() ? 0 : 1]))
+    return false;
+  const auto n = static_cast<Eigen::Index>(shared_.size() + own_.size());
+  Eigen::Map<Eigen::VectorXd>(residuals, n + 1) = compressed_.col(n);
+  if (jacobians == nullptr) return true;
+  const auto shared = static_cast<Eigen::Index>(shared_.size()), own = static_cast<Eigen::Index>(own_.size());
+  std::size_t block = 0;
+  if (shared > 0 && jacobians[block++] != nullptr)
+    Eigen::Map<Matrix>(jacobians[0], n + 1, shared) = compressed_.leftCols(shared);
+  if (own > 0 && jacobians[block] != nullptr)
+    Eigen::Map<Matrix>(jacobians[block], n + 1, own) = compressed_.middleCols(shared, own);
+  return true;
+}
+
+void RecordingCost::remember(const std::vector<double>& shared, const std::vector<double>& own,
+                             Linearisation linearisation) {
+  shared_ = shared;
+  own_ = own;
+  linearisation_ = std::move(linearisation);
+  compressed_ = compress(linearisation_);
+  known_ = true;
+}
+
+Result<Linearisation> RecordingCost::take_linearisation(const std::vector<double>& shared,
+                                                        const std::vector<double>& own) const {
+  if (!known_ || shared != shared_ || own != own_) return linearise(problem_, recording_, shared, own);
+  known_ = false;
+  return std::move(linearisation_);
+}
+
+bool RecordingCost::update(const double* shared, const double* own) const {
+  const bool same = std::equal(shared_.begin(), shared_.end(), shared) && std::equal(own_.begin(), own_.end(), own);
+  if (same && known_) return true;
+  std::copy_n(shared, shared_.size(), shared_.begin());
+  std::copy_n(own, own_.size(), own_.begin());
+  Result<Linearisation> result = linearise(problem_, recording_, shared_, own_);
+  known_ = result.has_value();
+  if (!known_) return false;
+  linearisation_ = std::move(*result);
+  compressed_ = compress(linearisation_);
+  return true;
+}
+
+PriorCost::PriorCost(const std::vector<Unknown>& unknowns) : unknowns_(unknowns) {
+  set_num_residuals(static_cast<int>(std::ranges::count_if(unknowns, &Unknown::is_known)));
+  mutable_parameter_block_sizes()->push_back(static_cast<int>(unknowns.size()));
+}
+
+bool PriorCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  Eigen::Index row = 0;
+  const auto columns = static_cast<Eigen::Index>(unknowns_.size());
+  double* jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+  if (jacobian != nullptr) Eigen::Map<Matrix>(jacobian, num_residuals(), columns).setZero();
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const Unknown& unknown = unknowns_[static_cast<std::size_t>(k)];
+    if (!unknown.is_known()) continue;
+    residuals[row] = unknown.prior_residual(parameters[0][k]);
+    if (jacobian != nullptr) jacobian[row * columns + k] = -1.0 / unknown.prior_std;
+    ++row;
+  }
+  return true;
+}
+
+void SideBySide::PrepareForEvaluation(bool /*evaluate_jacobians*/, bool new_evaluation_point) {
+  if (!new_evaluation_point) return;
+  failed_ = false;
+  std::vector<std::future<void>> running;
+  for (std::size_t first = 1; first < std::min(threads_, costs_.size()); ++first)
+    running.push_back(std::async(std::launch::async, [this, first] { update_from(first); }));
+  update_from(0);
+  for (std::future<void>& one : running) one.get();
+}
+
+void SideBySide::update_from(std::size_t first) {
+  for (std::size_t k = first; k < costs_.size() && !failed_; k += threads_)
+    if (!costs_[k]->update(point_.shared.data(), point_.own[k].data())) failed_ = true;
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,77 @@
+// The costs whose sum a search makes least: one of each recording, and one of what is known beforehand.
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/evaluation_callback.h>
+
+#include <atomic>
+#include <vector>
+
+#include "services/common/estimation/pem_search.hpp"
+
+namespace sealwatch {
+
+/// One recording as one residual block of as many rows as it has unknowns, plus one (compress() in pem_problem.hpp):
+/// the same cost, gradient and Gauss-Newton matrix as with all samples.
+class RecordingCost final : public ceres::CostFunction {
+ public:
+  /// `failed`: some recording cannot be simulated at the point that is asked.
+  RecordingCost(const PemProblem& problem, std::size_t recording, const std::atomic<bool>& failed);
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+  /// d residual / d (shared, own), residual: as many rows as columns. Of the point that was evaluated last.
+  [[nodiscard]] const Eigen::MatrixXd& compressed() const { return compressed_; }
+
+  void remember(const std::vector<double>& shared, const std::vector<double>& own, Linearisation linearisation);
+
+  /// At the given point, which usually is the one that was evaluated last.
+  [[nodiscard]] Result<Linearisation> take_linearisation(const std::vector<double>& shared,
+                                                         const std::vector<double>& own) const;
+
+  /// Ceres asks several times for the same point, first for the cost, then for its derivatives: both cost one
+  /// simulation. False where nothing can be simulated.
+  bool update(const double* shared, const double* own) const;
+
+ private:
+  const PemProblem& problem_;
+  std::size_t recording_;
+  const std::atomic<bool>& point_failed_;
+  mutable std::vector<double> shared_, own_;
+  mutable Linearisation linearisation_;
+  mutable Eigen::MatrixXd compressed_;
+  mutable bool known_ = false;  ///< at that point
+};
+
+/// What is known of the shared unknowns beforehand, one residual each.
+class PriorCost final : public ceres::CostFunction {
+ public:
+  explicit PriorCost(const std::vector<Unknown>& unknowns);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  const std::vector<Unknown>& unknowns_;
+};
+
+/// Recordings are simulated side by side before any of them is asked for. Ceres itself runs in one thread: in several
+/// it adds them up in the order in which they come, and the digits would depend on the number of threads. Where one
+/// cannot be simulated the point is given up: failing costs the integrator most.
+class SideBySide final : public ceres::EvaluationCallback {
+ public:
+  SideBySide(const PemPoint& point, int threads) : point_(point), threads_(static_cast<std::size_t>(threads)) {}
+  void add(const RecordingCost* cost) { costs_.push_back(cost); }
+  [[nodiscard]] const std::vector<const RecordingCost*>& costs() const { return costs_; }
+  [[nodiscard]] const std::atomic<bool>& failed() const { return failed_; }
+
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+
+ private:
+  void update_from(std::size_t first);
+
+  const PemPoint& point_;
+  std::size_t threads_;
+  std::vector<const RecordingCost*> costs_;
+  std::atomic<bool> failed_ = false;
+};
+
+}  // namespace sealwatch

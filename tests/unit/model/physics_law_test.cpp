@@ -91,6 +91,20 @@ TEST(PhysicsLaws, DerivativesAgreeWithDifferencesWhereASignalIsZero) {
       for (int repeat = 0; repeat < 3; ++repeat) expect_slopes(*law, random_point(*law, random, zero));
 }
 
+// A plant that knows of no pressure gives laws a pressure of zero: one that grows with it must not stand in for another.
+TEST(PhysicsLaws, OfFrictionUnderPressureAreAbsentWithoutIt) {
+  std::mt19937 random(11);
+  int asked = 0;
+  for (const Law* law : evaluated_laws()) {
+    if (law->id != "pressure_dependent_friction" || law->closed_form) continue;
+    Point point = random_point(*law, random);
+    point.signal[2] = point.signal[3] = 0.0;
+    EXPECT_EQ(output_at(*law, point).contribution.value, 0.0) << name_of(*law);
+    ++asked;
+  }
+  EXPECT_GE(asked, 2);
+}
+
 TEST(PhysicsLaws, AreAbsentAtStrengthZeroAndProportionalToTheirStrengths) {
   std::mt19937 random(7);
   for (const Law* law : evaluated_laws()) {

@@ -18,27 +18,33 @@ std::size_t Worth::least() const { return static_cast<std::size_t>(std::ranges::
 CarryOver::CarryOver(const HeldOut& held_out, Trial nothing, Without without)
     : held_out_(held_out), nothing_(std::move(nothing)), without_(std::move(without)) {}
 
-Worth CarryOver::of(const Trial& trial) const {
-  if (before_.empty()) before_ = held_out_.predictions(nothing_);
-  const Predictions after = held_out_.predictions(trial);
+const Predictions& CarryOver::predictions(const Trial& trial) const {
+  const auto known = predicted_.find(trial.model);
+  return known != predicted_.end() ? known->second
+                                   : predicted_.emplace(trial.model, held_out_.predictions(trial)).first->second;
+}
+
+Worth CarryOver::of_whole(const Trial& trial) const {
   Worth worth;
-  const auto whole = held_out_.gains(before_, after, *trial.model);
+  const auto whole = held_out_.gains(predictions(nothing_), predictions(trial), *trial.model);
   if (!whole || whole->gain.empty()) return worth;
+  worth.compared = true;
   worth.whole = gain_interval(*whole, dispersion(*trial.model), held_out_.options.seed);
   worth.not_compared = whole->not_compared;
-  for (std::size_t k = 0; k < trial.effects.size(); ++k) {
-    const auto own = held_out_.gains(held_out_.predictions(without_(trial, k)), after, *trial.model);
+  return worth;
+}
+
+Worth CarryOver::of(const Trial& trial) const {
+  Worth worth = of_whole(trial);
+  for (std::size_t k = 0; k < trial.effects.size() && worth.compared; ++k) {
+    const auto own = held_out_.gains(predictions(without_(trial, k)), predictions(trial), *trial.model);
     worth.of_law.push_back(own ? std::accumulate(own->gain.begin(), own->gain.end(), 0.0) : 0.0);
   }
   return worth;
 }
 
 bool CarryOver::predicts_as_well(const Trial& trial, const Trial& best) const {
-  if (predicted_ != best.model) {
-    of_predicted_ = held_out_.predictions(best);
-    predicted_ = best.model;
-  }
-  const auto gains = held_out_.gains(held_out_.predictions(trial), of_predicted_, *best.model);
+  const auto gains = held_out_.gains(predictions(trial), predictions(best), *best.model);
   return gains && !gains->gain.empty() && gains->not_compared.empty() &&
          gain_interval(*gains, dispersion(*best.model), held_out_.options.seed).low <= 0.0;
 }

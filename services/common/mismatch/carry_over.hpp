@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,8 +19,9 @@ namespace sealwatch::mismatch {
 
 /// Of an explanation, to recordings that took no part: gains of likelihood.
 struct Worth {
+  bool compared = false;       ///< there are recordings that took no part, and both models can be simulated on some
   GainInterval whole;          ///< against the model without laws
-  std::vector<double> of_law;  ///< against the explanation without this law; empty where nothing can be compared
+  std::vector<double> of_law;  ///< against the explanation without this law; empty where nothing was compared
   std::vector<std::string> not_compared;
 
   [[nodiscard]] bool carries_over() const;
@@ -34,18 +36,20 @@ class CarryOver {
 
   CarryOver(const HeldOut& held_out, Trial nothing, Without without);
 
+  /// Its worth as a whole: nothing of its laws yet.
+  [[nodiscard]] Worth of_whole(const Trial& trial) const;
   [[nodiscard]] Worth of(const Trial& trial) const;
-  /// Whether `trial` predicts as well as `best`, which is predicted once; not where it cannot be simulated, or the time
-  /// for it is up.
+  /// Whether `trial` predicts as well as `best`; not where it cannot be simulated, or the time for it is up.
   [[nodiscard]] bool predicts_as_well(const Trial& trial, const Trial& best) const;
 
  private:
+  /// Made once: a prediction refits the model.
+  [[nodiscard]] const Predictions& predictions(const Trial& trial) const;
+
   HeldOut held_out_;
   Trial nothing_;
   Without without_;
-  mutable Predictions before_;                            ///< of `nothing`, once asked for
-  mutable std::shared_ptr<const FittedModel> predicted_;  ///< the best that was asked for last
-  mutable Predictions of_predicted_;
+  mutable std::map<std::shared_ptr<const FittedModel>, Predictions> predicted_;
 };
 
 /// Of the explanations that were tried, different ones of at most so many laws, the likeliest first.

@@ -163,7 +163,9 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
     const bool cannot_tell = behind < kCannotTell || contains;
     const std::pair key{std::string(other.law->id), other.element};
     if (key.first == effect.what.id && key.second == effect.what.element) {
-      if (other.law != chosen.law && cannot_tell) effect.indistinguishable.push_back(law_at(other));
+      const auto same_form = [&](const LawAt& law) { return law.id == key.first && law.form == other.law->form; };
+      if (other.law != chosen.law && cannot_tell && std::ranges::none_of(effect.indistinguishable, same_form))
+        effect.indistinguishable.push_back(law_at(other));
       continue;
     }
     weight[key] += std::exp(-0.5 * std::clamp(behind, 0.0, 1400.0));

@@ -386,23 +386,34 @@ class Analysis {
     return {held_out, {{}, baseline_}, [this](const Trial& trial, std::size_t law) { return without(trial, law); }};
   }
 
-  // Where none was kept aside: of the likeliest explanations the one that predicts each fitted recording best from the
-  // others. The first of them is asked whatever time it takes, so that a search that was cut can be proven.
+  // Of the likeliest explanations the one that predicts the fitted recordings best, each from the others: those that were
+  // kept aside take no part in that. The first is asked whatever time it takes, so that a search that was cut can be
+  // proven.
   void choose_what_carries_over() {
-    if (!holdout_.samples.empty() || fit_.samples.size() < 2) return;
+    if (fit_.samples.size() < 2) return;
     allow_what_is_needed();
-    const CarryOver in_turn = carry_over(held_out());
-    double best = 0.0;
-    for (Trial& trial : likeliest(naming_, kMostToCarryOver)) {
-      const Worth worth = in_turn.of(trial);
-      if (worth.carries_over() && worth.whole.gain > best) {
-        best = worth.whole.gain;
-        best_ = std::move(trial);
-        proven_ = true;
-        note_not_compared({.gain = {}, .not_compared = worth.not_compared});
-      }
+    const Data none;
+    const CarryOver from_others = carry_over({fit_, none, window_s_, options_});
+    std::vector<std::pair<double, Trial>> order;  // by the fall of the misfit that they predict
+    for (const Trial& trial : likeliest(naming_, kMostToCarryOver)) {
+      const Worth worth = from_others.of_whole(trial);
+      if (worth.whole.low > 0.0) order.emplace_back(worth.whole.gain * dispersion(*trial.model), trial);
       allow(1.0);
-      if (!in_time("which other explanation carries over better")) return;
+      if (!in_time("which other explanation carries over better")) break;
+    }
+    std::ranges::stable_sort(order, std::greater<>(), &std::pair<double, Trial>::first);
+    allow_what_is_needed();
+    for (auto& [gain, trial] : order) {
+      const Worth worth = from_others.of(trial);
+      allow(1.0);
+      if (!worth.carries_over()) {
+        if (!in_time("whether each law of another explanation carries over")) return;
+        continue;
+      }
+      best_ = std::move(trial);
+      proven_ = holdout_.samples.empty();
+      if (proven_) note_not_compared({.gain = {}, .not_compared = worth.not_compared});
+      return;
     }
   }
 

@@ -9,22 +9,42 @@
 namespace sealwatch::mismatch {
 namespace {
 
-Result<FittedModel> predict(const HeldOut& of, const Trial& trial, const Data& data, std::size_t recording) {
-  AssetConfig asset = trial.model->asset;
+constexpr std::size_t kMostInTurn = 4;  // recordings that are left out one by one; of more, a third at a time
+constexpr std::size_t kThirds = 3;
+
+std::size_t part_of(std::size_t recording, std::size_t count) {
+  return count <= kMostInTurn ? recording : recording * kThirds / count;
+}
+
+// By a model that was fitted to other recordings.
+Result<FittedModel> predict(const HeldOut& of, const FittedModel& model, const Data& fitted, const Data& data,
+                            std::size_t recording) {
+  AssetConfig asset = model.asset;
   const std::string& own = of.fit.own_parameter;
-  if (of.holdout.samples.empty()) {
-    const Data rest = without(data, recording);
-    Result<FittedModel> model = fit_model(asset, in_windows(rest, of.window_s), nullptr, of.options.threads);
-    if (!model) return fail(model.error());
-    asset = model->asset;
-    if (!own.empty()) asset.parameters.at(own).value = predicted_leakage(*model, rest, data.start_time[recording]);
-  } else if (!own.empty()) {
-    asset.parameters.at(own).value = predicted_leakage(*trial.model, of.fit, data.start_time[recording]);
-  }
+  if (!own.empty()) asset.parameters.at(own).value = predicted_leakage(model, fitted, data.start_time[recording]);
   Data one = in_windows(only(data, recording), of.window_s);
   one.own_parameter.clear();  // predicted
   one.known.clear();          // as fitted
   return fit_model(with_fixed_parameters(asset), one, nullptr, 1);
+}
+
+// Each part of the fitted recordings by the model that is fitted to the others.
+Predictions predict_in_turn(const HeldOut& of, const Trial& trial) {
+  Predictions models;
+  const std::size_t count = of.fit.samples.size();
+  for (std::size_t first = 0; first < count;) {
+    std::size_t end = first;
+    while (end < count && part_of(end, count) == part_of(first, count)) ++end;
+    Data rest = of.fit;
+    for (std::size_t k = end; k-- > first;) rest = without(rest, k);
+    Result<FittedModel> refitted =
+        fit_model(trial.model->asset, in_windows(rest, of.window_s), nullptr, of.options.threads);
+    for (std::size_t k = first; k < end; ++k)
+      models.push_back(refitted ? predict(of, *refitted, rest, of.fit, k)
+                                : Result<FittedModel>(fail(refitted.error())));
+    first = end;
+  }
+  return models;
 }
 
 Result<RecordingComparison> compare_whole(const FittedModel& before, const FittedModel& after, const Data& data,
@@ -56,7 +76,9 @@ void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const F
 Predictions HeldOut::predictions(const Trial& trial) const {
   Predictions models;
   if (in_turn() && fit.samples.size() < 2) return models;
-  for (std::size_t k = 0; k < predicted().samples.size(); ++k) models.push_back(predict(*this, trial, predicted(), k));
+  if (in_turn()) return predict_in_turn(*this, trial);
+  for (std::size_t k = 0; k < holdout.samples.size(); ++k)
+    models.push_back(predict(*this, *trial.model, fit, holdout, k));
   return models;
 }
 

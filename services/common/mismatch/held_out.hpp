@@ -1,6 +1,7 @@
 // Two models on recordings that took no part in their fit: each keeps its shared parameters, only a recording's own
-// load and initial state are estimated. Where no recording was kept aside, one fit recording in turn is left out and
-// the model is fitted to the others anew.
+// load and initial state are estimated. Where no recording was kept aside, the fitted ones are left out in turn, one of
+// up to four or a third of more (in their order: what lies together is alike), and the model is fitted to the others
+// anew.
 #pragma once
 
 #include <vector>

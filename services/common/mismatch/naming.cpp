@@ -142,21 +142,12 @@ bool one_law_does(const std::vector<Trial>& trials, Naming& naming, const Data& 
   return left && !differs(left->p_value, *best->model, options.false_alarm_rate);
 }
 
-// Beside other laws in a gross misfit a delay or gain of the input takes on what these laws' forms and the bent values
-// of the plant lack: there an error of the recording is asked alone.
-Screening without_recording(Screening asked) {
-  for (Variant& variant : asked.variants)
-    if (is_of_recording(asked.candidates[variant.candidate].law->kind)) variant.gain = 0.0;
-  return asked;
-}
-
 // Refits with another law: first the single laws that promise most, where none of them does the others, in a gross
 // misfit from second starts too; where none does, pairs.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
-  const Screening beside = gross ? without_recording(naming.last) : naming.last;
-  const Screening& asked = level == 0 ? naming.last : beside;
+  const Screening& asked = naming.last;
   std::vector<std::vector<LawStart>> singles;
   for (LawStart& start : ranked_laws(asked, level == 0 || gross ? kSingles : kSingles / 2 + 1))
     singles.push_back({std::move(start)});
@@ -171,7 +162,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   if (first < std::ssize(singles) && !one_law_does(trials, naming, data, options))
     refit_also({singles.begin() + first, singles.end()});
   if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
-    refit_also(ranked_pairs(beside, naming.best.model->misfit));
+    refit_also(ranked_pairs(asked, naming.best.model->misfit));
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return trials;
 }

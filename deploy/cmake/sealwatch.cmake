@@ -47,6 +47,9 @@ function(sealwatch_test name)
   target_compile_definitions(${name} PRIVATE
     SEALWATCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SEALWATCH_BINARY_DIR="${PROJECT_BINARY_DIR}"
     SEALWATCH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
+  # What takes time when a test runs is the libraries; optimising the test's own lines takes a third of compiling it.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  sealwatch_unity(${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()

@@ -19,7 +19,7 @@ void tell(const char* way, std::string_view topic, const Status& done) {
 template <std::size_t... Index>
 void try_messages(Bus& bus, std::index_sequence<Index...> /*topics*/) {
   (tell("write", name_of(static_cast<Topic>(Index)),
-        bus.publish(Message(std::variant_alternative_t<Index, Message>{}))),
+        bus.publish(Message(std::variant_alternative_t<Index, MessageAlternatives>{}))),
    ...);
 }
 
@@ -32,10 +32,10 @@ int main(int argc, char** argv) {
   const auto session = cli::open_session(argv[1]);
   if (!session) return 2;
   Bus& bus = *session->bus;
-  try_messages(bus, std::make_index_sequence<std::variant_size_v<Message>>{});
+  try_messages(bus, std::make_index_sequence<std::variant_size_v<MessageAlternatives>>{});
   tell("write", "service_status", bus.publish(ServiceStatus{}));
   tell("write", "resend_request", bus.publish(ResendRequest{}));
-  for (std::size_t index = 0; index < std::variant_size_v<Message>; ++index) {
+  for (std::size_t index = 0; index < std::variant_size_v<MessageAlternatives>; ++index) {
     const auto topic = static_cast<Topic>(index);
     tell("read", name_of(topic), bus.subscribe(std::span(&topic, 1)));
   }

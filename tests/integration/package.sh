@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # package.sh SOURCE_DIR BUILD_DIR: makes the Debian packages, looks into them, unpacks sealwatch and uses it as a normal user
-# would. Nothing is installed; everything happens in a temporary directory.
+# would. Nothing is installed on this machine; everything happens in a temporary directory.
 set -euo pipefail
 source_dir=$1 build_dir=$2
 services=(data-acquisition data-manipulation state-detection health-assessment prognostic-assessment advisory-generation)
@@ -184,6 +184,36 @@ check_services() {
   [ ! -e "$scratch/home/state/advisory_generation.db" ] || fail "a disabled service was started"
 }
 
+# dpkg installs the package into a root of its own, and the demo runs there as a user without rights: of this machine it
+# reaches the libraries of Debian's packages and nothing else, the checkout and its configuration least of all.
+check_demo() {
+  local clean=$scratch/clean libraries lent folder
+  [ "$(id -u)" -eq 0 ] && unshare --mount true 2>/dev/null ||
+    { echo "not checked, as this user may not change root: the demo from the installed package"; return 0; }
+  libraries=usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)
+  lent=("$libraries" usr/share/xml/udunits etc/alternatives proc dev)
+  mkdir -p "$clean"/{var/lib/dpkg/{info,updates},tmp,home} "${lent[@]/#/$clean/}"
+  for folder in lib lib64; do ln -s "usr/$folder" "$clean/$folder"; done
+  cp -r --parents /usr/lib64 "$clean"
+  touch "$clean"/var/lib/dpkg/{status,available}
+  chown 65534:65534 "$clean"/{home,tmp}
+  dpkg --root="$clean" --force-script-chrootless --force-depends -i "$scratch"/packages/sealwatch_*.deb \
+    >"$scratch/installed" 2>&1 || fail "dpkg cannot install the package" "$scratch/installed"
+  unshare --mount bash -euc '
+    cd "$1"
+    for folder in "${@:2}"; do mount --rbind "/$folder" "$folder"; done
+    in_root() {
+      env -i HOME=/home CYCLONEDDS_URI="$CYCLONEDDS_URI" \
+        "$(command -v chroot)" --userspec=65534:65534 . /usr/bin/sealwatch "$@"
+    }
+    in_root simulate --asset /etc/sealwatch/assets/xt03-mv2.yaml --ageing --months 24 --rate 50 --out /home/recordings
+    tests=(home/recordings/*.csv)
+    in_root replay --config /etc/sealwatch --with-services --state /home/state "${tests[@]/#//}"
+  ' bash "$clean" "${lent[@]}" >"$scratch/demo" 2>&1 || fail "the demo from the installed package fails" "$scratch/demo"
+  grep -q '^  remaining life .*method' "$scratch/demo" && grep -q '^  advisory  *[A-Z]' "$scratch/demo" ||
+    fail "the demo from the installed package ends without forecast and advisory" "$scratch/demo"
+}
+
 # Errors only: what lintian merely warns of are this package's own ways (one man page for all services, no tests in it).
 check_lint() {
   have lintian "what Debian's policy asks for" || return 0
@@ -229,5 +259,6 @@ check_lint
 check_completion
 check_programs
 check_services
+check_demo
 check_other_prefix
 echo "the package holds what it should, and what it installs works"

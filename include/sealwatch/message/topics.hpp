@@ -1,6 +1,7 @@
 // All topics in one list: DDS type, journal and JSON are generated from it.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -14,10 +15,22 @@
 
 namespace sealwatch {
 
-/// A message of one of the topics that carry assets' data (the service topics are the runtime's own affair).
-using Message = std::variant<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,
-                             LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement, MaintenanceEvent,
-                             ModelDiscrepancy, ModelAcceptance>;
+using MessageAlternatives = std::variant<RawSamples, SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport,
+                                         LeakageEstimate, RemainingLife, PstRequest, Advisory, Acknowledgement,
+                                         MaintenanceEvent, ModelDiscrepancy, ModelAcceptance>;
+
+/// A message of one of the topics that carry assets' data (the service topics are the runtime's own affair). A variant
+/// with a name of its own, so that copying, moving and destroying fourteen topics is compiled once and not in each of
+/// the 150 files that hold one: two seconds a file.
+struct Message : MessageAlternatives {
+  using MessageAlternatives::MessageAlternatives;
+  Message();
+  Message(const Message& other);
+  Message(Message&& other) noexcept;
+  Message& operator=(const Message& other);
+  Message& operator=(Message&& other) noexcept;
+  ~Message();
+};
 
 /// Same order as Message's alternatives: static_cast<Topic>(message.index()). A topic's DDS name is "sealwatch/" +
 /// name.
@@ -26,14 +39,8 @@ SEALWATCH_ENUM(Topic, raw_samples, sample_block, test_window, test_features, sta
                model_discrepancy, model_acceptance)
 
 [[nodiscard]] inline Topic topic_of(const Message& message) { return static_cast<Topic>(message.index()); }
-[[nodiscard]] inline const Header& header_of(const Message& message) {
-  return std::visit([](const auto& m) -> const Header& { return m.header; }, message);
-}
-[[nodiscard]] inline Header& header_of(Message& message) {
-  return std::visit([](auto& m) -> Header& { return m.header; }, message);
-}
-[[nodiscard]] inline const std::string& asset_of(const Message& message) {
-  return std::visit([](const auto& m) -> const std::string& { return m.asset_id; }, message);
-}
+[[nodiscard]] const Header& header_of(const Message& message);
+[[nodiscard]] Header& header_of(Message& message);
+[[nodiscard]] const std::string& asset_of(const Message& message);
 
 }  // namespace sealwatch

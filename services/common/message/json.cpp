@@ -223,7 +223,7 @@ void decode(const Json& json, const std::string& place, T& value) {
 
 template <std::size_t index = 0>
 Message blank(Topic topic) {
-  if constexpr (index + 1 < std::variant_size_v<Message>) {
+  if constexpr (index + 1 < std::variant_size_v<MessageAlternatives>) {
     if (static_cast<std::size_t>(topic) != index) return blank<index + 1>(topic);
   }
   return Message(std::in_place_index<index>);

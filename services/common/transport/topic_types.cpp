@@ -89,7 +89,7 @@ TopicType describe(std::string_view name) {
 template <std::size_t... Index>
 std::vector<TopicType> describe_all(std::index_sequence<Index...> /*topics*/) {
   std::vector<TopicType> types = {
-      describe<std::variant_alternative_t<Index, Message>>(EnumNames<Topic>::kNames[Index])...};
+      describe<std::variant_alternative_t<Index, MessageAlternatives>>(EnumNames<Topic>::kNames[Index])...};
   types.push_back(describe<ServiceStatus>("service_status"));
   types.back().qos.keep_all = false;  // a state: only the last heartbeat counts
   types.push_back(describe<ResendRequest>("resend_request"));
@@ -97,12 +97,13 @@ std::vector<TopicType> describe_all(std::index_sequence<Index...> /*topics*/) {
   return types;
 }
 
-static_assert(std::variant_size_v<Message> == EnumNames<Topic>::kNames.size());
+static_assert(std::variant_size_v<MessageAlternatives> == EnumNames<Topic>::kNames.size());
 
 }  // namespace
 
 const std::vector<TopicType>& topic_types() {
-  static const std::vector<TopicType> types = describe_all(std::make_index_sequence<std::variant_size_v<Message>>{});
+  static const std::vector<TopicType> types =
+      describe_all(std::make_index_sequence<std::variant_size_v<MessageAlternatives>>{});
   return types;
 }
 

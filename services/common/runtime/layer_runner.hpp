@@ -105,7 +105,8 @@ class LayerRunner {
   void note_reused_number(const Message& message);
   void start_anew(const Key& stream);
   /// Runs `work` inside a transaction and publishes what it concluded.
-  [[nodiscard]] Status in_batch(const std::function<Status()>& work);
+  [[nodiscard]] Status in_batch(const std::function<Status()>& work, Survives survives = Survives::kills);
+  [[nodiscard]] Survives batch_survives() const;
   [[nodiscard]] Status take_ready();
   [[nodiscard]] Status take(Message message);
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
@@ -179,6 +180,7 @@ class LayerRunner {
   LatestOutputs latest_;
   ResendQueue resends_;
   Admission admission_;
+  bool took_local_ = false;                ///< of the running batch: inputs that came from no bus
   bool drained_ = false;                   ///< the bus had nothing more at the last look
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
   std::string last_error_;                 ///< with its time

@@ -84,9 +84,10 @@ void Journal::Database::open(const std::string& connection) {
     // which goes to the log whole. With 4096 bytes the disk has much more to write, and holds the writer up.
     sql << "PRAGMA page_size = 1024";
     sql << "PRAGMA journal_mode = WAL", soci::into(answer);
-    sql << "PRAGMA synchronous = NORMAL";
+    sql << "PRAGMA synchronous = FULL";  // the schema, and the entry of the new log in its directory
     sql << "PRAGMA wal_autocheckpoint = 0", soci::into(answer);  // the checkpointer's work
     checkpointer.emplace(connection);
+    file = file_of(connection);
   }
   if (!has_table("meta")) create_schema();
   check_schema();
@@ -99,10 +100,14 @@ void Journal::Database::open(const std::string& connection) {
 /// The last few pages of a long log go into the file while nothing is written: then the next batch starts the log from
 /// its beginning. SQLite is told at once that the batch will write: one that began by reading is refused, not made to
 /// wait, if the log was started anew in between.
-void Journal::Database::begin() {
+void Journal::Database::begin(Survives survives) {
   if (!checkpointer) {
-    sql.begin();
+    sql.begin();  // a server brings every batch to its disk
     return;
+  }
+  if (survives != synchronous && has_synced) {
+    sql << (survives == Survives::power_cuts ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
+    synchronous = survives;
   }
   int ignored = 0;
   std::array<int, 2> pages{};

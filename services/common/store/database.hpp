@@ -28,11 +28,14 @@ struct Journal::Database {
   std::uint64_t open_inputs = 0;
   std::size_t batch_rows = 0;                   ///< changed since the batch began
   std::optional<Checkpointer> checkpointer;     ///< SQLite's
+  Survives synchronous = Survives::power_cuts;  ///< as SQLite is set now
+  bool has_synced = false;  ///< the first batch brings the log's entry in its directory to the disk as well
+  std::string file;         ///< SQLite's
   std::optional<JournalStatements> statements;  ///< after `sql`, as they must end before it
 
   /// Connects, sets SQLite up, creates or checks the schema. Throws soci::soci_error, std::runtime_error or Error.
   void open(const std::string& connection);
-  void begin();
+  void begin(Survives survives);
   /// Reads the counters that are kept in memory.
   void load_counters();
 

@@ -2,6 +2,7 @@
 
 #include "services/common/message/json.hpp"
 #include "services/common/store/database.hpp"
+#include "services/common/store/log_sync.hpp"
 
 namespace sealwatch {
 namespace {
@@ -79,6 +80,11 @@ const std::string& Journal::writer_id() const { return database_->writer_id; }
 const std::map<Topic, std::uint64_t>& Journal::written() const { return database_->written; }
 std::uint64_t Journal::open_inputs() const { return database_->open_inputs; }
 
+std::function<bool()> Journal::to_disk() const {
+  if (!database_->checkpointer) return [] { return true; };
+  return [log = std::make_shared<LogSync>(database_->file + "-wal")] { return log->sync(); };
+}
+
 Status Journal::for_each_page(const std::string& query, const std::string& asset_id, const Visitor& visit) {
   long long after = 0;
   for (;;) {
@@ -155,9 +161,9 @@ Result<std::vector<StreamPosition>> Journal::positions() {
   });
 }
 
-Status Journal::begin() {
+Status Journal::begin(Survives survives) {
   return database_->guard("beginning a batch", [&] {
-    database_->begin();
+    database_->begin(survives);
     database_->batch_rows = 0;
   });
 }
@@ -165,6 +171,7 @@ Status Journal::begin() {
 Status Journal::commit() {
   return database_->guard("committing a batch", [&] {
     database_->sql.commit();
+    database_->has_synced = true;
     if (database_->checkpointer) database_->checkpointer->committed(database_->batch_rows);
   });
 }

@@ -47,6 +47,10 @@ struct SetAside {
 
 enum class InputState { open, consumed, set_aside, awaiting };  // awaiting: kept until a second person confirms it
 
+/// What a committed batch is safe from at once. A power cut takes back the last batches that are safe from kills alone,
+/// always the newest first, until they are on the disk (Journal::to_disk).
+enum class Survives { kills, power_cuts };
+
 class Journal {
  public:
   /// Opens or creates the journal of `service`. The writer id is made at creation and stays with the journal: a deleted
@@ -65,6 +69,10 @@ class Journal {
   Journal& operator=(Journal&& other) noexcept;
 
   [[nodiscard]] const std::string& writer_id() const;
+
+  /// Brings all that was committed before the call to the disk, and says whether it is there. The function may be called
+  /// in a thread of its own, while this journal lives.
+  [[nodiscard]] std::function<bool()> to_disk() const;
 
   // Reading. Outputs come back without stamps (writer id, sequence, publishing time) where the layer takes them back,
   // with stamps where they go out.
@@ -98,7 +106,7 @@ class Journal {
 
   // Writing, between begin and commit. After an error call rollback.
 
-  [[nodiscard]] Status begin();
+  [[nodiscard]] Status begin(Survives survives = Survives::kills);
   [[nodiscard]] Status commit();
   void rollback();
   /// Keeps an input; its message only where it was not consumed already.

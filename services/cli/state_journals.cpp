@@ -31,6 +31,12 @@ void complain_of_none(const std::string& directory) {
                            "/var/lib/sealwatch where the package runs them"});
 }
 
+/// Whether it is a file that is not there.
+bool is_missing(const std::string& connection) {
+  std::error_code none;
+  return connection.starts_with("sqlite3://") && !fs::exists(Journal::file_of(connection), none);
+}
+
 /// Under systemd each service has a directory of its own in that of all: `state_detection.db` in `state-detection`.
 std::string where_it_lies(const std::string& service, const std::string& connection) {
   constexpr std::string_view kFile = "sqlite3://";
@@ -66,9 +72,14 @@ std::optional<std::map<std::string, std::string>> journal_connections(const std:
   return connections;
 }
 
-bool is_missing(const std::string& connection) {
-  std::error_code none;
-  return connection.starts_with("sqlite3://") && !fs::exists(Journal::file_of(connection), none);
+std::optional<std::map<std::string, std::string>> journals_at_hand(const std::string& state_directory,
+                                                                   const std::string& config) {
+  auto connections = journal_connections(state_directory, config);
+  if (!connections) return std::nullopt;
+  std::erase_if(*connections, [](const auto& entry) { return is_missing(entry.second); });
+  if (!connections->empty()) return connections;
+  complain_of_none(state_directory.empty() ? config : state_directory);
+  return std::nullopt;
 }
 
 std::string writer_of(Topic topic) {

@@ -6,6 +6,7 @@
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/made_up.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "sealwatch/message/texts.hpp"
 
@@ -101,6 +102,8 @@ void Admission::note(const Message& message) {
 std::optional<std::string> Admission::refusal(const Message& message, UtcTime now) const {
   if (auto why = refusal_of_texts(message)) return why;
   const Header& header = header_of(message);
+  if (header.message_id.starts_with(kDamagedMessage))
+    return visible(header.message_id) + ": its writer's journal is damaged there; see the alarms of that service";
   if (header.event_time_known && !is_time(header.event_time_ns))
     return "its time, " + std::to_string(header.event_time_ns) + " ns since 1970, is none from 1970 to 2260";
   if (auto why = refusal_of_samples(message)) return why;

@@ -76,12 +76,11 @@ Status LayerRunner::start() {
 
 Status LayerRunner::restore_past() {
   std::size_t restored = 0;
-  std::map<Topic, std::uint64_t> sequence;  // outputs of a topic are numbered from 1 without a gap
-  Status outputs = journal_.for_each_output([&](const Message& output) {
+  Status outputs = journal_.for_each_numbered_output([&](const Message& output, std::uint64_t sequence) {
     lanes_.restore(output);
     note_alarms_of(output);
     admission_.note(output);
-    latest_.concluded(output, ++sequence[topic_of(output)]);
+    latest_.concluded(output, sequence);
     replaying_[asset_of(output)] = header_of(output).replay;
     ++restored;
     return Status();
@@ -283,6 +282,7 @@ Status LayerRunner::keep(Conclusion conclusion) {
     if (!kept) return fail(kept.error());
     if (!*kept) continue;
     latest_.concluded(**kept, header_of(**kept).stream_sequence);
+    forget_damage(header_of(**kept).message_id);
     note_alarms_of(**kept);
     outbox_.add(std::move(**kept));
   }

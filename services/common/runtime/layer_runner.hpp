@@ -152,6 +152,8 @@ class LayerRunner {
   [[nodiscard]] Status take_failures();
   [[nodiscard]] Status set_aside(const LaneResult& failure);
   void raise_alarm(const SetAside& message);
+  /// An output that was damaged in the journal is there again.
+  void forget_damage(const std::string& message_id);
   /// Gives the asset a new layer, its past and its open inputs.
   [[nodiscard]] Status begin_anew(const std::string& asset_id);
   [[nodiscard]] Status try_again_what_was_asked();

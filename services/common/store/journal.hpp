@@ -78,8 +78,12 @@ class Journal {
   // with stamps where they go out.
 
   using Visitor = std::function<Status(const Message&)>;
+  using NumberedVisitor = std::function<Status(const Message&, std::uint64_t sequence)>;
   /// Every output in the order of conclusion, as the layer made it.
   [[nodiscard]] Status for_each_output(const Visitor& visit);
+  /// Likewise, with its number in its stream. Those of a test of which one is damaged are left out: all of that test is
+  /// concluded again (journal_mend.cpp).
+  [[nodiscard]] Status for_each_numbered_output(const NumberedVisitor& visit);
   /// Every output about one asset, likewise.
   [[nodiscard]] Status for_each_output_of(const std::string& asset_id, const Visitor& visit);
   /// Every input that was not consumed, in the order of receipt. `visit` may write to the journal.
@@ -146,7 +150,8 @@ class Journal {
  private:
   struct Database;
   explicit Journal(std::unique_ptr<Database> database);
-  [[nodiscard]] Status for_each_page(const std::string& query, const std::string& asset_id, const Visitor& visit);
+  [[nodiscard]] Status for_each_page(const std::string& query, const std::string& asset_id,
+                                     const NumberedVisitor& visit);
   std::unique_ptr<Database> database_;
 };
 

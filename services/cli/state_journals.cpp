@@ -31,12 +31,6 @@ void complain_of_none(const std::string& directory) {
                            "/var/lib/sealwatch where the package runs them"});
 }
 
-/// Whether it is a file that is not there.
-bool is_missing(const std::string& connection) {
-  std::error_code none;
-  return connection.starts_with("sqlite3://") && !fs::exists(Journal::file_of(connection), none);
-}
-
 /// Under systemd each service has a directory of its own in that of all: `state_detection.db` in `state-detection`.
 std::string where_it_lies(const std::string& service, const std::string& connection) {
   constexpr std::string_view kFile = "sqlite3://";
@@ -70,6 +64,11 @@ std::optional<std::map<std::string, std::string>> journal_connections(const std:
     connections[service] =
         where_it_lies(service, "sqlite3://" + (fs::path(state_directory) / (service + ".db")).string());
   return connections;
+}
+
+bool is_missing(const std::string& connection) {
+  std::error_code none;
+  return connection.starts_with("sqlite3://") && !fs::exists(Journal::file_of(connection), none);
 }
 
 std::optional<std::map<std::string, std::string>> journals_at_hand(const std::string& state_directory,

@@ -15,6 +15,8 @@ namespace sealwatch::cli {
 /// directory where there is no configuration. None, and said on standard error, where neither is at hand.
 [[nodiscard]] std::optional<std::map<std::string, std::string>> journal_connections(const std::string& state_directory,
                                                                                     const std::string& config);
+/// Whether such a journal is a file that is not there.
+[[nodiscard]] bool is_missing(const std::string& connection);
 /// Likewise, of those journals that are there; none, and said, where there is none of any service.
 [[nodiscard]] std::optional<std::map<std::string, std::string>> journals_at_hand(const std::string& state_directory,
                                                                                  const std::string& config);

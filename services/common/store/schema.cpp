@@ -126,7 +126,7 @@ void Journal::Database::check_meta() {
 
 /// All in one transaction: a program that is killed meanwhile leaves the journal as it was.
 void Journal::Database::migrate(int version) {
-  make_later_tables();
+  if (!has_table("quarantine")) sql << kQuarantine;
   soci::transaction transaction(sql);
   for (; version < kJournalSchemaVersion; ++version)
     for (const char* change : kChanges[static_cast<std::size_t>(version) - 1]) sql << change;
@@ -136,8 +136,12 @@ void Journal::Database::migrate(int version) {
   transaction.commit();
 }
 
+/// Somebody may have dropped them.
 void Journal::Database::make_later_tables() {
-  if (!has_table("quarantine")) sql << kQuarantine;
+  if (!has_table("quarantine")) {
+    sql << kQuarantine;
+    sql << "ALTER TABLE quarantine ADD COLUMN checksum VARCHAR(16)";
+  }
   make_acts_table(sql);
 }
 

@@ -83,8 +83,7 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   const std::string& asset_id = evidence.life.asset_id;
   Asset& asset = assets_[asset_id];
   const Header& cause = evidence.life.header;
-  const auto is_this = [&](const auto& retracted) { return retracted.second == cause.pst_id; };
-  if (std::any_of(asset.retracted.begin(), asset.retracted.end(), is_this)) return conclusion;
+  if (!asset.retracted.counts(cause.pst_id)) return conclusion;
   std::optional<UtcTime> now;
   if (cause.event_time_known) now = UtcTime{cause.event_time_ns};
   if (now && ((asset.last_test && *now < *asset.last_test) || (asset.replaced && *now < *asset.replaced)))

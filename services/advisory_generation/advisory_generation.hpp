@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "sealwatch/config/configuration.hpp"
-#include "sealwatch/message/retraction.hpp"
+#include "sealwatch/message/retracted_tests.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/advisory_generation/options.hpp"
 #include "services/advisory_generation/recommendation.hpp"
@@ -48,7 +48,6 @@ class AdvisoryGeneration final : public Layer {
     std::string pst_id;
     std::optional<UtcTime> time;
     TestVerdict verdict;
-    std::set<std::string> retractions = {};  ///< ids of those in force: while there is one, the test does not count
   };
   /// What is remembered of one asset, all of it rebuilt from its advisories.
   struct Asset {
@@ -56,9 +55,9 @@ class AdvisoryGeneration final : public Layer {
     VerdictMemory memory;
     std::optional<UtcTime> last_test;
     std::optional<UtcTime> replaced;
-    std::vector<Judged> judged;                    ///< the last kMostJudged, in the order of judgement
-    std::map<std::string, std::string> retracted;  ///< single tests: PST id by the retraction's id
-    std::vector<std::string> concluded;            ///< message ids of all advisories
+    std::vector<Judged> judged;  ///< the last kMostJudged, in the order of judgement
+    RetractedTests retracted;
+    std::vector<std::string> concluded;  ///< message ids of all advisories
   };
 
   AdvisoryGeneration(const Configuration& configuration, const Options& options)

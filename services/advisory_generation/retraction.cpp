@@ -1,6 +1,4 @@
 // What the retraction of tests does to the advice: the next test is judged with those that still count.
-#include <algorithm>
-
 #include "services/advisory_generation/advisory_generation.hpp"
 #include "services/advisory_generation/advisory_revision.hpp"
 
@@ -10,28 +8,20 @@ namespace {
 /// Five years of monthly tests: the rules against flapping look back over far fewer.
 constexpr std::size_t kMostJudged = 60;
 
-bool is_meant(const Retraction& retraction, const std::string& pst_id, const std::optional<UtcTime>& time) {
-  if (retraction.since) return time && *time >= *retraction.since;
-  return retraction.pst_id == pst_id;
-}
-
 }  // namespace
 
 void AdvisoryGeneration::remember(Judged judged, Asset& asset) {
+  asset.retracted.know(judged.pst_id, judged.time);
   asset.judged.push_back(std::move(judged));
   if (asset.judged.size() > kMostJudged) asset.judged.erase(asset.judged.begin());
 }
 
 void AdvisoryGeneration::apply(const Retraction& retraction, Asset& asset) const {
-  const bool withdrawn = !retraction.withdrawn_id.empty();
-  asset.retracted.erase(retraction.withdrawn_id);
-  if (!withdrawn && !retraction.since) asset.retracted[retraction.id] = retraction.pst_id;
+  asset.retracted.apply(retraction);
   asset.memory = {};
   asset.last_test.reset();
-  for (Judged& test : asset.judged) {
-    if (withdrawn) test.retractions.erase(retraction.withdrawn_id);
-    if (!withdrawn && is_meant(retraction, test.pst_id, test.time)) test.retractions.insert(retraction.id);
-    if (!test.retractions.empty()) continue;
+  for (const Judged& test : asset.judged) {
+    if (!asset.retracted.counts(test.pst_id)) continue;
     (void)asset.memory.judge(test.verdict, test.time, options_);
     if (test.time) asset.last_test = test.time;
   }

@@ -184,6 +184,14 @@ struct AuditOptions {
 };
 int run_audit(const AuditOptions& options);
 
+struct BackupOptions {
+  std::string config;
+  std::string state_directory;
+  std::string directory;  ///< of the copies
+};
+int run_backup(const BackupOptions& options);
+int run_restore(const BackupOptions& options);
+
 struct AcknowledgeOptions {
   std::string config;
   std::string asset_id;

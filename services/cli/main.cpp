@@ -43,6 +43,7 @@ class CommandLine {
     add_confirm();
     add_quarantine();
     add_audit();
+    add_backup();
     add_accept();
     add_plant();
     add_fleet();
@@ -425,6 +426,26 @@ class CommandLine {
     audit->add_flag("--json", audit_.json, "machine-readable result (schema sealwatch.audit/1)");
   }
 
+  void add_backup() {
+    CLI::App* backup =
+        command("backup",
+                "copy the services' journals, each as it is at one moment, while they run; the "
+                "configuration is not in it",
+                "sealwatch backup --state STATE --to /backup/2031-04-12", [this] { return run_backup(backup_); });
+    backup->add_option("--to", backup_.directory, "directory for the copies: SERVICE.db")->required();
+    CLI::App* restore =
+        command("restore",
+                "put copies of journals in the place of the services' own, which are moved aside; "
+                "those services must not run, the others may",
+                "sealwatch restore --state STATE --from /backup/2031-04-12", [this] { return run_restore(backup_); });
+    restore->add_option("--from", backup_.directory, "directory with the copies: SERVICE.db of each to restore")
+        ->required();
+    for (CLI::App* one : {backup, restore}) {
+      add_config(one, backup_.config);
+      one->add_option("--state", backup_.state_directory, "state directory of the services");
+    }
+  }
+
   void add_accept() {
     CLI::App* accept = command("accept",
                                "let the services simulate with the model that the mismatch analysis explained, or "
@@ -541,6 +562,7 @@ class CommandLine {
   StatusOptions status_;
   AcknowledgeOptions acknowledge_;
   QuarantineOptions quarantine_;
+  BackupOptions backup_;
   ConfirmOptions confirm_;
   AuditOptions audit_;
   ReplacedOptions replaced_;

@@ -73,7 +73,8 @@ int send(std::optional<Session>& session, Message message, std::vector<std::stri
         done = publish_patiently(*session->bus, message);
       if (const auto* status = std::get_if<ServiceStatus>(&item))
         for (const StreamPosition& position : status->received)
-          if (position.writer_id == header.writer_id) std::erase(readers, status->service);
+          if (position.writer_id == header.writer_id && position.sequence >= header.stream_sequence)
+            std::erase(readers, status->service);
       if (const auto* other = std::get_if<Message>(&item); other != nullptr && look) look(*other);
     }
   }

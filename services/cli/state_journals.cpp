@@ -71,6 +71,16 @@ bool is_missing(const std::string& connection) {
   return connection.starts_with("sqlite3://") && !fs::exists(Journal::file_of(connection), none);
 }
 
+std::optional<std::map<std::string, std::string>> journals_at_hand(const std::string& state_directory,
+                                                                   const std::string& config) {
+  auto connections = journal_connections(state_directory, config);
+  if (!connections) return std::nullopt;
+  std::erase_if(*connections, [](const auto& entry) { return is_missing(entry.second); });
+  if (!connections->empty()) return connections;
+  complain_of_none(state_directory.empty() ? config : state_directory);
+  return std::nullopt;
+}
+
 std::string writer_of(Topic topic) {
   switch (topic) {
     case Topic::sample_block:

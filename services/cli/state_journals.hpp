@@ -17,6 +17,9 @@ namespace sealwatch::cli {
                                                                                     const std::string& config);
 /// Whether such a journal is a file that is not there.
 [[nodiscard]] bool is_missing(const std::string& connection);
+/// Likewise, of those journals that are there; none, and said, where there is none of any service.
+[[nodiscard]] std::optional<std::map<std::string, std::string>> journals_at_hand(const std::string& state_directory,
+                                                                                 const std::string& config);
 
 class StateJournals {
  public:

@@ -41,29 +41,10 @@ void PastHealth::add(const HealthReport& report) {
   const bool graded = report.admissible_for_prognosis && report.health_grade_known && report.header.event_time_known;
   Test test{.pst_id = report.header.pst_id, .time = {}, .graded = graded, .grade = report.health_grade};
   if (report.header.event_time_known) test.time = UtcTime{report.header.event_time_ns};
-  for (const auto& [retraction, pst_id] : retracted_)
-    if (pst_id == test.pst_id) test.retractions.insert(retraction);
+  retracted_.know(test.pst_id, test.time);
   tests_.push_back(std::move(test));
   reports_.push_back(report);
   if (reports_.size() > kInFull) reports_.pop_front();
-}
-
-void PastHealth::apply(const Retraction& retraction) {
-  if (!retraction.withdrawn_id.empty()) {
-    retracted_.erase(retraction.withdrawn_id);
-    for (Test& test : tests_) test.retractions.erase(retraction.withdrawn_id);
-    return;
-  }
-  if (!retraction.since) retracted_[retraction.id] = retraction.pst_id;
-  for (Test& test : tests_)
-    if (retraction.since ? test.time && *test.time >= *retraction.since : test.pst_id == retraction.pst_id)
-      test.retractions.insert(retraction.id);
-}
-
-bool PastHealth::counts(const std::string& pst_id) const {
-  const auto of_test = std::ranges::find(tests_, pst_id, &Test::pst_id);
-  if (of_test != tests_.end()) return counts(*of_test);
-  return std::ranges::none_of(retracted_, [&](const auto& one) { return one.second == pst_id; });
 }
 
 std::optional<HealthReport> PastHealth::last() const {
@@ -90,7 +71,7 @@ std::optional<HealthReport> PastHealth::last() const {
 std::vector<GradeAt> PastHealth::grades() const {
   std::vector<GradeAt> grades;
   for (const Test& test : tests_)
-    if (test.graded && counts(test)) grades.push_back({*test.time, test.grade});
+    if (test.graded && counts(test.pst_id)) grades.push_back({*test.time, test.grade});
   if (grades.size() > trend_tests_)
     grades.erase(grades.begin(), grades.end() - static_cast<std::ptrdiff_t>(trend_tests_));
   return grades;

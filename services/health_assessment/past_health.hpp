@@ -4,14 +4,12 @@
 
 #include <cstddef>
 #include <deque>
-#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "sealwatch/message/health_assessment.hpp"
-#include "sealwatch/message/retraction.hpp"
+#include "sealwatch/message/retracted_tests.hpp"
 #include "services/health_assessment/trend.hpp"
 
 namespace sealwatch {
@@ -27,8 +25,8 @@ class PastHealth {
   void restart();
   void add(const HealthReport& report);
   /// From now on the tests that it means do not count, or count again.
-  void apply(const Retraction& retraction);
-  [[nodiscard]] bool counts(const std::string& pst_id) const;
+  void apply(const Retraction& retraction) { retracted_.apply(retraction); }
+  [[nodiscard]] bool counts(const std::string& pst_id) const { return retracted_.counts(pst_id); }
 
   /// The last report that counts since the last replacement.
   [[nodiscard]] std::optional<HealthReport> last() const;
@@ -41,14 +39,12 @@ class PastHealth {
     std::optional<UtcTime> time;
     bool graded = false;  ///< admissible, with a grade and a date
     double grade = 0.0;
-    std::set<std::string> retractions = {};  ///< ids of those in force: while there is one, the test does not count
   };
-  [[nodiscard]] bool counts(const Test& test) const { return test.retractions.empty(); }
 
   std::size_t trend_tests_;
-  std::vector<Test> tests_;                       ///< since the last replacement
-  std::deque<HealthReport> reports_;              ///< the last of them in full
-  std::map<std::string, std::string> retracted_;  ///< single tests: PST id by the retraction's id
+  std::vector<Test> tests_;           ///< since the last replacement
+  std::deque<HealthReport> reports_;  ///< the last of them in full
+  RetractedTests retracted_;
 };
 
 }  // namespace sealwatch

@@ -20,8 +20,8 @@ void AssetHistory::add(const LeakageEstimate& estimate) {
                                 .condition = estimate.condition,
                                 .condition_std = estimate.condition_std},
                      .eligible = estimate.used_for_forecast || waits_for_confirmation(estimate)};
-  for (const auto& [retraction, estimate_id] : retracted_)
-    if (estimate_id == entry.estimate_id) entry.retractions.insert(retraction);
+  entry.pst_id = estimate.header.pst_id;
+  retracted_.know(entry.pst_id, entry.sample.time);
   const auto place = std::upper_bound(entries_.begin(), entries_.end(), entry, [](const auto& a, const auto& b) {
     return std::tie(a.sample.time, a.estimate_id) < std::tie(b.sample.time, b.estimate_id);
   });
@@ -29,19 +29,6 @@ void AssetHistory::add(const LeakageEstimate& estimate) {
 }
 
 void AssetHistory::add_replacement(UtcTime time) { replacements_.insert(time); }
-
-void AssetHistory::apply(const Retraction& retraction) {
-  if (!retraction.withdrawn_id.empty()) {
-    retracted_.erase(retraction.withdrawn_id);
-    for (HistoryEntry& entry : entries_) entry.retractions.erase(retraction.withdrawn_id);
-    return;
-  }
-  const std::string estimate_id = "leakage_estimate/" + retraction.pst_id;
-  if (!retraction.since) retracted_[retraction.id] = estimate_id;
-  for (HistoryEntry& entry : entries_)
-    if (retraction.since ? entry.sample.time >= *retraction.since : entry.estimate_id == estimate_id)
-      entry.retractions.insert(retraction.id);
-}
 
 bool AssetHistory::has_estimate(const std::string& estimate_id) const {
   return std::find(concluded_.begin(), concluded_.end(), estimate_id) != concluded_.end();
@@ -60,7 +47,7 @@ std::vector<HistoryEntry> AssetHistory::until(UtcTime now) const {
   const std::optional<UtcTime> replaced = replaced_before(now);
   std::vector<HistoryEntry> entries;
   for (const HistoryEntry& entry : entries_)
-    if (entry.retractions.empty() && entry.sample.time <= now && (!replaced || entry.sample.time > *replaced))
+    if (retracted_.counts(entry.pst_id) && entry.sample.time <= now && (!replaced || entry.sample.time > *replaced))
       entries.push_back(entry);
   return entries;
 }
@@ -72,7 +59,7 @@ bool AssetHistory::has_later_than(UtcTime time) const {
 
 const HistoryEntry* AssetHistory::last_counted() const {
   const auto last = std::find_if(entries_.rbegin(), entries_.rend(),
-                                 [](const HistoryEntry& entry) { return entry.retractions.empty(); });
+                                 [this](const HistoryEntry& entry) { return retracted_.counts(entry.pst_id); });
   return last == entries_.rend() ? nullptr : &*last;
 }
 

@@ -11,7 +11,7 @@
 
 #include "sealwatch/forecast/condition_history.hpp"
 #include "sealwatch/message/prognostic_assessment.hpp"
-#include "sealwatch/message/retraction.hpp"
+#include "sealwatch/message/retracted_tests.hpp"
 
 namespace sealwatch::prognostic_assessment {
 
@@ -23,7 +23,7 @@ struct HistoryEntry {
   std::string estimate_id;  ///< message id of its leakage_estimate
   forecast::ConditionSample sample;
   bool eligible = false;  ///< its estimate may take part in forecasts (an isolated outlier may too, once confirmed)
-  std::set<std::string> retractions = {};  ///< ids of those in force: while there is one, the test does not count
+  std::string pst_id = {};
 };
 
 class AssetHistory {
@@ -32,7 +32,7 @@ class AssetHistory {
   void add(const LeakageEstimate& estimate);
   void add_replacement(UtcTime time);
   /// From now on the tests that it means do not count, or count again.
-  void apply(const Retraction& retraction);
+  void apply(const Retraction& retraction) { retracted_.apply(retraction); }
 
   [[nodiscard]] bool has_estimate(const std::string& estimate_id) const;
   /// The latest replacement of all.
@@ -50,7 +50,7 @@ class AssetHistory {
   std::vector<std::string> concluded_;
   std::vector<HistoryEntry> entries_;  ///< in the order of time; equal times by id
   std::set<UtcTime> replacements_;
-  std::map<std::string, std::string> retracted_;  ///< single tests: estimate id by the retraction's id
+  RetractedTests retracted_;
 };
 
 }  // namespace sealwatch::prognostic_assessment

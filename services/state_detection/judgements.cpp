@@ -116,6 +116,8 @@ std::vector<ChannelStatus> stale_channels(const std::vector<ChannelStatus>& chan
     else if (found->state != ChannelState::OK)
       stale.push_back(*found);
   }
+  for (const ChannelStatus& status : channels)
+    if (status.state == ChannelState::FAILED && !expected.contains(status.channel)) stale.push_back(status);
   return stale;
 }
 

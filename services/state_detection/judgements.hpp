@@ -39,7 +39,8 @@ inline constexpr double kChannelLost = 1.0;
                                                           const std::vector<ChannelStatus>& channels,
                                                           const std::set<std::string>& expected);
 
-/// Status of a channel that was expected and is not OK; those that are not mentioned any more are NOT_USED.
+/// Status of a channel that was expected and is not OK; those that are not mentioned any more are NOT_USED. And of one
+/// that is recorded and FAILED though it was never OK: a sensor that is dead from the first test on.
 [[nodiscard]] std::vector<ChannelStatus> stale_channels(const std::vector<ChannelStatus>& channels,
                                                         const std::set<std::string>& expected);
 

@@ -1,6 +1,7 @@
 #include "services/state_detection/past_tests.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "sealwatch/config/judged_quantities.hpp"
 #include "services/state_detection/judgements.hpp"
@@ -22,27 +23,13 @@ bool PastTests::add(const StateReport& report, bool first_after_replacement) {
             .first_after_replacement = first_after_replacement,
             .replay = report.header.replay,
             .accepted_discrepancy = report.accepted_discrepancy,
-            .judgements = {},
-            .retractions = {}};
+            .judgements = {}};
   if (report.header.event_time_known) test.time = UtcTime{report.header.event_time_ns};
   for (const RegionJudgement& judgement : report.judgements)
     test.judgements.push_back({index_of(judgement), judgement.reference, judgement.value});
-  for (const auto& [retraction, pst_id] : retracted_)
-    if (pst_id == test.pst_id) test.retractions.insert(retraction);
+  retracted_.know(test.pst_id, test.time);
   tests_.push_back(std::move(test));
-  return tests_.back().retractions.empty();
-}
-
-void PastTests::apply(const Retraction& retraction) {
-  if (!retraction.withdrawn_id.empty()) {
-    retracted_.erase(retraction.withdrawn_id);
-    for (Test& test : tests_) test.retractions.erase(retraction.withdrawn_id);
-    return;
-  }
-  if (!retraction.since) retracted_[retraction.id] = retraction.pst_id;
-  for (Test& test : tests_)
-    if (retraction.since ? test.time && *test.time >= *retraction.since : test.pst_id == retraction.pst_id)
-      test.retractions.insert(retraction.id);
+  return retracted_.counts(tests_.back().pst_id);
 }
 
 /// Which channels it had stands in its judgements; which it should have had follows from the tests before.
@@ -80,7 +67,7 @@ std::optional<StateReport> PastTests::judge_anew(const AssetConfig& asset, Asset
   std::optional<StateReport> last;
   for (const Test& test : tests_) {
     if (test.first_after_replacement) fresh.restart();  // the actuator was replaced, whatever the test is worth
-    if (!test.retractions.empty()) continue;
+    if (!retracted_.counts(test.pst_id)) continue;
     fresh.use_accepted(test.accepted_discrepancy);
     StateReport report = judged_by(asset, test, fresh);
     if (is_judged(report.verdict)) fresh.judge(report.judgements);

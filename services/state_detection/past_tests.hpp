@@ -4,14 +4,12 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
-#include "sealwatch/message/retraction.hpp"
+#include "sealwatch/message/retracted_tests.hpp"
 #include "sealwatch/message/state_detection.hpp"
 #include "services/state_detection/history.hpp"
 
@@ -22,7 +20,7 @@ class PastTests {
   /// Takes a test's report. False when the test is retracted: then nothing is learnt from it.
   bool add(const StateReport& report, bool first_after_replacement);
   /// From now on the tests that it means do not count, or count again.
-  void apply(const Retraction& retraction);
+  void apply(const Retraction& retraction) { retracted_.apply(retraction); }
   /// Plays the tests that count into a history that knows nothing yet. Returns the last of them as it is judged now, as
   /// far as its past says: nothing where none counts.
   [[nodiscard]] std::optional<StateReport> judge_anew(const AssetConfig& asset, AssetHistory& fresh) const;
@@ -41,7 +39,6 @@ class PastTests {
     bool replay = false;
     std::string accepted_discrepancy;
     std::vector<Judgement> judgements;
-    std::set<std::string> retractions;  ///< ids of those in force: while there is one, the test does not count
   };
   struct Name {
     std::string quantity;
@@ -50,9 +47,9 @@ class PastTests {
   [[nodiscard]] std::uint16_t index_of(const RegionJudgement& judgement);
   [[nodiscard]] StateReport judged_by(const AssetConfig& asset, const Test& test, const AssetHistory& history) const;
 
-  std::vector<Test> tests_;                       ///< in the order of judgement
-  std::vector<Name> names_;                       ///< of quantities: a handful, said by every test
-  std::map<std::string, std::string> retracted_;  ///< single tests: PST id by the retraction's id
+  std::vector<Test> tests_;  ///< in the order of judgement
+  std::vector<Name> names_;  ///< of quantities: a handful, said by every test
+  RetractedTests retracted_;
 };
 
 }  // namespace sealwatch

@@ -221,7 +221,8 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   const std::set<std::string> expected = history.expected_channels();
   for (const ChannelStatus& stale : stale_channels(features.channel_status, expected)) {
     report.stale_channels.push_back(stale.channel);
-    std::string text = "channel " + stale.channel + ", OK in most earlier tests, ";
+    const bool was_ok = expected.contains(stale.channel);
+    std::string text = "channel " + stale.channel + (was_ok ? ", OK in most earlier tests, " : ", never OK before, ");
     if (stale.state == ChannelState::NOT_USED)
       text += "was not recorded";
     else

@@ -1,4 +1,5 @@
 #include "services/common/message/json.hpp"
+#include "sealwatch/message/blank.hpp"
 
 #include <algorithm>
 #include <array>
@@ -221,14 +222,6 @@ void decode(const Json& json, const std::string& place, T& value) {
   }
 }
 
-template <std::size_t index = 0>
-Message blank(Topic topic) {
-  if constexpr (index + 1 < std::variant_size_v<MessageAlternatives>) {
-    if (static_cast<std::size_t>(topic) != index) return blank<index + 1>(topic);
-  }
-  return Message(std::in_place_index<index>);
-}
-
 }  // namespace
 
 std::string to_json(const Message& message, JsonForm form) {
@@ -247,7 +240,7 @@ Result<Message> message_from_json(Topic topic, std::string_view text) {
                       .advice = {}});
   };
   if (json.is_discarded()) return wrong({}, "is not JSON");
-  Message message = blank(topic);
+  Message message = blank_message(topic);
   try {
     std::visit([&json](auto& m) { decode(json, {}, m); }, message);
   } catch (const LayoutError& error) {

@@ -6,6 +6,7 @@
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/made_up.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "sealwatch/message/texts.hpp"
 
@@ -83,6 +84,12 @@ std::optional<std::string> refusal_of_kind(const Message& message) {
   return "its message_id, '" + event->header.message_id + "', does not say what is retracted; use sealwatch retract";
 }
 
+/// Before data acquisition a test has no PST id.
+std::string name_of_test_in(const Message& message) {
+  const auto* raw = std::get_if<RawSamples>(&message);
+  return raw != nullptr ? "recording " + raw->recording_id : header_of(message).pst_id;
+}
+
 std::string name_of_test(const RawSamples& raw) {
   return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) + " of " + raw.asset_id;
 }
@@ -92,15 +99,27 @@ std::string name_of_test(const RawSamples& raw) {
 void Admission::note(const Message& message) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
-  const std::optional<std::int64_t> time_ns = time_of_test(message);
-  if (!time_ns) return;
-  std::int64_t& newest = newest_ns_.try_emplace(asset_of(message), *time_ns).first->second;
-  newest = std::max(newest, *time_ns);
+  const std::string asset_id = asset_of(message);
+  if (const std::optional<std::int64_t> time_ns = time_of_test(message))
+    tests_[asset_id].know(name_of_test_in(message), UtcTime{*time_ns});
+  // An act is told once; after a restart it stands among the sources of what answered it.
+  std::vector<std::string> acts = header_of(message).source_ids;
+  acts.push_back(header_of(message).message_id);
+  for (const std::string& id : acts)
+    if (const auto retraction = is_retraction_id(id) ? retraction_of(asset_id, id) : std::nullopt)
+      tests_[asset_id].apply(*retraction);
+}
+
+std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {
+  const auto tests = tests_.find(asset_id);
+  return tests == tests_.end() ? std::nullopt : tests->second.newest();
 }
 
 std::optional<std::string> Admission::refusal(const Message& message, UtcTime now) const {
   if (auto why = refusal_of_texts(message)) return why;
   const Header& header = header_of(message);
+  if (header.message_id.starts_with(kDamagedMessage))
+    return visible(header.message_id) + ": its writer's journal is damaged there; see the alarms of that service";
   if (header.event_time_known && !is_time(header.event_time_ns))
     return "its time, " + std::to_string(header.event_time_ns) + " ns since 1970, is none from 1970 to 2260";
   if (auto why = refusal_of_samples(message)) return why;
@@ -115,8 +134,7 @@ std::optional<std::string> Admission::refusal_of_report(const Message& message, 
   if (auto why = refusal_of_kind(message)) return why;
   if (!header.event_time_known) return std::nullopt;
   std::int64_t latest = now.nanoseconds;
-  if (const auto newest = newest_ns_.find(asset_of(message)); newest != newest_ns_.end())
-    latest = std::max(latest, newest->second);
+  if (const auto newest = newest_test(asset_of(message))) latest = std::max(latest, newest->nanoseconds);
   if (header.event_time_ns <= latest + kDay_ns) return std::nullopt;
   return "its time, " + format_utc({header.event_time_ns}) + ", lies in the future: it is now " + format_utc(now) +
          "; report it again, with the time at which it happened";
@@ -144,9 +162,9 @@ std::optional<std::string> Admission::refusal_of_time(const RawSamples& raw, Utc
   const std::string ahead = what + ", lies in the future (it is now " + format_utc(now) + ")";
   if (!raw.header.replay && !is_made_up(raw.source_id))
     return ahead + "; set the sender's clock, or correct the start time, and give it again";
-  const auto newest = newest_ns_.find(raw.asset_id);
-  if (newest == newest_ns_.end() || raw.start_time_ns <= newest->second + kYear_ns) return std::nullopt;
-  return ahead + " and more than a year after the asset's newest test, " + format_utc({newest->second}) +
+  const auto newest = newest_test(raw.asset_id);
+  if (!newest || raw.start_time_ns <= newest->nanoseconds + kYear_ns) return std::nullopt;
+  return ahead + " and more than a year after the asset's newest test, " + format_utc(*newest) +
          "; correct the start time, and give it again";
 }
 

@@ -21,6 +21,7 @@
 #include <string>
 
 #include "sealwatch/core/time.hpp"
+#include "sealwatch/message/retracted_tests.hpp"
 #include "sealwatch/message/topics.hpp"
 
 namespace sealwatch {
@@ -31,7 +32,7 @@ class Admission {
  public:
   /// When assets were commissioned, where it is known.
   explicit Admission(std::map<std::string, UtcTime> commissioned = {}) : commissioned_(std::move(commissioned)) {}
-  /// Takes note of when a test was made.
+  /// Takes note of when a test was made, and of retractions.
   void note(const Message& message);
   /// Why the message is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
@@ -39,11 +40,13 @@ class Admission {
  private:
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw, UtcTime now) const;
   [[nodiscard]] std::optional<std::string> refusal_of_time(const RawSamples& raw, UtcTime now) const;
+  /// The date of the asset's newest test that was not retracted.
+  [[nodiscard]] std::optional<UtcTime> newest_test(const std::string& asset_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
 
   std::map<std::string, UtcTime> commissioned_;
-  std::map<std::string, std::int64_t> newest_ns_;  ///< event time of the newest test, by asset
-  std::set<std::string> recorded_;                 ///< assets with tests that no bench made up
+  std::map<std::string, RetractedTests> tests_;  ///< by asset
+  std::set<std::string> recorded_;               ///< assets with tests that no bench made up
 };
 
 }  // namespace sealwatch

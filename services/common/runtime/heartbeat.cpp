@@ -64,6 +64,7 @@ void Heartbeat::publish(std::unique_lock<std::mutex>& lock) {
   const auto silent =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - main_thread_seen_);
   lock.unlock();  // a slow bus must not hold up the main thread
+  if (options_.before_beat) options_.before_beat(status);
   status.publishing_time_ns = clock_.now().nanoseconds;
   if (const Status published = bus_.publish(status); !published)
     log_event(LogLevel::warn, "heartbeat not published", {{"error", published.error().describe()}});

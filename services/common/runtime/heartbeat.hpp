@@ -21,6 +21,8 @@ class Heartbeat {
     std::chrono::milliseconds shortest{50};  ///< between two beats, however much progress there is
     /// Called at every beat with the time since the last update or touch: whether the main thread is still alive.
     std::function<void(std::chrono::milliseconds since_main_thread)> on_beat = {};
+    /// Looks at what is about to be said, in the heartbeat's thread, and may wait for the disk.
+    std::function<void(ServiceStatus&)> before_beat = {};
   };
 
   /// Beats from now on. `bus` is used by the heartbeat's thread alone.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "services/common/runtime/confirmed_positions.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
 
@@ -64,19 +65,22 @@ Status LayerRunner::start() {
   status.started_ns = clock_.now().nanoseconds;
   status.process_id = ::getpid();
   status.state = "running";
-  heartbeat_ = std::make_unique<Heartbeat>(heartbeat_bus_, clock_, status, options_.heartbeat);
+  Heartbeat::Options beats = options_.heartbeat;
+  const bool takes_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
+  auto confirmed = std::make_shared<ConfirmedPositions>(journal_.to_disk(), takes_samples);
+  beats.before_beat = [confirmed](ServiceStatus& said) { confirmed->make_sure(said); };
+  heartbeat_ = std::make_unique<Heartbeat>(heartbeat_bus_, clock_, status, std::move(beats));
   report_progress();
   return {};
 }
 
 Status LayerRunner::restore_past() {
   std::size_t restored = 0;
-  std::map<Topic, std::uint64_t> sequence;  // outputs of a topic are numbered from 1 without a gap
-  Status outputs = journal_.for_each_output([&](const Message& output) {
+  Status outputs = journal_.for_each_numbered_output([&](const Message& output, std::uint64_t sequence) {
     lanes_.restore(output);
     note_alarms_of(output);
     admission_.note(output);
-    latest_.concluded(output, ++sequence[topic_of(output)]);
+    latest_.concluded(output, sequence);
     replaying_[asset_of(output)] = header_of(output).replay;
     ++restored;
     return Status();
@@ -132,8 +136,8 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   return {};
 }
 
-Status LayerRunner::in_batch(const std::function<Status()>& work) {
-  Status status = journal_.begin();
+Status LayerRunner::in_batch(const std::function<Status()>& work, Survives survives) {
+  Status status = journal_.begin(survives);
   if (status) status = work();
   if (status) status = journal_.commit();
   if (!status) {
@@ -148,6 +152,16 @@ Status LayerRunner::in_batch(const std::function<Status()>& work) {
   return {};
 }
 
+/// What people say, and recordings from a directory, which move on, nobody keeps who could be asked for them again.
+/// Samples that are sent come too often for that: they are on the disk before the heartbeat tells of them.
+Survives LayerRunner::batch_survives() const {
+  const bool said_once = std::ranges::any_of(taken_, [](const Taken& one) {
+    return one.stream.sequence == 0 && topic_of(*one.message) != Topic::raw_samples;
+  });
+  const bool acted = !acts_.empty() || !no_longer_awaiting_.empty();
+  return said_once || acted || took_local_ ? Survives::power_cuts : Survives::kills;
+}
+
 Status LayerRunner::take_ready() {
   if (!ready_.empty()) {
     last_work_ = steady_clock::now();
@@ -157,7 +171,8 @@ Status LayerRunner::take_ready() {
     if (Status status = take(std::move(ready_.front())); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
   if (!taken_.empty() || !results_.empty() || !uncommitted_.empty())
-    if (Status status = in_batch([this] { return store_batch(); }); !status) return status;
+    if (Status status = in_batch([this] { return store_batch(); }, batch_survives()); !status) return status;
+  took_local_ = false;
   lanes_.save_memory();
   return take_failures();
 }
@@ -267,6 +282,7 @@ Status LayerRunner::keep(Conclusion conclusion) {
     if (!kept) return fail(kept.error());
     if (!*kept) continue;
     latest_.concluded(**kept, header_of(**kept).stream_sequence);
+    forget_damage(header_of(**kept).message_id);
     note_alarms_of(**kept);
     outbox_.add(std::move(**kept));
   }
@@ -288,7 +304,10 @@ Status LayerRunner::let_time_pass() {
   look_for_trouble();
   const auto at_rest = [this](const std::string& asset_id) { return lanes_.at_rest(asset_id); };
   if (options_.local_inputs)
-    for (Message& message : options_.local_inputs(at_rest)) ready_.push_back(std::move(message));
+    for (Message& message : options_.local_inputs(at_rest)) {
+      ready_.push_back(std::move(message));
+      took_local_ = true;
+    }
   // A test is not overdue or lost while messages about it may be on their way.
   const bool up_to_date = drained_ && ready_.empty() && !reader_->is_behind();
   if (!up_to_date || steady_clock::now() - started_ < options_.settling) return {};

@@ -105,7 +105,8 @@ class LayerRunner {
   void note_reused_number(const Message& message);
   void start_anew(const Key& stream);
   /// Runs `work` inside a transaction and publishes what it concluded.
-  [[nodiscard]] Status in_batch(const std::function<Status()>& work);
+  [[nodiscard]] Status in_batch(const std::function<Status()>& work, Survives survives = Survives::kills);
+  [[nodiscard]] Survives batch_survives() const;
   [[nodiscard]] Status take_ready();
   [[nodiscard]] Status take(Message message);
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
@@ -151,6 +152,8 @@ class LayerRunner {
   [[nodiscard]] Status take_failures();
   [[nodiscard]] Status set_aside(const LaneResult& failure);
   void raise_alarm(const SetAside& message);
+  /// An output that was damaged in the journal is there again.
+  void forget_damage(const std::string& message_id);
   /// Gives the asset a new layer, its past and its open inputs.
   [[nodiscard]] Status begin_anew(const std::string& asset_id);
   [[nodiscard]] Status try_again_what_was_asked();
@@ -179,6 +182,7 @@ class LayerRunner {
   LatestOutputs latest_;
   ResendQueue resends_;
   Admission admission_;
+  bool took_local_ = false;                ///< of the running batch: inputs that came from no bus
   bool drained_ = false;                   ///< the bus had nothing more at the last look
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
   std::string last_error_;                 ///< with its time

@@ -29,6 +29,14 @@ void LayerRunner::raise_alarm(const SetAside& message) {
                  .since_ns = message.since_ns});
 }
 
+void LayerRunner::forget_damage(const std::string& message_id) {
+  const auto found = std::ranges::find(set_aside_, message_id, &SetAside::message_id);
+  if (found == set_aside_.end()) return;
+  alarms_.clear(kSetAside, found->asset_id, message_id);
+  log_event(LogLevel::info, "concluded again", {{"message", message_id}});
+  set_aside_.erase(found);
+}
+
 /// The rest of a test that was set aside goes the same way: without it, it would wait for ever.
 bool LayerRunner::is_set_aside(const Message& message) const {
   const std::string& pst_id = header_of(message).pst_id;

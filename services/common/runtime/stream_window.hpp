@@ -6,18 +6,14 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sealwatch/message/outside.hpp"
+
 namespace sealwatch {
 
 [[nodiscard]] constexpr std::uint64_t stream_window(std::string_view topic) {
   if (topic == "test_window") return 16;
   if (topic == "raw_samples" || topic == "sample_block") return 128;
   return 256;
-}
-
-/// Whether who writes it beats: what comes from outside does not.
-[[nodiscard]] constexpr bool is_of_a_service(std::string_view topic) {
-  return topic != "raw_samples" && topic != "acknowledgement" && topic != "maintenance_event" &&
-         topic != "model_acceptance";
 }
 
 }  // namespace sealwatch

@@ -5,17 +5,21 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "services/common/store/checkpointer.hpp"
 #include "services/common/store/journal.hpp"
+#include "services/common/store/journal_lock.hpp"
 #include "services/common/store/statements.hpp"
 
 namespace sealwatch {
 
-/// Raised when the layout of the tables changes; a journal of a newer version is refused, not guessed at.
-inline constexpr int kJournalSchemaVersion = 1;
+/// Raised when the layout of the tables changes: a journal of an older version is changed when it is opened (schema.cpp),
+/// one of a newer version is refused, not guessed at. Stands in table meta and, in SQLite, in user_version as well: a
+/// turned bit changes only one of them.
+inline constexpr int kJournalSchemaVersion = 2;
 
 struct Journal::Database {
   std::string name;  ///< connection string as errors show it, without a password
@@ -26,13 +30,18 @@ struct Journal::Database {
   long long last_receipt = 0;  ///< orders the inputs
   long long last_ordinal = 0;  ///< orders the outputs
   std::uint64_t open_inputs = 0;
-  std::size_t batch_rows = 0;                   ///< changed since the batch began
-  std::optional<Checkpointer> checkpointer;     ///< SQLite's
+  std::size_t batch_rows = 0;                                   ///< changed since the batch began
+  std::optional<Checkpointer> checkpointer;                     ///< SQLite's
+  Survives synchronous = Survives::power_cuts;                  ///< as SQLite is set now
+  std::set<std::pair<std::string, std::string>> damaged_tests;  ///< asset, PST id
+  std::optional<JournalLock> lock;                              ///< SQLite's
+  bool has_synced = false;  ///< the first batch brings the log's entry in its directory to the disk as well
+  std::string file;         ///< SQLite's
   std::optional<JournalStatements> statements;  ///< after `sql`, as they must end before it
 
   /// Connects, sets SQLite up, creates or checks the schema. Throws soci::soci_error, std::runtime_error or Error.
   void open(const std::string& connection);
-  void begin();
+  void begin(Survives survives);
   /// Reads the counters that are kept in memory.
   void load_counters();
 
@@ -53,11 +62,37 @@ struct Journal::Database {
     }
   }
 
- private:
   [[nodiscard]] Error describe(const char* doing, const std::string& what) const;
   [[nodiscard]] bool has_table(const std::string& table);
+  void take_file(const std::string& path);
+  /// Connects and sets SQLite up.
+  void connect(const std::string& connection);
+  /// From what is connected to a journal that can be used.
+  void make_ready();
+  [[nodiscard]] bool is_file() { return sql.get_backend_name() == "sqlite3"; }
+
+  // schema.cpp
   void create_schema();
   void check_schema();
+  [[nodiscard]] int schema_version();
+  void check_meta();
+  void migrate(int version);
+  void make_later_tables();
+  [[nodiscard]] std::string meta(const std::string& key);
+  void set_meta(const std::string& key, const std::string& value);
+
+  // journal_mend.cpp
+  /// Looks for rows that are not as they were written, and prepares that they come again.
+  void mend();
+  void mend_positions();
+  void mend_quarantine();
+  void mend_inputs();
+  void mend_outputs();
+  void know_damaged_tests();
+  /// The output, stamped, where one of its id was damaged: it now stands in its place.
+  [[nodiscard]] std::optional<Message> fill_place(const Message& message, UtcTime publishing_time);
+  void tell_of_damage(const std::string& aside);
+  void fetch_again(const std::string& topic, const std::string& writer, long long sequence);
 };
 
 }  // namespace sealwatch

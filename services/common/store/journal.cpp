@@ -1,7 +1,11 @@
 #include "services/common/store/journal.hpp"
 
+#include "sealwatch/message/blank.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "services/common/message/json.hpp"
 #include "services/common/store/database.hpp"
+#include "services/common/store/log_sync.hpp"
+#include "services/common/store/row_checksum.hpp"
 
 namespace sealwatch {
 namespace {
@@ -18,7 +22,19 @@ struct Row {
   std::string payload;
   long long sequence = 0;
   long long published = 0;
+  std::string message_id;
+  std::string asset_id;
+  std::string pst_id;
+  std::string checksum;
 };
+
+/// What a query for rows_of begins with.
+constexpr const char* kOutput =
+    "SELECT ordinal, topic, payload, sequence, published, message_id, asset_id, pst_id, coalesce(checksum, '')"
+    " FROM outputs WHERE ";
+constexpr const char* kInput =
+    "SELECT receipt, topic, coalesce(payload, ''), sequence, received, message_id, asset_id, pst_id,"
+    " coalesce(checksum, '') FROM inputs WHERE ";
 
 std::string topic_name(Topic topic) { return std::string(name_of(topic)); }
 
@@ -46,7 +62,15 @@ Message stamped(Message message, const std::string& writer_id, std::uint64_t seq
   return message;
 }
 
-/// Rows of "SELECT order, topic, payload, sequence, published ...", with :after bound, as the query pages, and :asset
+/// In place of a row that is damaged: its readers count on, and refuse it.
+Message placeholder(const Row& row) {
+  const auto topic = value_of<Topic>(row.topic);
+  Message message = blank_message(topic.value_or(Topic::sample_block));
+  header_of(message).message_id = std::string(kDamagedMessage) + row.topic + "/" + std::to_string(row.sequence);
+  return message;
+}
+
+/// Rows of a query that begins with kOutput or kInput, with :after bound, as the query pages, and :asset
 /// where one is asked for.
 std::vector<Row> rows_of(soci::session& sql, const std::string& query, long long after,
                          const std::string& asset_id = {}) {
@@ -58,6 +82,8 @@ std::vector<Row> rows_of(soci::session& sql, const std::string& query, long long
   statement.exchange(into(row.payload));
   statement.exchange(into(row.sequence));
   statement.exchange(into(row.published));
+  for (std::string* field : {&row.message_id, &row.asset_id, &row.pst_id, &row.checksum})
+    statement.exchange(into(*field));
   statement.exchange(use(after, "after"));
   if (!asset_id.empty()) statement.exchange(use(asset_id, "asset"));
   statement.alloc();
@@ -79,54 +105,58 @@ const std::string& Journal::writer_id() const { return database_->writer_id; }
 const std::map<Topic, std::uint64_t>& Journal::written() const { return database_->written; }
 std::uint64_t Journal::open_inputs() const { return database_->open_inputs; }
 
-Status Journal::for_each_page(const std::string& query, const std::string& asset_id, const Visitor& visit) {
+std::function<bool()> Journal::to_disk() const {
+  if (!database_->checkpointer) return [] { return true; };
+  return [log = std::make_shared<LogSync>(database_->file + "-wal")] { return log->sync(); };
+}
+
+Status Journal::for_each_page(const std::string& query, const std::string& asset_id, const NumberedVisitor& visit) {
   long long after = 0;
   for (;;) {
-    auto page = database_->guard("reading messages", [&] {
-      std::vector<Message> messages;
-      for (const Row& row : rows_of(database_->sql, query + std::to_string(kPage), after, asset_id)) {
-        messages.push_back(message_of(row, database_->name));
+    std::vector<std::pair<Message, std::uint64_t>> page;
+    auto rows = database_->guard("reading messages", [&] {
+      const std::vector<Row> read = rows_of(database_->sql, query + std::to_string(kPage), after, asset_id);
+      for (const Row& row : read) {
         after = row.order;
+        if (row.checksum == kDamaged || database_->damaged_tests.contains({row.asset_id, row.pst_id})) continue;
+        page.emplace_back(message_of(row, database_->name), static_cast<std::uint64_t>(row.sequence));
       }
-      return messages;
+      return read.size();
     });
-    if (!page) return fail(page.error());
-    if (page->empty()) return {};
-    for (const Message& message : *page)
-      if (const Status visited = visit(message); !visited) return visited;
+    if (!rows) return fail(rows.error());
+    if (*rows == 0) return {};
+    for (const auto& [message, sequence] : page)
+      if (const Status visited = visit(message, sequence); !visited) return visited;
   }
 }
 
+Status Journal::for_each_numbered_output(const NumberedVisitor& visit) {
+  return for_each_page(std::string(kOutput) + "ordinal > :after ORDER BY ordinal LIMIT ", {}, visit);
+}
+
 Status Journal::for_each_output(const Visitor& visit) {
-  return for_each_page(
-      "SELECT ordinal, topic, payload, sequence, published FROM outputs WHERE ordinal > :after ORDER BY ordinal LIMIT ",
-      {}, visit);
+  return for_each_numbered_output([&visit](const Message& message, std::uint64_t) { return visit(message); });
 }
 
 Status Journal::for_each_output_of(const std::string& asset_id, const Visitor& visit) {
-  return for_each_page(
-      "SELECT ordinal, topic, payload, sequence, published FROM outputs WHERE ordinal > :after AND asset_id = :asset"
-      " ORDER BY ordinal LIMIT ",
-      asset_id, visit);
+  return for_each_page(std::string(kOutput) + "ordinal > :after AND asset_id = :asset ORDER BY ordinal LIMIT ",
+                       asset_id, [&visit](const Message& message, std::uint64_t) { return visit(message); });
 }
 
 Status Journal::for_each_open_input(const Visitor& visit) {
-  return for_each_page(
-      "SELECT receipt, topic, payload, sequence, received FROM inputs WHERE consumed = 0 AND receipt > :after"
-      " ORDER BY receipt LIMIT ",
-      {}, visit);
+  return for_each_page(std::string(kInput) + "consumed = 0 AND receipt > :after ORDER BY receipt LIMIT ", {},
+                       [&visit](const Message& message, std::uint64_t) { return visit(message); });
 }
 
 Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, std::uint64_t last, std::size_t most) {
   return database_->guard("reading messages to send again", [&] {
-    const std::string query =
-        "SELECT ordinal, topic, payload, sequence, published FROM outputs WHERE sequence > :after AND sequence <= " +
-        std::to_string(last) + " AND topic = '" + topic_name(topic) + "' ORDER BY sequence LIMIT " +
-        std::to_string(most);
+    const std::string query = std::string(kOutput) + "sequence > :after AND sequence <= " + std::to_string(last) +
+                              " AND topic = '" + topic_name(topic) + "' ORDER BY sequence LIMIT " +
+                              std::to_string(most);
     std::vector<Message> messages;
     for (const Row& row : rows_of(database_->sql, query, static_cast<long long>(first) - 1))
-      messages.push_back(stamped(message_of(row, database_->name), writer_id(),
-                                 static_cast<std::uint64_t>(row.sequence), row.published));
+      messages.push_back(stamped(row.checksum == kDamaged ? placeholder(row) : message_of(row, database_->name),
+                                 writer_id(), static_cast<std::uint64_t>(row.sequence), row.published));
     return messages;
   });
 }
@@ -155,9 +185,9 @@ Result<std::vector<StreamPosition>> Journal::positions() {
   });
 }
 
-Status Journal::begin() {
+Status Journal::begin(Survives survives) {
   return database_->guard("beginning a batch", [&] {
-    database_->begin();
+    database_->begin(survives);
     database_->batch_rows = 0;
   });
 }
@@ -165,6 +195,7 @@ Status Journal::begin() {
 Status Journal::commit() {
   return database_->guard("committing a batch", [&] {
     database_->sql.commit();
+    database_->has_synced = true;
     if (database_->checkpointer) database_->checkpointer->committed(database_->batch_rows);
   });
 }
@@ -203,6 +234,7 @@ Result<std::optional<Message>> Journal::add_output(Message message, UtcTime publ
   return database_->guard("keeping an output", [&]() -> std::optional<Message> {
     const std::uint64_t sequence = database_->written[topic_of(message)] + 1;
     message = stamped(std::move(message), {}, 0, 0);
+    if (auto mended = database_->fill_place(message, publishing_time)) return mended;
     if (!database_->statements->add_output(database_->last_ordinal + 1, message, sequence, publishing_time))
       return std::nullopt;
     ++database_->last_ordinal;

@@ -47,6 +47,10 @@ struct SetAside {
 
 enum class InputState { open, consumed, set_aside, awaiting };  // awaiting: kept until a second person confirms it
 
+/// What a committed batch is safe from at once. A power cut takes back the last batches that are safe from kills alone,
+/// always the newest first, until they are on the disk (Journal::to_disk).
+enum class Survives { kills, power_cuts };
+
 class Journal {
  public:
   /// Opens or creates the journal of `service`. The writer id is made at creation and stays with the journal: a deleted
@@ -66,12 +70,20 @@ class Journal {
 
   [[nodiscard]] const std::string& writer_id() const;
 
+  /// Brings all that was committed before the call to the disk, and says whether it is there. The function may be called
+  /// in a thread of its own, while this journal lives.
+  [[nodiscard]] std::function<bool()> to_disk() const;
+
   // Reading. Outputs come back without stamps (writer id, sequence, publishing time) where the layer takes them back,
   // with stamps where they go out.
 
   using Visitor = std::function<Status(const Message&)>;
+  using NumberedVisitor = std::function<Status(const Message&, std::uint64_t sequence)>;
   /// Every output in the order of conclusion, as the layer made it.
   [[nodiscard]] Status for_each_output(const Visitor& visit);
+  /// Likewise, with its number in its stream. Those of a test of which one is damaged are left out: all of that test is
+  /// concluded again (journal_mend.cpp).
+  [[nodiscard]] Status for_each_numbered_output(const NumberedVisitor& visit);
   /// Every output about one asset, likewise.
   [[nodiscard]] Status for_each_output_of(const std::string& asset_id, const Visitor& visit);
   /// Every input that was not consumed, in the order of receipt. `visit` may write to the journal.
@@ -98,7 +110,7 @@ class Journal {
 
   // Writing, between begin and commit. After an error call rollback.
 
-  [[nodiscard]] Status begin();
+  [[nodiscard]] Status begin(Survives survives = Survives::kills);
   [[nodiscard]] Status commit();
   void rollback();
   /// Keeps an input; its message only where it was not consumed already.
@@ -138,7 +150,8 @@ class Journal {
  private:
   struct Database;
   explicit Journal(std::unique_ptr<Database> database);
-  [[nodiscard]] Status for_each_page(const std::string& query, const std::string& asset_id, const Visitor& visit);
+  [[nodiscard]] Status for_each_page(const std::string& query, const std::string& asset_id,
+                                     const NumberedVisitor& visit);
   std::unique_ptr<Database> database_;
 };
 

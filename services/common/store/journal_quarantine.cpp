@@ -2,6 +2,7 @@
 #include "services/common/message/json.hpp"
 #include "services/common/store/audit_rows.hpp"
 #include "services/common/store/database.hpp"
+#include "services/common/store/row_checksum.hpp"
 
 namespace sealwatch {
 namespace {
@@ -87,12 +88,15 @@ Result<std::vector<SetAside>> Journal::quarantine() {
 Status Journal::set_aside(const SetAside& message) {
   return database_->guard("setting a message aside", [&] {
     const long long since = message.since_ns;
+    const std::string checksum = row_checksum(
+        {message.message_id, message.topic, message.asset_id, message.pst_id, std::to_string(since), message.reason});
     database_->sql << "INSERT INTO quarantine(message_id, topic, asset_id, pst_id, since, reason, state, asked_by,"
-                      " asked) VALUES(:id, :topic, :asset, :pst, :since, :reason, 'set_aside', '', 0)"
-                      " ON CONFLICT(message_id) DO UPDATE SET since = excluded.since, reason = excluded.reason,"
-                      " state = 'set_aside'",
+                      " asked, checksum) VALUES(:id, :topic, :asset, :pst, :since, :reason, 'set_aside', '', 0,"
+                      " :checksum) ON CONFLICT(message_id) DO UPDATE SET topic = excluded.topic,"
+                      " asset_id = excluded.asset_id, pst_id = excluded.pst_id, since = excluded.since,"
+                      " reason = excluded.reason, state = 'set_aside', checksum = excluded.checksum",
         use(message.message_id, "id"), use(message.topic, "topic"), use(message.asset_id, "asset"),
-        use(message.pst_id, "pst"), use(since, "since"), use(message.reason, "reason");
+        use(message.pst_id, "pst"), use(since, "since"), use(message.reason, "reason"), use(checksum, "checksum");
     const long long moved = move(database_->sql, message, InputState::open, InputState::set_aside);
     database_->open_inputs -= static_cast<std::uint64_t>(moved);
     ++database_->batch_rows;
@@ -133,7 +137,7 @@ Result<std::vector<Journal::Awaiting>> Journal::awaiting() {
 Status Journal::end_awaiting(const std::string& message_id, InputState state) {
   return database_->guard("ending an act's wait", [&] {
     const bool opened = state == InputState::open;
-    const std::string change = opened ? "consumed = 0" : "consumed = 1, payload = NULL";
+    const std::string change = opened ? "consumed = 0" : "consumed = 1, payload = NULL, checksum = NULL";
     soci::statement statement =
         (database_->sql.prepare << "UPDATE inputs SET " + change + " WHERE consumed = 3 AND message_id = :id",
          use(message_id, "id"));

@@ -77,9 +77,10 @@ struct JournalReader::Session {
   /// Throws Error where this is not the service's journal, or one of a newer program.
   void check(const std::string& service) {
     const std::string version = meta("schema_version");
-    if (version != std::to_string(kJournalSchemaVersion))
+    const bool known = version.size() == 1 && version[0] >= '1' && version[0] - '0' <= kJournalSchemaVersion;
+    if (!known)
       throw Error{place, "table meta, schema_version", version,
-                  "must be " + std::to_string(kJournalSchemaVersion) + ", the version that this program knows",
+                  "must be at most " + std::to_string(kJournalSchemaVersion) + ", the version that this program knows",
                   "look with the sealwatch that wrote this journal, or a newer one"};
     const std::string owner = meta("service");
     if (owner != service) throw Error{place, "table meta, service", owner, "must be '" + service + "'", {}};

@@ -1,6 +1,7 @@
 #include "services/common/store/statements.hpp"
 
 #include "services/common/message/json.hpp"
+#include "services/common/store/row_checksum.hpp"
 
 namespace sealwatch {
 
@@ -26,25 +27,28 @@ JournalStatements::JournalStatements(soci::session& sql)
                                        " AND sequence = 0 ORDER BY receipt DESC LIMIT 1",
                         into(message_id_), use(topic_, "topic"), use(asset_id_, "asset"))),
       insert_input_((sql.prepare << "INSERT INTO inputs(receipt, topic, writer_id, sequence, message_id, asset_id,"
-                                    " pst_id, received, consumed, payload) VALUES(:receipt, :topic, :writer,"
-                                    " :sequence, :message, :asset, :pst, :received, :consumed, :payload)",
+                                    " pst_id, received, consumed, payload, checksum) VALUES(:receipt, :topic,"
+                                    " :writer, :sequence, :message, :asset, :pst, :received, :consumed, :payload,"
+                                    " :checksum)",
                      use(order_, "receipt"), use(topic_, "topic"), use(writer_id_, "writer"),
                      use(sequence_, "sequence"), use(message_id_, "message"), use(asset_id_, "asset"),
                      use(pst_id_, "pst"), use(time_, "received"), use(consumed_, "consumed"),
-                     use(payload_, payload_there_, "payload"))),
-      consume_input_((sql.prepare << "UPDATE inputs SET consumed = 1, payload = NULL"
+                     use(payload_, payload_there_, "payload"), use(checksum_, payload_there_, "checksum"))),
+      consume_input_((sql.prepare << "UPDATE inputs SET consumed = 1, payload = NULL, checksum = NULL"
                                      " WHERE message_id = :message AND consumed = 0",
                       use(message_id_, "message"))),
       insert_output_((sql.prepare << "INSERT INTO outputs(ordinal, topic, sequence, message_id, asset_id, pst_id,"
-                                     " published, payload) VALUES(:ordinal, :topic, :sequence, :message, :asset,"
-                                     " :pst, :published, :payload) ON CONFLICT(message_id) DO NOTHING",
+                                     " published, payload, checksum) VALUES(:ordinal, :topic, :sequence,"
+                                     " :message, :asset, :pst, :published, :payload, :checksum)"
+                                     " ON CONFLICT(message_id) DO NOTHING",
                       use(order_, "ordinal"), use(topic_, "topic"), use(sequence_, "sequence"),
                       use(message_id_, "message"), use(asset_id_, "asset"), use(pst_id_, "pst"),
-                      use(time_, "published"), use(payload_, payload_there_, "payload"))),
-      upsert_position_((sql.prepare << "INSERT INTO positions(topic, writer_id, sequence) VALUES(:topic, :writer,"
-                                       " :sequence) ON CONFLICT(topic, writer_id)"
-                                       " DO UPDATE SET sequence = excluded.sequence",
-                        use(topic_, "topic"), use(writer_id_, "writer"), use(sequence_, "sequence"))) {}
+                      use(time_, "published"), use(payload_, payload_there_, "payload"), use(checksum_, "checksum"))),
+      upsert_position_((sql.prepare << "INSERT INTO positions(topic, writer_id, sequence, checksum) VALUES(:topic,"
+                                       " :writer, :sequence, :checksum) ON CONFLICT(topic, writer_id)"
+                                       " DO UPDATE SET sequence = excluded.sequence, checksum = excluded.checksum",
+                        use(topic_, "topic"), use(writer_id_, "writer"), use(sequence_, "sequence"),
+                        use(checksum_, "checksum"))) {}
 
 bool JournalStatements::has_input(const std::string& message_id) {
   message_id_ = message_id;
@@ -77,6 +81,7 @@ void JournalStatements::add_input(long long receipt, const Message& message, con
   const bool kept = state != InputState::consumed;
   payload_ = kept ? to_json(message, JsonForm::exact) : std::string();
   payload_there_ = kept ? soci::i_ok : soci::i_null;
+  checksum_ = kept ? checksum_of_input(order_, topic_, message_id_, asset_id_, pst_id_, payload_) : std::string();
   insert_input_.execute(true);
 }
 
@@ -94,6 +99,7 @@ bool JournalStatements::add_output(long long ordinal, const Message& message, st
   time_ = publishing_time.nanoseconds;
   payload_ = to_json(message, JsonForm::exact);
   payload_there_ = soci::i_ok;
+  checksum_ = checksum_of_output(order_, topic_, sequence_, message_id_, asset_id_, pst_id_, payload_);
   insert_output_.execute(true);
   return insert_output_.get_affected_rows() > 0;
 }
@@ -102,6 +108,7 @@ void JournalStatements::set_position(const StreamPosition& position) {
   topic_ = position.topic;
   writer_id_ = position.writer_id;
   sequence_ = static_cast<long long>(position.sequence);
+  checksum_ = checksum_of_position(topic_, writer_id_, sequence_);
   upsert_position_.execute(true);
 }
 

@@ -41,6 +41,7 @@ class JournalStatements {
   long long time_ = 0;
   int consumed_ = 0;
   std::string payload_;
+  std::string checksum_;
   soci::indicator payload_there_ = soci::i_ok;
   long long count_ = 0;
 

@@ -143,5 +143,38 @@ TEST(AdmissionOfEvents, OnlyWhatIsKnownIsTakenIn) {
   EXPECT_THAT(said("test_retracted", "retraction/XT04/test/x/y"), HasSubstr("does not say what is retracted"));
 }
 
+TEST(Admission, ATestThatWasRetractedIsNotTheNewest) {
+  Admission admission;
+  const auto made = [](const std::string& start) {
+    StateReport report;
+    report.asset_id = "XT03-MV2";
+    report.header.pst_id = "test " + start;
+    report.header.event_time_known = true;
+    report.header.event_time_ns = parse_utc(start).value().nanoseconds;
+    return Message(report);
+  };
+  MaintenanceEvent replacement;
+  replacement.asset_id = "XT03-MV2";
+  replacement.kind = "seal_replaced";
+  replacement.header.event_time_known = true;
+  replacement.header.event_time_ns = parse_utc("2049-01-01T00:00:00Z").value().nanoseconds;
+  admission.note(made("2031-01-01T00:00:00Z"));
+  admission.note(made("2050-01-01T00:00:00Z"));
+  EXPECT_FALSE(admission.refusal(replacement, kNow)) << "it is before the newest test";
+  MaintenanceEvent retraction;
+  retraction.asset_id = "XT03-MV2";
+  retraction.header.message_id = retraction_id("XT03-MV2", kTestRetracted, "test 2050-01-01T00:00:00Z", kNow);
+  admission.note(retraction);
+  EXPECT_THAT(admission.refusal(replacement, kNow).value_or(""), HasSubstr("lies in the future"));
+
+  Admission restarted;
+  restarted.note(made("2050-01-01T00:00:00Z"));
+  RemainingLife answer;
+  answer.asset_id = "XT03-MV2";
+  answer.header.source_ids = {retraction.header.message_id};
+  restarted.note(answer);
+  EXPECT_TRUE(restarted.refusal(replacement, kNow)) << "what answered the retraction names it";
+}
+
 }  // namespace
 }  // namespace sealwatch

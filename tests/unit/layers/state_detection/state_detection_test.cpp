@@ -392,6 +392,20 @@ void record_also(synthetic::Test& test, const std::string& channel) {
   test.features.channel_status = test.window.channel_status;
 }
 
+TEST(StateDetection, ASensorThatIsDeadFromTheFirstTestOnIsStale) {
+  Journal journal;
+  StateDetection detection = layer();
+  for (int number = 0; number < 3; ++number) {
+    Circumstances circumstances;
+    circumstances.number = number;
+    circumstances.failed_channel = "flow";
+    play(detection, journal, {}, circumstances);
+    EXPECT_THAT(last_report(journal).stale_channels, testing::ElementsAre("flow")) << number;
+    EXPECT_THAT(last_report(journal).verdict_reasons,
+                Contains(HasSubstr("channel flow, never OK before, is FAILED: frozen for 4.0 s")));
+  }
+}
+
 TEST(StateDetection, AChannelThatOneTestHadBesidesIsNotMissed) {
   for (const int with_it : {0, 1, 5}) {
     Journal journal;

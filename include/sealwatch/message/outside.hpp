@@ -1,0 +1,18 @@
+// Which topics come from outside the services, and what a service sends in place of a message that it has lost.
+#pragma once
+
+#include <string_view>
+
+namespace sealwatch {
+
+/// Whether who writes it keeps a journal and beats: what comes from outside does neither.
+[[nodiscard]] constexpr bool is_of_a_service(std::string_view topic) {
+  return topic != "raw_samples" && topic != "acknowledgement" && topic != "maintenance_event" &&
+         topic != "model_acceptance";
+}
+
+/// What the id of a message begins with that stands for one whose row in its writer's journal is damaged: readers count
+/// on, and take nothing from it.
+inline constexpr std::string_view kDamagedMessage = "damaged/";
+
+}  // namespace sealwatch

@@ -1,0 +1,63 @@
+// `sealwatch backup` and `sealwatch restore`: copies of the services' journals, and their way back.
+#include "services/common/store/backup.hpp"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+#include "services/cli/state_journals.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path copy_of(const std::string& directory, const std::string& service) {
+  return fs::path(directory) / (service + ".db");
+}
+
+}  // namespace
+
+int run_backup(const BackupOptions& options) {
+  const auto connections = journals_at_hand(options.state_directory, options.config);
+  if (!connections) return kBadInput;
+  std::error_code failed;
+  fs::create_directories(options.directory, failed);
+  for (const auto& [service, connection] : *connections) {
+    const fs::path copy = copy_of(options.directory, service);
+    if (const Status done = back_up_journal(connection, service, copy.string()); !done) {
+      complain(done.error());
+      return kBadInput;
+    }
+    std::printf("%s: %ju bytes\n", copy.c_str(), static_cast<std::uintmax_t>(fs::file_size(copy, failed)));
+  }
+  return kOk;
+}
+
+int run_restore(const BackupOptions& options) {
+  const auto connections = journal_connections(options.state_directory, options.config);
+  if (!connections) return kBadInput;
+  bool found = false;
+  for (const auto& [service, connection] : *connections) {
+    const fs::path copy = copy_of(options.directory, service);
+    if (std::error_code none; !fs::exists(copy, none)) continue;
+    found = true;
+    const auto aside = restore_journal(copy.string(), connection, service);
+    if (!aside) {
+      complain(aside.error());
+      return kBadInput;
+    }
+    std::printf("%s: restored%s\n", service.c_str(),
+                aside->empty() ? "" : ("; what was there is now " + *aside).c_str());
+  }
+  if (found) return kOk;
+  complain(Error{.file = options.directory,
+                 .place = {},
+                 .value = {},
+                 .rule = "holds no copy of a journal",
+                 .advice = "name the directory that `sealwatch backup` wrote to"});
+  return kBadInput;
+}
+
+}  // namespace sealwatch::cli

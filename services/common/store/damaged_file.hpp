@@ -1,0 +1,21 @@
+// A SQLite file in which the database cannot find its way any more, as a page or its header was changed.
+#pragma once
+
+#include <soci/soci.h>
+
+#include <string>
+#include <string_view>
+
+namespace sealwatch {
+
+/// Whether the complaint says so of this file. One that never was a database is no damage: somebody named a wrong file.
+[[nodiscard]] bool is_damage(const std::string& file, std::string_view complaint);
+/// So that the next to open the file knows: damage may lie where nothing is read at the start.
+void note_damage(const std::string& file);
+[[nodiscard]] bool is_known_damaged(const std::string& file);
+/// Moves file and log away, and returns where the file is now. Throws std::runtime_error where that cannot be done.
+[[nodiscard]] std::string move_aside(const std::string& file);
+/// Copies what can be read of the record of acts.
+void keep_acts_of(const std::string& aside, soci::session& sql);
+
+}  // namespace sealwatch

@@ -1,0 +1,227 @@
+// Rows that are not as they were written: a disk or a memory turned a bit. They are found when the journal is opened,
+// never read, and wherever possible made again:
+//
+//   position     from the numbers of the inputs, which are kept for ever
+//   output       its place stays empty; the inputs of its test are forgotten, come again from the neighbours' journals,
+//                and what is concluded from them anew fills the place
+//   open input   forgotten, and comes again; what came from outside does not, and is set aside with that reason
+//   quarantine   what it set aside is tried again
+//
+// What cannot be made again is an alarm (quarantine, "damaged") until somebody has seen it. A consumed input is only an
+// id that prevents doubles; a record of acts shows by itself that it was changed.
+#include <chrono>
+
+#include "sealwatch/message/outside.hpp"
+#include "services/common/message/json.hpp"
+#include "services/common/store/database.hpp"
+#include "services/common/store/row_checksum.hpp"
+
+namespace sealwatch {
+namespace {
+
+using soci::into;
+using soci::use;
+
+struct Row {
+  long long order = 0;
+  std::string topic;
+  std::string writer_id;
+  long long sequence = 0;
+  std::string message_id;
+  std::string asset_id;
+  std::string pst_id;
+};
+
+/// Rows of a table that are not as they were written; those of version 1 have no checksum.
+std::vector<Row> damaged_rows(soci::session& sql, bool outputs) {
+  const std::string query =
+      outputs
+          ? "SELECT ordinal, topic, '', sequence, message_id, asset_id, pst_id, payload, checksum FROM outputs"
+            " WHERE checksum <> 'damaged'"
+          : "SELECT receipt, topic, writer_id, sequence, message_id, asset_id, pst_id, payload, checksum FROM inputs"
+            " WHERE consumed = 0 OR consumed = 3";
+  Row row;
+  std::string payload;
+  std::string checksum;
+  soci::indicator has_payload = soci::i_null;
+  soci::indicator has_checksum = soci::i_null;
+  soci::statement statement = (sql.prepare << query, into(row.order), into(row.topic), into(row.writer_id),
+                               into(row.sequence), into(row.message_id), into(row.asset_id), into(row.pst_id),
+                               into(payload, has_payload), into(checksum, has_checksum));
+  std::vector<Row> damaged;
+  statement.execute();
+  while (statement.fetch()) {
+    const bool known = has_payload == soci::i_ok && has_checksum != soci::i_ok;
+    if (known) continue;
+    const std::string expected =
+        outputs
+            ? checksum_of_output(row.order, row.topic, row.sequence, row.message_id, row.asset_id, row.pst_id, payload)
+            : checksum_of_input(row.order, row.topic, row.message_id, row.asset_id, row.pst_id, payload);
+    if (has_payload != soci::i_ok || checksum != expected) damaged.push_back(row);
+  }
+  return damaged;
+}
+
+void tell(soci::session& sql, const Row& row, const std::string& reason) {
+  const long long now =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  const std::string none;
+  const std::string checksum =
+      row_checksum({row.message_id, row.topic, row.asset_id, none, std::to_string(now), reason});
+  sql << "DELETE FROM quarantine WHERE message_id = :id", use(row.message_id, "id");
+  sql << "INSERT INTO quarantine(message_id, topic, asset_id, pst_id, since, reason, state, asked_by, asked, checksum)"
+         " VALUES(:id, :topic, :asset, '', :since, :reason, 'set_aside', '', 0, :checksum)",
+      use(row.message_id, "id"), use(row.topic, "topic"), use(row.asset_id, "asset"), use(now, "since"),
+      use(reason, "reason"), use(checksum, "checksum");
+}
+
+}  // namespace
+
+void Journal::Database::mend() {
+  soci::transaction transaction(sql);
+  mend_positions();
+  mend_quarantine();
+  mend_inputs();
+  mend_outputs();
+  transaction.commit();
+  know_damaged_tests();
+}
+
+void Journal::Database::mend_positions() {
+  std::vector<StreamPosition> damaged;
+  StreamPosition row;
+  long long sequence = 0;
+  std::string checksum;
+  soci::statement statement =
+      (sql.prepare << "SELECT topic, writer_id, sequence, checksum FROM positions WHERE checksum IS NOT NULL",
+       into(row.topic), into(row.writer_id), into(sequence), into(checksum));
+  statement.execute();
+  while (statement.fetch())
+    if (checksum != checksum_of_position(row.topic, row.writer_id, sequence)) damaged.push_back(row);
+  for (const StreamPosition& one : damaged)
+    sql << "DELETE FROM positions WHERE topic = :topic AND writer_id = :writer", use(one.topic, "topic"),
+        use(one.writer_id, "writer");
+  if (damaged.empty()) return;
+  sql << "INSERT INTO positions(topic, writer_id, sequence) SELECT topic, writer_id, max(sequence) FROM inputs"
+         " WHERE sequence > 0 GROUP BY topic, writer_id ON CONFLICT(topic, writer_id) DO NOTHING";
+}
+
+void Journal::Database::mend_quarantine() {
+  std::vector<std::string> damaged;
+  Row row;
+  long long since = 0;
+  std::string reason;
+  std::string state;
+  std::string checksum;
+  soci::statement statement =
+      (sql.prepare << "SELECT message_id, topic, asset_id, pst_id, since, reason, state, checksum FROM quarantine"
+                      " WHERE checksum IS NOT NULL",
+       into(row.message_id), into(row.topic), into(row.asset_id), into(row.pst_id), into(since), into(reason),
+       into(state), into(checksum));
+  statement.execute();
+  while (statement.fetch()) {
+    const bool is_state = state == "set_aside" || state == "retry" || state == "released";
+    const std::string expected =
+        row_checksum({row.message_id, row.topic, row.asset_id, row.pst_id, std::to_string(since), reason});
+    if (!is_state || checksum != expected) damaged.push_back(row.message_id);
+  }
+  for (const std::string& id : damaged) sql << "DELETE FROM quarantine WHERE message_id = :id", use(id, "id");
+  if (damaged.empty()) return;
+  sql << "UPDATE inputs SET consumed = 0 WHERE consumed = 2 AND NOT EXISTS (SELECT 1 FROM quarantine q WHERE"
+         " q.state <> 'released' AND (q.message_id = inputs.message_id OR (q.pst_id <> '' AND q.pst_id = inputs.pst_id"
+         " AND q.asset_id = inputs.asset_id)))";
+}
+
+void Journal::Database::mend_inputs() {
+  for (const Row& row : damaged_rows(sql, false)) {
+    long long position = 0;
+    sql << "SELECT coalesce(max(sequence), 0) FROM positions WHERE topic = :topic AND writer_id = :writer",
+        use(row.topic, "topic"), use(row.writer_id, "writer"), into(position);
+    if (is_of_a_service(row.topic) && row.sequence > 0 && row.sequence <= position) {
+      sql << "DELETE FROM inputs WHERE receipt = :receipt", use(row.order, "receipt");
+      fetch_again(row.topic, row.writer_id, row.sequence);
+      continue;
+    }
+    sql << "UPDATE inputs SET consumed = 2 WHERE receipt = :receipt", use(row.order, "receipt");
+    tell(sql, row, "damaged in the journal; what came from outside cannot be fetched again: send it again");
+  }
+}
+
+void Journal::Database::mend_outputs() {
+  for (const Row& row : damaged_rows(sql, true)) {
+    sql << "UPDATE outputs SET checksum = 'damaged' WHERE ordinal = :ordinal", use(row.order, "ordinal");
+    tell(sql, row, "damaged in the journal; it is concluded again from the neighbours' messages, where they have them");
+    std::vector<Row> sources;
+    Row source;
+    soci::statement statement =
+        (sql.prepare << "SELECT receipt, topic, writer_id, sequence FROM inputs WHERE asset_id = :asset AND"
+                        " pst_id = :pst AND pst_id <> '' AND consumed = 1 AND sequence > 0",
+         use(row.asset_id, "asset"), use(row.pst_id, "pst"), into(source.order), into(source.topic),
+         into(source.writer_id), into(source.sequence));
+    statement.execute();
+    while (statement.fetch())
+      if (is_of_a_service(source.topic)) sources.push_back(source);
+    for (const Row& one : sources) {
+      sql << "DELETE FROM inputs WHERE receipt = :receipt", use(one.order, "receipt");
+      fetch_again(one.topic, one.writer_id, one.sequence);
+    }
+  }
+}
+
+void Journal::Database::know_damaged_tests() {
+  damaged_tests.clear();
+  std::pair<std::string, std::string> test;
+  soci::statement statement =
+      (sql.prepare << "SELECT asset_id, pst_id FROM outputs WHERE checksum = 'damaged' AND pst_id <> ''",
+       into(test.first), into(test.second));
+  statement.execute();
+  while (statement.fetch()) damaged_tests.insert(test);
+}
+
+std::optional<Message> Journal::Database::fill_place(const Message& message, UtcTime publishing_time) {
+  const Header& header = header_of(message);
+  if (!damaged_tests.contains({asset_of(message), header.pst_id})) return std::nullopt;
+  long long ordinal = 0;
+  long long sequence = 0;
+  sql << "SELECT ordinal, sequence FROM outputs WHERE message_id = :id AND checksum = 'damaged'",
+      use(header.message_id, "id"), into(ordinal), into(sequence);
+  if (!sql.got_data()) return std::nullopt;
+  const std::string topic(name_of(topic_of(message)));
+  const std::string asset = asset_of(message);
+  const std::string payload = to_json(message, JsonForm::exact);
+  const std::string checksum =
+      checksum_of_output(ordinal, topic, sequence, header.message_id, asset, header.pst_id, payload);
+  const long long published = publishing_time.nanoseconds;
+  sql << "UPDATE outputs SET payload = :payload, checksum = :checksum, topic = :topic, asset_id = :asset, pst_id = "
+         ":pst,"
+         " published = :published WHERE ordinal = :ordinal",
+      use(payload, "payload"), use(checksum, "checksum"), use(topic, "topic"), use(asset, "asset"),
+      use(header.pst_id, "pst"), use(published, "published"), use(ordinal, "ordinal");
+  sql << "UPDATE quarantine SET state = 'released' WHERE message_id = :id", use(header.message_id, "id");
+  know_damaged_tests();
+  Message placed = message;
+  header_of(placed).writer_id = writer_id;
+  header_of(placed).stream_sequence = static_cast<std::uint64_t>(sequence);
+  header_of(placed).publishing_time_ns = published;
+  return placed;
+}
+
+void Journal::Database::tell_of_damage(const std::string& aside) {
+  Row row;
+  row.message_id = "journal/" + service;
+  tell(sql, row,
+       "the journal was damaged and is made again from the neighbours' messages; the old one is " + aside +
+           ": acknowledge and accept again what is in force");
+}
+
+/// Reads the stream again from there; what is known is passed over by its id.
+void Journal::Database::fetch_again(const std::string& topic, const std::string& writer, long long sequence) {
+  const long long before = sequence - 1;
+  const std::string checksum = checksum_of_position(topic, writer, before);
+  sql << "UPDATE positions SET sequence = :before, checksum = :checksum WHERE topic = :topic AND writer_id = :writer"
+         " AND sequence > :limit",
+      use(before, "before"), use(checksum, "checksum"), use(topic, "topic"), use(writer, "writer"),
+      use(before, "limit");
+}
+
+}  // namespace sealwatch

@@ -1,0 +1,230 @@
+// Bits that a disk or a memory turned, in every table of a journal: noticed when it is opened, never read, and made
+// again wherever that is possible.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "services/common/store/journal.hpp"
+#include "tests/unit/store/place.hpp"
+
+namespace sealwatch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr const char* kService = "health_assessment";
+
+Header header(const std::string& id, const std::string& pst_id) {
+  Header made;
+  made.message_id = id;
+  made.pst_id = pst_id;
+  return made;
+}
+
+/// From a neighbour's stream, and what is concluded of it.
+Message features(int test) {
+  TestFeatures made;
+  made.asset_id = "XT03";
+  made.header = header("features " + std::to_string(test), "test " + std::to_string(test));
+  made.header.writer_id = "data_manipulation-1";
+  made.header.stream_sequence = static_cast<std::uint64_t>(test);
+  return made;
+}
+
+Message report(int test) {
+  HealthReport made;
+  made.asset_id = "XT03";
+  made.header = header("report " + std::to_string(test), "test " + std::to_string(test));
+  return made;
+}
+
+class Mend : public ::testing::Test {
+ protected:
+  Mend() {
+    Journal journal = open();
+    EXPECT_TRUE(journal.begin());
+    for (int test = 1; test <= 3; ++test) {
+      EXPECT_TRUE(journal.add_input(features(test), UtcTime{}, test < 3));
+      EXPECT_TRUE(journal.set_position({"test_features", "data_manipulation-1", static_cast<std::uint64_t>(test)}));
+      if (test < 3) {
+        EXPECT_TRUE(journal.add_output(report(test), UtcTime{}).has_value());
+      }
+    }
+    EXPECT_TRUE(journal.set_aside({"broken", "test_features", "XT03", "test 9", 5, "it failed"}));
+    EXPECT_TRUE(journal.commit());
+  }
+  [[nodiscard]] Journal open() const {
+    auto journal = Journal::open(place_.connection(), kService);
+    if (!journal) throw std::runtime_error(journal.error().describe());
+    return std::move(*journal);
+  }
+  /// Turns the lowest bit of the first letter of a field.
+  void turn_bit(const std::string& table, const std::string& field, const std::string& where) const {
+    std::string value;
+    soci::session sql(place_.connection());
+    sql << "SELECT " + field + " FROM " + table + " WHERE " + where, soci::into(value);
+    ASSERT_FALSE(value.empty());
+    value[0] = static_cast<char>(value[0] ^ 1);
+    sql << "UPDATE " + table + " SET " + field + " = :value WHERE " + where, soci::use(value, "value");
+  }
+  static std::vector<std::string> outputs(Journal& journal) {
+    std::vector<std::string> ids;
+    EXPECT_TRUE(
+        journal.for_each_output([&](const Message& m) { return ids.push_back(header_of(m).message_id), Status(); }));
+    return ids;
+  }
+  static std::vector<std::string> open_inputs(Journal& journal) {
+    std::vector<std::string> ids;
+    EXPECT_TRUE(journal.for_each_open_input(
+        [&](const Message& m) { return ids.push_back(header_of(m).message_id), Status(); }));
+    return ids;
+  }
+  static std::uint64_t position(Journal& journal) { return journal.positions().value().at(0).sequence; }
+
+  Place place_;
+};
+
+TEST_F(Mend, WhatIsWholeStaysAsItIs) {
+  Journal journal = open();
+  EXPECT_THAT(outputs(journal), ElementsAre("report 1", "report 2"));
+  EXPECT_THAT(open_inputs(journal), ElementsAre("features 3"));
+  EXPECT_EQ(position(journal), 3U);
+  EXPECT_THAT(journal.quarantine().value(), SizeIs(1));
+}
+
+TEST_F(Mend, AnOutputIsConcludedAgainInItsPlace) {
+  for (const std::string field : {"payload", "asset_id", "topic"}) {
+    SCOPED_TRACE(field);
+    turn_bit("outputs", field, "ordinal = 1");
+    Journal journal = open();
+    EXPECT_THAT(outputs(journal), ElementsAre("report 2"));
+    ASSERT_THAT(journal.quarantine().value(), SizeIs(2)) << "it is told";
+    if (field == "payload") {
+      EXPECT_FALSE(journal.has_input("features 1").value()) << "it is to come again";
+      EXPECT_EQ(position(journal), 0U);
+      EXPECT_TRUE(journal.has_input("features 2").value());
+    }
+    const auto sent_again = journal.outputs(field == "topic" ? Topic::test_features : Topic::health_report, 1, 1, 9);
+    if (field != "topic") {
+      EXPECT_THAT(header_of(sent_again.value().at(0)).message_id, ::testing::StartsWith("damaged/"));
+    }
+    if (field != "payload") place_.execute("UPDATE outputs SET asset_id = 'XT03', pst_id = 'test 1' WHERE ordinal = 1");
+  }
+}
+
+TEST_F(Mend, AnOutputThatWasConcludedAgainHasItsOldNumber) {
+  turn_bit("outputs", "payload", "ordinal = 1");
+  {
+    Journal journal = open();
+    ASSERT_TRUE(journal.begin());
+    const auto again = journal.add_output(report(1), UtcTime{7});
+    ASSERT_TRUE(again.has_value() && *again);
+    EXPECT_EQ(header_of(**again).stream_sequence, 1U);
+    EXPECT_EQ(header_of(**again).writer_id, journal.writer_id());
+    ASSERT_TRUE(journal.commit());
+    EXPECT_THAT(outputs(journal), ElementsAre("report 1", "report 2"));
+    EXPECT_THAT(journal.quarantine().value(), SizeIs(1));
+  }
+  Journal journal = open();
+  EXPECT_THAT(outputs(journal), ElementsAre("report 1", "report 2"));
+  EXPECT_EQ(header_of(journal.outputs(Topic::health_report, 1, 1, 9).value().at(0)).message_id, "report 1");
+}
+
+TEST_F(Mend, AnOpenInputComesAgain) {
+  turn_bit("inputs", "payload", "receipt = 3");
+  Journal journal = open();
+  EXPECT_THAT(open_inputs(journal), IsEmpty());
+  EXPECT_FALSE(journal.has_input("features 3").value());
+  EXPECT_EQ(position(journal), 2U);
+}
+
+TEST_F(Mend, AnInputThatSeemsOpenAndHasNoMessageComesAgain) {
+  place_.execute("UPDATE inputs SET consumed = 0 WHERE receipt = 2");
+  Journal journal = open();
+  EXPECT_THAT(open_inputs(journal), ElementsAre("features 3"));
+  EXPECT_EQ(position(journal), 1U);
+}
+
+TEST_F(Mend, AnOpenInputFromOutsideIsToldAsLost) {
+  {
+    Journal journal = open();
+    Message block = RawSamples();
+    header_of(block).message_id = "raw 1";
+    ASSERT_TRUE(journal.begin());
+    ASSERT_TRUE(journal.add_input(block, UtcTime{}, false));
+    ASSERT_TRUE(journal.commit());
+  }
+  turn_bit("inputs", "payload", "message_id = 'raw 1'");
+  Journal journal = open();
+  EXPECT_THAT(open_inputs(journal), ElementsAre("features 3"));
+  ASSERT_THAT(journal.quarantine().value(), SizeIs(2));
+  EXPECT_THAT(journal.quarantine().value().at(1).reason, HasSubstr("send it again"));
+}
+
+TEST_F(Mend, APositionIsTheLastInputOfItsStream) {
+  place_.execute("UPDATE positions SET sequence = 1000003");
+  Journal journal = open();
+  EXPECT_EQ(position(journal), 3U);
+}
+
+TEST_F(Mend, WhatADamagedRowSetAsideIsTriedAgain) {
+  place_.execute("UPDATE inputs SET consumed = 2, pst_id = 'test 9' WHERE receipt = 2");
+  turn_bit("quarantine", "reason", "message_id = 'broken'");
+  Journal journal = open();
+  EXPECT_THAT(journal.quarantine().value(), IsEmpty());
+  EXPECT_FALSE(journal.has_input("features 2").value()) << "its message was gone: it comes again";
+}
+
+TEST_F(Mend, TheNameOfADamagedJournalIsNew) {
+  const std::string before = open().writer_id();
+  turn_bit("meta", "value", "name = 'service'");
+  EXPECT_NE(open().writer_id(), before);
+  const std::string second = open().writer_id();
+  turn_bit("meta", "value", "name = 'writer_id'");
+  EXPECT_NE(open().writer_id(), second);
+}
+
+TEST_F(Mend, ATurnedBitOfTheVersionIsNoNewerVersion) {
+  place_.execute("UPDATE meta SET value = '3' WHERE name = 'schema_version'");
+  EXPECT_FALSE(open().writer_id().empty());
+  place_.execute("UPDATE meta SET value = 'r' WHERE name = 'schema_version'");
+  EXPECT_FALSE(open().writer_id().empty());
+}
+
+/// In the middle of a page that SQLite must read at the start, and in its header.
+TEST_F(Mend, AFileThatIsNoDatabaseAnyMoreIsMadeAgain) {
+  for (const std::streamoff place : {std::streamoff{0}, std::streamoff{1024 + 1}, std::streamoff{20}}) {
+    SCOPED_TRACE(place);
+    {
+      Journal journal = open();
+      ASSERT_TRUE(journal.begin());
+      ASSERT_TRUE(journal
+                      .record({.at = {},
+                               .kind = "acknowledgement",
+                               .asset_id = "XT03",
+                               .who = "J. Silva",
+                               .subject = "a",
+                               .text = {},
+                               .outcome = "taken"})
+                      .has_value());
+      ASSERT_TRUE(journal.commit());
+    }
+    const std::filesystem::path file = place_.directory() / "journal.db";
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(place);
+    stream.write("\xff\xff", 2);
+    stream.close();
+    std::filesystem::remove(file.string() + "-wal");
+    Journal journal = open();
+    EXPECT_TRUE(std::filesystem::exists(file.string() + ".damaged-1"));
+    ASSERT_THAT(journal.quarantine().value(), SizeIs(1));
+    EXPECT_THAT(journal.quarantine().value().at(0).reason, HasSubstr("damaged-"));
+  }
+}
+
+}  // namespace
+}  // namespace sealwatch

@@ -1,6 +1,7 @@
 // Sensors that an asset has lost, as alarms: a channel that was OK in most earlier tests and is not in the newest one
-// (not recorded, frozen, out of range), or one that is recorded and dead from the first test on. It stands from the first test without the channel until a later one has it again,
-// the actuator is replaced, or the channel is expected no more (history.hpp).
+// (not recorded, frozen, out of range), or one that is recorded and dead from the first test on. It stands from the
+// first test without the channel until a later one has it again, the actuator is replaced, or the channel is expected no
+// more (history.hpp).
 #pragma once
 
 #include <map>

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Faults under which the six real services must end with the results of an undisturbed run: killed at random moments,
-bits turned in every table of their journals, a full disk, a disk that cannot be written. One line for each trial, with its
-seed: the same seed makes the same choices, though not the same moments.
+bits turned in every table of their journals, a full disk, a disk that cannot be written. One line for each trial, with
+its seed: the same seed makes the same choices, though not the same moments.
 Usage: campaign.py BIN_DIRECTORY [kills|bits|full_disk|read_only|all] [--seed N] [--kills N] [--bits N] [--tests N]
 """
 import argparse
@@ -43,9 +43,9 @@ class World:
         self.binaries, self.folder = binaries, folder
         self.state = state or folder / f"state-{World.count}"
         self.state.mkdir(exist_ok=True)
-        uri = ('<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces>'
-               f'</General><Discovery><LeaseDuration>2s</LeaseDuration><Tag>campaign-{os.getpid()}-{World.count}</Tag>'
-               '</Discovery></Domain></CycloneDDS>')
+        uri = ('<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="lo" multicast="true"/>'
+               '</Interfaces></General><Discovery><LeaseDuration>2s</LeaseDuration>'
+               f'<Tag>campaign-{os.getpid()}-{World.count}</Tag></Discovery></Domain></CycloneDDS>')
         self.environment = dict(os.environ, CYCLONEDDS_URI=uri)
         self.processes, self.most_bytes = {}, None
 

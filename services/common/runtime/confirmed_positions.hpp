@@ -1,5 +1,5 @@
-// What a heartbeat confirms to those who keep no journal, senders of tests and operators: they forget what is confirmed,
-// so it is on the disk before it is said. Who sends samples without a number reads in `written` what became of them: so
+// What a heartbeat confirms to those who keep no journal, senders of tests and operators: they forget what is
+// confirmed, so it is on the disk before it is said. Who sends samples without a number reads in `written` what became of them: so
 // of a service that takes samples that is on the disk, too. Services keep their outputs for ever and need not wait.
 #pragma once
 

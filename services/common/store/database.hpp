@@ -16,8 +16,8 @@
 
 namespace sealwatch {
 
-/// Raised when the layout of the tables changes: a journal of an older version is changed when it is opened (schema.cpp),
-/// one of a newer version is refused, not guessed at. Stands in table meta and, in SQLite, in user_version as well: a
+/// Raised when the layout of the tables changes: a journal of an older version is changed when it is opened
+/// (schema.cpp), one of a newer version is refused, not guessed at. Stands in table meta and, in SQLite, in user_version as well: a
 /// turned bit changes only one of them.
 inline constexpr int kJournalSchemaVersion = 2;
 

@@ -7,6 +7,8 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/state_journals.hpp"
+#include "services/common/store/journal.hpp"
+#include "services/common/store/journal_lock.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -38,10 +40,17 @@ int run_backup(const BackupOptions& options) {
 int run_restore(const BackupOptions& options) {
   const auto connections = journal_connections(options.state_directory, options.config);
   if (!connections) return kBadInput;
+  std::error_code none;
+  for (const auto& [service, connection] : *connections)  // all or nothing, of services that still run
+    if (fs::exists(copy_of(options.directory, service), none) && !is_missing(connection))
+      if (const auto lock = JournalLock::take(Journal::file_of(connection)); !lock) {
+        complain(lock.error());
+        return kBadInput;
+      }
   bool found = false;
   for (const auto& [service, connection] : *connections) {
     const fs::path copy = copy_of(options.directory, service);
-    if (std::error_code none; !fs::exists(copy, none)) continue;
+    if (!fs::exists(copy, none)) continue;
     found = true;
     const auto aside = restore_journal(copy.string(), connection, service);
     if (!aside) {

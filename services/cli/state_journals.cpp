@@ -40,7 +40,7 @@ std::string where_it_lies(const std::string& service, const std::string& connect
   std::string folder = service;
   std::ranges::replace(folder, '_', '-');
   const fs::path own = file.parent_path() / folder / file.filename();
-  return fs::exists(own, none) ? std::string(kFile) + own.string() : connection;
+  return fs::is_directory(own.parent_path(), none) ? std::string(kFile) + own.string() : connection;
 }
 
 }  // namespace

@@ -124,17 +124,20 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
   cost_ = evaluate();
   if (!std::isfinite(cost_)) return SearchEnd::stuck;
   double damping = kDamping, grows = kGrows;
+  int taken = 0;                // steps
+  bool beyond_is_none = false;  // simulation: one of the steps that were taken back in a row led to where there is none
   LinearModel here = linear_model();
   while (iterations_ <= end) {
     if (passed(rule.deadline)) return SearchEnd::out_of_time;
-    if (rule.is_hopeless(cost_, iterations_)) return SearchEnd::hopeless;
+    if (rule.is_hopeless(cost_, taken)) return SearchEnd::hopeless;
     const double tolerance = rule.at_cost(cost_);
     Eigen::VectorXd by = here.step(kUndamped);
     if (!by.allFinite()) return SearchEnd::stuck;
     if (here.promised(by) <= tolerance) return SearchEnd::converged;
     const Eigen::VectorXd damped = here.step(damping);
     const bool shortened = grows > kGrows, promises = here.promised(damped) > tolerance;
-    if (shortened && !promises) return SearchEnd::converged;  // the slope is known no better than that
+    if (shortened && !promises)  // the slope is known no better than that, or the way is barred
+      return beyond_is_none ? SearchEnd::stuck : SearchEnd::converged;
     if (promises) by = damped;
     const PemPoint before = point_;
     const double promised = here.promised(by);
@@ -142,6 +145,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     const double after = evaluate(), change = cost_ - after, kept = change / promised;
     if (!(kept >= kKept)) {
       point_ = before;
+      beyond_is_none = beyond_is_none || !std::isfinite(after);
       if (damping > kLargest) return SearchEnd::stuck;
       damping *= grows;
       grows *= 2.0;
@@ -149,6 +153,8 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     }
     damping = std::max(kUndamped, damping * std::max(kFalls, 1.0 - std::pow(2.0 * kept - 1.0, 3)));
     grows = kGrows;
+    beyond_is_none = false;
+    ++taken;
     cost_ = after;
     if (change <= tolerance && kept > kLinear) return SearchEnd::converged;
     here = linear_model();
@@ -168,7 +174,7 @@ SearchEnd BoxSearch::run(const StoppingRule& rule, int maximum_iterations) {
     }
     end = descend(rule, maximum_iterations);
   }
-  hold_outside();
+  if (end == SearchEnd::stuck) hold_outside();  // where the next search goes on
   return end;
 }
 

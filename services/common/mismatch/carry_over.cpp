@@ -19,9 +19,13 @@ CarryOver::CarryOver(const HeldOut& held_out, Trial nothing, Without without)
     : held_out_(held_out), nothing_(std::move(nothing)), without_(std::move(without)) {}
 
 const Predictions& CarryOver::predictions(const Trial& trial) const {
-  const auto known = predicted_.find(trial.model);
-  return known != predicted_.end() ? known->second
-                                   : predicted_.emplace(trial.model, held_out_.predictions(trial)).first->second;
+  const Deadline* deadline = held_out_.fit.deadline;
+  if (const auto known = predicted_.find(trial.model);
+      known != predicted_.end() && (!known->second.cut || passed(deadline)))
+    return known->second.models;
+  Predicted made{.models = held_out_.predictions(trial)};
+  made.cut = passed(deadline);
+  return predicted_.insert_or_assign(trial.model, std::move(made)).first->second.models;
 }
 
 Worth CarryOver::of_whole(const Trial& trial) const {

@@ -49,7 +49,11 @@ class CarryOver {
   HeldOut held_out_;
   Trial nothing_;
   Without without_;
-  mutable std::map<std::shared_ptr<const FittedModel>, Predictions> predicted_;
+  struct Predicted {
+    Predictions models;
+    bool cut = false;  ///< by the time limit, which may be further off when they are asked for again
+  };
+  mutable std::map<std::shared_ptr<const FittedModel>, Predicted> predicted_;
 };
 
 /// Of the explanations that were tried, different ones of at most so many laws, the likeliest first.

@@ -22,21 +22,22 @@ class ConfirmedPositions {
   ConfirmedPositions(std::function<bool()> to_disk, bool takes_samples)
       : to_disk_(std::move(to_disk)), takes_samples_(takes_samples) {}
 
-  /// Takes from a status, whose positions are committed, what a power cut may still take back.
-  void make_sure(ServiceStatus& status) {
+  /// Takes from a status, whose positions are committed, what a power cut may still take back. False where the disk
+  /// takes nothing any more: then nothing may be confirmed.
+  [[nodiscard]] bool make_sure(ServiceStatus& status) {
     std::map<Key, std::uint64_t> committed;
     for (const StreamPosition& position : status.received)
       if (!is_of_a_service(position.topic)) committed[{position.topic, position.writer_id}] = position.sequence;
-    if (committed == on_disk_ && (!takes_samples_ || status.written == written_)) return;
-    if (to_disk_()) {
-      on_disk_ = std::move(committed);
-      written_ = status.written;
-    }
+    if (committed == on_disk_ && (!takes_samples_ || status.written == written_)) return true;
+    if (!to_disk_()) return false;
+    on_disk_ = std::move(committed);
+    written_ = status.written;
     for (StreamPosition& position : status.received) {
       if (is_of_a_service(position.topic)) continue;
       const auto known = on_disk_.find({position.topic, position.writer_id});
       position.sequence = known == on_disk_.end() ? 0 : std::min(position.sequence, known->second);
     }
+    return true;
   }
 
  private:

@@ -63,12 +63,15 @@ void Heartbeat::publish(std::unique_lock<std::mutex>& lock) {
   ServiceStatus status = status_;
   const auto silent =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - main_thread_seen_);
-  lock.unlock();  // a slow bus must not hold up the main thread
-  if (options_.before_beat) options_.before_beat(status);
+  lock.unlock();                                               // a slow bus must not hold up the main thread
+  if (let_out_ && options_.on_beat) options_.on_beat(silent);  // before the disk, which may be slow
+  const bool let_out = !options_.before_beat || options_.before_beat(status);
+  if (!let_out && let_out_) log_event(LogLevel::error, "no heartbeat: what it would confirm is not on the disk", {});
+  let_out_ = let_out;
+  if (!let_out) return lock.lock();
   status.publishing_time_ns = clock_.now().nanoseconds;
   if (const Status published = bus_.publish(status); !published)
     log_event(LogLevel::warn, "heartbeat not published", {{"error", published.error().describe()}});
-  if (options_.on_beat) options_.on_beat(silent);
   lock.lock();
 }
 

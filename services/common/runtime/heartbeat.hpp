@@ -19,10 +19,12 @@ class Heartbeat {
   struct Options {
     std::chrono::milliseconds interval{1000};
     std::chrono::milliseconds shortest{50};  ///< between two beats, however much progress there is
-    /// Called at every beat with the time since the last update or touch: whether the main thread is still alive.
+    /// Called at every beat with the time since the last update or touch: whether the main thread is still alive. Not
+    /// after a beat that was not let out.
     std::function<void(std::chrono::milliseconds since_main_thread)> on_beat = {};
-    /// Looks at what is about to be said, in the heartbeat's thread, and may wait for the disk.
-    std::function<void(ServiceStatus&)> before_beat = {};
+    /// Looks at what is about to be said, in the heartbeat's thread, and may wait for the disk. False: nothing is said,
+    /// and whoever watches the service finds it dead.
+    std::function<bool(ServiceStatus&)> before_beat = {};
   };
 
   /// Beats from now on. `bus` is used by the heartbeat's thread alone.
@@ -49,6 +51,7 @@ class Heartbeat {
   std::mutex mutex_;
   std::condition_variable changed_;
   ServiceStatus status_;
+  bool let_out_ = true;  ///< the last beat; of the heartbeat's thread alone
   bool dirty_ = true;
   bool stopping_ = false;
   std::chrono::steady_clock::time_point main_thread_seen_ = std::chrono::steady_clock::now();

@@ -68,7 +68,7 @@ Status LayerRunner::start() {
   Heartbeat::Options beats = options_.heartbeat;
   const bool takes_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
   auto confirmed = std::make_shared<ConfirmedPositions>(journal_.to_disk(), takes_samples);
-  beats.before_beat = [confirmed](ServiceStatus& said) { confirmed->make_sure(said); };
+  beats.before_beat = [confirmed](ServiceStatus& said) { return confirmed->make_sure(said); };
   heartbeat_ = std::make_unique<Heartbeat>(heartbeat_bus_, clock_, status, std::move(beats));
   report_progress();
   return {};

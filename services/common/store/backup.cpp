@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <soci/soci.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>
 
+#include "services/common/store/damaged_file.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/store/journal_lock.hpp"
 #include "services/common/store/journal_reader.hpp"
@@ -40,6 +42,23 @@ Status put_in_place(const fs::path& part, const fs::path& file) {
   if (done) return {};
   fs::remove(part, failed);
   return refuse(file.string(), "could not be written", "free some space on the disk");
+}
+
+/// What root puts into a service's folder belongs to the service, which must write to it.
+void give_to_owner_of(const fs::path& folder, const fs::path& file) {
+  std::error_code none;
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read, none);
+  struct stat owner {};
+  if (::geteuid() == 0 && ::stat(folder.c_str(), &owner) == 0) (void)!::chown(file.c_str(), owner.st_uid, owner.st_gid);
+}
+
+/// All of the log goes into the file: without it what was confirmed would be lost if the two were parted.
+void end_log(const std::string& file) {
+  try {
+    soci::session sql(std::string(kFile) + "dbname=\"" + file + "\" timeout=5");
+    sql << "PRAGMA wal_checkpoint(TRUNCATE)";
+  } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): a damaged file; both are kept as they are
+  }
 }
 
 /// SQLite's own look at every page and index.
@@ -93,20 +112,30 @@ Result<std::string> restore_journal(const std::string& copy, const std::string& 
   if (const fs::path folder = fs::path(file).parent_path(); !folder.empty()) fs::create_directories(folder, failed);
   const auto lock = JournalLock::take(file);
   if (!lock) return fail(lock.error());
+  fs::path folder = fs::path(file).parent_path();
+  if (folder.empty()) folder = ".";
+  give_to_owner_of(folder, file + ".lock");
   const std::string part = file + ".part";
   fs::copy_file(copy, part, fs::copy_options::overwrite_existing, failed);
   if (failed) return refuse(part, failed.message(), "free some space on the disk");
+  give_to_owner_of(folder, part);
   std::string aside;
   for (int number = 1; fs::exists(file) && (aside.empty() || fs::exists(aside)); ++number)
     aside = file + ".replaced-" + std::to_string(number);
   if (!aside.empty()) {
+    end_log(file);
     // The log first: beside the restored file it would be taken for that file's own.
     fs::rename(file + "-wal", aside + "-wal", failed);
     fs::rename(file, aside, failed);
     if (failed) return refuse(file, failed.message(), "let this user write there");
   }
   fs::remove(file + "-shm", failed);
-  if (Status placed = put_in_place(part, file); !placed) return fail(placed.error());
+  if (Status placed = put_in_place(part, file); !placed) {
+    Error error = placed.error();
+    if (!aside.empty()) error.advice += "; what was there is now " + aside;
+    return fail(std::move(error));
+  }
+  forget_damage(file);
   return aside;
 }
 

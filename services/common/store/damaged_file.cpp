@@ -28,10 +28,11 @@ bool was_a_database(const std::string& file) {
 }  // namespace
 
 bool is_damage(const std::string& file, std::string_view complaint) {
+  complaint = complaint.substr(0, complaint.find(" while "));  // what follows are the row's values: people's words
   const auto says = [complaint](std::string_view words) { return complaint.find(words) != std::string_view::npos; };
   const bool damaged = says("malformed") || says("corrupt") || says("not a database") ||
                        says("unsupported file format") || says("no such table") || says("no such column") ||
-                       says("Cannot convert");
+                       says("Cannot convert") || says("Null value fetched");
   return damaged && was_a_database(file);
 }
 
@@ -40,6 +41,11 @@ void note_damage(const std::string& file) { std::ofstream(mark_of(file)) << "\n"
 bool is_known_damaged(const std::string& file) {
   std::error_code none;
   return fs::exists(mark_of(file), none);
+}
+
+void forget_damage(const std::string& file) {
+  std::error_code none;
+  fs::remove(mark_of(file), none);
 }
 
 std::string move_aside(const std::string& file) {
@@ -52,7 +58,7 @@ std::string move_aside(const std::string& file) {
   std::error_code none;
   fs::rename(file + "-wal", aside + "-wal", none);
   fs::remove(file + "-shm", none);
-  fs::remove(mark_of(file), none);
+  forget_damage(file);
   return aside;
 }
 

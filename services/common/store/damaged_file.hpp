@@ -13,6 +13,8 @@ namespace sealwatch {
 /// So that the next to open the file knows: damage may lie where nothing is read at the start.
 void note_damage(const std::string& file);
 [[nodiscard]] bool is_known_damaged(const std::string& file);
+/// Another file is in its place.
+void forget_damage(const std::string& file);
 /// Moves file and log away, and returns where the file is now. Throws std::runtime_error where that cannot be done.
 [[nodiscard]] std::string move_aside(const std::string& file);
 /// Copies what can be read of the record of acts.

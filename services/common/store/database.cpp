@@ -11,6 +11,7 @@ namespace {
 
 /// What to do about the database's complaint.
 std::string advice_for(std::string_view what, bool is_server) {
+  what = what.substr(0, what.find(" while "));  // what follows are the row's values: people's words
   const auto says = [what](std::string_view words) { return what.find(words) != std::string_view::npos; };
   if (says("locked") || says("busy")) return "another process is writing to this journal: stop it, then start again";
   if (says("not a database") || says("malformed") || says("corrupt"))

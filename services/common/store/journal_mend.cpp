@@ -30,6 +30,8 @@ struct Row {
   std::string message_id;
   std::string asset_id;
   std::string pst_id;
+  std::string payload;
+  std::string checksum;
 };
 
 /// Rows of a table that are not as they were written; those of version 1 have no checksum.
@@ -39,10 +41,10 @@ std::vector<Row> damaged_rows(soci::session& sql, bool outputs) {
           ? "SELECT ordinal, topic, '', sequence, message_id, asset_id, pst_id, payload, checksum FROM outputs"
             " WHERE checksum <> 'damaged'"
           : "SELECT receipt, topic, writer_id, sequence, message_id, asset_id, pst_id, payload, checksum FROM inputs"
-            " WHERE consumed = 0 OR consumed = 3";
+            " WHERE payload IS NOT NULL OR consumed <> 1";
   Row row;
-  std::string payload;
-  std::string checksum;
+  std::string& payload = row.payload;
+  std::string& checksum = row.checksum;
   soci::indicator has_payload = soci::i_null;
   soci::indicator has_checksum = soci::i_null;
   soci::statement statement = (sql.prepare << query, into(row.order), into(row.topic), into(row.writer_id),
@@ -60,6 +62,18 @@ std::vector<Row> damaged_rows(soci::session& sql, bool outputs) {
     if (has_payload != soci::i_ok || checksum != expected) damaged.push_back(row);
   }
   return damaged;
+}
+
+/// Where a column is off and not the message, the message says what stood in it: the checksum agrees.
+bool put_right(soci::session& sql, const Row& row) {
+  const auto topic = value_of<Topic>(row.topic);
+  const Result<Message> message = topic ? message_from_json(*topic, row.payload) : fail("of an unknown topic");
+  if (!message) return false;
+  const std::string id = header_of(*message).message_id, asset = asset_of(*message), pst = header_of(*message).pst_id;
+  if (checksum_of_output(row.order, row.topic, row.sequence, id, asset, pst, row.payload) != row.checksum) return false;
+  sql << "UPDATE outputs SET message_id = :id, asset_id = :asset, pst_id = :pst WHERE ordinal = :ordinal",
+      use(id, "id"), use(asset, "asset"), use(pst, "pst"), use(row.order, "ordinal");
+  return true;
 }
 
 void tell(soci::session& sql, const Row& row, const std::string& reason) {
@@ -133,6 +147,8 @@ void Journal::Database::mend_quarantine() {
 }
 
 void Journal::Database::mend_inputs() {
+  // A consumed input has no payload any more: one that has was not consumed.
+  sql << "UPDATE inputs SET consumed = 0 WHERE payload IS NOT NULL AND consumed NOT IN (0, 2, 3)";
   for (const Row& row : damaged_rows(sql, false)) {
     long long position = 0;
     sql << "SELECT coalesce(max(sequence), 0) FROM positions WHERE topic = :topic AND writer_id = :writer",
@@ -142,13 +158,14 @@ void Journal::Database::mend_inputs() {
       fetch_again(row.topic, row.writer_id, row.sequence);
       continue;
     }
-    sql << "UPDATE inputs SET consumed = 2 WHERE receipt = :receipt", use(row.order, "receipt");
+    sql << "DELETE FROM inputs WHERE receipt = :receipt", use(row.order, "receipt");  // or it would count as known
     tell(sql, row, "damaged in the journal; what came from outside cannot be fetched again: send it again");
   }
 }
 
 void Journal::Database::mend_outputs() {
   for (const Row& row : damaged_rows(sql, true)) {
+    if (put_right(sql, row)) continue;
     sql << "UPDATE outputs SET checksum = 'damaged' WHERE ordinal = :ordinal", use(row.order, "ordinal");
     tell(sql, row, "damaged in the journal; it is concluded again from the neighbours' messages, where they have them");
     std::vector<Row> sources;

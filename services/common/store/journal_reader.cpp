@@ -32,6 +32,7 @@ std::string damage_in(std::string_view complaint) {
 struct JournalReader::Session {
   std::string place;
   std::string writer_id;
+  std::string whole;  ///< condition: rows that are as they were written
   soci::session sql;
 
   /// Runs `work`, turning the library's exceptions into an Error that names the journal.
@@ -85,6 +86,7 @@ struct JournalReader::Session {
     const std::string owner = meta("service");
     if (owner != service) throw Error{place, "table meta, service", owner, "must be '" + service + "'", {}};
     writer_id = meta("writer_id");
+    if (version[0] >= '2') whole = " AND coalesce(checksum, '') <> 'damaged'";
   }
 };
 
@@ -122,8 +124,8 @@ Result<std::optional<Message>> JournalReader::output(const std::string& message_
   return session_->guard([&]() -> std::optional<Message> {
     std::string topic;
     std::string payload;
-    session_->sql << "SELECT topic, payload FROM outputs WHERE message_id = :id", use(message_id, "id"), into(topic),
-        into(payload);
+    session_->sql << "SELECT topic, payload FROM outputs WHERE message_id = :id" + session_->whole,
+        use(message_id, "id"), into(topic), into(payload);
     if (!session_->sql.got_data()) return std::nullopt;
     return session_->message_of(topic, payload);
   });
@@ -134,7 +136,8 @@ Result<std::vector<Message>> JournalReader::outputs(Topic topic, const std::stri
     const std::string name = topic_name(topic);
     std::string payload;
     soci::statement query = (session_->sql.prepare << "SELECT payload FROM outputs WHERE topic = :topic AND asset_id ="
-                                                      " :asset ORDER BY ordinal",
+                                                      " :asset" +
+                                                          session_->whole + " ORDER BY ordinal",
                              use(name, "topic"), use(asset_id, "asset"), into(payload));
     std::vector<Message> messages;
     query.execute();
@@ -148,9 +151,9 @@ Result<std::vector<std::string>> JournalReader::output_ids(Topic topic, const st
     const std::string name = topic_name(topic);
     std::string id;
     std::string asset;
-    soci::statement query =
-        (session_->sql.prepare << "SELECT message_id, asset_id FROM outputs WHERE topic = :topic ORDER BY ordinal",
-         use(name, "topic"), into(id), into(asset));
+    soci::statement query = (session_->sql.prepare << "SELECT message_id, asset_id FROM outputs WHERE topic = :topic" +
+                                                          session_->whole + " ORDER BY ordinal",
+                             use(name, "topic"), into(id), into(asset));
     std::vector<std::string> ids;
     query.execute();
     while (query.fetch())

@@ -91,7 +91,7 @@ int Journal::Database::schema_version() {
   if (!is_file()) return in_meta;
   int in_header = 0;
   sql << "PRAGMA user_version", into(in_header);
-  if (in_header == 0) return in_meta;  // version 1 left it alone
+  if (in_header < 1) return in_meta;  // version 1 left it alone
   return in_meta < 1 ? in_header : std::min(in_meta, in_header);
 }
 

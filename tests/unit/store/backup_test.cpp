@@ -1,5 +1,6 @@
 // Journals of version 1 go on in this one; copies of running journals, and their way back.
 #include "services/common/store/backup.hpp"
+#include "services/common/store/damaged_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -117,6 +118,7 @@ TEST_F(Backup, ComesBackOnceTheServiceHasStopped) {
     ASSERT_FALSE(running.has_value());
     EXPECT_THAT(running.error().describe(), HasSubstr("another process works with this journal"));
   }
+  note_damage(Journal::file_of(place_.connection()));  // of the journal that is replaced
   const auto aside = restore_journal(copy(), place_.connection(), kService);
   ASSERT_TRUE(aside.has_value()) << aside.error().describe();
   auto restored = Journal::open(place_.connection(), kService);

@@ -5,12 +5,14 @@
 
 #include <fstream>
 
+#include "services/common/store/damaged_file.hpp"
 #include "services/common/store/journal.hpp"
 #include "tests/unit/store/place.hpp"
 
 namespace sealwatch {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -163,6 +165,39 @@ TEST_F(Mend, AnOpenInputFromOutsideIsToldAsLost) {
   EXPECT_THAT(open_inputs(journal), ElementsAre("features 3"));
   ASSERT_THAT(journal.quarantine().value(), SizeIs(2));
   EXPECT_THAT(journal.quarantine().value().at(1).reason, HasSubstr("send it again"));
+  EXPECT_FALSE(journal.has_input("raw 1").value()) << "what is sent again must not count as known";
+}
+
+TEST_F(Mend, WhatCameAgainOfADamagedTestStaysOpenUntilItIsConcluded) {
+  turn_bit("outputs", "payload", "ordinal = 1");
+  {
+    Journal journal = open();
+    ASSERT_TRUE(journal.begin());
+    ASSERT_TRUE(journal.add_input(features(1), UtcTime{}, false));
+    ASSERT_TRUE(journal.commit());
+  }
+  Journal journal = open();
+  EXPECT_THAT(open_inputs(journal), Contains("features 1"));
+}
+
+TEST_F(Mend, AColumnIsPutRightByItsMessage) {
+  turn_bit("outputs", "message_id", "ordinal = 1");
+  turn_bit("outputs", "asset_id", "ordinal = 2");
+  Journal journal = open();
+  EXPECT_THAT(outputs(journal), ElementsAre("report 1", "report 2"));
+  EXPECT_THAT(journal.quarantine().value(), SizeIs(1)) << "nothing is lost";
+}
+
+TEST_F(Mend, AnInputWithItsMessageWasNotConsumed) {
+  place_.execute("UPDATE inputs SET consumed = 1 WHERE message_id = 'features 3'");
+  Journal journal = open();
+  EXPECT_THAT(open_inputs(journal), ElementsAre("features 3"));
+}
+
+TEST_F(Mend, WhatPeopleWroteIsNoDamage) {
+  const std::string file = Journal::file_of(place_.connection());
+  EXPECT_TRUE(is_damage(file, "database disk image is malformed while executing \"insert\""));
+  EXPECT_FALSE(is_damage(file, "database or disk is full while executing \"insert\" with :b=\"the card was corrupt\""));
 }
 
 TEST_F(Mend, APositionIsTheLastInputOfItsStream) {

@@ -180,11 +180,13 @@ TEST_F(Mend, WhatCameAgainOfADamagedTestStaysOpenUntilItIsConcluded) {
   EXPECT_THAT(open_inputs(journal), Contains("features 1"));
 }
 
-TEST_F(Mend, AColumnIsPutRightByItsMessage) {
+TEST_F(Mend, AColumnIsPutRightByItsMessageAndAChecksumByItsRow) {
   turn_bit("outputs", "message_id", "ordinal = 1");
   turn_bit("outputs", "asset_id", "ordinal = 2");
+  turn_bit("inputs", "checksum", "message_id = 'features 3'");
   Journal journal = open();
   EXPECT_THAT(outputs(journal), ElementsAre("report 1", "report 2"));
+  EXPECT_EQ(position(journal), 3U) << "nothing is fetched again";
   EXPECT_THAT(journal.quarantine().value(), SizeIs(1)) << "nothing is lost";
 }
 

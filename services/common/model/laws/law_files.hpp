@@ -59,13 +59,6 @@ inline constexpr double kStandstill_m_s = 1e-9;
   return kFloor_Pa + smooth_positive(pressure - kFloor_Pa, 500.0);
 }
 
-/// The positive part of a pressure, p^2 / (p + 1e4 Pa). Nothing presses where a plant knows of no pressure. [Pa]
-[[nodiscard]] inline LawScalar pressing(const LawScalar& pressure) {
-  constexpr double kWidth_Pa = 1e4;
-  if (value_of(pressure) <= 0.0) return 0.0 * pressure;
-  return pressure * pressure / (pressure + kWidth_Pa);
-}
-
 /// A tank's level that stays positive, rounded over 0.02 V. [V]
 [[nodiscard]] inline LawScalar wetted(const LawScalar& level) { return 1e-6 + smooth_positive(level, 0.02); }
 

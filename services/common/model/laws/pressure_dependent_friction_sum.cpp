@@ -2,12 +2,12 @@
 
 namespace sealwatch::laws {
 
-// F = k max(p_A + p_B, 0) tanh(v / v_s), see pressing()
+// F = k |p_A + p_B| tanh(v / v_s), |.| rounded over 1e4 Pa: nothing where a plant knows of no pressure
 static LawOutput evaluate_pressure_dependent_friction_sum(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
   const auto& k = in.parameter[0];
   const auto& v_s = in.parameter[1];
-  return {.contribution = k * pressing(p_A + p_B) * tanh(v / v_s), .rate = {}};
+  return {.contribution = k * smooth_abs(p_A + p_B, 1e4) * tanh(v / v_s), .rate = {}};
 }
 
 Law pressure_dependent_friction_sum() {

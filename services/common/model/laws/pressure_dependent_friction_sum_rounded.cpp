@@ -5,8 +5,9 @@ namespace sealwatch::laws {
 // As in pressure_dependent_friction_sum.cpp, with any sharpness of the change of direction.
 static LawOutput evaluate_pressure_dependent_friction_sum_rounded(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
-  return {.contribution = in.parameter[0] * pressing(p_A + p_B) * rounded_sign(v, in.parameter[1], in.parameter[2]),
-          .rate = {}};
+  return {
+      .contribution = in.parameter[0] * smooth_abs(p_A + p_B, 1e4) * rounded_sign(v, in.parameter[1], in.parameter[2]),
+      .rate = {}};
 }
 
 Law pressure_dependent_friction_sum_rounded() {

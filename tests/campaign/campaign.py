@@ -109,6 +109,7 @@ class World:
         results = {}
         for service in SERVICES:
             with sqlite3.connect(f"file:{self.state / database(service)}?mode=ro", uri=True, timeout=10) as journal:
+                journal.text_factory = lambda text: text.decode(errors="backslashreplace")  # a bit may be turned in it
                 results[service] = dict(journal.execute("SELECT message_id, payload FROM outputs"))
         return results
 

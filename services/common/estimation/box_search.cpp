@@ -11,10 +11,13 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Far from the optimum a shape that is hardly seen yet must not run to the end of its range: the first damping, and how
-// it falls and grows (K. Madsen, H. B. Nielsen, O. Tingleff, Methods for Non-Linear Least Squares Problems, 2004).
-constexpr double kDamping = 1e-4, kUndamped = 1e-8, kFalls = 1.0 / 3.0, kGrows = 4.0, kLargest = 1e4;
+// it falls (K. Madsen, H. B. Nielsen, O. Tingleff, Methods for Non-Linear Least Squares Problems, 2004).
+constexpr double kDamping = 1e-4, kUndamped = 1e-8, kFalls = 1.0 / 3.0;
+// Unknowns are of the order of one: no step goes further in any of them, until steps prove that the linear model holds.
+// Damping alone leaves a step long in what the recordings hardly show.
+constexpr double kOrderOfOne = 3.0, kShrinks = 0.25, kWidens = 3.0, kNearest = 1e-7;
 constexpr double kKept = 1e-3;  // of what the linear model promises: a step that keeps less is taken back
-constexpr double kLinear = 0.25;
+constexpr double kLinear = 0.25, kTrusted = 0.75;
 
 bool has_range(const Unknown& unknown) { return unknown.max > unknown.min; }
 
@@ -29,8 +32,8 @@ struct BoxSearch::LinearModel {
   Eigen::MatrixXd gram;
   Eigen::VectorXd gradient, low, high;
 
-  [[nodiscard]] Eigen::VectorXd step(double damping) const {
-    return minimum_in_box(gram, gradient, low, high, damping);
+  [[nodiscard]] Eigen::VectorXd step(double damping, double radius = kInfinite) const {
+    return minimum_in_box(gram, gradient, low.cwiseMax(-radius), high.cwiseMin(radius), damping);
   }
   /// Fall of the cost.
   [[nodiscard]] double promised(const Eigen::VectorXd& by) const { return -by.dot(gradient + 0.5 * gram * by); }
@@ -123,9 +126,10 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
   const int end = iterations_ + maximum_iterations;
   cost_ = evaluate();
   if (!std::isfinite(cost_)) return SearchEnd::stuck;
-  double damping = kDamping, grows = kGrows;
+  double damping = kDamping, radius = kOrderOfOne;
   int taken = 0;                // steps
-  bool beyond_is_none = false;  // simulation: one of the steps that were taken back in a row led to where there is none
+  bool shortened = false;       // the last step was taken back,
+  bool beyond_is_none = false;  // and one of those in a row led to where there is no simulation
   LinearModel here = linear_model();
   while (iterations_ <= end) {
     if (passed(rule.deadline)) return SearchEnd::out_of_time;
@@ -134,26 +138,27 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     Eigen::VectorXd by = here.step(kUndamped);
     if (!by.allFinite()) return SearchEnd::stuck;
     if (here.promised(by) <= tolerance) return SearchEnd::converged;
-    const Eigen::VectorXd damped = here.step(damping);
-    const bool shortened = grows > kGrows, promises = here.promised(damped) > tolerance;
+    const Eigen::VectorXd limited = here.step(damping, radius);
+    const bool promises = here.promised(limited) > tolerance;
     if (shortened && !promises)  // the slope is known no better than that, or the way is barred
       return beyond_is_none ? SearchEnd::stuck : SearchEnd::converged;
-    if (promises) by = damped;
+    if (promises) by = limited;
     const PemPoint before = point_;
-    const double promised = here.promised(by);
+    const double promised = here.promised(by), length = by.cwiseAbs().maxCoeff();
     move(by);
     const double after = evaluate(), change = cost_ - after, kept = change / promised;
     if (!(kept >= kKept)) {
       point_ = before;
       beyond_is_none = beyond_is_none || !std::isfinite(after);
-      if (damping > kLargest) return SearchEnd::stuck;
-      damping *= grows;
-      grows *= 2.0;
+      radius = std::min(kOrderOfOne, kShrinks * length);
+      if (radius < kNearest) return SearchEnd::stuck;
+      shortened = true;
       continue;
     }
     damping = std::max(kUndamped, damping * std::max(kFalls, 1.0 - std::pow(2.0 * kept - 1.0, 3)));
-    grows = kGrows;
-    beyond_is_none = false;
+    if (kept > kTrusted) radius = std::max(radius, kWidens * length);
+    if (kept < kLinear) radius = std::min(radius, std::max(kOrderOfOne, kShrinks * length));
+    shortened = beyond_is_none = false;
     ++taken;
     cost_ = after;
     if (change <= tolerance && kept > kLinear) return SearchEnd::converged;

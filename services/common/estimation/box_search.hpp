@@ -1,5 +1,5 @@
-// Levenberg-Marquardt within ranges: of each step, which of the values that are known beforehand end at an end of their
-// range is solved exactly on the linear model, without a simulation.
+// Gauss-Newton within ranges and within a box of trust: what of a step ends at an end of its range, or of that box, is
+// solved exactly on the linear model, without a simulation.
 #pragma once
 
 #include <algorithm>

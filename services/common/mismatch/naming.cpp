@@ -214,6 +214,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const Screening asked = naming.last;
     if (!take(naming, *best, data, options)) break;
     if (in_time("other shapes of the law found")) from_other_shapes(naming, level, asked, data, options);
+    if (in_time("other laws in place of those found before")) another_law_for_each(naming, data, options);
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);
   }
   if (in_time("whether each law is needed")) drop_what_is_not_needed(naming, data, options.threads);

@@ -15,12 +15,14 @@ namespace {
 constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid
 constexpr std::size_t kFormStarts = 3;   // and of each closed form that bears its id
 constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told
+constexpr std::size_t kOtherLaws = 4;    // refits in place of a law that was found before another one
 constexpr std::size_t kSingleLaws = 10;  // refits of one law for several
 constexpr long kStartsOfRich = 6;        // of them of a law that contains a plainer one
 
-// The closed form from where the law in its place ended (`term`): by name, else from its own grid.
-std::vector<double> from_fitted(const Candidate& form, const PhysicsTerm& term) {
-  std::vector<double> start = usual_size(form, 0);
+// Another form of the law that ended in this place (`term`), or one that contains it: what both have, by name, from
+// there, the rest from a point of its own grid.
+std::vector<double> from_fitted(const Candidate& form, std::size_t point, const PhysicsTerm& term) {
+  std::vector<double> start = usual_size(form, point);
   for (std::size_t k = 0; k < start.size(); ++k)
     if (const auto known = term.parameters.find(std::string(form.law->parameters[k].name));
         known != term.parameters.end())
@@ -28,23 +30,35 @@ std::vector<double> from_fitted(const Candidate& form, const PhysicsTerm& term) 
   return start;
 }
 
-// Start values of the law of an effect, of another form of it or of one that contains it, at its usual size and on its
-// shape's grid, and of the closed forms (`forms`) that bear its id, which also set out from the fitted law (`term`).
+// Start values of the law of an effect at its usual size and on its shape's grid; of its other forms, of laws that
+// contain it and of the closed forms (`forms`) that bear its id, also from where it ended (`term`).
 std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
                                                 const std::vector<Candidate>& forms) {
   std::vector<std::vector<LawStart>> starts;
+  const auto add = [&](const Candidate& candidate, std::vector<double> parameters) {
+    const auto same_start = [&](const std::vector<LawStart>& other) {
+      return other.front().effect.law == candidate.law && other.front().parameters == parameters;
+    };
+    if (std::ranges::none_of(starts, same_start))
+      starts.push_back({{{candidate.law, effect.element}, std::move(parameters)}});
+  };
   for (const Variant* variant : by_gain(asked)) {
     const Candidate& candidate = asked.candidates[variant->candidate];
     const bool same_or_richer = (forms.empty() ? candidate.law == effect.law : candidate.law->id == effect.law->id) ||
                                 candidate.law->limit == effect.law->id;
     if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
-      starts.push_back({{{candidate.law, effect.element}, usual_size(candidate, variant->point)}});
+      add(candidate, usual_size(candidate, variant->point));
   }
+  for (const Candidate& candidate : asked.candidates)
+    for (std::size_t point = 0;
+         candidate.element == effect.element && candidate.law->limit == effect.law->id && point < candidate.grid.size();
+         ++point)
+      add(candidate, from_fitted(candidate, point, term));
   for (const Candidate& form : forms) {
     if (form.law->id != effect.law->id || form.law == effect.law || form.element != effect.element) continue;
-    starts.push_back({{{form.law, effect.element}, from_fitted(form, term)}});
+    add(form, from_fitted(form, 0, term));
     for (std::size_t point = 0; point < std::min(form.grid.size(), kFormStarts); ++point)
-      starts.push_back({{{form.law, effect.element}, usual_size(form, point)}});
+      add(form, usual_size(form, point));
   }
   return starts;
 }
@@ -62,6 +76,31 @@ std::vector<std::vector<LawStart>> laws_of(const std::string& element, const Scr
       starts.push_back({{{candidate.law, element}, usual_size(candidate, variant->point)}});
   }
   return starts;
+}
+
+// What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
+bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
+  constexpr double kLeft = 1.1;
+  const FittedModel& model = *naming.best.model;
+  return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
+}
+
+bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
+
+// The model without one of its laws.
+std::optional<Trial> without_law(const Naming& naming, std::size_t slot, const Data& data, int threads) {
+  Trial fewer{.effects = naming.best.effects, .model = nullptr};
+  fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
+  for (const Trial& known : naming.trials)
+    if (same_effects(known.effects, fewer.effects)) fewer.model = known.model;
+  if (fewer.model != nullptr && !fewer.model->optimum.at_optimum.front().jacobian.size()) fewer.model = nullptr;
+  if (fewer.model != nullptr) return fewer;
+  AssetConfig asset = naming.best.model->asset;
+  asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(naming.best.effects.size() - slot));
+  Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
+  if (!model) return std::nullopt;
+  fewer.model = std::make_shared<const FittedModel>(std::move(*model));
+  return fewer;
 }
 
 std::string laws_in_words(const std::vector<Effect>& effects) {
@@ -105,10 +144,7 @@ double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& 
 
 void from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
                        const ExplainOptions& options) {
-  // What a search that stopped early left lies in its own parameters, where no law's score sees it: the misfit does.
-  constexpr double kLeft = 1.1;
-  const bool at_the_noise = naming.best.model->misfit < kLeft * naming.best.model->residuals;
-  if (at_the_noise && !differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate)) return;
+  if (is_at_the_noise(naming, options)) return;
   // Where everything misses by far, another form of one law says nothing.
   std::vector<Candidate> forms;
   if (excess(*naming.best.model) < kFar)
@@ -126,6 +162,27 @@ void from_other_shapes(Naming& naming, std::size_t before, const Screening& aske
   // In a gross misfit the criterion hardly rises: any gain counts, as no law comes in.
   if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return;
   static_cast<void>(take(naming, *best, data, options));  // else the form that was found first stays
+}
+
+void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions& options) {
+  if (naming.best.effects.size() < 2 || is_at_the_noise(naming, options)) return;
+  std::vector<Trial> trials;
+  for (std::size_t slot = 0; slot + 1 < naming.best.effects.size(); ++slot) {
+    const std::optional<Trial> fewer = without_law(naming, slot, data, options.threads);
+    if (!fewer) continue;
+    const auto left = screen(*fewer->model, data, {.seed = options.seed, .threads = options.threads});
+    if (!left) continue;
+    std::vector<std::vector<LawStart>> starts;
+    for (LawStart& start : ranked_laws(*left, kOtherLaws + 1))
+      if (!same(start.effect, naming.best.effects[slot]) && starts.size() < kOtherLaws)
+        starts.push_back({std::move(start)});
+    for (Trial& trial : refit(*fewer, starts, data, options.threads)) trials.push_back(std::move(trial));
+  }
+  naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
+  const double phi = smallest_dispersion(trials, *naming.best.model);
+  const Trial* best = best_of(trials, phi);
+  if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi)) return;
+  static_cast<void>(take(naming, *best, data, options));
 }
 
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options) {

@@ -14,6 +14,10 @@ namespace sealwatch::mismatch {
 void from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
                        const ExplainOptions& options);
 
+/// Each law that was found before another one competes with those that would do best in its place beside the others: it
+/// was chosen when the others were not yet there.
+void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions& options);
+
 /// Several laws at one element may be parts of one (dry friction, drag and friction by pressure: a Stribeck curve):
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);

@@ -218,7 +218,7 @@ void Actuator::add_flow(const Effect& e, const Vector& y, Terms& t, Vector& dy) 
       t.slip += s * omega * std::cos(e.a * y[e.state]);
       dy[e.state] = omega;
       return;
-    case Form::limit_stop_pump:
+    case Form::speed_limited_delivery:
       t.slip += s * std::max(0.0, std::abs(omega) - e.a) * sign_of(omega);
       return;
     case Form::laminar_line:

@@ -97,18 +97,18 @@ enum class Form {
   rounded_dead_zone,       // s r(u, a)
   self_heating,            // s z i, a dz/dt = i^2 (1 + s z / R_M) - z
   // far from the catalogue, or with corners
-  karnopp,             // s where the piston moves faster than 1 um/s, up to b s where it rests
-  direction_friction,  // s where v > 0.02 mm/s, a s the other way, straight in between
-  root_drag,           // s sign(v) sqrt(|v|)
-  cubic_spring,        // s (x - a)^3
-  triangular_bump,     // s max(0, 1 - |x - a| / b)
-  scratched_bore,      // s (p_A - p_B) where |x - a| < b, with edges 0.2 mm wide
-  relief_leak,         // s max(0, p - a)
-  hard_dead_zone,      // u loses s, but never changes sign
-  hard_knee,           // s max(0, |i| - a) sign(i)
-  tooth_ripple,        // s omega cos(a theta)
-  reynolds_orifice,    // c_D (1 - s exp(-|q| / a))
-  limit_stop_pump,     // s max(0, |omega| - a) sign(omega)
+  karnopp,                 // s where the piston moves faster than 1 um/s, up to b s where it rests
+  direction_friction,      // s where v > 0.02 mm/s, a s the other way, straight in between
+  root_drag,               // s sign(v) sqrt(|v|)
+  cubic_spring,            // s (x - a)^3
+  triangular_bump,         // s max(0, 1 - |x - a| / b)
+  scratched_bore,          // s (p_A - p_B) where |x - a| < b, with edges 0.2 mm wide
+  relief_leak,             // s max(0, p - a)
+  hard_dead_zone,          // u loses s, but never changes sign
+  hard_knee,               // s max(0, |i| - a) sign(i)
+  tooth_ripple,            // s omega cos(a theta)
+  reynolds_orifice,        // c_D (1 - s exp(-|q| / a))
+  speed_limited_delivery,  // s max(0, |omega| - a) sign(omega)
   // of the recording and its sensors
   bias,
   gain,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A set with nothing hidden is consistent, and one with a leak at chamber A is named. Sensors are exact here.
+"""A set with nothing hidden is consistent, and one with a turbulent slip of the pump is named. Sensors are exact here.
 
 check.py GENERATOR SEALWATCH"""
 import glob
@@ -33,8 +33,8 @@ def main(generator, sealwatch):
     assert report["verdict"] == "mismatch" and claims == [(effect["element"], effect["law"])], (effect, claims)
 
 
-NULL_SEED = 1001
-SINGLE_SEED = 1001
+NULL_SEED = 1002
+SINGLE_SEED = 1002
 
 if __name__ == "__main__":
     main(*sys.argv[1:])

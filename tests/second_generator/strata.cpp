@@ -72,7 +72,8 @@ static const std::vector<Kind> kOther = {
     {Form::tooth_ripple, "pump", kNone, "", "", "m3/rad", 4e-10, 12, 1, 3, 0, 0, 1},
     {Form::reynolds_orifice, "valve_1", kNone, "line_resistance valve_hysteresis", "", "1", 0.1, 7, 1e-6, 4e-6, 0, 0,
      0},
-    {Form::limit_stop_pump, "pump", kNone, "speed_dependent_pump_slip", "", "m3/rad", 1e-9, 10, 90, 140, 0, 0, 0},
+    {Form::speed_limited_delivery, "pump", kNone, "speed_dependent_pump_slip", "", "m3/rad", 1e-9, 10, 90, 140, 0, 0,
+     0},
     {Form::lugre, "piston", "presliding_friction", "coulomb_friction stribeck_friction hysteretic_load", "F_c", "N",
      600, 12, 5e-6, 2e-5, 0, 0, 1},
 };

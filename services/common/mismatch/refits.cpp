@@ -21,8 +21,22 @@ constexpr double kFar = 100.0;           // times the noise: a model that misses
 constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
 constexpr double kHopeful = 10.0;        // times the best misfit: further off a refit does not go on
 
+// Whether a strength of the laws added last has come to an end of its range: nothing depends on their shapes there.
+bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added) {
+  const std::vector<PhysicsTerm>& physics = model.asset.physics;
+  for (std::size_t k = 0; k < added.size(); ++k)
+    for (const LawParameter& parameter : added[k].effect.law->parameters) {
+      if (!parameter.strength) continue;
+      const PhysicsTerm& term = physics[physics.size() - added.size() + k];
+      const ParameterSetting& setting = term.parameters.at(std::string(parameter.name));
+      if (setting.value <= setting.min || setting.value >= setting.max) return true;
+    }
+  return false;
+}
+
 // The laws added last (`added`) with their shapes held at their start values until the sizes fit, then free: let free
-// at once, beside sizes that are far off, a shape drifts to the end of its range and stays there.
+// at once, beside sizes that are far off, a shape drifts to the end of its range and stays there. Where that leaves
+// nothing of a law, the shape was a wrong one, and is free from the start.
 Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& added, const Data& data,
                                 const FittedModel& from) {
   const AssetConfig free = asset;
@@ -31,8 +45,9 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
       if (!parameter.strength)
         asset.physics[asset.physics.size() - added.size() + k].parameters.at(std::string(parameter.name)).estimate =
             false;
-  Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
-  return fit_model(free, data, sized ? &*sized : &from, 1, kFirstRound);
+  const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
+  const bool sizes_fit = sized && !came_to_an_end(*sized, added);
+  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound);
 }
 
 // A trial while it is being worked on.

@@ -31,6 +31,11 @@ struct SensorSetting {
   double quantisation = 0.0;     ///< step, channel's SI unit; 0: none
   double range_min = 0.0;        ///< channel's SI unit
   double range_max = 0.0;
+  /// Standard deviations of what the sensor is off by, (1 + gain_error) signal + offset_error; 0: as usual.
+  double gain_tolerance = 0.0;    ///< 1
+  double offset_tolerance = 0.0;  ///< channel's SI unit
+  double gain_error = 0.0;        ///< as estimated within the tolerance
+  double offset_error = 0.0;
 };
 
 /// Seal condition theta as a line through two leakage resistances (MODEL section 4).

@@ -36,13 +36,16 @@ struct ModelValues {
   std::vector<double> parameters;  ///< in the order of PlantDescription::parameters, then those of the asset's physics
   double load_factor = 0.0;        ///< Phi of this recording: load = phi (1 + Phi)
   std::vector<double> initial_state;  ///< in the order of PlantSimulation::state_names()
+  /// (1 + gain) signal + offset, in the order of PlantSimulation::channels().
+  std::vector<double> sensor_gain = {}, sensor_offset = {};
 };
 
 /// One quantity with respect to which outputs are differentiated. Made by PlantSimulation::find.
 struct FreeQuantity {
-  enum class Kind { parameter, load_factor, initial_state };
+  enum class Kind { parameter, load_factor, initial_state, sensor_gain, sensor_offset };
   Kind kind = Kind::parameter;
-  std::size_t index = 0;  ///< into ModelValues::parameters or ModelValues::initial_state
+  std::size_t index = 0;  ///< into the member of ModelValues
+  [[nodiscard]] bool is_of_sensor() const { return kind == Kind::sensor_gain || kind == Kind::sensor_offset; }
   [[nodiscard]] double& in(ModelValues& values) const;
   [[nodiscard]] double in(const ModelValues& values) const;
 };
@@ -72,6 +75,10 @@ struct PhysicsParameter {
 };
 [[nodiscard]] std::string physics_parameter_name(std::string_view element, std::string_view id,
                                                  std::string_view parameter);
+
+/// "sensor:flow.gain_error" and "sensor:flow.offset_error".
+[[nodiscard]] std::string sensor_gain_name(std::string_view channel);
+[[nodiscard]] std::string sensor_offset_name(std::string_view channel);
 
 /// Contributions at sites that are given from outside, each a direction of differentiation: dS/dt = J S + df/dextra
 /// w(t). This is how laws that are not in the model (strength 0) and unknown inputs are looked at.
@@ -119,8 +126,8 @@ class PlantSimulation {
   /// Parameters of the asset's physics, in the order in which they follow the plant's in ModelValues::parameters.
   [[nodiscard]] virtual std::span<const PhysicsParameter> physics_parameters() const = 0;
 
-  /// "R_CL" (a parameter's name, or that of a law: "piston.coulomb_friction.F_c"), "load_factor" or "initial:p_A"; an
-  /// Error with the nearest name otherwise.
+  /// "R_CL" (a parameter's name, or that of a law: "piston.coulomb_friction.F_c"), "load_factor", "initial:p_A" or what
+  /// a sensor is off by ("sensor:flow.gain_error", "sensor:flow.offset_error"); an Error with the nearest name otherwise.
   [[nodiscard]] Result<FreeQuantity> find(std::string_view quantity) const;
 
   /// An Error when the integration fails (parameters that no step size can follow).

@@ -60,6 +60,20 @@ Unknown known_unknown(const ParameterDescription& parameter, ParameterSetting se
   return unknown;
 }
 
+Unknown sensor_unknown(const KnownValue& known, FreeQuantity quantity, const PlantSimulation& simulation) {
+  const double most = kWithinTolerance * known.standard_deviation;
+  const bool gain = quantity.kind == FreeQuantity::Kind::sensor_gain;
+  return {.name = known.name,
+          .unit = gain ? "1" : simulation.plant().find_channel(simulation.channels()[quantity.index])->unit,
+          .quantity = quantity,
+          .scale = known.standard_deviation,
+          .start = std::clamp(quantity.in(simulation.start()), known.value - most, known.value + most),
+          .min = known.value - most,
+          .max = known.value + most,
+          .prior_mean = known.value / known.standard_deviation,
+          .prior_std = 1.0};
+}
+
 Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const PlantSimulation& simulation,
                                              std::string_view own_parameter, std::span<const KnownValue> known) {
   std::vector<Unknown> unknowns;
@@ -81,6 +95,9 @@ Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const Pla
     if (!quantity) return fail(quantity.error());
     unknowns.push_back(law_unknown(parameter, *quantity));
   }
+  for (const KnownValue& value : known)
+    if (const auto quantity = simulation.find(value.name); quantity && quantity->is_of_sensor())
+      unknowns.push_back(sensor_unknown(value, *quantity, simulation));
   return unknowns;
 }
 

@@ -137,14 +137,18 @@ struct Promise {
 std::vector<Promise> promises_of(const AssetConfig& asset, const FittedModel& model, const Data& fit, int threads) {
   Data with_all = fit;
   with_all.known = known_values(asset, plant_of(model));
+  const std::vector<KnownValue> fixed = with_all.known;
+  std::ranges::copy_if(fit.known, std::back_inserter(with_all.known), [&](const KnownValue& one) {
+    return std::ranges::find(fixed, one.name, &KnownValue::name) == fixed.end();  // of a sensor
+  });
   const Result<FittedModel> all = fit_model(model.asset, with_all, &model, threads, 0);
   if (!all) return {};
   const NormalEquations equations = normal_equations(*all);
   const std::vector<Unknown>& shared = all->problem.shared;
   std::vector<Promise> promises;
   for (std::size_t k = 0; k < shared.size(); ++k) {
-    const auto value = std::ranges::find(with_all.known, shared[k].name, &KnownValue::name);
-    if (value == with_all.known.end() || !shared[k].is_known()) continue;
+    const auto value = std::ranges::find(fixed, shared[k].name, &KnownValue::name);
+    if (value == fixed.end() || !shared[k].is_known()) continue;
     promises.push_back(
         {.value = *value, .misfit = model.misfit - promised_gain(equations, *all, static_cast<Eigen::Index>(k))});
   }

@@ -22,6 +22,10 @@ ActuatorFitOptions search_options(int threads, int iterations) {
 void set_value(AssetConfig& asset, const std::string& name, double value) {
   if (const auto parameter = asset.parameters.find(name); parameter != asset.parameters.end())
     parameter->second.value = value;
+  for (auto& [channel, sensor] : asset.sensors) {
+    if (name == sensor_gain_name(channel)) sensor.gain_error = value;
+    if (name == sensor_offset_name(channel)) sensor.offset_error = value;
+  }
   for (PhysicsTerm& term : asset.physics)
     for (auto& [parameter, setting] : term.parameters)
       if (physics_parameter_name(term.element, term.id, parameter) == name) setting.value = value;

@@ -2,11 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/normal_equations.hpp"
 
 namespace sealwatch::mismatch {
+
+namespace {
+
+// Of a channel, in all recordings.
+double range_of(const PemProblem& problem, Eigen::Index channel) {
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (const PemRecording& recording : problem.recordings) {
+    const auto values = recording.simulation->recorded().col(channel);
+    least = std::min(least, values.minCoeff());
+    largest = std::max(largest, values.maxCoeff());
+  }
+  return largest - least;
+}
+
+}  // namespace
 
 std::vector<KnownValue> known_values(const AssetConfig& asset, const PlantDescription& plant) {
   std::vector<KnownValue> known;
@@ -16,6 +32,24 @@ std::vector<KnownValue> known_values(const AssetConfig& asset, const PlantDescri
     const double tolerance =
         setting.tolerance > 0.0 ? setting.tolerance : parameter->tolerance * std::abs(setting.value);
     if (tolerance > 0.0) known.push_back({.name = name, .value = setting.value, .standard_deviation = tolerance});
+  }
+  return known;
+}
+
+std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem& problem) {
+  std::vector<KnownValue> known;
+  const PlantSimulation& simulation = *problem.recordings.front().simulation;
+  for (std::size_t c = 0; c < simulation.channels().size(); ++c) {
+    const std::string& channel = simulation.channels()[c];
+    const auto sensor = asset.sensors.find(channel);
+    const SensorSetting setting = sensor == asset.sensors.end() ? SensorSetting{} : sensor->second;
+    const double gain = setting.gain_tolerance > 0.0 ? setting.gain_tolerance : kUsualSensorTolerance;
+    const double offset = setting.offset_tolerance > 0.0
+                              ? setting.offset_tolerance
+                              : kUsualSensorTolerance * range_of(problem, static_cast<Eigen::Index>(c));
+    known.push_back({.name = sensor_gain_name(channel), .value = 0.0, .standard_deviation = gain});
+    if (offset > 0.0)
+      known.push_back({.name = sensor_offset_name(channel), .value = 0.0, .standard_deviation = offset});
   }
   return known;
 }

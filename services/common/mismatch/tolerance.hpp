@@ -1,6 +1,6 @@
-// Fixed values of an asset are known within a tolerance: each is one more unknown of every fit, with the prior
-// N(value, tolerance^2), and costs nothing within it (kWithinTolerance). "Beyond
-// tolerance" is a cause like a law (datasheet.hpp).
+// Fixed values of an asset, and its sensors' gains and offsets, are known within a tolerance: each is one more unknown
+// of every fit, with the prior N(value, tolerance^2), and costs nothing within it (kWithinTolerance). "Beyond
+// tolerance" is a cause like a law: of a value (datasheet.hpp), of a sensor the laws sensor_gain and sensor_bias.
 //
 // Only values that show take part: those whose change by one tolerance would raise the misfit by more than a quarter
 // though everything that is estimated gives way,
@@ -23,6 +23,13 @@ inline constexpr double kOffByAtMost = 1.5;
 /// Every fixed value that is not 0, with the asset's tolerance or the plant's; not the mean load, which each recording
 /// has for itself.
 [[nodiscard]] std::vector<KnownValue> known_values(const AssetConfig& asset, const PlantDescription& plant);
+
+/// A transmitter of class 0.25: standard deviation of its gain, and of its offset as a share of the channel's range in the
+/// recordings. A fault from which an engineer would care (1 %) lies beyond kWithinTolerance of them.
+inline constexpr double kUsualSensorTolerance = 0.0025;
+
+/// What the sensors of the simulated channels are off by, with the asset's tolerances or the usual ones.
+[[nodiscard]] std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem& problem);
 
 /// Those of `known` that show in these recordings, at `model`; none where the model cannot be linearised.
 [[nodiscard]] std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const FittedModel& model,

@@ -40,6 +40,42 @@ double difference_step(const RecordedInput& recorded, SiteKind kind, std::size_t
 
 constexpr double kTight = 1e-6;
 
+// 1 + gain, per channel.
+Eigen::VectorXd gains_of(const ModelValues& values) {
+  return 1.0 + Eigen::Map<const Eigen::ArrayXd>(values.sensor_gain.data(),
+                                                static_cast<Eigen::Index>(values.sensor_gain.size()));
+}
+
+// y = (1 + g) z + b of each channel: dy/dtheta = (1 + g) dz/dtheta,  dy/dg = z,  dy/db = 1. `outputs` holds z and the
+// columns of what is free and not of a sensor, then the injected ones.
+void read_by_sensors(const ModelValues& values, std::span<const FreeQuantity> free, SimulatedOutputs& outputs) {
+  const auto exact = [](double error) { return error == 0.0; };
+  if (std::ranges::none_of(free, &FreeQuantity::is_of_sensor) && std::ranges::all_of(values.sensor_gain, exact) &&
+      std::ranges::all_of(values.sensor_offset, exact))
+    return;
+  const Eigen::VectorXd gain = gains_of(values);
+  const Eigen::Index channels = gain.size(), samples = outputs.values.rows();
+  const auto of_sensors = std::ranges::count_if(free, &FreeQuantity::is_of_sensor);
+  RowMatrix all = RowMatrix::Zero(samples * channels, outputs.sensitivities.cols() + of_sensors);
+  std::vector<Eigen::Index> place;  // of each column that is not a sensor's
+  for (std::size_t k = 0; k < free.size(); ++k)
+    if (!free[k].is_of_sensor()) place.push_back(static_cast<Eigen::Index>(k));
+  while (std::ssize(place) < outputs.sensitivities.cols()) place.push_back(std::ssize(place) + of_sensors);
+  for (Eigen::Index row = 0; row < all.rows(); ++row)
+    for (std::size_t k = 0; k < place.size(); ++k)
+      all(row, place[k]) = gain(row % channels) * outputs.sensitivities(row, static_cast<Eigen::Index>(k));
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (!free[k].is_of_sensor()) continue;
+    const auto channel = static_cast<Eigen::Index>(free[k].index);
+    const bool of_gain = free[k].kind == FreeQuantity::Kind::sensor_gain;
+    for (Eigen::Index sample = 0; sample < samples; ++sample)
+      all(sample * channels + channel, static_cast<Eigen::Index>(k)) = of_gain ? outputs.values(sample, channel) : 1.0;
+  }
+  outputs.sensitivities = std::move(all);
+  outputs.values *= gain.asDiagonal();
+  outputs.values.rowwise() += Eigen::Map<const Eigen::RowVectorXd>(values.sensor_offset.data(), channels);
+}
+
 }  // namespace
 
 RecordedSimulation::RecordedSimulation(const PlantDescription& plant, PhysicsTerms terms,
@@ -74,6 +110,16 @@ std::size_t RecordedSimulation::input_index(const RecordingTerm& term) const {
 
 Result<SimulatedOutputs> RecordedSimulation::run(const ModelValues& values, std::span<const FreeQuantity> free,
                                                  const SimulationOptions& options, InjectedColumns* injected) const {
+  std::vector<FreeQuantity> of_plant;
+  std::ranges::copy_if(free, std::back_inserter(of_plant), [](const FreeQuantity& one) { return !one.is_of_sensor(); });
+  Result<SimulatedOutputs> outputs = run_exact(values, of_plant, options, injected);
+  if (outputs) read_by_sensors(values, free, *outputs);
+  return outputs;
+}
+
+Result<SimulatedOutputs> RecordedSimulation::run_exact(const ModelValues& values, std::span<const FreeQuantity> free,
+                                                       const SimulationOptions& options,
+                                                       InjectedColumns* injected) const {
   if (terms_.recording.empty()) return run_driven_by(input_, values, free, options, injected);
   auto outputs = run_driven_by(input_.without(errors_at(values)), values, free, options, injected);
   for (std::size_t k = 0; outputs && k < free.size(); ++k)
@@ -88,7 +134,9 @@ Result<SimulatedOutputs> RecordedSimulation::run(const ModelValues& values, std:
 
 Result<RowMatrix> RecordedSimulation::recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
                                                        const SimulationOptions& options) const {
-  return difference(values, kind, input, values.parameters.size(), options);
+  Result<RowMatrix> column = difference(values, kind, input, values.parameters.size(), options);
+  if (column) *column *= gains_of(values).asDiagonal();
+  return column;
 }
 
 // `parameter`: the law's, where it is in force; else beyond the last.
@@ -121,6 +169,8 @@ void RecordedSimulation::select_channels(std::span<const OutputName> outputs, co
         sensor != asset.sensors.end() ? sensor->second.time_constant_s : plant_.find_channel(name)->time_constant_s;
     channels_.push_back({static_cast<int>(k), outputs[k].state, time_constant});
     channel_names_.push_back(name);
+    sensor_gain_.push_back(sensor != asset.sensors.end() ? sensor->second.gain_error : 0.0);
+    sensor_offset_.push_back(sensor != asset.sensors.end() ? sensor->second.offset_error : 0.0);
   }
   const auto rows = static_cast<Eigen::Index>(recorded.time_s.size());
   recorded_.resize(rows, static_cast<Eigen::Index>(channels_.size()));
@@ -133,6 +183,8 @@ void RecordedSimulation::set_states(std::vector<std::string> names, std::vector<
   state_names_ = std::move(names);
   slow_state_names_ = std::move(slow);
   start_ = std::move(start);
+  start_.sensor_gain = sensor_gain_;
+  start_.sensor_offset = sensor_offset_;
   for (const PhysicsParameter& parameter : terms_.parameters) start_.parameters.push_back(parameter.setting.value);
   start_.initial_state.resize(start_.initial_state.size() + terms_.hidden_names.size(), 0.0);
   state_names_.insert(state_names_.end(), terms_.hidden_names.begin(), terms_.hidden_names.end());

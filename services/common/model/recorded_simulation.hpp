@@ -57,6 +57,9 @@ class RecordedSimulation : public PlantSimulation {
   void set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start);
 
  private:
+  /// With exact sensors.
+  [[nodiscard]] Result<SimulatedOutputs> run_exact(const ModelValues& values, std::span<const FreeQuantity> free,
+                                                   const SimulationOptions& options, InjectedColumns* injected) const;
   [[nodiscard]] RecordingErrors errors_at(const ModelValues& values) const;
   [[nodiscard]] std::size_t input_index(const RecordingTerm& term) const;
   [[nodiscard]] Result<RowMatrix> difference(const ModelValues& values, SiteKind kind, std::size_t input,
@@ -68,6 +71,7 @@ class RecordedSimulation : public PlantSimulation {
   RecordedInput input_;
   std::vector<std::string> state_names_, slow_state_names_, channel_names_;
   std::vector<SimulatedChannel> channels_;
+  std::vector<double> sensor_gain_, sensor_offset_;  ///< the asset's, per channel
   RowMatrix recorded_;
   ModelValues start_;
 };

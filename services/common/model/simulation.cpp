@@ -62,9 +62,23 @@ double mean_of(const std::vector<double>& values, std::size_t count) {
 }  // namespace
 
 double& FreeQuantity::in(ModelValues& values) const {
-  if (kind == Kind::load_factor) return values.load_factor;
-  return kind == Kind::parameter ? values.parameters[index] : values.initial_state[index];
+  switch (kind) {
+    case Kind::parameter:
+      return values.parameters[index];
+    case Kind::initial_state:
+      return values.initial_state[index];
+    case Kind::sensor_gain:
+      return values.sensor_gain[index];
+    case Kind::sensor_offset:
+      return values.sensor_offset[index];
+    case Kind::load_factor:
+      break;
+  }
+  return values.load_factor;
 }
+
+std::string sensor_gain_name(std::string_view channel) { return "sensor:" + std::string(channel) + ".gain_error"; }
+std::string sensor_offset_name(std::string_view channel) { return "sensor:" + std::string(channel) + ".offset_error"; }
 
 double FreeQuantity::in(const ModelValues& values) const { return in(const_cast<ModelValues&>(values)); }
 
@@ -144,6 +158,11 @@ Result<FreeQuantity> PlantSimulation::find(std::string_view quantity) const {
     const std::string name = std::string(kInitialPrefix) + state_names()[index];
     if (name == quantity) return FreeQuantity{FreeQuantity::Kind::initial_state, index};
     names.push_back(name);
+  }
+  for (std::size_t index = 0; index < channels().size(); ++index) {
+    if (quantity == sensor_gain_name(channels()[index])) return FreeQuantity{FreeQuantity::Kind::sensor_gain, index};
+    if (quantity == sensor_offset_name(channels()[index]))
+      return FreeQuantity{FreeQuantity::Kind::sensor_offset, index};
   }
   return fail(Error{.file = {},
                     .place = {},

@@ -70,7 +70,9 @@ struct SensorKey {
 };
 constexpr SensorKey kSensorKeys[] = {{"noise_std", &SensorSetting::noise_std},
                                      {"time_constant", &SensorSetting::time_constant_s},
-                                     {"quantisation", &SensorSetting::quantisation}};
+                                     {"quantisation", &SensorSetting::quantisation},
+                                     {"gain_tolerance", &SensorSetting::gain_tolerance},
+                                     {"offset_tolerance", &SensorSetting::offset_tolerance}};
 
 /// What is measured has noise, by which its residuals are divided; commands and switch positions may have none.
 NumberRule rule_of(const SensorKey& key, const std::string& channel, const PlantDescription& plant) {

@@ -130,8 +130,10 @@ class Analysis {
     std::optional<Trial> from;
     if (seal_ && !seal_->naming.best.effects.empty()) from = in_common(*seal_, fit_, options.threads);
     if (seal_) tell("looking again, with one seal for all tests", 0.5);
-    Result<Naming> naming =
-        name_effects(baseline_, prepared(fit_), options, progress_, from.value_or(Trial{{}, baseline_}));
+    Data data = prepared(fit_);
+    data.sensors = known_sensors(asset_, baseline_->problem);
+    Result<Naming> naming = name_effects(baseline_, data, options, progress_, from.value_or(Trial{{}, baseline_}));
+    if (naming && naming->sensor_within_tolerance) naming = beside_inexact_sensors(std::move(*naming), options);
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
     say_how_likely_by_noise(naming_.first);
@@ -154,6 +156,21 @@ class Analysis {
     if (!seal_->wears) ask_values_in_place_of_seals();
     if (!why_none_) take_over(*seal_);
     return {};
+  }
+
+  // A sensor is off by no more than it may be: all of them may be, and what was found is asked again beside that.
+  Result<Naming> beside_inexact_sensors(Naming found, const ExplainOptions& options) {
+    std::ranges::copy(known_sensors(asset_, baseline_->problem), std::back_inserter(fit_.known));
+    Result<FittedModel> baseline = fit_model(baseline_->asset, prepared(fit_), baseline_.get(), options_.threads);
+    const Trial laws = without_last(found.best);
+    Result<FittedModel> with_laws = fit_model(laws.model->asset, prepared(fit_), laws.model.get(), options_.threads);
+    if (!baseline) return fail(baseline.error());
+    if (!with_laws) return fail(with_laws.error());
+    baseline_ = std::make_shared<const FittedModel>(std::move(*baseline));
+    const Trial from{laws.effects, std::make_shared<const FittedModel>(std::move(*with_laws))};
+    tell("looking again, with sensors within their tolerances", 0.5);
+    return name_effects(baseline_, prepared(fit_), options, progress_,
+                        laws.effects.empty() ? Trial{{}, baseline_} : from);
   }
 
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
@@ -340,9 +357,7 @@ class Analysis {
   // Fitted again with every fixed value that shows as an unknown within its tolerance.
   FittedModel with_tolerances(FittedModel model) {
     const PlantDescription& plant = model.problem.recordings.front().simulation->plant();
-    std::vector<KnownValue> known = known_values(asset_, plant);
-    std::ranges::copy(known_sensors(asset_, model.problem), std::back_inserter(known));
-    fit_.known = that_show(known, model, prepared(fit_), options_.threads);
+    fit_.known = that_show(known_values(asset_, plant), model, prepared(fit_), options_.threads);
     if (fit_.known.empty()) return model;
     Result<FittedModel> again = fit_model(model.asset, prepared(fit_), &model, options_.threads);
     if (again) return std::move(*again);

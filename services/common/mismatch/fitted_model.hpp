@@ -27,6 +27,7 @@ struct Data {
   std::vector<std::optional<UtcTime>> start_time = {};  ///< per recording; empty in windows
   std::string own_parameter = {};                       ///< that each recording has for itself ("R_CL"); "": none
   std::vector<KnownValue> known = {};                   ///< fixed values that may be off within their tolerance
+  std::vector<KnownValue> sensors = {};  ///< taken for exact until one of them is found to be off within its tolerance
   /// Recordings start from what was measured. Else a recording's initial state is among its own unknowns.
   bool start_as_measured = false;
   const Deadline* deadline = nullptr;  ///< of everything that is simulated

@@ -10,6 +10,7 @@
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/tolerance.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -167,6 +168,16 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   return trials;
 }
 
+// A sensor's gain or offset that is no further off than its tolerance lets it be.
+bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::vector<KnownValue>& sensors) {
+  const std::string name = tolerated_name(effect);
+  const auto known = std::ranges::find(sensors, name, &KnownValue::name);
+  if (name.empty() || known == sensors.end()) return false;
+  const std::string strength = physics_parameter_name(effect.element, effect.law->id,
+                                                      effect.law->parameters[strengths_of(*effect.law).front()].name);
+  return std::abs(*estimate_of(*trial.model, strength)) <= kWithinTolerance * known->standard_deviation;
+}
+
 }  // namespace
 
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
@@ -213,6 +224,9 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     }
     const Screening asked = naming.last;
     if (!take(naming, *best, data, options)) break;
+    naming.sensor_within_tolerance = excess(*naming.best.model) <= kGross &&
+                                     is_within_tolerance(naming.best.effects.back(), naming.best, data.sensors);
+    if (naming.sensor_within_tolerance) return naming;
     if (in_time("other shapes of the law found")) from_other_shapes(naming, level, asked, data, options);
     if (in_time("other laws in place of those found before")) another_law_for_each(naming, data, options);
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);

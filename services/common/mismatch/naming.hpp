@@ -32,6 +32,7 @@ struct Naming {
   std::vector<std::string> remarks = {};              ///< what was not taken for a reason of computation
   std::shared_ptr<const FittedModel> looked_at = {};  ///< the model that was screened last,
   Screening seen = {};                                ///< and what that showed
+  bool sensor_within_tolerance = false;  ///< the last law found is no more than that (Data::sensors): the search ended
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
 };
 

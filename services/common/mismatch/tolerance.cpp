@@ -54,6 +54,14 @@ std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem
   return known;
 }
 
+std::string tolerated_name(const Effect& effect) {
+  constexpr std::string_view kSensor = "sensor:";
+  if (!effect.element.starts_with(kSensor)) return {};
+  const std::string channel = effect.element.substr(kSensor.size());
+  if (effect.law->kind == SiteKind::sensor_gain) return sensor_gain_name(channel);
+  return effect.law->kind == SiteKind::sensor_bias ? sensor_offset_name(channel) : "";
+}
+
 std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const FittedModel& model, const Data& data,
                                   int threads) {
   constexpr double kShows = 0.25;

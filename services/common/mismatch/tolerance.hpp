@@ -1,6 +1,10 @@
-// Fixed values of an asset, and its sensors' gains and offsets, are known within a tolerance: each is one more unknown
-// of every fit, with the prior N(value, tolerance^2), and costs nothing within it (kWithinTolerance). "Beyond
-// tolerance" is a cause like a law: of a value (datasheet.hpp), of a sensor the laws sensor_gain and sensor_bias.
+// Fixed values of an asset are known within a tolerance: each is one more unknown of every fit, with the prior
+// N(value, tolerance^2), and costs nothing within it (kWithinTolerance). "Beyond tolerance" is a cause like a law
+// (datasheet.hpp).
+//
+// Sensors' gains and offsets are known within tolerances too. They would imitate much of what small effects do: sensors
+// are taken for exact until one of them is found to be off by no more than its tolerance. From then on all of them are
+// unknowns of every fit, and only what lies beyond is a cause (laws sensor_gain and sensor_bias).
 //
 // Only values that show take part: those whose change by one tolerance would raise the misfit by more than a quarter
 // though everything that is estimated gives way,
@@ -14,6 +18,7 @@
 #include <vector>
 
 #include "services/common/mismatch/fitted_model.hpp"
+#include "services/common/mismatch/refits.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -30,6 +35,9 @@ inline constexpr double kUsualSensorTolerance = 0.0025;
 
 /// What the sensors of the simulated channels are off by, with the asset's tolerances or the usual ones.
 [[nodiscard]] std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem& problem);
+
+/// What a law of a sensor's gain or offset is called there; "" of other laws.
+[[nodiscard]] std::string tolerated_name(const Effect& effect);
 
 /// Those of `known` that show in these recordings, at `model`; none where the model cannot be linearised.
 [[nodiscard]] std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const FittedModel& model,

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
+#include "services/common/equations/own_law.hpp"
 #include "services/common/runtime/plant_file.hpp"
 
 namespace sealwatch::cli {
@@ -54,7 +55,7 @@ std::vector<std::string> laws_at(const equations::TextSite& site, const std::vec
     if (fits && std::ranges::find(ids, law.id) == ids.end()) ids.emplace_back(law.id);
   };
   for (const Law& law : all_laws())
-    if (law.plant.empty()) add(law);
+    if (law.plant.empty() && !equations::is_inert(law, site)) add(law);
   for (const Law& law : own) add(law);
   return ids;
 }
@@ -100,6 +101,18 @@ void print_plant(const std::string& file, const ReadPlant& read) {
     rows.push_back({"", "", "tried there: " + joined(laws_at(site, read.built.laws), ", ")});
   }
   print_table("Sites, where physics may be missing", rows);
+  rows.clear();
+  for (const equations::NeededSize& size : equations::needed_sizes(read.text)) {
+    const double factor = read.text.law_sizes.at(size.unit);
+    const LawParameter& parameter = *size.parameter;
+    const auto here = [&](double value) { return shown(factor * value) + " " + size.unit; };
+    rows.push_back(
+        {size.unit, "x " + shown(factor),
+         std::string(size.law->id) + ": " + std::string(parameter.name) + " usually " + here(parameter.start.front()),
+         parameter.strength ? "matters from " + here(parameter.significant) : "",
+         "from " + shown(parameter.min) + " to " + shown(parameter.max)});
+  }
+  print_table("Sizes of laws here, each unit by one law that has it (law_sizes)", rows);
 }
 
 nlohmann::ordered_json errors_of(const std::vector<Error>& errors) {

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/own_law.hpp"
@@ -12,6 +14,19 @@ namespace {
 
 Error fault(std::string value, std::string rule, std::string advice = {}) {
   return {.file = {}, .place = {}, .value = std::move(value), .rule = std::move(rule), .advice = std::move(advice)};
+}
+
+// "shaft_coulomb_friction has T_c = 0.02 N m".
+std::string usual_words(const NeededSize& size) {
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%g", size.parameter->start.front());
+  return std::string(size.law->id)
+      .append(" has ")
+      .append(size.parameter->name)
+      .append(" = ")
+      .append(number.data())
+      .append(" ")
+      .append(size.unit);
 }
 
 class Builder {
@@ -43,17 +58,22 @@ class Builder {
  private:
   Expressions& e() { return parts_.expressions; }
 
-  Node understood(const std::string& key, const std::string& text, const Dimension& unit) {
+  Node understood(const std::string& key, const std::string& text, const std::optional<Dimension>& unit) {
     const Result<Formula> formula = understand(text, e(), names_, unit);
     if (!formula) faults_(key, formula.error());
     return formula ? formula->node : e().constant(0.0);
   }
 
+  // Nothing where it is no unit, which was told already.
+  static std::optional<Dimension> per_second(const std::string& unit) {
+    const Result<Dimension> found = find_dimension(unit);
+    return found ? std::optional(multiply(*found, *find_dimension("s"), -1.0)) : std::nullopt;
+  }
+
   void read_rates() {
     for (const TextState& state : text_.states) {
       const std::string key = "states." + state.description.name;
-      const Dimension unit = find_dimension(state.description.unit).value_or(Dimension{});
-      rates_.push_back(understood(key + ".der", state.rate, multiply(unit, *find_dimension("s"), -1.0)));
+      rates_.push_back(understood(key + ".der", state.rate, per_second(state.description.unit)));
       if (state.start.empty())
         faults_(key, fault(state.description.name, "has no start",
                            "give start: an expression of parameters and of channels, whose first value is taken"));
@@ -106,7 +126,7 @@ class Builder {
 
   void add_to_rates(const TextSite& site, std::size_t index) {
     const Node added = e().variable(names_.places().added + index);
-    const Dimension unit = find_dimension(site.unit).value_or(Dimension{});
+    const Result<Dimension> unit = find_dimension(site.unit);
     for (const auto& [state, factor] : site.adds_to) {
       const std::string key = site.key + ".adds_to." + state;
       const auto row = std::ranges::find(text_.states, state, [](const TextState& s) { return s.description.name; });
@@ -116,8 +136,8 @@ class Builder {
         faults_(key, fault(state, "is not a state", suggest(state, states)));
         continue;
       }
-      const Dimension of_state = find_dimension(row->description.unit).value_or(Dimension{});
-      const Dimension needed = multiply(multiply(of_state, *find_dimension("s"), -1.0), unit, -1.0);
+      std::optional<Dimension> needed = per_second(row->description.unit);
+      needed = needed && unit ? std::optional(multiply(*needed, *unit, -1.0)) : std::nullopt;
       Node& rate = rates_[static_cast<std::size_t>(row - text_.states.begin())];
       rate = e().add(rate, e().multiply(understood(key, factor, needed), added));
     }
@@ -160,12 +180,15 @@ class Builder {
   }
 
   void check_sizes() {
-    std::string missing;
-    for (const std::string& unit : needed_sizes(text_))
-      if (!text_.law_sizes.contains(unit)) missing += (missing.empty() ? "" : ", ") + unit;
+    std::string missing, there;
+    for (const NeededSize& size : needed_sizes(text_)) {
+      if (text_.law_sizes.contains(size.unit)) continue;
+      missing.append(missing.empty() ? "" : ", ").append(size.unit);
+      there.append(there.empty() ? "" : "; ").append(usual_words(size));
+    }
     if (!missing.empty())
       faults_("law_sizes", fault(missing, "is missing: units of laws that fit the plant's sites",
-                                 "say how many times larger than on the 60 kN actuator each is here; 1: as large"));
+                                 "say how many times larger each is here than on the 60 kN actuator, where " + there));
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       if (!(scale_of(k) > 0.0))
         faults_("states." + text_.states[k].description.name,

@@ -85,6 +85,12 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"symbol: lost", "adds_to: {w: -1/M}", {"'w'", "is not a state"}},
       {"k: {value: 50.0", "x: {value: 50.0", {"is a name already"}},
       {"c: {value: 4.0, unit", "c: {value: four, unit", {"line 10", "must be a number"}},
+      {"kind: piston_force", "kind: force", {"'force'", "known are: voltage_command"}},
+      {"unit: N s/m", "unit: Ns/m", {"line 10", "write a product with blanks: N s"}},
+      {"unit: N s/m", "unit: kg rpm", {"is not the SI unit", "here kg/s"}},
+      {"c: {value: 4.0", "c: {value: 0", {"line 10", "give min and max"}},
+      {"NAME", "eha #NAME", {"line 1, key name", "is the name of a plant that is built in"}},
+      {"N/m: 1e-3, ", "", {"where", "spring_load", "N/m"}},
       {"meaning: a mass", "meening: a mass", {"did you mean 'meaning'"}},
       {"outputs:\n", "output:\n", {"line 5, key output", "did you mean 'outputs'"}},
   };
@@ -94,6 +100,19 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       EXPECT_NE(told.find(words), std::string::npos) << one.what << " -> " << one.instead << ":\n" << told;
     EXPECT_NE(told.find("faulty.yaml"), std::string::npos) << told;
   }
+}
+
+std::size_t count_of_faults(const std::string& text) {
+  const auto plant = read_plant_file(written("faulty", text));
+  return plant ? 0 : plant.error().size();
+}
+
+TEST(PlantFile, TellsOneFaultOnce) {
+  EXPECT_EQ(count_of_faults(with(kSound, "u - k*x", "u - k*y")), 1U) << "not at each equation that uses it too";
+  EXPECT_EQ(count_of_faults(with(kSound, "u - k*x", "force - k*x")), 1U);
+  EXPECT_EQ(count_of_faults(with(kSound, "unit: kg,", "unit: kgs,")), 1U) << "a mass of no known unit fits any";
+  EXPECT_EQ(count_of_faults(with(kSound, "kind: piston_force", "kind: piston")), 1U);
+  EXPECT_EQ(count_of_faults(with(kSound, "value: 2.0", "value: 0")), 1U);
 }
 
 TEST(PlantFile, ThatIsLoadedTwiceIsOnePlantAndAnotherOfItsNameIsRefused) {

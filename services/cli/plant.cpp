@@ -52,10 +52,11 @@ std::vector<std::string> laws_at(const equations::TextSite& site, const std::vec
   const auto add = [&](const Law& law) {
     const bool fits = law.kind == site.kind && !law.closed_form &&
                       (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end());
-    if (fits && std::ranges::find(ids, law.id) == ids.end()) ids.emplace_back(law.id);
+    if (fits && (!law.plant.empty() || !equations::is_inert(law, site)) && std::ranges::find(ids, law.id) == ids.end())
+      ids.emplace_back(law.id);
   };
   for (const Law& law : all_laws())
-    if (law.plant.empty() && !equations::is_inert(law, site)) add(law);
+    if (law.plant.empty()) add(law);
   for (const Law& law : own) add(law);
   return ids;
 }
@@ -72,14 +73,16 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   rows.clear();
   for (const equations::TextOutput& output : read.text.outputs)
     rows.push_back({output.channel.name, "[" + output.channel.unit + "]", "= " + output.value,
-                    "noise " + shown(output.channel.noise_std), output.channel.meaning});
+                    output.channel.noise_std > 0.0 ? "noise " + shown(output.channel.noise_std) : "noise as recorded",
+                    output.channel.meaning});
   print_table("Outputs", rows);
   rows.clear();
   for (std::size_t k = 0; k < read.text.states.size(); ++k) {
     const equations::TextState& state = read.text.states[k];
     const char* own = state.settles ? "settles" : state.own ? "each recording's own" : "starts there";
-    rows.push_back({"d " + state.description.name + "/dt", "[(" + state.description.unit + ")/s]", "= " + state.rate,
-                    "from " + joined(state.start, " or "), own});
+    rows.push_back({"d " + state.description.name + "/dt", "[(" + state.description.unit + ")/s]",
+                    "= " + (state.rate.empty() ? "as the FMU says" : state.rate), "from " + joined(state.start, " or "),
+                    own});
   }
   print_table("States", rows);
   rows.clear();

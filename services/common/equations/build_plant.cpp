@@ -196,17 +196,30 @@ class Builder {
                       "give size: how large it usually is; an output that equals it may give its noise_std instead"));
   }
 
-  // Allowed local error of a step: a share of the state's size, or of the noise of the output that shows it.
+  // Allowed local error of a step: a share of the state's size; without one a share of the noise of the output that
+  // shows it, and no more than adds up in a second to the error that a state may have whose derivative it is.
   [[nodiscard]] double scale_of(std::size_t state) const {
-    constexpr double kOfSize = 1e-7, kOfNoise = 5e-4;
+    constexpr double kOfSize = 1e-7, kSecond = 1.0;
     if (text_.states[state].size) return kOfSize * *text_.states[state].size;
+    double scale = scale_by_noise(state);
+    for (std::size_t k = 0; k < rates_.size(); ++k) {
+      const double of_integral = text_.states[k].size ? kOfSize * *text_.states[k].size : scale_by_noise(k);
+      if (state_at(rates_[k]) == static_cast<int>(state) && of_integral > 0.0)
+        scale = std::min(scale, of_integral / kSecond);
+    }
+    return scale;
+  }
+
+  [[nodiscard]] double scale_by_noise(std::size_t state) const {
+    constexpr double kOfNoise = 5e-4;
     for (std::size_t k = 0; k < outputs_.size(); ++k)
-      if (shown_state(k) == static_cast<int>(state)) return kOfNoise * text_.outputs[k].channel.noise_std;
+      if (state_at(outputs_[k]) == static_cast<int>(state)) return kOfNoise * text_.outputs[k].channel.noise_std;
     return 0.0;
   }
 
-  [[nodiscard]] int shown_state(std::size_t output) const {
-    const Expressions::Entry& entry = parts_.expressions.entries()[outputs_[output]];
+  /// The state that a node is; -1: it is none.
+  [[nodiscard]] int state_at(Node node) const {
+    const Expressions::Entry& entry = parts_.expressions.entries()[node];
     const VariablePlaces& places = names_.places();
     const bool state = entry.operation == Operation::variable && entry.a >= places.states && entry.a < places.inputs;
     return state ? static_cast<int>(entry.a - places.states) : -1;
@@ -219,7 +232,7 @@ class Builder {
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       plant.states.push_back({.scale = scale_of(k), .slow = text_.states[k].own, .settles = text_.states[k].settles});
     for (std::size_t k = 0; k < text_.outputs.size(); ++k)
-      plant.outputs.push_back({text_.outputs[k].channel.name, shown_state(k)});
+      plant.outputs.push_back({text_.outputs[k].channel.name, state_at(outputs_[k])});
     for (const std::size_t k : parts_.used_inputs) {
       const TextInput& input = text_.inputs[k];
       plant.inputs.push_back({input.channel.name, input.course, input.smoothing_s});

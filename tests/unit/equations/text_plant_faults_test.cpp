@@ -115,6 +115,17 @@ TEST(PlantFile, TellsOneFaultOnce) {
   EXPECT_EQ(count_of_faults(with(kSound, "value: 2.0", "value: 0")), 1U);
 }
 
+// A noisy tachometer beside a fine encoder: what the integration may miss of the speed adds up in the angle.
+TEST(PlantFile, AStateIsIntegratedAsFinelyAsItsIntegralIsSeen) {
+  const std::string speed =
+      with(with(kSound, ", size: 1.0", ""), "outputs:\n", "outputs:\n  speed: {value: v, unit: m/s, noise_std: 0.1}\n");
+  const auto plant = read_plant_file(written("tachometer", speed));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const std::vector<RuntimeState>& states = plant->built.plant.states;
+  EXPECT_LE(states[1].scale, states[0].scale);
+  EXPECT_GT(states[1].scale, 0.0);
+}
+
 TEST(PlantFile, ThatIsLoadedTwiceIsOnePlantAndAnotherOfItsNameIsRefused) {
   const auto first = load_plant(written("loaded", kSound)), again = load_plant(written("loaded", kSound));
   ASSERT_TRUE(first && again);

@@ -70,7 +70,7 @@ class RecordingRun {
   [[nodiscard]] bool stopped_by_event() const { return stopped_by_event_; }
 
   [[nodiscard]] Result<SimulatedOutputs> simulate(const ModelValues& values) {
-    if (!initial_point(values)) return failure(input_.times().front());
+    if (!initial_point(values)) return no_start();
     filtered_until_ = input_.times().front();
     pass_sensors(filtered_until_, point_.data());
     sample(0);
@@ -82,6 +82,14 @@ class RecordingRun {
   }
 
  private:
+  [[nodiscard]] tl::unexpected<Error> no_start() const {
+    return fail(Error{.file = {},
+                      .place = "t = " + std::to_string(input_.times().front()) + " s",
+                      .value = system_.trouble(),
+                      .rule = "the simulation has no start: the states that settle there find no rest",
+                      .advice = "check the start of the others, or let fewer states settle"});
+  }
+
   [[nodiscard]] tl::unexpected<Error> failure(double time) const {
     if (passed(deadline_)) return fail("the simulation was ended: its time was up");
     return fail(Error{.file = {},

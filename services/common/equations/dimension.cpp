@@ -75,8 +75,10 @@ std::optional<Dimension> unit_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// "Nms" as "N m s"; nothing where it is no product of units.
+/// "Nms" as "N m s"; nothing where it is no product of units, or longer than such a slip is.
 std::optional<std::string> split(std::string_view name) {
+  constexpr std::size_t kLongest = 10;
+  if (name.size() > kLongest) return std::nullopt;
   for (std::size_t length = 1; length <= name.size(); ++length) {
     if (!unit_named(name.substr(0, length))) continue;
     const std::string first(name.substr(0, length));

@@ -116,11 +116,31 @@ class Reader {
     return known->dimension;
   }
 
+  // a + b - c is (a + b) - c: a long sum is deep at its left, which is gone through from its first part on.
   Result<Formula> arithmetic(const Syntax& syntax) {
-    const auto parts = operands(syntax);
-    if (!parts) return fail(parts.error());
-    const Formula& a = parts->front();
-    const Formula& b = parts->back();
+    std::vector<const Syntax*> spine = {&syntax};
+    while (is_arithmetic(spine.back()->operands.front())) spine.push_back(&spine.back()->operands.front());
+    Result<Formula> left = read(spine.back()->operands.front());
+    for (auto part = spine.rbegin(); left && part != spine.rend(); ++part) {
+      std::vector<Formula> parts = {*left};
+      for (std::size_t k = 1; k < (*part)->operands.size(); ++k) {
+        const Result<Formula> one = read((*part)->operands[k]);
+        if (!one) return fail(one.error());
+        parts.push_back(*one);
+      }
+      left = joined(**part, parts);
+    }
+    return left;
+  }
+
+  static bool is_arithmetic(const Syntax& syntax) {
+    return syntax.kind != Syntax::Kind::number && syntax.kind != Syntax::Kind::name &&
+           syntax.kind != Syntax::Kind::call;
+  }
+
+  Result<Formula> joined(const Syntax& syntax, const std::vector<Formula>& parts) {
+    const Formula& a = parts.front();
+    const Formula& b = parts.back();
     switch (syntax.kind) {
       case Syntax::Kind::negate:
         return Formula{e_.apply(Operation::negate, a.node), a.dimension, a.any_unit};
@@ -134,7 +154,7 @@ class Reader {
       default:
         break;
     }
-    const auto unit = common(syntax, *parts);
+    const auto unit = common(syntax, parts);
     if (!unit) return fail(unit.error());
     const bool adds = syntax.kind == Syntax::Kind::add;
     return Formula{adds ? e_.add(a.node, b.node) : e_.subtract(a.node, b.node), *unit, a.any_unit && b.any_unit};

@@ -123,6 +123,10 @@ Result<Formula> PlantNames::quantity(const std::string& name) {
     return fail(fault(name, "depends on itself: " + circle + name,
                       "an algebraic loop has no value of its own: solve it by hand, or make one of them a state"));
   }
+  constexpr std::size_t kDeepest = 40;
+  if (!definition->second.meaning && open_.size() >= kDeepest)
+    return fail(fault(name, "is a definition within more than " + std::to_string(kDeepest) + " others",
+                      "put some of them together"));
   if (!definition->second.meaning) define(name);
   return *definition->second.meaning;
 }

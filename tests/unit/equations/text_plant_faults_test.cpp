@@ -107,6 +107,28 @@ std::size_t count_of_faults(const std::string& text) {
   return plant ? 0 : plant.error().size();
 }
 
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int k = 0; k < times; ++k) all += text;
+  return all;
+}
+
+TEST(PlantFile, ThatWouldTakeAllOfTheStackIsRefused) {
+  EXPECT_EQ(faults_of(with(kSound, "u - k*x", "u" + repeated(" + u", 3000) + " - k*x")), "");
+  EXPECT_NE(faults_of(with(kSound, "u - k*x", "u" + repeated(" + u", 200000) + " - k*x")).find("is too long"),
+            std::string::npos);
+  EXPECT_NE(faults_of(with(kSound, "u - k*x", repeated("-", 100000) + "u - k*x")).find("nested too deeply"),
+            std::string::npos);
+  EXPECT_NE(faults_of(with(kSound, "u - k*x", repeated("(", 100000) + "u - k*x")).find("nested too deeply"),
+            std::string::npos);
+  std::string chain;
+  for (int k = 0; k < 2000; ++k) chain += "  d" + std::to_string(k) + ": d" + std::to_string(k + 1) + " + 1\n";
+  EXPECT_NE(faults_of(with(kSound, "definitions:\n", "definitions:\n" + chain + "  d2000: 1.5\n")).find("within more"),
+            std::string::npos);
+  EXPECT_NE(faults_of(with(kSound, "unit: kg,", "unit: " + repeated("m", 200) + "x,")).find("is not a unit"),
+            std::string::npos);
+}
+
 TEST(PlantFile, TellsOneFaultOnce) {
   EXPECT_EQ(count_of_faults(with(kSound, "u - k*x", "u - k*y")), 1U) << "not at each equation that uses it too";
   EXPECT_EQ(count_of_faults(with(kSound, "u - k*x", "force - k*x")), 1U);

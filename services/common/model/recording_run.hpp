@@ -47,6 +47,7 @@ class RecordingRun {
         system_(std::move(system)),
         scale_(system_.scale(options.relative_tolerance)),
         deadline_(options.deadline),
+        most_steps_(options.maximum_steps),
         integrator_(system_, static_cast<int>(columns_) - 1, scale_,
                     {.maximum_step = options.maximum_step_s,
                      .maximum_steps = options.maximum_steps,
@@ -92,6 +93,14 @@ class RecordingRun {
 
   [[nodiscard]] tl::unexpected<Error> failure(double time) const {
     if (passed(deadline_)) return fail("the simulation was ended: its time was up");
+    if (integrator_.statistics().steps >= most_steps_)
+      return fail(Error{
+          .file = {},
+          .place = "t = " + std::to_string(time) + " s",
+          .value = system_.trouble(),
+          .rule = "the simulation was given up after " + std::to_string(most_steps_) + " steps",
+          .advice = "something explodes, swings fast or is integrated too finely: check the parameters' values and "
+                    "the sizes of the states"});
     return fail(Error{.file = {},
                       .place = "t = " + std::to_string(time) + " s",
                       .value = system_.trouble(),
@@ -261,6 +270,7 @@ class RecordingRun {
   System system_;
   Vector scale_;
   const Deadline* deadline_;
+  std::size_t most_steps_;
   Integrator integrator_;
   std::vector<double> point_, signal_;
   std::vector<SensorFilter> filters_;

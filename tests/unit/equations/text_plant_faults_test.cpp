@@ -267,8 +267,29 @@ TEST(PlantFile, ThatExplodesIsAnErrorOfTheIntegrator) {
   const auto outputs = (*simulation)->run((*simulation)->start(), {});
   ASSERT_FALSE(outputs);
   const std::string told = outputs.error().describe();
-  EXPECT_NE(told.find("no step size follows"), std::string::npos) << told;
+  EXPECT_NE(told.find("was given up after"), std::string::npos) << told;
   EXPECT_NE(told.find("moves fastest"), std::string::npos) << told;
+}
+
+Result<SimulatedOutputs> simulated(const std::string& name, const std::string& text, const SimulationOptions& options) {
+  const auto plant = load_plant(written(name, text));
+  if (!plant) return fail(combine(plant.error()));
+  const auto simulation = PlantSimulation::create(
+      nominal_asset(name),
+      samples_of({{"u", [](double t) { return 100.0 * t; }}, {"position", [](double) { return 0.0; }}}, 501, 0.02));
+  if (!simulation) return fail(simulation.error());
+  return (*simulation)->run((*simulation)->start(), {}, options);
+}
+
+TEST(PlantFile, WhoseSimulationDoesNotEndOrStartIsToldWhy) {
+  const auto slow = simulated("slow", kSound, {.maximum_steps = 10});
+  ASSERT_FALSE(slow);
+  EXPECT_NE(slow.error().describe().find("given up after 10 steps"), std::string::npos) << slow.error().describe();
+  const std::string never =
+      with(with(kSound, "u - k*x - c*v", "1[N] + c*v^2/1[m/s] + k*x^2/1[m]"), "size: 1.0", "size: 1.0, settles: true");
+  const auto restless = simulated("restless", never, {});
+  ASSERT_FALSE(restless) << "a force that nothing balances";
+  EXPECT_NE(restless.error().describe().find("no rest"), std::string::npos) << restless.error().describe();
 }
 
 /// A chain of ten masses between springs, pushed at its first: 20 states, 5 sites.

@@ -18,6 +18,7 @@
 #include "services/common/report/plot.hpp"
 #include "services/common/report/readable.hpp"
 #include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/plant_file.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -133,17 +134,35 @@ std::string left_aside(const Understood& log) {
   return text;
 }
 
+/// What drives the plant and no column was taken for.
+std::string missing_inputs(const Understood& log) {
+  std::string text;
+  for (const ChannelDescription& channel : log.plant->channels)
+    if (channel.input && !log.map.columns.contains(channel.name))
+      text.append(text.empty() ? "" : ", ").append(channel.name).append(" [").append(channel.unit).append("]");
+  return text;
+}
+
 std::string mapping_text(const ColumnMapping& mapping) {
   std::string text = "{column: " + quoted(mapping.column);
   if (!mapping.unit.empty()) text += ", unit: " + quoted(mapping.unit);
   return text + "}";
 }
 
-std::string yaml_of(const Understood& log, const std::string& id, const std::string& file) {
-  std::string out = "# From " + fs::path(file).filename().string() +
+/// What an asset file that stands in `folder` calls the plant.
+std::string model_name(const PlantDescription& plant, const fs::path& folder) {
+  if (plant.file.empty()) return plant.name;
+  std::error_code ignored;
+  return fs::relative(plant.file, folder.empty() ? "." : folder, ignored).string();
+}
+
+std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
+  const std::string model = model_name(*log.plant, fs::path(options.file).parent_path());
+  std::string out = "# From " + fs::path(options.log).filename().string() +
                     ": what sealwatch understood of it. Correct what is wrong; docs/logs.md, docs/asset-file.md.\n";
   for (const std::string& remark : log.remarks) out += "# " + remark + "\n";
-  out += "asset_id: " + quoted(id) + "\nmodel: " + log.plant->name + "  # " + log.plant->meaning + "\n";
+  const std::string id = options.asset_id.empty() ? fs::path(options.log).stem().string() : options.asset_id;
+  out += "asset_id: " + quoted(id) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
   out += "# The plant's own values hold until yours stand here, in SI units:\n# parameters: {";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, log.plant->parameters.size()); ++k)
     out.append(k > 0 ? ", " : "")
@@ -154,7 +173,8 @@ std::string yaml_of(const Understood& log, const std::string& id, const std::str
   for (const ChannelDescription& channel : log.plant->channels) {
     const auto mapping = log.map.columns.find(channel.name);
     if (mapping == log.map.columns.end()) {
-      out += "  # " + channel.name + ": not in the log; " + channel.meaning + " [" + channel.unit + "]\n";
+      out += "  # " + channel.name + ": not found in the log; " + channel.meaning +
+             "; as {column: NAME, scale: 1, unit: " + quoted(channel.unit) + "}\n";
       continue;
     }
     const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
@@ -213,6 +233,8 @@ void print_table(const Understood& log) {
   for (const auto& [channel, mapping] : log.map.columns)
     std::printf("  %s %s %-12s %s\n", padded(channel, 24).c_str(), padded(mapping.column, 30).c_str(),
                 mapping.unit.c_str(), channel == "time" ? "" : range_text(log.tests, channel).c_str());
+  if (const std::string drives = missing_inputs(log); !drives.empty())
+    std::printf("  inputs that were not found: %s; map them by hand in the file\n", drives.c_str());
   for (const std::string& remark : log.remarks) std::printf("  %s\n", remark.c_str());
   if (const std::string aside = left_aside(log); !aside.empty()) std::printf("  left aside: %s\n", aside.c_str());
 }
@@ -231,6 +253,17 @@ Status write_new(const std::string& file, const std::string& text) {
                     .advice = there ? "give another name with --out" : ""});
 }
 
+/// A plant that is built in, or a plant file.
+Result<const PlantDescription*> named_plant(const std::string& model) {
+  if (!is_plant_file(model)) return find_plant(model);
+  std::error_code ignored;
+  if (!fs::is_regular_file(model, ignored))
+    return fail(Error{.file = model, .place = {}, .value = {}, .rule = "is no file", .advice = "--model"});
+  const auto plant = load_plant(model);
+  if (!plant) return fail(plant.error().front());
+  return *plant;
+}
+
 Result<Understood> understand(const AssetNewOptions& options) {
   Result<Offer> offer = offer_of(options.log, {});
   if (!offer) return fail(offer.error());
@@ -239,9 +272,12 @@ Result<Understood> understand(const AssetNewOptions& options) {
   log.map.columns["time"] = guess_time(log.offer);
   const std::string& time = log.map.columns["time"].column;
   const Result<const PlantDescription*> wanted =
-      options.model.empty() ? &guess_plant(log.offer, time) : find_plant(options.model);
+      options.model.empty() ? &guess_plant(log.offer, time) : named_plant(options.model);
   if (!wanted) return fail(wanted.error());
   log.plant = *wanted;
+  if (options.model.empty())
+    log.remarks.push_back("the plant that is built in and fits best, " + log.plant->name +
+                          ", is a guess: for a plant file of your own say --model FILE.yaml");
   if (const ColumnMapping& clock = log.map.columns["time"];
       clock.unit == "s" && unit_of(log.offer.columns[*find_offered(log.offer.columns, clock.column)]).empty())
     log.remarks.emplace_back("the unit of the time is not said: taken for s");
@@ -268,8 +304,7 @@ Result<Understood> understand(const AssetNewOptions& options) {
 int run_asset_new(const AssetNewOptions& options) {
   const Result<Understood> log = understand(options);
   if (!log) return complain(log.error()), kBadInput;
-  const std::string id = options.asset_id.empty() ? fs::path(options.log).stem().string() : options.asset_id;
-  if (const Status written = write_new(options.file, yaml_of(*log, id, options.log)); !written)
+  if (const Status written = write_new(options.file, yaml_of(*log, options)); !written)
     return complain(written.error()), kBadInput;
   if (const Result<AssetConfig> back = load_asset(options.file); !back) return complain(back.error()), kInternalFailure;
   const std::string page = fs::path(options.file).replace_extension(".html").string();

@@ -23,7 +23,8 @@ const std::map<std::string, std::set<std::string>>& vocabulary() {
       {"rad/s", {"n", "rpm", "omega", "speed", "drehzahl"}},
       {"rad", {"angle", "winkel", "phi"}},
       {"K", {"temp", "temperature", "temperatur", "tt", "ti"}},
-      {"N", {"f", "force", "load", "kraft"}}};
+      {"N", {"f", "force", "load", "kraft"}},
+      {"N m", {"torque", "moment", "drehmoment"}}};
   return words;
 }
 

@@ -163,6 +163,7 @@ void print_text(const AssetConfig& asset, const FitOptions& options, const FitRe
               options.recordings.size(), options.recordings.size() == 1 ? "" : "s",
               fit.report.admissible ? "admissible" : "NOT admissible");
   for (const std::string& reason : fit.report.reasons) std::printf("  - %s\n", wrapped(reason, 110, 4).c_str());
+  if (fit.report.channels.empty()) return;  // no simulation came to its end: there is nothing to show
   std::vector<ParameterRow> rows;
   for (const EstimatedParameter& parameter : fit.report.parameters)
     if (parameter.free) rows.push_back({parameter});

@@ -511,7 +511,8 @@ class CommandLine {
     fresh->callback([this] { chosen_ = [this] { return run_asset_new(asset_new_); }; });
     fresh->add_option("--from", asset_new_.log, "your log: text in columns, MATLAB or HDF5")->required();
     fresh->add_option("--out", asset_new_.file, "asset file to write, with a picture beside it (.html)")->required();
-    fresh->add_option("--model", asset_new_.model, "plant (default: the one that the most columns speak for)");
+    fresh->add_option("--model", asset_new_.model,
+                      "plant that is built in (default: the one that the most columns speak for), or a plant file");
     fresh->add_option("--id", asset_new_.asset_id, "asset id (default: the log's name)");
     fresh->add_flag("--yes", asset_new_.yes, "take the guess without asking");
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/cli/commands.hpp"
+#include "services/common/equations/own_law.hpp"
 #include "services/common/runtime/plant_file.hpp"
 
 namespace sealwatch::cli {
@@ -51,7 +52,8 @@ std::vector<std::string> laws_at(const equations::TextSite& site, const std::vec
   const auto add = [&](const Law& law) {
     const bool fits = law.kind == site.kind && !law.closed_form &&
                       (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end());
-    if (fits && std::ranges::find(ids, law.id) == ids.end()) ids.emplace_back(law.id);
+    if (fits && (!law.plant.empty() || !equations::is_inert(law, site)) && std::ranges::find(ids, law.id) == ids.end())
+      ids.emplace_back(law.id);
   };
   for (const Law& law : all_laws())
     if (law.plant.empty()) add(law);
@@ -71,14 +73,16 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   rows.clear();
   for (const equations::TextOutput& output : read.text.outputs)
     rows.push_back({output.channel.name, "[" + output.channel.unit + "]", "= " + output.value,
-                    "noise " + shown(output.channel.noise_std), output.channel.meaning});
+                    output.channel.noise_std > 0.0 ? "noise " + shown(output.channel.noise_std) : "noise as recorded",
+                    output.channel.meaning});
   print_table("Outputs", rows);
   rows.clear();
   for (std::size_t k = 0; k < read.text.states.size(); ++k) {
     const equations::TextState& state = read.text.states[k];
     const char* own = state.settles ? "settles" : state.own ? "each recording's own" : "starts there";
-    rows.push_back({"d " + state.description.name + "/dt", "[(" + state.description.unit + ")/s]", "= " + state.rate,
-                    "from " + joined(state.start, " or "), own});
+    rows.push_back({"d " + state.description.name + "/dt", "[(" + state.description.unit + ")/s]",
+                    "= " + (state.rate.empty() ? "as the FMU says" : state.rate), "from " + joined(state.start, " or "),
+                    own});
   }
   print_table("States", rows);
   rows.clear();
@@ -100,6 +104,18 @@ void print_plant(const std::string& file, const ReadPlant& read) {
     rows.push_back({"", "", "tried there: " + joined(laws_at(site, read.built.laws), ", ")});
   }
   print_table("Sites, where physics may be missing", rows);
+  rows.clear();
+  for (const equations::NeededSize& size : equations::needed_sizes(read.text)) {
+    const double factor = read.text.law_sizes.at(size.unit);
+    const LawParameter& parameter = *size.parameter;
+    const auto here = [&](double value) { return shown(factor * value) + " " + size.unit; };
+    rows.push_back(
+        {size.unit, "x " + shown(factor),
+         std::string(size.law->id) + ": " + std::string(parameter.name) + " usually " + here(parameter.start.front()),
+         parameter.strength ? "matters from " + here(parameter.significant) : "",
+         "from " + shown(parameter.min) + " to " + shown(parameter.max)});
+  }
+  print_table("Sizes of laws here, each unit by one law that has it (law_sizes)", rows);
 }
 
 nlohmann::ordered_json errors_of(const std::vector<Error>& errors) {

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/own_law.hpp"
@@ -12,6 +14,19 @@ namespace {
 
 Error fault(std::string value, std::string rule, std::string advice = {}) {
   return {.file = {}, .place = {}, .value = std::move(value), .rule = std::move(rule), .advice = std::move(advice)};
+}
+
+// "shaft_coulomb_friction has T_c = 0.02 N m".
+std::string usual_words(const NeededSize& size) {
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%g", size.parameter->start.front());
+  return std::string(size.law->id)
+      .append(" has ")
+      .append(size.parameter->name)
+      .append(" = ")
+      .append(number.data())
+      .append(" ")
+      .append(size.unit);
 }
 
 class Builder {
@@ -43,17 +58,22 @@ class Builder {
  private:
   Expressions& e() { return parts_.expressions; }
 
-  Node understood(const std::string& key, const std::string& text, const Dimension& unit) {
+  Node understood(const std::string& key, const std::string& text, const std::optional<Dimension>& unit) {
     const Result<Formula> formula = understand(text, e(), names_, unit);
     if (!formula) faults_(key, formula.error());
     return formula ? formula->node : e().constant(0.0);
   }
 
+  // Nothing where it is no unit, which was told already.
+  static std::optional<Dimension> per_second(const std::string& unit) {
+    const Result<Dimension> found = find_dimension(unit);
+    return found ? std::optional(multiply(*found, *find_dimension("s"), -1.0)) : std::nullopt;
+  }
+
   void read_rates() {
     for (const TextState& state : text_.states) {
       const std::string key = "states." + state.description.name;
-      const Dimension unit = find_dimension(state.description.unit).value_or(Dimension{});
-      rates_.push_back(understood(key + ".der", state.rate, multiply(unit, *find_dimension("s"), -1.0)));
+      rates_.push_back(understood(key + ".der", state.rate, per_second(state.description.unit)));
       if (state.start.empty())
         faults_(key, fault(state.description.name, "has no start",
                            "give start: an expression of parameters and of channels, whose first value is taken"));
@@ -106,7 +126,7 @@ class Builder {
 
   void add_to_rates(const TextSite& site, std::size_t index) {
     const Node added = e().variable(names_.places().added + index);
-    const Dimension unit = find_dimension(site.unit).value_or(Dimension{});
+    const Result<Dimension> unit = find_dimension(site.unit);
     for (const auto& [state, factor] : site.adds_to) {
       const std::string key = site.key + ".adds_to." + state;
       const auto row = std::ranges::find(text_.states, state, [](const TextState& s) { return s.description.name; });
@@ -116,8 +136,8 @@ class Builder {
         faults_(key, fault(state, "is not a state", suggest(state, states)));
         continue;
       }
-      const Dimension of_state = find_dimension(row->description.unit).value_or(Dimension{});
-      const Dimension needed = multiply(multiply(of_state, *find_dimension("s"), -1.0), unit, -1.0);
+      std::optional<Dimension> needed = per_second(row->description.unit);
+      needed = needed && unit ? std::optional(multiply(*needed, *unit, -1.0)) : std::nullopt;
       Node& rate = rates_[static_cast<std::size_t>(row - text_.states.begin())];
       rate = e().add(rate, e().multiply(understood(key, factor, needed), added));
     }
@@ -160,12 +180,15 @@ class Builder {
   }
 
   void check_sizes() {
-    std::string missing;
-    for (const std::string& unit : needed_sizes(text_))
-      if (!text_.law_sizes.contains(unit)) missing += (missing.empty() ? "" : ", ") + unit;
+    std::string missing, there;
+    for (const NeededSize& size : needed_sizes(text_)) {
+      if (text_.law_sizes.contains(size.unit)) continue;
+      missing.append(missing.empty() ? "" : ", ").append(size.unit);
+      there.append(there.empty() ? "" : "; ").append(usual_words(size));
+    }
     if (!missing.empty())
       faults_("law_sizes", fault(missing, "is missing: units of laws that fit the plant's sites",
-                                 "say how many times larger than on the 60 kN actuator each is here; 1: as large"));
+                                 "say how many times larger each is here than on the 60 kN actuator, where " + there));
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       if (!(scale_of(k) > 0.0))
         faults_("states." + text_.states[k].description.name,
@@ -173,17 +196,30 @@ class Builder {
                       "give size: how large it usually is; an output that equals it may give its noise_std instead"));
   }
 
-  // Allowed local error of a step: a share of the state's size, or of the noise of the output that shows it.
+  // Allowed local error of a step: a share of the state's size; without one a share of the noise of the output that
+  // shows it, and no more than adds up in a second to the error that a state may have whose derivative it is.
   [[nodiscard]] double scale_of(std::size_t state) const {
-    constexpr double kOfSize = 1e-7, kOfNoise = 5e-4;
+    constexpr double kOfSize = 1e-7, kSecond = 1.0;
     if (text_.states[state].size) return kOfSize * *text_.states[state].size;
+    double scale = scale_by_noise(state);
+    for (std::size_t k = 0; k < rates_.size(); ++k) {
+      const double of_integral = text_.states[k].size ? kOfSize * *text_.states[k].size : scale_by_noise(k);
+      if (state_at(rates_[k]) == static_cast<int>(state) && of_integral > 0.0)
+        scale = std::min(scale, of_integral / kSecond);
+    }
+    return scale;
+  }
+
+  [[nodiscard]] double scale_by_noise(std::size_t state) const {
+    constexpr double kOfNoise = 5e-4;
     for (std::size_t k = 0; k < outputs_.size(); ++k)
-      if (shown_state(k) == static_cast<int>(state)) return kOfNoise * text_.outputs[k].channel.noise_std;
+      if (state_at(outputs_[k]) == static_cast<int>(state)) return kOfNoise * text_.outputs[k].channel.noise_std;
     return 0.0;
   }
 
-  [[nodiscard]] int shown_state(std::size_t output) const {
-    const Expressions::Entry& entry = parts_.expressions.entries()[outputs_[output]];
+  /// The state that a node is; -1: it is none.
+  [[nodiscard]] int state_at(Node node) const {
+    const Expressions::Entry& entry = parts_.expressions.entries()[node];
     const VariablePlaces& places = names_.places();
     const bool state = entry.operation == Operation::variable && entry.a >= places.states && entry.a < places.inputs;
     return state ? static_cast<int>(entry.a - places.states) : -1;
@@ -196,7 +232,7 @@ class Builder {
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       plant.states.push_back({.scale = scale_of(k), .slow = text_.states[k].own, .settles = text_.states[k].settles});
     for (std::size_t k = 0; k < text_.outputs.size(); ++k)
-      plant.outputs.push_back({text_.outputs[k].channel.name, shown_state(k)});
+      plant.outputs.push_back({text_.outputs[k].channel.name, state_at(outputs_[k])});
     for (const std::size_t k : parts_.used_inputs) {
       const TextInput& input = text_.inputs[k];
       plant.inputs.push_back({input.channel.name, input.course, input.smoothing_s});

@@ -75,6 +75,19 @@ std::optional<Dimension> unit_named(std::string_view name) {
   return std::nullopt;
 }
 
+/// "Nms" as "N m s"; nothing where it is no product of units, or longer than such a slip is.
+std::optional<std::string> split(std::string_view name) {
+  constexpr std::size_t kLongest = 10;
+  if (name.size() > kLongest) return std::nullopt;
+  for (std::size_t length = 1; length <= name.size(); ++length) {
+    if (!unit_named(name.substr(0, length))) continue;
+    const std::string first(name.substr(0, length));
+    if (length == name.size()) return first;
+    if (const std::optional<std::string> rest = split(name.substr(length))) return first + " " + *rest;
+  }
+  return std::nullopt;
+}
+
 /// product = factor {[* . blank] factor | / factor};  factor = (product) | name[[^]number] | 1
 class UnitReader {
  public:
@@ -92,11 +105,12 @@ class UnitReader {
   [[nodiscard]] tl::unexpected<Error> refused() const {
     std::vector<std::string> names;
     for (const KnownUnit& unit : kUnits) names.emplace_back(unit.name);
+    const std::optional<std::string> apart = split(wrong_);
     return fail(Error{.file = {},
                       .place = {},
                       .value = std::string(text_),
                       .rule = wrong_ == text_ || wrong_.empty() ? "is not a unit" : "is not a unit: '" + wrong_ + "'",
-                      .advice = suggest(wrong_, names)});
+                      .advice = apart ? "write a product with blanks: " + *apart : suggest(wrong_, names)});
   }
 
   void skip() {
@@ -177,6 +191,9 @@ Result<Dimension> find_dimension(std::string_view unit) { return UnitReader(unit
 
 std::string words_of(const Dimension& dimension) {
   constexpr std::array kNames = {"m", "kg", "s", "A", "K", "mol", "cd"};
+  constexpr std::array kUsual = {"1/s", "N m", "N/m"};  // a torque is no work, a shaft's speed no frequency
+  for (const char* usual : kUsual)
+    if (*find_dimension(usual) == dimension) return usual;
   for (const KnownUnit& unit : kUnits)
     if (unit.scale == 1.0 && unit.prefixed && unit.power == dimension.power) return std::string(unit.name);
   std::string above, below;

@@ -116,25 +116,45 @@ class Reader {
     return known->dimension;
   }
 
+  // a + b - c is (a + b) - c: a long sum is deep at its left, which is gone through from its first part on.
   Result<Formula> arithmetic(const Syntax& syntax) {
-    const auto parts = operands(syntax);
-    if (!parts) return fail(parts.error());
-    const Formula& a = parts->front();
-    const Formula& b = parts->back();
+    std::vector<const Syntax*> spine = {&syntax};
+    while (is_arithmetic(spine.back()->operands.front())) spine.push_back(&spine.back()->operands.front());
+    Result<Formula> left = read(spine.back()->operands.front());
+    for (auto part = spine.rbegin(); left && part != spine.rend(); ++part) {
+      std::vector<Formula> parts = {*left};
+      for (std::size_t k = 1; k < (*part)->operands.size(); ++k) {
+        const Result<Formula> one = read((*part)->operands[k]);
+        if (!one) return fail(one.error());
+        parts.push_back(*one);
+      }
+      left = joined(**part, parts);
+    }
+    return left;
+  }
+
+  static bool is_arithmetic(const Syntax& syntax) {
+    return syntax.kind != Syntax::Kind::number && syntax.kind != Syntax::Kind::name &&
+           syntax.kind != Syntax::Kind::call;
+  }
+
+  Result<Formula> joined(const Syntax& syntax, const std::vector<Formula>& parts) {
+    const Formula& a = parts.front();
+    const Formula& b = parts.back();
     switch (syntax.kind) {
       case Syntax::Kind::negate:
         return Formula{e_.apply(Operation::negate, a.node), a.dimension, a.any_unit};
       case Syntax::Kind::multiply:
         return Formula{e_.multiply(a.node, b.node), multiply(a.dimension, b.dimension), a.any_unit || b.any_unit};
       case Syntax::Kind::divide:
-        if (b.any_unit) return wrong(written(syntax), "divides by zero");
-        return Formula{e_.divide(a.node, b.node), multiply(a.dimension, b.dimension, -1.0), a.any_unit};
+        if (e_.is_constant(b.node, 0.0)) return wrong(written(syntax), "divides by zero");
+        return Formula{e_.divide(a.node, b.node), multiply(a.dimension, b.dimension, -1.0), a.any_unit || b.any_unit};
       case Syntax::Kind::power:
         return power(syntax, a, b);
       default:
         break;
     }
-    const auto unit = common(syntax, *parts);
+    const auto unit = common(syntax, parts);
     if (!unit) return fail(unit.error());
     const bool adds = syntax.kind == Syntax::Kind::add;
     return Formula{adds ? e_.add(a.node, b.node) : e_.subtract(a.node, b.node), *unit, a.any_unit && b.any_unit};
@@ -146,7 +166,8 @@ class Reader {
                    "an exponent is a plain number");
     const Node node = e_.apply(Operation::power, base.node, exponent.node);
     const Expressions::Entry& entry = e_.entries()[exponent.node];
-    if (entry.operation == Operation::constant) return Formula{node, raised(base.dimension, entry.number), false};
+    if (entry.operation == Operation::constant)
+      return Formula{node, raised(base.dimension, entry.number), base.any_unit};
     if (!(base.dimension == kPlain))
       return wrong(written(syntax), "raises " + words_of(base.dimension) + " to a power that is no fixed number",
                    "divide the base by a reference of its unit first");
@@ -188,11 +209,13 @@ class Reader {
     const std::string& name = syntax.text;
     if (name == "sqrt") {
       if (parts.size() != 1) return arguments(syntax, "one argument");
-      return Formula{e_.apply(Operation::square_root, parts[0].node), raised(parts[0].dimension, 0.5), false};
+      return Formula{e_.apply(Operation::square_root, parts[0].node), raised(parts[0].dimension, 0.5),
+                     parts[0].any_unit};
     }
     const auto unit = common(syntax, parts);
     if (!unit) return fail(unit.error());
-    const auto of = [&](Node node) { return Formula{node, *unit, false}; };
+    const bool any = std::ranges::all_of(parts, &Formula::any_unit);
+    const auto of = [&](Node node) { return Formula{node, *unit, any}; };
     const auto square = [&](Node node) { return e_.multiply(node, node); };
     const auto root = [&](Node node) { return e_.apply(Operation::square_root, node); };
     const std::size_t count = parts.size();
@@ -212,7 +235,7 @@ class Reader {
     if (name == "step" && count == 2)
       return Formula{e_.apply(Operation::logistic, e_.multiply(e_.constant(2.0), e_.divide(a, w))), kPlain, false};
     if (name == "root" && count == 2)
-      return Formula{e_.divide(a, root(e_.add(e_.apply(Operation::magnitude, a), w))), raised(*unit, 0.5), false};
+      return Formula{e_.divide(a, root(e_.add(e_.apply(Operation::magnitude, a), w))), raised(*unit, 0.5), any};
     const bool jump = name == "sign" || name == "step" || name == "root";
     return arguments(syntax, name == "hypot" ? "two arguments"
                              : jump          ? "two arguments, the second is the width over which it is rounded"
@@ -242,10 +265,11 @@ Result<Formula> understand(const std::string& text, Expressions& expressions, Na
   return understand(*syntax, expressions, names);
 }
 
-Result<Formula> understand(const std::string& text, Expressions& expressions, Names& names, const Dimension& expected) {
+Result<Formula> understand(const std::string& text, Expressions& expressions, Names& names,
+                           const std::optional<Dimension>& expected) {
   Result<Formula> formula = understand(text, expressions, names);
-  if (!formula || formula->any_unit || formula->dimension == expected) return formula;
-  return wrong(text, "has the unit " + words_of(formula->dimension) + " where " + words_of(expected) + " is needed");
+  if (!formula || !expected || formula->any_unit || formula->dimension == *expected) return formula;
+  return wrong(text, "has the unit " + words_of(formula->dimension) + " where " + words_of(*expected) + " is needed");
 }
 
 }  // namespace sealwatch::equations

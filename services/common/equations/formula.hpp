@@ -23,7 +23,7 @@ namespace sealwatch::equations {
 struct Formula {
   Node node = 0;
   Dimension dimension;
-  bool any_unit = false;  ///< the number 0
+  bool any_unit = false;  ///< the number 0, or something with a fault that was told already
 };
 
 /// What names mean in an expression.
@@ -41,9 +41,9 @@ class Names {
 
 [[nodiscard]] Result<Formula> understand(const Syntax& syntax, Expressions& expressions, Names& names);
 [[nodiscard]] Result<Formula> understand(const std::string& text, Expressions& expressions, Names& names);
-/// The same where a unit is expected.
+/// The same where a unit is expected; nothing: any is right.
 [[nodiscard]] Result<Formula> understand(const std::string& text, Expressions& expressions, Names& names,
-                                         const Dimension& expected);
+                                         const std::optional<Dimension>& expected);
 
 /// Names of the functions that every expression knows.
 [[nodiscard]] std::vector<std::string> known_functions();

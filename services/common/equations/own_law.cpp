@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/site_table.hpp"
@@ -123,28 +123,6 @@ void add_parameters(const TextLaw& text, const TextPlant& plant, Law& law) {
   }
 }
 
-// Whether a law of the catalogue gives nothing at a site with these signals: what is left without those that it needs is
-// the rounding of its corners.
-bool is_inert(const Law& law, const TextSite& site) {
-  constexpr double kRounding = 0.01;
-  const SiteNames& names = names_of_site(site.kind);
-  std::array<double, kSiteSignals> seen{}, all{};
-  for (std::size_t k = 0; k < kSiteSignals; ++k) {
-    all[k] = names.signals[k].usual;
-    if (std::ranges::find(site.signals, names.signals[k].name, &TextSignal::name) != site.signals.end())
-      seen[k] = all[k];
-  }
-  std::vector<double> parameters;
-  for (const LawParameter& parameter : law.parameters) parameters.push_back(parameter.start.front());
-  const double hidden = law.hidden ? law.hidden->scale : 0.0;
-  const LawOutput here = law.evaluate(law_input(seen, hidden, parameters));
-  const LawOutput usual = law.evaluate(law_input(all, hidden, parameters));
-  const auto less = [](const LawScalar& a, const LawScalar& b) {
-    return std::abs(a.value) <= kRounding * std::abs(b.value);
-  };
-  return less(here.contribution, usual.contribution) && less(here.rate, usual.rate);
-}
-
 }  // namespace
 
 std::optional<Law> build_law(const TextLaw& text, const TextPlant& plant, const Faults& faults) {
@@ -220,17 +198,44 @@ std::optional<Law> build_law(const TextLaw& text, const TextPlant& plant, const 
   return sound ? std::optional(std::move(law)) : std::nullopt;
 }
 
-std::vector<std::string> needed_sizes(const TextPlant& plant) {
-  std::set<std::string> units;
+// What is left of a law without the signals that it needs is the rounding of its corners.
+bool is_inert(const Law& law, const TextSite& site) {
+  constexpr double kRounding = 0.01;
+  const SiteNames& names = names_of_site(site.kind);
+  std::array<double, kSiteSignals> seen{}, all{};
+  for (std::size_t k = 0; k < kSiteSignals; ++k) {
+    all[k] = names.signals[k].usual;
+    if (std::ranges::find(site.signals, names.signals[k].name, &TextSignal::name) != site.signals.end())
+      seen[k] = all[k];
+  }
+  std::vector<double> parameters;
+  for (const LawParameter& parameter : law.parameters) parameters.push_back(parameter.start.front());
+  const double hidden = law.hidden ? law.hidden->scale : 0.0;
+  const LawOutput here = law.evaluate(law_input(seen, hidden, parameters));
+  const LawOutput usual = law.evaluate(law_input(all, hidden, parameters));
+  const auto less = [](const LawScalar& a, const LawScalar& b) {
+    return std::abs(a.value) <= kRounding * std::abs(b.value);
+  };
+  return less(here.contribution, usual.contribution) && less(here.rate, usual.rate);
+}
+
+std::vector<NeededSize> needed_sizes(const TextPlant& plant) {
+  std::map<std::string_view, NeededSize> sizes;
   for (const TextSite& site : plant.sites)
     for (const Law& law : all_laws()) {
       const bool fits = law.kind == site.kind && law.plant.empty() &&
                         (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end());
       if (!fits || is_inert(law, site)) continue;
-      for (const LawParameter& parameter : law.parameters)
-        if (parameter.unit != "1") units.emplace(parameter.unit);
+      for (const LawParameter& parameter : law.parameters) {
+        if (parameter.unit == "1") continue;
+        NeededSize& size = sizes[parameter.unit];
+        if (size.parameter == nullptr || (parameter.strength && !size.parameter->strength))
+          size = {std::string(parameter.unit), &law, &parameter};
+      }
     }
-  return {units.begin(), units.end()};
+  std::vector<NeededSize> needed;
+  for (auto& [unit, size] : sizes) needed.push_back(std::move(size));
+  return needed;
 }
 
 }  // namespace sealwatch::equations

@@ -10,8 +10,16 @@ namespace sealwatch::equations {
 /// Nothing where something is wrong, which went to `faults`. `plant`: with its sites and sizes.
 [[nodiscard]] std::optional<Law> build_law(const TextLaw& text, const TextPlant& plant, const Faults& faults);
 
-/// Units of the parameters of the catalogue's laws that fit the sites of the plant and are not inert there: those for
-/// which `law_sizes` has to give a size.
-[[nodiscard]] std::vector<std::string> needed_sizes(const TextPlant& plant);
+/// Whether a law of the catalogue gives nothing at a site with these signals.
+[[nodiscard]] bool is_inert(const Law& law, const TextSite& site);
+
+/// A unit for which `law_sizes` has to give a size, and what has it in the catalogue.
+struct NeededSize {
+  std::string unit;
+  const Law* law = nullptr;
+  const LawParameter* parameter = nullptr;  ///< a strength where one has the unit
+};
+/// Units of the parameters of the catalogue's laws that fit the sites of the plant and are not inert there, by name.
+[[nodiscard]] std::vector<NeededSize> needed_sizes(const TextPlant& plant);
 
 }  // namespace sealwatch::equations

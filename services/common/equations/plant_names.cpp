@@ -66,7 +66,8 @@ void PlantNames::add_name(const std::string& key, const std::string& name) {
 
 void PlantNames::add(const std::string& key, const std::string& name, const std::string& unit, std::size_t variable) {
   add_name(key, name);
-  known_[name] = {expressions_.variable(variable), unit_at(key, unit), false};
+  const std::optional<Dimension> dimension = unit_at(key, unit);
+  known_[name] = {expressions_.variable(variable), dimension.value_or(Dimension{}), !dimension};
 }
 
 void PlantNames::add_table(const TextTable& table) {
@@ -82,11 +83,11 @@ void PlantNames::add_table(const TextTable& table) {
                          unit_at(key + ".y_unit", table.y_unit)};
 }
 
-Dimension PlantNames::unit_at(const std::string& key, const std::string& unit) {
+std::optional<Dimension> PlantNames::unit_at(const std::string& key, const std::string& unit) {
   Result<Dimension> found = find_dimension(unit);
   if (!found) {
     faults_(key, found.error());
-    return {};
+    return std::nullopt;
   }
   if (std::abs(found->scale - 1.0) > 1e-12)
     faults_(key, fault(unit, "is not the SI unit",
@@ -97,10 +98,8 @@ Dimension PlantNames::unit_at(const std::string& key, const std::string& unit) {
 }
 
 void PlantNames::check_definitions() {
-  for (const auto& [name, text] : plant_.definitions) {
-    const Result<Formula> meaning = quantity(name);
-    if (!meaning) faults_("definitions." + name, meaning.error());
-  }
+  for (const auto& [name, text] : plant_.definitions)
+    if (!definitions_.at(name).meaning) define(name);
 }
 
 std::vector<std::string> PlantNames::names() const {
@@ -118,21 +117,29 @@ Result<Formula> PlantNames::quantity(const std::string& name) {
     if (output) return fail(fault(name, "is an output, which no equation may use", "use what it is computed from"));
     return fail(fault(name, "is not a known quantity", suggest(name, names())));
   }
-  Definition& found = definition->second;
-  if (found.meaning) return *found.meaning;
-  open_.push_back(name);
-  if (found.open) {
+  if (definition->second.open) {
     std::string circle;
-    for (auto k = std::ranges::find(open_, name); k != open_.end(); ++k) circle += (circle.empty() ? "" : " -> ") + *k;
-    open_.pop_back();
-    return fail(fault(name, "depends on itself: " + circle,
+    for (auto k = std::ranges::find(open_, name); k != open_.end(); ++k) circle += *k + " -> ";
+    return fail(fault(name, "depends on itself: " + circle + name,
                       "an algebraic loop has no value of its own: solve it by hand, or make one of them a state"));
   }
-  found.open = true;
-  found.meaning = understand(found.text, expressions_, *this);
-  found.open = false;
+  constexpr std::size_t kDeepest = 40;
+  if (!definition->second.meaning && open_.size() >= kDeepest)
+    return fail(fault(name, "is a definition within more than " + std::to_string(kDeepest) + " others",
+                      "put some of them together"));
+  if (!definition->second.meaning) define(name);
+  return *definition->second.meaning;
+}
+
+void PlantNames::define(const std::string& name) {
+  Definition& definition = definitions_.at(name);
+  definition.open = true;
+  open_.push_back(name);
+  const Result<Formula> meaning = understand(definition.text, expressions_, *this);
   open_.pop_back();
-  return *found.meaning;
+  definition.open = false;
+  if (!meaning) faults_("definitions." + name, meaning.error());
+  definition.meaning = meaning.value_or(Formula{expressions_.constant(1.0), Dimension{}, true});
 }
 
 std::optional<Result<Formula>> PlantNames::call(const std::string& name, const std::vector<Syntax>& arguments) {
@@ -144,17 +151,19 @@ std::optional<Result<Formula>> PlantNames::call(const std::string& name, const s
     if (input == plant_.inputs.end())
       return fail(fault("rate", "takes the name of an input", "the rate of a state is its equation"));
     const auto k = static_cast<std::size_t>(input - plant_.inputs.begin());
-    const Dimension unit = multiply(known_.at(input->channel.name).dimension, *find_dimension("s"), -1.0);
-    return Formula{expressions_.variable(places_.rates + k), unit, false};
+    const Formula& of = known_.at(input->channel.name);
+    return Formula{expressions_.variable(places_.rates + k), multiply(of.dimension, *find_dimension("s"), -1.0),
+                   of.any_unit};
   }
   const auto table = tables_.find(name);
   if (table == tables_.end()) return std::nullopt;
   if (arguments.size() != 1) return fail(fault(name, "is a table and takes one argument"));
   const Result<Formula> at = understand(arguments[0], expressions_, *this);
   if (!at) return fail(at.error());
-  if (!at->any_unit && !(at->dimension == table->second.x))
-    return fail(fault(name, "is a table over " + words_of(table->second.x) + ", not over " + words_of(at->dimension)));
-  return Formula{expressions_.table(table->second.number, at->node), table->second.y, false};
+  const auto& [number, x, y] = table->second;
+  if (x && !at->any_unit && !(at->dimension == *x))
+    return fail(fault(name, "is a table over " + words_of(*x) + ", not over " + words_of(at->dimension)));
+  return Formula{expressions_.table(number, at->node), y.value_or(Dimension{}), !y};
 }
 
 std::vector<std::string> PlantNames::functions() const {

@@ -28,28 +28,26 @@ class PlantNames final : public Names {
                                                     const std::vector<Syntax>& arguments) override;
   [[nodiscard]] std::vector<std::string> functions() const override;
 
-  /// The coherent SI unit of something; a fault and a plain number where it is none.
-  [[nodiscard]] Dimension unit_at(const std::string& key, const std::string& unit);
+  /// The coherent SI unit of something; a fault, and nothing, where it is no unit.
+  [[nodiscard]] std::optional<Dimension> unit_at(const std::string& key, const std::string& unit);
   /// Understands every definition, so that those which nobody uses are checked too.
   void check_definitions();
   [[nodiscard]] const VariablePlaces& places() const { return places_; }
 
  private:
-  struct Known {
-    Formula formula;
-  };
   struct Definition {
     std::string text;
-    std::optional<Result<Formula>> meaning;
-    bool open = false;  ///< is being understood: met again, it depends on itself
+    std::optional<Formula> meaning;  ///< of one with a fault, which is told once: something of any unit
+    bool open = false;               ///< is being understood: met again, it depends on itself
   };
   struct KnownTable {
     std::size_t number = 0;
-    Dimension x, y;
+    std::optional<Dimension> x, y;
   };
   void add(const std::string& key, const std::string& name, const std::string& unit, std::size_t variable);
   void add_name(const std::string& key, const std::string& name);
   void add_table(const TextTable& table);
+  void define(const std::string& name);
   [[nodiscard]] std::vector<std::string> names() const;
 
   const TextPlant& plant_;

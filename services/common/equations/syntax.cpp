@@ -7,7 +7,8 @@
 namespace sealwatch::equations {
 namespace {
 
-constexpr int kDeepest = 200;  // brackets, signs and powers within each other
+constexpr int kDeepest = 100;  // brackets, signs and powers within each other
+constexpr int kMost = 5000;    // numbers and names in one expression
 
 bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool continues_name(char c) { return begins_name(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -91,6 +92,7 @@ class Parser {
 
   Syntax primary() {
     const char c = peek();
+    if (++parts_ > kMost) return fault("is too long", "name parts of it under `definitions`"), Syntax{};
     if (c == '(') {
       ++at_;
       Syntax inner = sum();
@@ -137,7 +139,7 @@ class Parser {
 
   std::string_view text_;
   std::size_t at_ = 0;
-  int depth_ = 0;
+  int depth_ = 0, parts_ = 0;
   bool failed_ = false;
   Error error_;
 };

@@ -65,6 +65,11 @@ void check(const DescriptionReader& reader, const pugi::xml_node& root, const Mo
   if (description.states.size() > kMostStates)
     reader.refuse(root, std::to_string(description.states.size()) + " states",
                   "has more than " + std::to_string(kMostStates) + " states");
+  for (const Variable& variable : description.variables)
+    if (variable.type == FmiType::clock && variable.causality == FmiCausality::input)
+      reader.refuse(root, variable.name,
+                    "is an input clock: sealwatch ticks none, and what it drives would stand still",
+                    "export the model without clocks from outside");
 }
 
 ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node& root) {

@@ -47,6 +47,7 @@ class RecordingRun {
         system_(std::move(system)),
         scale_(system_.scale(options.relative_tolerance)),
         deadline_(options.deadline),
+        most_steps_(options.maximum_steps),
         integrator_(system_, static_cast<int>(columns_) - 1, scale_,
                     {.maximum_step = options.maximum_step_s,
                      .maximum_steps = options.maximum_steps,
@@ -70,7 +71,7 @@ class RecordingRun {
   [[nodiscard]] bool stopped_by_event() const { return stopped_by_event_; }
 
   [[nodiscard]] Result<SimulatedOutputs> simulate(const ModelValues& values) {
-    if (!initial_point(values)) return failure(input_.times().front());
+    if (!initial_point(values)) return no_start();
     filtered_until_ = input_.times().front();
     pass_sensors(filtered_until_, point_.data());
     sample(0);
@@ -82,8 +83,24 @@ class RecordingRun {
   }
 
  private:
+  [[nodiscard]] tl::unexpected<Error> no_start() const {
+    return fail(Error{.file = {},
+                      .place = "t = " + std::to_string(input_.times().front()) + " s",
+                      .value = system_.trouble(),
+                      .rule = "the simulation has no start: the states that settle there find no rest",
+                      .advice = "check the start of the others, or let fewer states settle"});
+  }
+
   [[nodiscard]] tl::unexpected<Error> failure(double time) const {
     if (passed(deadline_)) return fail("the simulation was ended: its time was up");
+    if (integrator_.statistics().steps >= most_steps_)
+      return fail(Error{
+          .file = {},
+          .place = "t = " + std::to_string(time) + " s",
+          .value = system_.trouble(),
+          .rule = "the simulation was given up after " + std::to_string(most_steps_) + " steps",
+          .advice = "something explodes, swings fast or is integrated too finely: check the parameters' values and "
+                    "the sizes of the states"});
     return fail(Error{.file = {},
                       .place = "t = " + std::to_string(time) + " s",
                       .value = system_.trouble(),
@@ -253,6 +270,7 @@ class RecordingRun {
   System system_;
   Vector scale_;
   const Deadline* deadline_;
+  std::size_t most_steps_;
   Integrator integrator_;
   std::vector<double> point_, signal_;
   std::vector<SensorFilter> filters_;

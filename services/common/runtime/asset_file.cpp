@@ -158,6 +158,11 @@ Checked<AssetConfig> check_asset(const std::string& file, const std::vector<std:
   if (!root) return tl::unexpected(errors);
   YamlMap map(file, *root, {}, errors);
   AssetConfig config;
+  if (!map.has("asset_id") && map.has("outputs")) {
+    map.fault("outputs", {}, "stands in the file of a plant, not in that of an asset",
+              "keep plants in a folder of their own and name one from the asset, as model: ../plants/FILE.yaml");
+    return tl::unexpected(errors);
+  }
   if (!map.read("asset_id", config.asset_id) && !map.has("asset_id"))
     map.fault("asset_id", {}, "must be given");
   else if (map.has("asset_id") && config.asset_id.empty())

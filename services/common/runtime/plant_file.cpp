@@ -73,7 +73,9 @@ void read_parameters(YamlMap& root, TextPlant& plant) {
     map.read("max", parameter.max);
     map.read("tolerance", parameter.tolerance, kPositive);
     map.read("estimate", parameter.estimate);
-    if (!(parameter.min <= parameter.value && parameter.value <= parameter.max) || parameter.min == parameter.max)
+    if (map.has("value") && size == 0.0 && !(map.has("min") && map.has("max")))
+      map.fault("value", "0", "has no range that follows from it", "give min and max");
+    else if (!(parameter.min <= parameter.value && parameter.value <= parameter.max) || parameter.min == parameter.max)
       map.fault("value", text_of(parameter.value),
                 "must lie between min and max, " + text_of(parameter.min) + " and " + text_of(parameter.max));
     parameter.positive = parameter.min > 0.0;
@@ -164,6 +166,8 @@ Checked<ReadPlant> read_plant_file(const std::string& file) {
   TextPlant& plant = read.text;
   plant.file = file;
   need(root, "name", plant.name);
+  if (const auto taken = find_plant(plant.name); taken && (*taken)->file.empty())
+    root.fault("name", plant.name, "is the name of a plant that is built in", "give this plant another name");
   need(root, "meaning", plant.meaning);
   read_channels(root, plant);
   read_parameters(root, plant);
@@ -198,11 +202,10 @@ Checked<const PlantDescription*> load_plant(const std::string& file) {
   if (!read) return tl::unexpected(read.error());
   read->built.plant.description.file = path;
   const std::string name = read->built.plant.description.name;
-  if (const auto taken = find_plant(name)) {
-    const std::string of = (*taken)->file.empty() ? "a plant that is built in" : "the plant in " + (*taken)->file;
-    return tl::unexpected(std::vector{
-        Error{file, place_in_yaml(file, "name"), name, "is the name of " + of, "give this plant another name"}});
-  }
+  if (const auto taken = find_plant(name))
+    return tl::unexpected(
+        std::vector{Error{file, place_in_yaml(file, "name"), name, "is the name of the plant in " + (*taken)->file,
+                          "give this plant another name"}});
   for (Law& law : read->built.laws) add_law(std::move(law));
   const Status added = add_plant(std::move(read->built.plant));
   if (!added) return tl::unexpected(std::vector{added.error()});

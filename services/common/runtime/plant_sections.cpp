@@ -53,8 +53,9 @@ equations::TextSite read_site(YamlMap& map, const std::string& element, const st
   site.element = element;
   site.key = key;
   std::string kind;
-  if (map.read("kind", kind, kinds_of_site())) site.kind = kind_named(kind);
   if (!map.has("kind")) map.fault("kind", {}, "must be given");
+  if (!map.read("kind", kind, kinds_of_site())) return site;  // what the rest means depends on it
+  site.kind = kind_named(kind);
   map.read("symbol", site.symbol);
   site.unit = equations::names_of_site(site.kind).unit;
   if (site.kind == SiteKind::own) need(map, "unit", site.unit);

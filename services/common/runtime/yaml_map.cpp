@@ -122,7 +122,7 @@ std::vector<std::string> YamlMap::keys() const {
 }
 
 std::optional<YAML::Node> YamlMap::take(const std::string& key) {
-  known_.push_back(key);
+  if (std::ranges::find(known_, key) == known_.end()) known_.push_back(key);
   for (const auto& entry : node_)
     if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
   return std::nullopt;

@@ -23,9 +23,9 @@ class AssetNew : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
-  int make(const char* text) const {
+  int make(const char* text, const std::string& model = {}) const {
     std::ofstream(path("log.csv"), std::ios::binary) << text;
-    return run_asset_new({.log = path("log.csv"), .file = path("a.yaml"), .model = {}, .asset_id = {}, .yes = true});
+    return run_asset_new({.log = path("log.csv"), .file = path("a.yaml"), .model = model, .asset_id = {}, .yes = true});
   }
   std::filesystem::path folder_;
 };
@@ -58,6 +58,31 @@ TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {
   const auto tests = read_recordings(path("log.csv"), **find_plant(asset->model), asset->channel_map);
   ASSERT_TRUE(tests) << tests.error().describe();
   EXPECT_EQ(tests->size(), 2U);
+}
+
+TEST_F(AssetNew, APlantFileIsNamedAsSeenFromTheAsset) {
+  std::filesystem::create_directories(folder_ / "plants");
+  std::ofstream(folder_ / "plants" / "shaft.yaml") << R"(name: shaft_of_asset_new
+meaning: a shaft
+inputs: {torque: {unit: N m}}
+outputs: {speed: {value: w, unit: rad/s, noise_std: 0.1}}
+parameters: {J: {value: 0.1, unit: kg m2}}
+states: {w: {der: (torque - lost)/J, unit: rad/s, start: speed}}
+elements: {bearing: {sites: [{kind: shaft_torque, symbol: lost, signals: {speed: w}}]}}
+law_sizes: {N m: 1, N m s/rad: 1, rad/s: 1}
+)";
+  constexpr const char* kLog = "t [s];Moment [Nm];Drehzahl [rpm]\n0;1,5;60\n1;1,5;59\n2;1,6;58\n";
+  EXPECT_EQ(make(kLog, path("plants/sheft.yaml")), kBadInput) << "there is no such file";
+  ASSERT_EQ(make(kLog, path("plants/shaft.yaml")), kOk);
+  std::ifstream written(path("a.yaml"));
+  const std::string text{std::istreambuf_iterator<char>(written), {}};
+  EXPECT_THAT(text, ::testing::HasSubstr("model: plants/shaft.yaml"));
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  const auto recording = read_recording(path("log.csv"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  EXPECT_NEAR(recording->samples.find("speed")->values.front(), 6.2832, 1e-3);
+  EXPECT_EQ(recording->samples.find("torque")->values.back(), 1.6);
 }
 
 TEST_F(AssetNew, NothingIsWrittenOverAndNothingIsMadeUp) {

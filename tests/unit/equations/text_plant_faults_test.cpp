@@ -85,6 +85,12 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"symbol: lost", "adds_to: {w: -1/M}", {"'w'", "is not a state"}},
       {"k: {value: 50.0", "x: {value: 50.0", {"is a name already"}},
       {"c: {value: 4.0, unit", "c: {value: four, unit", {"line 10", "must be a number"}},
+      {"kind: piston_force", "kind: force", {"'force'", "known are: voltage_command"}},
+      {"unit: N s/m", "unit: Ns/m", {"line 10", "write a product with blanks: N s"}},
+      {"unit: N s/m", "unit: kg rpm", {"is not the SI unit", "here kg/s"}},
+      {"c: {value: 4.0", "c: {value: 0", {"line 10", "give min and max"}},
+      {"NAME", "eha #NAME", {"line 1, key name", "is the name of a plant that is built in"}},
+      {"N/m: 1e-3, ", "", {"where", "spring_load", "N/m"}},
       {"meaning: a mass", "meening: a mass", {"did you mean 'meaning'"}},
       {"outputs:\n", "output:\n", {"line 5, key output", "did you mean 'outputs'"}},
   };
@@ -94,6 +100,52 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       EXPECT_NE(told.find(words), std::string::npos) << one.what << " -> " << one.instead << ":\n" << told;
     EXPECT_NE(told.find("faulty.yaml"), std::string::npos) << told;
   }
+}
+
+std::size_t count_of_faults(const std::string& text) {
+  const auto plant = read_plant_file(written("faulty", text));
+  return plant ? 0 : plant.error().size();
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int k = 0; k < times; ++k) all += text;
+  return all;
+}
+
+TEST(PlantFile, ThatWouldTakeAllOfTheStackIsRefused) {
+  EXPECT_EQ(faults_of(with(kSound, "u - k*x", "u" + repeated(" + u", 3000) + " - k*x")), "");
+  EXPECT_NE(faults_of(with(kSound, "u - k*x", "u" + repeated(" + u", 200000) + " - k*x")).find("is too long"),
+            std::string::npos);
+  EXPECT_NE(faults_of(with(kSound, "u - k*x", repeated("-", 100000) + "u - k*x")).find("nested too deeply"),
+            std::string::npos);
+  EXPECT_NE(faults_of(with(kSound, "u - k*x", repeated("(", 100000) + "u - k*x")).find("nested too deeply"),
+            std::string::npos);
+  std::string chain;
+  for (int k = 0; k < 2000; ++k) chain += "  d" + std::to_string(k) + ": d" + std::to_string(k + 1) + " + 1\n";
+  EXPECT_NE(faults_of(with(kSound, "definitions:\n", "definitions:\n" + chain + "  d2000: 1.5\n")).find("within more"),
+            std::string::npos);
+  EXPECT_NE(faults_of(with(kSound, "unit: kg,", "unit: " + repeated("m", 200) + "x,")).find("is not a unit"),
+            std::string::npos);
+}
+
+TEST(PlantFile, TellsOneFaultOnce) {
+  EXPECT_EQ(count_of_faults(with(kSound, "u - k*x", "u - k*y")), 1U) << "not at each equation that uses it too";
+  EXPECT_EQ(count_of_faults(with(kSound, "u - k*x", "force - k*x")), 1U);
+  EXPECT_EQ(count_of_faults(with(kSound, "unit: kg,", "unit: kgs,")), 1U) << "a mass of no known unit fits any";
+  EXPECT_EQ(count_of_faults(with(kSound, "kind: piston_force", "kind: piston")), 1U);
+  EXPECT_EQ(count_of_faults(with(kSound, "value: 2.0", "value: 0")), 1U);
+}
+
+// A noisy tachometer beside a fine encoder: what the integration may miss of the speed adds up in the angle.
+TEST(PlantFile, AStateIsIntegratedAsFinelyAsItsIntegralIsSeen) {
+  const std::string speed =
+      with(with(kSound, ", size: 1.0", ""), "outputs:\n", "outputs:\n  speed: {value: v, unit: m/s, noise_std: 0.1}\n");
+  const auto plant = read_plant_file(written("tachometer", speed));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const std::vector<RuntimeState>& states = plant->built.plant.states;
+  EXPECT_LE(states[1].scale, states[0].scale);
+  EXPECT_GT(states[1].scale, 0.0);
 }
 
 TEST(PlantFile, ThatIsLoadedTwiceIsOnePlantAndAnotherOfItsNameIsRefused) {
@@ -215,8 +267,29 @@ TEST(PlantFile, ThatExplodesIsAnErrorOfTheIntegrator) {
   const auto outputs = (*simulation)->run((*simulation)->start(), {});
   ASSERT_FALSE(outputs);
   const std::string told = outputs.error().describe();
-  EXPECT_NE(told.find("no step size follows"), std::string::npos) << told;
+  EXPECT_NE(told.find("was given up after"), std::string::npos) << told;
   EXPECT_NE(told.find("moves fastest"), std::string::npos) << told;
+}
+
+Result<SimulatedOutputs> simulated(const std::string& name, const std::string& text, const SimulationOptions& options) {
+  const auto plant = load_plant(written(name, text));
+  if (!plant) return fail(combine(plant.error()));
+  const auto simulation = PlantSimulation::create(
+      nominal_asset(name),
+      samples_of({{"u", [](double t) { return 100.0 * t; }}, {"position", [](double) { return 0.0; }}}, 501, 0.02));
+  if (!simulation) return fail(simulation.error());
+  return (*simulation)->run((*simulation)->start(), {}, options);
+}
+
+TEST(PlantFile, WhoseSimulationDoesNotEndOrStartIsToldWhy) {
+  const auto slow = simulated("slow", kSound, {.maximum_steps = 10});
+  ASSERT_FALSE(slow);
+  EXPECT_NE(slow.error().describe().find("given up after 10 steps"), std::string::npos) << slow.error().describe();
+  const std::string never =
+      with(with(kSound, "u - k*x - c*v", "1[N] + c*v^2/1[m/s] + k*x^2/1[m]"), "size: 1.0", "size: 1.0, settles: true");
+  const auto restless = simulated("restless", never, {});
+  ASSERT_FALSE(restless) << "a force that nothing balances";
+  EXPECT_NE(restless.error().describe().find("no rest"), std::string::npos) << restless.error().describe();
 }
 
 /// A chain of ten masses between springs, pushed at its first: 20 states, 5 sites.

@@ -98,6 +98,17 @@ TEST(ModelDescription, FaultsNameLineValueAndRule) {
   EXPECT_THAT(refused(good.substr(0, begin) + good.substr(end)), HasSubstr("neither Model Exchange"));
 }
 
+TEST(ModelDescription, OnlyClocksThatTickByThemselvesAreTaken) {
+  const std::string good = description_of(spring_return("fmu_spring_return3"));
+  const auto with_clock = [&](const std::string& attributes) {
+    return replaced(good, "</ModelVariables>",
+                    "<Clock name=\"tick\" valueReference=\"8000\" " + attributes + "/>\n</ModelVariables>");
+  };
+  EXPECT_TRUE(read_model_description("m.fmu", with_clock("causality=\"output\" intervalVariability=\"triggered\"")));
+  EXPECT_THAT(refused(with_clock("causality=\"input\" intervalVariability=\"constant\" intervalDecimal=\"0.01\"")),
+              AllOf(HasSubstr("'tick'"), HasSubstr("is an input clock")));
+}
+
 TEST(ModelDescription, UnitsGetTheirUsualNames) {
   const auto name = [](BaseExponents exponents) {
     return si_name(Unit{.name = {}, .has_base = true, .exponents = exponents});

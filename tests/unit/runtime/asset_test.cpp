@@ -44,6 +44,9 @@ const BadCase kBadCases[] = {
     {"model", "asset_id: A\nmodel: eah\n", "a.yaml: line 2, key model: 'eah': is not known; did you mean 'eha'?"},
     {"unknown_key", "asset_id: A\nsegmnet: x\n",
      "a.yaml: line 2, key segmnet: 'segmnet': is not a known key; did you mean 'segment'?"},
+    {"a_plant", "name: shaft\nmeaning: a shaft\noutputs: {w: {value: w, unit: rad/s}}\n",
+     "a.yaml: line 3, key outputs: stands in the file of a plant, not in that of an asset; keep plants in a folder of "
+     "their own and name one from the asset, as model: ../plants/FILE.yaml"},
     {"unknown_parameter", "asset_id: A\nparameters:\n  R_CL: 2.0e13\n  betta: 1\n",
      "a.yaml: line 4, key parameters.betta: 'betta': is not a known key; did you mean 'beta'?"},
     {"unknown_key_of_parameter", "asset_id: A\nparameters: {R_CL: {value: 2.0e13, mim: 1}}\n",

@@ -164,6 +164,17 @@ TEST_F(Desk, AnAlarmThatEndsOnTheShelfIsToldWhenTheShelfEnds) {
   EXPECT_THAT(states(), ElementsAre("sensor_lost/flow returned")) << "the other one was seen";
 }
 
+TEST_F(Desk, WhatWasSeenAndComesAgainOnTheShelfIsANewOccurrence) {
+  pass(seconds(2), {lost("flow")});
+  EXPECT_EQ(apply(kAlarmShelved, "sensor_lost/flow", add_seconds(time_, 60.0)), "");
+  acknowledge("sensor_lost/flow");
+  pass(seconds(20));
+  pass(seconds(5), {lost("flow")});
+  EXPECT_THAT(states(), ElementsAre("sensor_lost/flow shelved"));
+  pass(seconds(60), {lost("flow")});
+  EXPECT_THAT(states(), ElementsAre("sensor_lost/flow unacknowledged"));
+}
+
 TEST_F(Desk, WhatCannotBeDoneIsRefusedWithItsReason) {
   pass(seconds(2), {lost("flow")});
   EXPECT_THAT(apply(kAlarmShelved, "sensor_lost/pressure_a", add_seconds(time_, 60.0)),

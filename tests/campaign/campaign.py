@@ -420,7 +420,8 @@ class Campaign:
             after = world.sizes()
             if ended := world.keep_up():
                 raise Failed(f"flood of {what}: ended: {ended}")
-        places = latencies_ms(what, (line.split() for line in text.splitlines()))
+        places = latencies_ms(what, (line.split() for line in text.splitlines()),
+                              world.state / "data_manipulation.db")
         grown = {name: after[name][0] - before[name][0] for name in SERVICES}
         most = max(grown, key=grown.get)
         if grown[most] > MOST_GROWTH_MB:
@@ -557,15 +558,19 @@ def copy_for(name, recording, folder):
     return copy
 
 
-def latencies_ms(what, lines):
-    """Of each live block, from its last sample to the reader of its sample block; none may be missing."""
-    sampled, arrived = {}, {}
-    for topic, asset, _, block, sent, came in lines:
-        if asset.startswith("LIVE-"):
-            (sampled if topic == "raw" else arrived)[asset, block] = int(sent if topic == "raw" else came)
-    if missing := sampled.keys() - arrived.keys():
+def latencies_ms(what, lines, journal):
+    """Of each live block, from its last sample to its receipt in data manipulation's journal; none may be missing there.
+    The reader of raw blocks, which asks for nothing again, may miss some: those are not timed."""
+    sampled = {}
+    for topic, asset, _, block, sent, _ in lines:
+        if topic == "raw" and asset.startswith("LIVE-"):
+            sampled[asset, int(block.split("/")[1])] = int(sent)
+    with sqlite3.connect(f"file:{journal}?mode=ro", uri=True, timeout=10) as opened:
+        received = {(asset, int(message.rsplit("/", 1)[1])): when for asset, message, when in opened.execute(
+            "SELECT asset_id, message_id, received FROM inputs WHERE topic = 'sample_block'")}
+    if missing := sampled.keys() - received.keys():
         raise Failed(f"{what}: {len(missing)} of {len(sampled)} live blocks were lost, {sorted(missing)[0]}")
-    return [(arrived[block] - sampled[block]) * 1e-6 for block in sampled]
+    return [(received[block] - sampled[block]) * 1e-6 for block in sampled]
 
 
 def main():

@@ -440,7 +440,7 @@ class Campaign:
         for name in names:
             (fleet / f"assets/{name}.yaml").write_text(asset.replace("XT03-MV2", name))
         (fleet / "life").mkdir()
-        begun, rows, part = time.monotonic(), [], max(1, len(self.files) // 4)
+        begun, rows, part = time.monotonic(), [], -(-len(self.files) // 4)
         with World(self.binaries, fleet) as world:
             world.start_all()
             for first in range(0, len(self.files), part):
@@ -451,7 +451,7 @@ class Campaign:
                 sizes = world.sizes()
                 world.stop()
                 start_s = self.start_up_s(world)
-                rows.append((first + part, sum(size[0] for size in sizes.values()), max(size[1] for size in sizes.values()),
+                rows.append((min(first + part, len(self.files)), sum(size[0] for size in sizes.values()), max(size[1] for size in sizes.values()),
                              start_s, sum(file.stat().st_size for file in world.state.glob("*.db")) / 1e6))
         tests, memory, descriptors, start, disk = rows[-1]
         if descriptors > rows[0][2] + 4:

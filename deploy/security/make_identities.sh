@@ -50,7 +50,7 @@ topics_of() {  # NAME RIGHTS
   local right
   writes='' reads='service_status resend_request'
   case $1 in
-    data-acquisition) writes='sample_block' reads+=' raw_samples' ;;
+    data-acquisition) writes='sample_block' reads+=' raw_samples maintenance_event' ;;
     data-manipulation) writes='test_window test_features' reads+=' sample_block' ;;
     state-detection) writes='state_report' reads+=' test_window test_features maintenance_event model_acceptance' ;;
     health-assessment) writes='health_report model_discrepancy' reads+=' test_window test_features state_report' ;;

@@ -173,6 +173,11 @@ bool is_answer_to_replacement(const Advisory& advisory) {
          advisory.header.message_id == "advisory/" + advisory.header.source_ids.front();
 }
 
+bool is_of_overdue_test(const Advisory& advisory) {
+  return advisory.action == AdvisoryAction::repeat_test &&
+         advisory.advisory_id.starts_with("recommendation/state_report/" + advisory.asset_id + "/overdue/");
+}
+
 std::vector<std::string> source_ids(const Evidence& evidence) {
   std::vector<std::string> ids;
   const auto add = [&](const std::string& id) {

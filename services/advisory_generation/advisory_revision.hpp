@@ -42,6 +42,8 @@ namespace sealwatch::advisory_generation {
 /// test, which is judged with the tests since.
 [[nodiscard]] Advisory after_late_replacement(const Advisory& current, const MaintenanceEvent& event);
 [[nodiscard]] bool is_answer_to_replacement(const Advisory& advisory);
+/// Whether it asks for a test that is overdue, and came about by that alone.
+[[nodiscard]] bool is_of_overdue_test(const Advisory& advisory);
 
 /// Message ids behind an advisory, down to the window with the waveform; each once.
 [[nodiscard]] std::vector<std::string> source_ids(const Evidence& evidence);

@@ -1,4 +1,5 @@
 // Daemon of layer 6.
+#include "services/advisory_generation/advice_alarm.hpp"
 #include "services/advisory_generation/advisory_generation.hpp"
 #include "services/common/runtime/daemon.hpp"
 #include "services/common/transport/dds_bus.hpp"
@@ -12,5 +13,7 @@ int main(int argc, char** argv) {
                     {.service = "advisory_generation",
                      .make_layer = make_layer,
                      .make_bus = make_dds_bus,
-                     .refused_by_bus = refused_by_security});
+                     .refused_by_bus = refused_by_security,
+                     .keeps_alarms = true,
+                     .advice_of_output = advisory_generation::advice_alarm});
 }

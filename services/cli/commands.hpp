@@ -201,6 +201,27 @@ struct AcknowledgeOptions {
 };
 int run_acknowledge(const AcknowledgeOptions& options);
 
+/// Setting an alarm aside until a date, or taking it back into view.
+struct ShelveOptions {
+  std::string config;
+  std::string asset_id;  ///< "-" for an alarm about none
+  std::string alarm_id;
+  std::string until;  ///< "": back into view
+  std::string by;
+  std::string reason;
+};
+int run_shelve(const ShelveOptions& options);
+
+/// An asset on which somebody works, or no longer.
+struct OutOfServiceOptions {
+  std::string config;
+  std::string asset_id;
+  bool back = false;
+  std::string by;
+  std::string reason;
+};
+int run_out_of_service(const OutOfServiceOptions& options);
+
 struct ReplacedOptions {
   std::string config;
   std::string asset_id;

@@ -39,6 +39,7 @@ class CommandLine {
     add_live();
     add_show();
     add_operator();
+    add_alarms();
     add_retract();
     add_confirm();
     add_quarantine();
@@ -324,12 +325,13 @@ class CommandLine {
   }
 
   void add_operator() {
-    CLI::App* acknowledge =
-        command("acknowledge", "acknowledge an advisory", "sealwatch acknowledge XT03-MV2 ADVISORY_ID --by 'J. Silva'",
-                [this] { return run_acknowledge(acknowledge_); });
+    CLI::App* acknowledge = command("acknowledge", "acknowledge an advisory or an alarm",
+                                    "sealwatch acknowledge XT03-MV2 ADVISORY_ID --by 'J. Silva'",
+                                    [this] { return run_acknowledge(acknowledge_); });
     add_config(acknowledge, acknowledge_.config);
-    acknowledge->add_option("asset", acknowledge_.asset_id, "asset id")->required();
-    acknowledge->add_option("advisory", acknowledge_.advisory_id, "advisory id as `watch advisory --json` shows it")
+    acknowledge->add_option("asset", acknowledge_.asset_id, "asset id; - for an alarm about none")->required();
+    acknowledge
+        ->add_option("advisory", acknowledge_.advisory_id, "advisory id, or an alarm's id as `status --json` shows it")
         ->required();
     acknowledge->add_option("--by", acknowledge_.by, "who")->required();
     acknowledge->add_option("--remark", acknowledge_.remark, "free text");
@@ -345,6 +347,40 @@ class CommandLine {
         ->capture_default_str();
     replaced->add_option("--by", replaced_.by, "who")->required();
     replaced->add_option("--remark", replaced_.remark, "free text");
+  }
+
+  void add_alarms() {
+    CLI::App* shelve = command("shelve", "set an alarm or advisory aside until a date; it comes back by itself",
+                               "sealwatch shelve XT03-MV2 sensor_lost/pressure_a --until 2031-06-01 --by 'J. Silva' "
+                               "--reason 'sensor ordered'",
+                               [this] { return run_shelve(shelve_); });
+    shelve->add_option("--until", shelve_.until, "UTC time, at most a year ahead")->required();
+    CLI::App* unshelve = command("unshelve", "take a shelved alarm back into view",
+                                 "sealwatch unshelve XT03-MV2 sensor_lost/pressure_a --by 'J. Silva'",
+                                 [this] { return run_shelve(shelve_); });
+    for (CLI::App* one : {shelve, unshelve}) {
+      add_config(one, shelve_.config);
+      one->add_option("asset", shelve_.asset_id, "asset id; - for an alarm about none")->required();
+      one->add_option("alarm", shelve_.alarm_id, "the alarm's id as `status --json` shows it")->required();
+      one->add_option("--by", shelve_.by, "who")->required();
+    }
+    shelve->add_option("--reason", shelve_.reason, "why")->required();
+    unshelve->add_option("--reason", shelve_.reason, "why");
+    CLI::App* out = command("out-of-service", "take the alarms of an asset out of view while somebody works on it",
+                            "sealwatch out-of-service XT03-MV2 --by 'J. Silva' --reason 'valve is being replaced'",
+                            [this] { return run_out_of_service(out_of_service_); });
+    out->add_option("--reason", out_of_service_.reason, "why")->required();
+    CLI::App* in = command("in-service", "take an asset's alarms back into view",
+                           "sealwatch in-service XT03-MV2 --by 'J. Silva'", [this] {
+                             out_of_service_.back = true;
+                             return run_out_of_service(out_of_service_);
+                           });
+    in->add_option("--reason", out_of_service_.reason, "free text");
+    for (CLI::App* one : {out, in}) {
+      add_config(one, out_of_service_.config);
+      one->add_option("asset", out_of_service_.asset_id, "asset id")->required();
+      one->add_option("--by", out_of_service_.by, "who")->required();
+    }
   }
 
   void add_retract() {
@@ -567,6 +603,8 @@ class CommandLine {
   ConfirmOptions confirm_;
   AuditOptions audit_;
   ReplacedOptions replaced_;
+  ShelveOptions shelve_;
+  OutOfServiceOptions out_of_service_;
   RetractOptions retract_;
   AcceptOptions accept_;
   ConfigCheckOptions config_check_;

@@ -7,6 +7,8 @@
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/time.hpp"
+#include "sealwatch/message/alarm_state.hpp"
+#include "services/cli/alarms_listed.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/operator_send.hpp"
 #include "services/cli/session.hpp"
@@ -158,12 +160,48 @@ int run_accept(const AcceptOptions& options) {
   return sent;
 }
 
+namespace {
+
+/// Alarms of services, and advisories that ended unseen, answer by their state.
+int acknowledge_alarm(std::optional<Session>& session, const AcknowledgeOptions& options, Acknowledgement message) {
+  if (message.asset_id == kNoAsset) message.asset_id.clear();
+  if (const int sent = send(session, message, {"advisory_generation"}); sent != kOk) return sent;
+  const auto is_done = [&](const AlarmsListed& now) {
+    const AlarmEntry* const entry = now.find(options.asset_id, options.advisory_id);
+    return entry == nullptr || entry->acknowledged_by == options.by;
+  };
+  if (const AlarmsListed after = listen_for_alarms(*session->bus, is_done); !is_done(after)) {
+    complain(Error{.file = {},
+                   .place = "alarm",
+                   .value = options.advisory_id,
+                   .rule = "was not acknowledged",
+                   .advice = after.last_error.empty() ? "see `sealwatch audit`" : after.last_error});
+    return kAnswerIsNo;
+  }
+  std::printf("acknowledged by %s\n", options.by.c_str());
+  return kOk;
+}
+
+/// Whether it is no advisory in force, but something else that the services keep.
+bool is_alarm(Bus& bus, const AcknowledgeOptions& options) {
+  const AlarmsListed alarms = listen_for_alarms(bus);
+  const AlarmEntry* const entry = alarms.find(options.asset_id, options.advisory_id);
+  return entry != nullptr && (!is_advice(entry->alarm) || entry->ended_ns != 0);
+}
+
+}  // namespace
+
 int run_acknowledge(const AcknowledgeOptions& options) {
   std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
+  if (const Status joined = session->bus->subscribe_service_topics(); !joined) {
+    complain(joined.error());
+    return kInternalFailure;
+  }
   auto message = said_by<Acknowledgement>(options.by, options.asset_id, options.advisory_id);
   message.advisory_id = options.advisory_id;
   message.remark = options.remark;
+  if (is_alarm(*session->bus, options)) return acknowledge_alarm(session, options, message);
   if (const Status joined = session->bus->subscribe(kAdvisory); !joined) {
     complain(joined.error());
     return kInternalFailure;

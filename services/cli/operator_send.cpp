@@ -22,7 +22,7 @@ std::optional<Error> objection(const Configuration& configuration, const std::st
   if (who.find_first_not_of(" \t") == std::string::npos)
     return Error{
         .file = {}, .place = "--by", .value = who, .rule = "must say who", .advice = "a name, or a position on shift"};
-  if (configuration.find_asset(asset_id) != nullptr) return std::nullopt;
+  if (asset_id == kNoAsset || configuration.find_asset(asset_id) != nullptr) return std::nullopt;
   std::vector<std::string> known;
   for (const AssetConfig& asset : configuration.assets) known.push_back(asset.asset_id);
   return Error{.file = config,

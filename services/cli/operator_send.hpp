@@ -13,6 +13,9 @@ namespace sealwatch::cli {
 
 [[nodiscard]] std::int64_t now_ns();
 
+/// In place of an asset, where an alarm is about none.
+inline constexpr const char* kNoAsset = "-";
+
 /// The bus, where somebody speaks of an asset that there is; else what is wrong is said on standard error.
 [[nodiscard]] std::optional<Session> open_for(const std::string& config, const std::string& asset_id,
                                               const std::string& who);

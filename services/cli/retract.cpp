@@ -46,7 +46,8 @@ int run_retract(const RetractOptions& options) {
   if (!event) return kBadInput;
   std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
-  const int sent = send(session, *event, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  const int sent =
+      send(session, *event, {"data_acquisition", "state_detection", "prognostic_assessment", "advisory_generation"});
   if (sent != kOk || says_that_it_waits(*session, *event)) return sent;
   const bool withdrawn = event->kind == kRetractionWithdrawn;
   std::printf("received: %s; the remaining life is concluded anew, the advice with the next test\n",

@@ -2,10 +2,12 @@
 // category of NAMUR NE 107.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sealwatch/core/time.hpp"
 #include "sealwatch/message/service.hpp"
 #include "services/cli/services_heard.hpp"
 
@@ -22,11 +24,14 @@ struct HeardAlarm {
   std::string service;
   ServiceAlarm alarm;
   std::uint64_t untold = 0;  ///< alarms of this service that did not fit into its heartbeat, said with its last one
+  std::optional<AlarmEntry> entry = {};  ///< its state, where advisory generation is heard and knows it
 };
-/// Those that stand, service by service.
+/// Those that stand, service by service, then what else the alarm desk keeps: advisories, what returned unseen.
 [[nodiscard]] std::vector<HeardAlarm> alarms_of(const std::vector<ServicesHeard::Service>& services);
-/// Whether something is not seen now: any alarm but those that only ask for maintenance.
-[[nodiscard]] bool is_blind(const std::vector<HeardAlarm>& alarms);
-[[nodiscard]] std::string one_line(const HeardAlarm& heard);
+/// Whether something is not seen now: any active alarm in view, but those that only ask for maintenance.
+[[nodiscard]] bool is_blind(const std::vector<HeardAlarm>& alarms, UtcTime now);
+/// Whether it says no more than the advisory of its asset.
+[[nodiscard]] bool stands_in_advisory(const HeardAlarm& heard, UtcTime now);
+[[nodiscard]] std::string one_line(const HeardAlarm& heard, UtcTime now);
 
 }  // namespace sealwatch::cli

@@ -4,7 +4,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "sealwatch/message/alarm_state.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/operator_send.hpp"
 #include "services/cli/service_alarms.hpp"
 #include "services/cli/services_heard.hpp"
 #include "services/cli/session.hpp"
@@ -22,6 +24,8 @@ constexpr std::array kStateTopics = {Topic::state_report,      Topic::health_rep
 
 /// Where some services are heard, the others are waited for so much longer: they may just be starting.
 constexpr std::chrono::seconds kPatienceForTheRest{3};
+
+UtcTime now() { return {now_ns()}; }
 
 /// What was heard while listening.
 struct Heard {
@@ -46,6 +50,31 @@ nlohmann::ordered_json as_json(const ServicesHeard::Service& service) {
   return result;
 }
 
+std::string time_or_nothing(std::int64_t time_ns) { return time_ns == 0 ? "" : format_utc({time_ns}); }
+
+/// "state" is "" where nobody keeps it: advisory_generation is not heard, or has not heard of the alarm yet.
+nlohmann::ordered_json as_json(const HeardAlarm& heard) {
+  const ServiceAlarm& alarm = heard.alarm;
+  const AlarmEntry entry = heard.entry.value_or(AlarmEntry{});
+  return {{"service", heard.service},
+          {"id", alarm_id(heard.entry ? entry.alarm : alarm)},
+          {"kind", alarm.kind},
+          {"ne107", words(category_of(alarm.kind))},
+          {"asset_id", alarm.asset_id},
+          {"subject", alarm.subject},
+          {"pst_id", alarm.pst_id},
+          {"text", alarm.text},
+          {"since", time_or_nothing(alarm.since_ns)},
+          {"state", heard.entry ? name_of(state_of(entry, now())) : std::string_view()},
+          {"ended", time_or_nothing(entry.ended_ns)},
+          {"acknowledged_by", entry.acknowledged_by},
+          {"shelved_by", entry.shelved_by},
+          {"shelved_until", time_or_nothing(entry.shelved_until_ns)},
+          {"shelved_reason", entry.shelved_reason},
+          {"suppressed_by", entry.suppressed_by},
+          {"out_of_service_by", entry.out_of_service_by}};
+}
+
 void print_json(const Heard& heard) {
   nlohmann::ordered_json result = {{"schema", "sealwatch.status/1"},
                                    {"services", nlohmann::ordered_json::array()},
@@ -54,14 +83,7 @@ void print_json(const Heard& heard) {
   for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
     result["services"].push_back(as_json(service));
   for (const HeardAlarm& one : alarms_of(heard.services.list(ServicesHeard::Clock::now())))
-    result["alarms"].push_back({{"service", one.service},
-                                {"kind", one.alarm.kind},
-                                {"ne107", words(category_of(one.alarm.kind))},
-                                {"asset_id", one.alarm.asset_id},
-                                {"subject", one.alarm.subject},
-                                {"pst_id", one.alarm.pst_id},
-                                {"text", one.alarm.text},
-                                {"since", one.alarm.since_ns == 0 ? "" : format_utc({one.alarm.since_ns})}});
+    result["alarms"].push_back(as_json(one));
   for (const auto& [asset, topics] : heard.last)
     for (const auto& [topic, text] : topics) result["assets"][asset][topic] = nlohmann::ordered_json::parse(text);
   std::printf("%s\n", result.dump(1).c_str());
@@ -74,7 +96,7 @@ void print_text(const Heard& heard, const std::vector<std::string>& configured) 
     for (const auto& service : heard.services.list(ServicesHeard::Clock::now()))
       std::printf("%s\n", one_line(service).c_str());
     for (const HeardAlarm& alarm : alarms_of(heard.services.list(ServicesHeard::Clock::now())))
-      std::printf("%s\n", one_line(alarm).c_str());
+      if (!stands_in_advisory(alarm, now())) std::printf("%s\n", one_line(alarm, now()).c_str());
   }
   for (const auto& [asset, view] : heard.assets) std::printf("\n%s", view.screen().c_str());
   if (heard.services.none()) return;
@@ -112,9 +134,9 @@ int run_status(const StatusOptions& options) {
   std::vector<std::string> configured;
   for (const AssetConfig& asset : session->configuration.assets) configured.push_back(asset.asset_id);
   options.json ? print_json(heard) : print_text(heard, configured);
-  const auto now = ServicesHeard::Clock::now();
-  const bool well =
-      !heard.services.none() && heard.services.all_well(now) && !is_blind(alarms_of(heard.services.list(now)));
+  const auto listened = ServicesHeard::Clock::now();
+  const bool well = !heard.services.none() && heard.services.all_well(listened) &&
+                    !is_blind(alarms_of(heard.services.list(listened)), now());
   return well ? kOk : kAnswerIsNo;
 }
 

@@ -9,7 +9,8 @@
 namespace sealwatch {
 namespace {
 
-constexpr Topic kInputs[] = {Topic::raw_samples};
+/// Of what people say it wants retractions, for who judges the dates of its tests (runtime/admission.hpp).
+constexpr Topic kInputs[] = {Topic::raw_samples, Topic::maintenance_event};
 constexpr Topic kOutputs[] = {Topic::sample_block};
 constexpr const char* kProducer = "data_acquisition 0.1.0";
 /// Time passes tick by tick, about once a second. A clock that is set, forwards or backwards, ends no test that goes

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <thread>
 
+#include "sealwatch/core/time.hpp"
 #include "tests/integration/six_services.hpp"
 
 namespace sealwatch::testing {
@@ -238,6 +239,89 @@ TEST_F(Operator, KeepsARecordOfWhatPeopleDidThatShowsChanges) {
   EXPECT_EQ(changed.status, 1) << changed.output;
   EXPECT_THAT(changed.output, AllOf(HasSubstr("state_detection: BROKEN at entry 1"),
                                     HasSubstr("advisory_generation: 2 acts, as they were written")));
+}
+
+/// The states of alarms after ISA-18.2, through restarts of the service that keeps them.
+class OperatorOfAlarms : public Operator {
+ protected:
+  static constexpr const char* kSilent = "no_heartbeat/health_assessment";
+
+  [[nodiscard]] json status() const {
+    return json::parse(run({"sealwatch", "status", "--config", config(), "--json", "--seconds", "1.5"}).output);
+  }
+  [[nodiscard]] static json alarm_in(const json& status, const std::string& id) {
+    for (const json& alarm : status["alarms"])
+      if (alarm["id"] == id || (id == kSilent && alarm["kind"] == "no_heartbeat")) return alarm;
+    return {};
+  }
+  [[nodiscard]] static pid_t process_of(const json& status, const std::string& name) {
+    for (const json& service : status["services"])
+      if (service["service"] == name) return service.value("process_id", -1);
+    return -1;
+  }
+  /// Waits until the alarm is in that state; "" is in none, as it is not there.
+  [[nodiscard]] ::testing::AssertionResult becomes(const std::string& id, const std::string& state) const {
+    json alarm;
+    for (int attempt = 0; attempt < 12; ++attempt) {
+      alarm = alarm_in(status(), id);
+      if ((alarm.is_null() ? "" : alarm.value("state", "")) == state) return ::testing::AssertionSuccess();
+    }
+    return ::testing::AssertionFailure() << alarm.dump();
+  }
+  [[nodiscard]] Finished say(const std::string& command, const std::vector<std::string>& words) const {
+    std::vector<std::string> arguments = {"sealwatch", command, "--config", config()};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    arguments.insert(arguments.end(), {"--by", "J. Silva"});
+    return run(arguments);
+  }
+};
+
+TEST_F(OperatorOfAlarms, ShelvesAcknowledgesAndTakesOutOfService) {
+  const json well = status();
+  const pid_t hung = process_of(well, "health_assessment");
+  const StoredResults before = stored_results(state_directory("state").string());
+  kill(hung, SIGSTOP);
+  ASSERT_TRUE(becomes(kSilent, "unacknowledged"));
+  const std::string until = format_utc({std::time(nullptr) * 1'000'000'000 + 86'400'000'000'000});
+  const Finished shelved = say("shelve", {"-", kSilent, "--until", until, "--reason", "being looked at"});
+  EXPECT_EQ(shelved.status, 0) << shelved.output;
+  ASSERT_TRUE(becomes(kSilent, "shelved"));
+  kill(process_of(status(), "advisory_generation"), SIGKILL);  // up starts it again
+  ASSERT_TRUE(becomes(kSilent, "shelved")) << "it is in the journal";
+  EXPECT_THAT(run({"sealwatch", "status", "--config", config()}).output,
+              HasSubstr("SHELVED until " + until + " by J. Silva, being looked at (failure)  health_assessment"));
+  EXPECT_EQ(say("unshelve", {"-", kSilent}).status, 0);
+  ASSERT_TRUE(becomes(kSilent, "unacknowledged"));
+  kill(hung, SIGCONT);
+  ASSERT_TRUE(becomes(kSilent, "returned")) << "nobody has said that it was seen";
+  const Finished seen = say("acknowledge", {"-", kSilent});
+  EXPECT_EQ(seen.status, 0) << seen.output;
+  ASSERT_TRUE(becomes(kSilent, ""));
+
+  EXPECT_EQ(say("out-of-service", {"XT03-MV2", "--reason", "valve is being replaced"}).status, 0);
+  ASSERT_TRUE(becomes("out_of_service", "out_of_service"));
+  EXPECT_EQ(say("in-service", {"XT03-MV2"}).status, 0);
+  ASSERT_TRUE(becomes("out_of_service", ""));
+  EXPECT_EQ(before, stored_results(state_directory("state").string())) << "none of it is concluded from";
+  const Finished audit =
+      run({"sealwatch", "audit", "--config", config(), "--state", state_directory("state").string()});
+  for (const char* act :
+       {"alarm_shelved", "alarm_unshelved", "acknowledgement", "asset_out_of_service", "asset_in_service"})
+    EXPECT_THAT(audit.output, ContainsRegex(std::string("advisory_generation [0-9]+  ") + act + ".*by J. Silva"));
+}
+
+TEST_F(OperatorOfAlarms, RefusesWhatCannotBeDone) {
+  const Finished unknown =
+      say("shelve", {"XT03-MV2", "sensor_lost/pressure_a", "--until", "2199-01-01", "--reason", "a try"});
+  EXPECT_EQ(unknown.status, 1) << unknown.output;
+  EXPECT_THAT(unknown.output, HasSubstr("'sensor_lost/pressure_a': is no alarm of XT03-MV2"));
+  const Finished no_time = say("shelve", {"XT03-MV2", "x", "--until", "soon", "--reason", "a try"});
+  EXPECT_EQ(no_time.status, 2) << no_time.output;
+  EXPECT_THAT(no_time.output, HasSubstr("--until"));
+  const Finished not_out = say("in-service", {"XT03-MV2"});
+  EXPECT_EQ(not_out.status, 1) << not_out.output;
+  EXPECT_THAT(not_out.output, HasSubstr("is not out of service"));
+  EXPECT_EQ(say("out-of-service", {"XT09", "--reason", "x"}).status, 2);
 }
 
 /// A retraction reaches every layer: what the status says of regions and health is said anew at once.

@@ -17,6 +17,8 @@ class RetractedTests {
   /// A test that is known from now on: "all since a date" means the tests that are known when it is said.
   void know(const std::string& pst_id, std::optional<UtcTime> time) { tests_[pst_id] = time; }
 
+  void forget(const std::string& pst_id) { tests_.erase(pst_id); }
+
   /// From now on the tests that it means do not count, or count again.
   void apply(const Retraction& retraction) {
     meant_.erase(retraction.withdrawn_id);

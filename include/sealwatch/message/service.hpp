@@ -29,6 +29,25 @@ struct ServiceAlarm {
   friend bool operator==(const ServiceAlarm&, const ServiceAlarm&) = default;
 };
 
+/// What became of an alarm of any service, or of an advisory that asks for something: its state after ISA-18.2 and
+/// IEC 62682 (alarm_state.hpp), kept by advisory_generation.
+struct AlarmEntry {
+  std::string service;  ///< who told it first
+  ServiceAlarm alarm;
+  std::int64_t due_ns = 0;    ///< by when an advisory asks for it; 0 without a date
+  std::int64_t ended_ns = 0;  ///< when it returned to normal; 0 while it is active
+  std::string acknowledged_by;
+  std::int64_t acknowledged_at_ns = 0;
+  std::string shelved_by;
+  std::string shelved_reason;
+  std::int64_t shelved_until_ns = 0;  ///< 0: it is not shelved
+  std::string suppressed_by;          ///< the active alarm that causes it, by design; "" none
+  std::string out_of_service_by;      ///< who took its asset out of service; "" nobody
+  SEALWATCH_FIELDS(AlarmEntry, service, alarm, due_ns, ended_ns, acknowledged_by, acknowledged_at_ns, shelved_by,
+                   shelved_reason, shelved_until_ns, suppressed_by, out_of_service_by)
+  friend bool operator==(const AlarmEntry&, const AlarmEntry&) = default;
+};
+
 /// Topic service_status: about once a second from each service.
 struct ServiceStatus {
   std::string service;  // key: "data_acquisition", ...
@@ -44,8 +63,10 @@ struct ServiceStatus {
   std::string last_error;            ///< "" if none
   std::vector<ServiceAlarm> alarms;  ///< those that stand, the newest few
   std::uint64_t alarm_count = 0;     ///< all that stand
+  std::vector<AlarmEntry> desk;      ///< of advisory_generation: all alarms with their states, the most pressing first
+  std::uint64_t desk_count = 0;      ///< how many there are, told or not
   SEALWATCH_FIELDS(ServiceStatus, service, writer_id, version, started_ns, publishing_time_ns, process_id,
-                   pending_inputs, written, received, state, last_error, alarms, alarm_count)
+                   pending_inputs, written, received, state, last_error, alarms, alarm_count, desk, desk_count)
   friend bool operator==(const ServiceStatus&, const ServiceStatus&) = default;
 };
 

@@ -22,4 +22,14 @@ struct StandingAlarms {
 /// nothing about alarms.
 using AlarmsOfOutput = std::function<std::optional<StandingAlarms>(const Message& output)>;
 
+/// What the newest advisory of an asset asks for.
+struct StandingAdvice {
+  std::string asset_id;
+  std::optional<AlarmEntry> advice;  ///< nothing where it asks for nothing
+  bool is_answered = false;          ///< it asks for nothing because of what somebody did
+};
+
+/// Likewise, of advisories.
+using AdviceOfOutput = std::function<std::optional<StandingAdvice>(const Message& output)>;
+
 }  // namespace sealwatch

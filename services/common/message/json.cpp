@@ -230,6 +230,20 @@ std::string to_json(const Message& message, JsonForm form) {
 
 std::string to_json(const ServiceStatus& status) { return write_json(status, JsonForm::readable); }
 
+std::string to_json(const AlarmEntry& entry) { return write_json(entry, JsonForm::readable); }
+
+Result<AlarmEntry> alarm_from_json(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  AlarmEntry entry;
+  try {
+    if (json.is_discarded()) throw LayoutError{{}, "is not JSON"};
+    decode(json, {}, entry);
+  } catch (const LayoutError& error) {
+    return fail(Error{.file = "alarm", .place = error.field, .value = {}, .rule = error.rule, .advice = {}});
+  }
+  return entry;
+}
+
 Result<Message> message_from_json(Topic topic, std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   const auto wrong = [topic](std::string place, std::string rule) {

@@ -17,9 +17,11 @@ enum class JsonForm {
 
 [[nodiscard]] std::string to_json(const Message& message, JsonForm form = JsonForm::readable);
 [[nodiscard]] std::string to_json(const ServiceStatus& status);
+[[nodiscard]] std::string to_json(const AlarmEntry& entry);
 
 /// Reads what to_json wrote, in either form; absent fields keep their defaults, unknown fields are passed over (so that
 /// an older reader reads a newer journal). Errors name the field.
 [[nodiscard]] Result<Message> message_from_json(Topic topic, std::string_view text);
+[[nodiscard]] Result<AlarmEntry> alarm_from_json(std::string_view text);
 
 }  // namespace sealwatch

@@ -4,6 +4,7 @@
 
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/alarm_acts.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/made_up.hpp"
 #include "sealwatch/message/outside.hpp"
@@ -72,22 +73,23 @@ std::optional<std::string> refusal_of_kind(const Message& message) {
     if (confirmed_act(event->asset_id, event->header.message_id)) return std::nullopt;
     return "its message_id, '" + event->header.message_id + "', does not say what is confirmed; use sealwatch confirm";
   }
+  if (is_alarm_act(event->kind)) {
+    if (alarm_act_of(*event)) return std::nullopt;
+    return "its message_id, '" + event->header.message_id +
+           "', does not say which alarm is meant; use sealwatch shelve";
+  }
   if (event->kind != kTestRetracted && event->kind != kTestsRetracted && event->kind != kRetractionWithdrawn)
     return "its kind, '" + event->kind + "', is none of actuator_replaced, seal_replaced, " +
            std::string(kTestRetracted) + ", " + std::string(kTestsRetracted) + ", " +
-           std::string(kRetractionWithdrawn) + ", " + std::string(kActConfirmed) + ", " + std::string(kActRejected);
+           std::string(kRetractionWithdrawn) + ", " + std::string(kActConfirmed) + ", " + std::string(kActRejected) +
+           ", " + std::string(kAlarmShelved) + ", " + std::string(kAlarmUnshelved) + ", " +
+           std::string(kAssetOutOfService) + ", " + std::string(kAssetInService);
   const auto retraction = retraction_of(event->asset_id, event->header.message_id);
   const bool same = retraction && (event->kind == kTestRetracted    ? !retraction->pst_id.empty()
                                    : event->kind == kTestsRetracted ? retraction->since.has_value()
                                                                     : !retraction->withdrawn_id.empty());
   if (same) return std::nullopt;
   return "its message_id, '" + event->header.message_id + "', does not say what is retracted; use sealwatch retract";
-}
-
-/// Before data acquisition a test has no PST id.
-std::string name_of_test_in(const Message& message) {
-  const auto* raw = std::get_if<RawSamples>(&message);
-  return raw != nullptr ? "recording " + raw->recording_id : header_of(message).pst_id;
 }
 
 std::string name_of_test(const RawSamples& raw) {
@@ -100,14 +102,29 @@ void Admission::note(const Message& message) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
   const std::string asset_id = asset_of(message);
-  if (const std::optional<std::int64_t> time_ns = time_of_test(message))
-    tests_[asset_id].know(name_of_test_in(message), UtcTime{*time_ns});
+  if (const std::optional<std::int64_t> time_ns = time_of_test(message)) note_test(message, {*time_ns});
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
   acts.push_back(header_of(message).message_id);
-  for (const std::string& id : acts)
-    if (const auto retraction = is_retraction_id(id) ? retraction_of(asset_id, id) : std::nullopt)
-      tests_[asset_id].apply(*retraction);
+  for (const std::string& id : acts) note_act(asset_id, id);
+}
+
+/// Before data acquisition a test has no name by which it could be retracted: until then it is one of its date.
+void Admission::note_test(const Message& message, UtcTime time) {
+  RetractedTests& tests = tests_[asset_of(message)];
+  std::set<UtcTime>& named = named_[asset_of(message)];
+  const std::string unnamed = "of " + format_utc(time);
+  if (topic_of(message) == Topic::raw_samples) {
+    if (!named.contains(time)) tests.know(unnamed, time);
+    return;
+  }
+  tests.know(header_of(message).pst_id, time);
+  if (named.insert(time).second) tests.forget(unnamed);
+}
+
+void Admission::note_act(const std::string& asset_id, const std::string& act_id) {
+  if (const auto retraction = is_retraction_id(act_id) ? retraction_of(asset_id, act_id) : std::nullopt)
+    tests_[asset_id].apply(*retraction);
 }
 
 std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {

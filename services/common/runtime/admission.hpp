@@ -34,10 +34,13 @@ class Admission {
   explicit Admission(std::map<std::string, UtcTime> commissioned = {}) : commissioned_(std::move(commissioned)) {}
   /// Takes note of when a test was made, and of retractions.
   void note(const Message& message);
+  /// Takes note of an act of that id, if it is a retraction.
+  void note_act(const std::string& asset_id, const std::string& act_id);
   /// Why the message is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
 
  private:
+  void note_test(const Message& message, UtcTime time);
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw, UtcTime now) const;
   [[nodiscard]] std::optional<std::string> refusal_of_time(const RawSamples& raw, UtcTime now) const;
   /// The date of the asset's newest test that was not retracted.
@@ -45,8 +48,9 @@ class Admission {
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
 
   std::map<std::string, UtcTime> commissioned_;
-  std::map<std::string, RetractedTests> tests_;  ///< by asset
-  std::set<std::string> recorded_;               ///< assets with tests that no bench made up
+  std::map<std::string, RetractedTests> tests_;     ///< by asset
+  std::map<std::string, std::set<UtcTime>> named_;  ///< dates of those that have a PST id, by asset
+  std::set<std::string> recorded_;                  ///< assets with tests that no bench made up
 };
 
 }  // namespace sealwatch

@@ -142,6 +142,12 @@ RunnerOptions runner_options(const DaemonParts& parts, const Configuration& conf
   options.acts_confirmed_by_second = configuration.acts_confirmed_by_second;
   options.refused_by_bus = parts.refused_by_bus;
   if (parts.make_alarms_of_output) options.alarms_of_output = parts.make_alarms_of_output();
+  if (parts.keeps_alarms) {
+    options.desk = AlarmDesk::Options{.service = parts.service, .services = {}};
+    for (const std::string& service : service_names())
+      if (configuration.services.at(service).enabled) options.desk->services.push_back(service);
+  }
+  options.advice_of_output = parts.advice_of_output;
   if (parts.make_local_inputs) options.local_inputs = parts.make_local_inputs(configuration);
   for (const AssetConfig& asset : configuration.assets) options.assets.push_back(asset.asset_id);
   options.lanes.try_record =

@@ -36,6 +36,8 @@ struct DaemonParts {
   /// Optional: see RunnerOptions.
   std::function<std::optional<std::string>()> refused_by_bus = {};
   std::function<AlarmsOfOutput()> make_alarms_of_output = {};
+  bool keeps_alarms = false;             ///< this service has the alarm desk
+  AdviceOfOutput advice_of_output = {};  ///< for the desk
 };
 
 [[nodiscard]] int run_daemon(int argc, const char* const* argv, const DaemonParts& parts);

@@ -76,16 +76,25 @@ Status LayerRunner::start() {
 
 Status LayerRunner::restore_past() {
   std::size_t restored = 0;
-  Status outputs = journal_.for_each_numbered_output([&](const Message& output, std::uint64_t sequence) {
+  std::map<std::string, StandingAdvice> advice;  // as it stands in the end: the desk knows what became of the rest
+  auto acts = past_retractions();
+  if (!acts) return fail(acts.error());
+  Status outputs = journal_.for_each_numbered_output([&](const Message& output, const Journal::Place& place) {
+    for (; !acts->empty() && acts->front().at < place.concluded; acts->pop_front())
+      admission_.note_act(acts->front().asset_id, acts->front().id);
     lanes_.restore(output);
     note_alarms_of(output);
+    if (const auto said = options_.advice_of_output ? options_.advice_of_output(output) : std::nullopt)
+      advice[said->asset_id] = *said;
     admission_.note(output);
-    latest_.concluded(output, sequence);
+    latest_.concluded(output, place.sequence);
     replaying_[asset_of(output)] = header_of(output).replay;
     ++restored;
     return Status();
   });
   if (!outputs) return outputs;
+  for (const PastAct& act : *acts) admission_.note_act(act.asset_id, act.id);
+  if (Status opened = open_desk(advice); !opened) return opened;
   const std::uint64_t open = journal_.open_inputs();
   Status inputs = journal_.for_each_open_input([&](const Message& input) {
     replaying_[asset_of(input)] = header_of(input).replay;
@@ -139,6 +148,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
 Status LayerRunner::in_batch(const std::function<Status()>& work, Survives survives) {
   Status status = journal_.begin(survives);
   if (status) status = work();
+  if (status) status = keep_alarms();
   if (status) status = journal_.commit();
   if (!status) {
     journal_.rollback();
@@ -222,7 +232,10 @@ Status LayerRunner::take(Message message) {
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
     if (topic_of(message) == Topic::raw_samples) return {};
   }
-  const InputState state = note_act(message, refused, is_set_aside(message) ? InputState::set_aside : InputState::open);
+  const bool for_desk = is_for_desk(message);
+  if (for_desk && !refused) refused = tell_desk(message);
+  InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;
+  if (!for_desk || desk_) state = note_act(message, refused, state);
   const std::string asset_id = asset_of(message);
   taken_ids_[**id] = taken_.size();
   if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;
@@ -284,6 +297,8 @@ Status LayerRunner::keep(Conclusion conclusion) {
     latest_.concluded(**kept, header_of(**kept).stream_sequence);
     forget_damage(header_of(**kept).message_id);
     note_alarms_of(**kept);
+    note_advice_of(**kept);
+    admission_.note(**kept);  // data acquisition knows a test by its name only from its own blocks on
     outbox_.add(std::move(**kept));
   }
   for (const std::string& id : conclusion.consumed) {
@@ -302,6 +317,7 @@ void LayerRunner::give_memory_back() {
 
 Status LayerRunner::let_time_pass() {
   look_for_trouble();
+  if (Status looked = let_time_pass_at_desk(); !looked) return looked;
   const auto at_rest = [this](const std::string& asset_id) { return lanes_.at_rest(asset_id); };
   if (options_.local_inputs)
     for (Message& message : options_.local_inputs(at_rest)) {
@@ -343,6 +359,8 @@ void LayerRunner::report_progress() {
     status.received = std::move(received);
     status.last_error = last_error_;
     alarms_.tell(status);
+    status.desk = told_at_desk_.desk;
+    status.desk_count = told_at_desk_.desk_count;
   });
 }
 

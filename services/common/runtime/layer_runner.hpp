@@ -28,6 +28,7 @@
 #include "sealwatch/port/layer.hpp"
 #include "sealwatch/port/standing_alarms.hpp"
 #include "services/common/runtime/admission.hpp"
+#include "services/common/runtime/alarm_desk.hpp"
 #include "services/common/runtime/alarms.hpp"
 #include "services/common/runtime/asset_lanes.hpp"
 #include "services/common/runtime/clock_watch.hpp"
@@ -70,6 +71,8 @@ struct RunnerOptions {
   /// What the bus has refused to others since the last call, in words; nothing when it was nothing.
   std::function<std::optional<std::string>()> refused_by_bus = {};
   AlarmsOfOutput alarms_of_output = {};
+  std::optional<AlarmDesk::Options> desk = {};  ///< of the one service that keeps the states of all alarms
+  AdviceOfOutput advice_of_output = {};
 };
 
 class LayerRunner {
@@ -134,6 +137,16 @@ class LayerRunner {
   void note_alarms_of(const Message& output);
   void look_for_trouble();
 
+  // The states of all alarms (layer_runner_desk.cpp).
+  [[nodiscard]] Status open_desk(const std::map<std::string, StandingAdvice>& past);
+  void note_advice_of(const Message& output);
+  /// Whether people speak to the desk with it, not to the layer.
+  [[nodiscard]] bool is_for_desk(const Message& message) const;
+  /// Does it where this service has the desk; why not, where it is refused.
+  [[nodiscard]] std::optional<std::string> tell_desk(const Message& message);
+  [[nodiscard]] Status keep_alarms();
+  [[nodiscard]] Status let_time_pass_at_desk();
+
   // What people say (layer_runner_acts.cpp).
   [[nodiscard]] Status restore_awaiting();
   void await(std::shared_ptr<const Message> act, UtcTime since);
@@ -145,6 +158,13 @@ class LayerRunner {
   /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
+  struct PastAct {
+    UtcTime at;  ///< when it came to count
+    std::string asset_id;
+    std::string id;
+  };
+  /// Retractions and withdrawals that counted before this start, in order.
+  [[nodiscard]] Result<std::deque<PastAct>> past_retractions();
 
   // What is set aside (layer_runner_quarantine.cpp).
   [[nodiscard]] Status restore_quarantine();
@@ -187,6 +207,8 @@ class LayerRunner {
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
   std::string last_error_;                 ///< with its time
   Alarms alarms_;
+  std::optional<AlarmDesk> desk_;
+  ServiceStatus told_at_desk_;  ///< its part of the heartbeat
   ClockWatch clock_watch_;
   StrangerWatch strangers_;
   std::vector<SetAside> set_aside_;

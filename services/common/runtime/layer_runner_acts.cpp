@@ -12,6 +12,7 @@ namespace sealwatch {
 namespace {
 
 constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
+constexpr const char* kTaken = "taken";
 
 std::string who_said(const Message& message) {
   const auto act = act_of(message, {}, {});
@@ -82,7 +83,7 @@ bool LayerRunner::waits_for_second(const Message& message) const {
 
 InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state) {
   const bool waits = !refused && waits_for_second(message);
-  const std::string outcome = refused ? *refused : waits ? "waits for a second person" : "taken";
+  const std::string outcome = refused ? *refused : waits ? "waits for a second person" : kTaken;
   if (auto act = act_of(message, clock_.now(), outcome)) acts_.push_back(std::move(*act));
   if (refused || act_confirmed_by(message)) return InputState::consumed;
   return waits ? InputState::awaiting : state;
@@ -102,6 +103,20 @@ void LayerRunner::confirm(const Message& message) {
   if (rejects(message)) return;
   admission_.note(*act);
   lanes_.add(asset_of(*act), *act_id, act);
+}
+
+Result<std::deque<LayerRunner::PastAct>> LayerRunner::past_retractions() {
+  const auto acts = journal_.acts();
+  if (!acts) return fail(acts.error());
+  std::deque<PastAct> past;
+  for (const AuditEntry& entry : *acts) {
+    const OperatorAct& act = entry.act;
+    if (act.outcome != kTaken) continue;
+    const auto confirmed =
+        act.kind == kActConfirmed ? confirmed_act(act.asset_id, act.subject) : std::optional<std::string>();
+    past.push_back({act.at, act.asset_id, confirmed.value_or(act.subject)});
+  }
+  return past;
 }
 
 /// Their last hash stands in the log as well: whoever changes the journal must change that too.

@@ -9,6 +9,8 @@ namespace sealwatch {
 
 /// Makes the table where there is none. SQLite then refuses to change or remove a row.
 void make_acts_table(soci::session& sql);
+/// All entries, in order. Throws what SOCI throws.
+[[nodiscard]] std::vector<AuditEntry> acts_in(soci::session& sql);
 /// Between begin and commit. Returns the entry. Throws what SOCI throws.
 AuditEntry append_act(soci::session& sql, const std::string& service, const OperatorAct& act);
 

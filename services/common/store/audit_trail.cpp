@@ -102,6 +102,26 @@ AuditEntry append_act(soci::session& sql, const std::string& service, const Oper
   return entry;
 }
 
+std::vector<AuditEntry> acts_in(soci::session& sql) {
+  std::vector<AuditEntry> entries;
+  if (!has_acts_table(sql)) return entries;
+  AuditEntry row;
+  long long sequence = 0;
+  long long at = 0;
+  soci::statement statement =
+      (sql.prepare << "SELECT sequence, at, kind, asset_id, who, subject, remark, outcome, previous, hash FROM acts"
+                      " ORDER BY sequence",
+       into(sequence), into(at), into(row.act.kind), into(row.act.asset_id), into(row.act.who), into(row.act.subject),
+       into(row.act.text), into(row.act.outcome), into(row.previous), into(row.hash));
+  statement.execute();
+  while (statement.fetch()) {
+    row.sequence = sequence;
+    row.act.at = UtcTime{at};
+    entries.push_back(row);
+  }
+  return entries;
+}
+
 Result<std::vector<AuditEntry>> read_audit_trail(const std::string& connection, const std::string& service) {
   // It says what is wrong with a journal that is none, or another's, or of a newer program.
   if (const auto readable = JournalReader::open(connection, service); !readable) return fail(readable.error());
@@ -109,23 +129,7 @@ Result<std::vector<AuditEntry>> read_audit_trail(const std::string& connection, 
     soci::session sql(connection);
     std::string answer;
     if (is_file(sql)) sql << "PRAGMA busy_timeout = 5000", into(answer);
-    std::vector<AuditEntry> entries;
-    if (!has_acts_table(sql)) return entries;
-    AuditEntry row;
-    long long sequence = 0;
-    long long at = 0;
-    soci::statement statement =
-        (sql.prepare << "SELECT sequence, at, kind, asset_id, who, subject, remark, outcome, previous, hash FROM acts"
-                        " ORDER BY sequence",
-         into(sequence), into(at), into(row.act.kind), into(row.act.asset_id), into(row.act.who), into(row.act.subject),
-         into(row.act.text), into(row.act.outcome), into(row.previous), into(row.hash));
-    statement.execute();
-    while (statement.fetch()) {
-      row.sequence = sequence;
-      row.act.at = UtcTime{at};
-      entries.push_back(row);
-    }
-    return entries;
+    return acts_in(sql);
   } catch (const std::exception& exception) {
     return fail(Error{.file = without_password(connection),
                       .place = "table acts",

@@ -19,7 +19,7 @@ namespace sealwatch {
 /// Raised when the layout of the tables changes: a journal of an older version is changed when it is opened
 /// (schema.cpp), one of a newer version is refused, not guessed at. Stands in table meta and, in SQLite, in user_version as well: a
 /// turned bit changes only one of them.
-inline constexpr int kJournalSchemaVersion = 2;
+inline constexpr int kJournalSchemaVersion = 3;
 
 struct Journal::Database {
   std::string name;  ///< connection string as errors show it, without a password

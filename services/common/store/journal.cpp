@@ -114,21 +114,22 @@ Status Journal::for_each_page(const std::string& query, const std::string& asset
   const bool of_outputs = query.starts_with(kOutput);  // of a damaged test they are concluded again from its inputs
   long long after = 0;
   for (;;) {
-    std::vector<std::pair<Message, std::uint64_t>> page;
+    std::vector<std::pair<Message, Place>> page;
     auto rows = database_->guard("reading messages", [&] {
       const std::vector<Row> read = rows_of(database_->sql, query + std::to_string(kPage), after, asset_id);
       for (const Row& row : read) {
         after = row.order;
         if (row.checksum == kDamaged) continue;
         if (of_outputs && database_->damaged_tests.contains({row.asset_id, row.pst_id})) continue;
-        page.emplace_back(message_of(row, database_->name), static_cast<std::uint64_t>(row.sequence));
+        page.emplace_back(message_of(row, database_->name),
+                          Place{static_cast<std::uint64_t>(row.sequence), UtcTime{row.published}});
       }
       return read.size();
     });
     if (!rows) return fail(rows.error());
     if (*rows == 0) return {};
-    for (const auto& [message, sequence] : page)
-      if (const Status visited = visit(message, sequence); !visited) return visited;
+    for (const auto& [message, place] : page)
+      if (const Status visited = visit(message, place); !visited) return visited;
   }
 }
 
@@ -137,17 +138,17 @@ Status Journal::for_each_numbered_output(const NumberedVisitor& visit) {
 }
 
 Status Journal::for_each_output(const Visitor& visit) {
-  return for_each_numbered_output([&visit](const Message& message, std::uint64_t) { return visit(message); });
+  return for_each_numbered_output([&visit](const Message& message, const Place&) { return visit(message); });
 }
 
 Status Journal::for_each_output_of(const std::string& asset_id, const Visitor& visit) {
   return for_each_page(std::string(kOutput) + "ordinal > :after AND asset_id = :asset ORDER BY ordinal LIMIT ",
-                       asset_id, [&visit](const Message& message, std::uint64_t) { return visit(message); });
+                       asset_id, [&visit](const Message& message, const Place&) { return visit(message); });
 }
 
 Status Journal::for_each_open_input(const Visitor& visit) {
   return for_each_page(std::string(kInput) + "consumed = 0 AND receipt > :after ORDER BY receipt LIMIT ", {},
-                       [&visit](const Message& message, std::uint64_t) { return visit(message); });
+                       [&visit](const Message& message, const Place&) { return visit(message); });
 }
 
 Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, std::uint64_t last, std::size_t most) {

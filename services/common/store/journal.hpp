@@ -78,7 +78,12 @@ class Journal {
   // with stamps where they go out.
 
   using Visitor = std::function<Status(const Message&)>;
-  using NumberedVisitor = std::function<Status(const Message&, std::uint64_t sequence)>;
+  /// Where an output stands: its number in its stream, and when it was concluded.
+  struct Place {
+    std::uint64_t sequence = 0;
+    UtcTime concluded;
+  };
+  using NumberedVisitor = std::function<Status(const Message&, const Place& place)>;
   /// Every output in the order of conclusion, as the layer made it.
   [[nodiscard]] Status for_each_output(const Visitor& visit);
   /// Likewise, with its number in its stream. Those of a test of which one is damaged are left out: all of that test is
@@ -126,8 +131,17 @@ class Journal {
   /// Notes that its writer now sends a known input under this number.
   [[nodiscard]] Status renumber_input(const Message& message);
 
+  /// What became of alarms, as kept; rows that are not as they were written are left out.
+  [[nodiscard]] Result<std::vector<AlarmEntry>> alarms();
+  /// Keeps it in the place of an earlier one of the same kind, asset and subject.
+  [[nodiscard]] Status keep_alarm(const AlarmEntry& entry);
+  [[nodiscard]] Status forget_alarm(const ServiceAlarm& alarm);
+
   /// Adds what somebody did to the audit trail.
   [[nodiscard]] Result<AuditEntry> record(const OperatorAct& act);
+
+  /// What people did, in the order of receipt.
+  [[nodiscard]] Result<std::vector<AuditEntry>> acts();
 
   struct Awaiting {
     Message message;

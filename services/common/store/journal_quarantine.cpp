@@ -147,6 +147,10 @@ Status Journal::end_awaiting(const std::string& message_id, InputState state) {
   });
 }
 
+Result<std::vector<AuditEntry>> Journal::acts() {
+  return database_->guard("reading what people did", [&] { return acts_in(database_->sql); });
+}
+
 Result<AuditEntry> Journal::record(const OperatorAct& act) {
   return database_->guard("recording an act", [&] {
     ++database_->batch_rows;

@@ -29,11 +29,19 @@ constexpr std::array kVersion1 = {
     " PRIMARY KEY(topic, writer_id))",
 };
 
-/// What makes version n + 2 of version n + 1. Version 2: checksums of rows; those of older rows are not known.
-constexpr std::array<std::array<const char*, 5>, 1> kChanges = {{
+/// What becomes of alarms (runtime/alarm_desk.hpp), of the service that keeps them.
+constexpr const char* kAlarms =
+    "CREATE TABLE IF NOT EXISTS alarms(kind VARCHAR(64) NOT NULL, asset_id VARCHAR(512) NOT NULL,"
+    " subject VARCHAR(512) NOT NULL, payload TEXT NOT NULL, checksum VARCHAR(16) NOT NULL,"
+    " PRIMARY KEY(kind, asset_id, subject))";
+
+/// What makes version n + 2 of version n + 1. Version 2: checksums of rows; those of older rows are not known. Version
+/// 3: alarms.
+constexpr std::array<std::array<const char*, 5>, 2> kChanges = {{
     {"ALTER TABLE inputs ADD COLUMN checksum VARCHAR(16)", "ALTER TABLE outputs ADD COLUMN checksum VARCHAR(16)",
      "ALTER TABLE positions ADD COLUMN checksum VARCHAR(16)", "ALTER TABLE quarantine ADD COLUMN checksum VARCHAR(16)",
      "CREATE INDEX outputs_damaged ON outputs(asset_id, pst_id) WHERE checksum = 'damaged'"},
+    {kAlarms},
 }};
 static_assert(kChanges.size() + 1 == kJournalSchemaVersion);
 
@@ -129,7 +137,8 @@ void Journal::Database::migrate(int version) {
   if (!has_table("quarantine")) sql << kQuarantine;
   soci::transaction transaction(sql);
   for (; version < kJournalSchemaVersion; ++version)
-    for (const char* change : kChanges[static_cast<std::size_t>(version) - 1]) sql << change;
+    for (const char* change : kChanges[static_cast<std::size_t>(version) - 1])
+      if (change != nullptr) sql << change;
   set_meta("checksum", checksum_of_meta(service, writer_id));
   set_meta("schema_version", std::to_string(version));
   if (is_file()) sql << "PRAGMA user_version = " + std::to_string(version);
@@ -142,6 +151,7 @@ void Journal::Database::make_later_tables() {
     sql << kQuarantine;
     sql << "ALTER TABLE quarantine ADD COLUMN checksum VARCHAR(16)";
   }
+  if (!has_table("alarms")) sql << kAlarms;
   make_acts_table(sql);
 }
 

@@ -19,6 +19,8 @@ ServiceStatus beat(const std::string& service, std::int32_t process, const std::
   return status;
 }
 
+const UtcTime kNow{1'900'000'000'000'000'000};
+
 class Listening : public ::testing::Test {
  protected:
   [[nodiscard]] std::string line(std::size_t k) const { return one_line(heard_.list(now_)[k]); }
@@ -83,11 +85,11 @@ TEST_F(Listening, TellsWhatServicesCannotMendByThemselvesWithItsCategory) {
   heard_.take(status, now_);
   const std::vector<HeardAlarm> alarms = alarms_of(heard_.list(now_));
   ASSERT_EQ(alarms.size(), 2U);
-  EXPECT_EQ(one_line(alarms[0]),
+  EXPECT_EQ(one_line(alarms[0], kNow),
             "ALARM (failure)  data_acquisition  A  set aside after two failures since 2030-03-17T17:46:40Z: "
             "raw_samples/R/1: no such phase (sealwatch quarantine retry raw_samples/R/1 --by NAME); and 3 more: "
             "sealwatch quarantine list");
-  EXPECT_EQ(one_line(alarms[1]), "ALARM (failure)  health_assessment  is not heard: no heartbeat");
+  EXPECT_EQ(one_line(alarms[1], kNow), "ALARM (failure)  health_assessment  is not heard: no heartbeat");
   heard_.take(beat("data_acquisition", 7), now_);
   heard_.take(beat("health_assessment", 8), now_);
   EXPECT_TRUE(alarms_of(heard_.list(now_)).empty()) << "it is over";
@@ -102,13 +104,72 @@ TEST_F(Listening, OnlyWhatIsNotSeenNowCountsAsBlind) {
     heard_.take(beat("health_assessment", 8), now_);
     return alarms_of(heard_.list(now_));
   };
-  EXPECT_EQ(one_line(alarm_of("clock_unsynchronised")[0]),
+  EXPECT_EQ(one_line(alarm_of("clock_unsynchronised")[0], kNow),
             "ALARM (maintenance required)  data_acquisition  clock is not synchronised: why");
-  EXPECT_FALSE(is_blind(alarm_of("clock_unsynchronised"))) << "it is right still, and will not be for ever";
+  EXPECT_FALSE(is_blind(alarm_of("clock_unsynchronised"), kNow)) << "it is right still, and will not be for ever";
   for (const char* kind : {"sensor_lost", "unknown_writer", "refused_right", "clock_step", "rival", "set_aside"})
-    EXPECT_TRUE(is_blind(alarm_of(kind))) << kind;
+    EXPECT_TRUE(is_blind(alarm_of(kind), kNow)) << kind;
   EXPECT_EQ(category_of("sensor_lost"), Ne107::failure);
   EXPECT_EQ(category_of("refused_right"), Ne107::out_of_specification);
+}
+
+TEST_F(Listening, SaysTheStateThatAdvisoryGenerationKeepsOfAnAlarm) {
+  const ServiceAlarm lost{
+      .kind = "sensor_lost", .asset_id = "A", .subject = "flow", .pst_id = {}, .text = "flat", .since_ns = 0};
+  ServiceStatus status = beat("data_acquisition", 7);
+  status.alarms = {lost};
+  status.alarm_count = 1;
+  heard_.take(status, now_);
+  const auto line_with = [&](const AlarmEntry& entry) {
+    ServiceStatus desk = beat("health_assessment", 8);
+    desk.desk = {entry};
+    heard_.take(desk, now_);
+    const auto alarms = alarms_of(heard_.list(now_));
+    EXPECT_EQ(alarms.size(), 1U);
+    return std::pair(one_line(alarms[0], kNow), is_blind(alarms, kNow));
+  };
+  const std::string rest = " (failure)  data_acquisition  A  sensor lost: flow: flat";
+  AlarmEntry entry;
+  entry.service = "data_acquisition";
+  entry.alarm = lost;
+  EXPECT_EQ(line_with(entry), std::pair("ALARM" + rest, true));
+  entry.acknowledged_by = "J. Silva";
+  EXPECT_EQ(line_with(entry), std::pair("ALARM, acknowledged by J. Silva" + rest, true));
+  entry.suppressed_by = "rival";
+  EXPECT_EQ(line_with(entry), std::pair("SUPPRESSED by rival" + rest, false));
+  entry.shelved_by = "M. Okoye";
+  entry.shelved_reason = "ordered";
+  entry.shelved_until_ns = kNow.nanoseconds + 1'000'000'000;
+  EXPECT_EQ(line_with(entry), std::pair("SHELVED until 2030-03-17T17:46:41Z by M. Okoye, ordered" + rest, false));
+  entry.shelved_until_ns = kNow.nanoseconds;
+  entry.suppressed_by.clear();
+  EXPECT_EQ(line_with(entry).second, true) << "its shelf has ended";
+  entry.out_of_service_by = "R. Fitter";
+  EXPECT_EQ(line_with(entry), std::pair("OUT OF SERVICE by R. Fitter" + rest, false));
+}
+
+TEST_F(Listening, ListsWhatReturnedUnseenAndLeavesAdviceToItsAdvisory) {
+  heard_.take(beat("data_acquisition", 7), now_);
+  ServiceStatus status = beat("health_assessment", 8);
+  AlarmEntry returned;
+  returned.service = "state_detection";
+  returned.alarm = {
+      .kind = "sensor_lost", .asset_id = "A", .subject = "flow", .pst_id = {}, .text = "flat", .since_ns = 0};
+  returned.ended_ns = kNow.nanoseconds;
+  AlarmEntry advice;
+  advice.service = "advisory_generation";
+  advice.alarm = {
+      .kind = "advice", .asset_id = "A", .subject = "recommendation/x", .pst_id = {}, .text = "Book", .since_ns = 0};
+  status.desk = {returned, advice};
+  heard_.take(status, now_);
+  const auto alarms = alarms_of(heard_.list(now_));
+  ASSERT_EQ(alarms.size(), 2U);
+  EXPECT_EQ(one_line(alarms[0], kNow),
+            "RETURNED 2030-03-17T17:46:40Z, unacknowledged (failure)  state_detection  A  sensor lost: flow: flat "
+            "(sealwatch acknowledge A sensor_lost/flow --by NAME)");
+  EXPECT_FALSE(is_blind(alarms, kNow));
+  EXPECT_FALSE(stands_in_advisory(alarms[0], kNow));
+  EXPECT_TRUE(stands_in_advisory(alarms[1], kNow));
 }
 
 }  // namespace

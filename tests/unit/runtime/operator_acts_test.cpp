@@ -244,5 +244,83 @@ TEST_F(SecondPerson, OneStepIsEnoughWhereNobodyAsksForTwo) {
   EXPECT_THAT(process->outputs(), SizeIs(1));
 }
 
+/// Data acquisition as far as people speak to it: it concludes nothing from what they say.
+class AcquiringLayer final : public CuttingLayer {
+ public:
+  [[nodiscard]] std::span<const Topic> inputs() const override { return kInputs; }
+  [[nodiscard]] Conclusion receive(const Message& input) override {
+    if (topic_of(input) == Topic::raw_samples) return CuttingLayer::receive(input);
+    return {{}, {header_of(input).message_id}};
+  }
+
+ private:
+  static constexpr std::array kInputs = {Topic::raw_samples, Topic::maintenance_event};
+};
+
+/// Dates of played-back tests, a year after the newest that counts at most.
+class DatesInAcquisition : public ActsTest {
+ protected:
+  std::unique_ptr<Process> start() {
+    auto process = std::make_unique<Process>(
+        network_, [] { return std::make_unique<AcquiringLayer>(); }, place_.connection(), Fate(), fast_options());
+    process->start();
+    return process;
+  }
+  /// Whether a test of that date is taken.
+  bool takes(Process& process, const std::string& date) {
+    RawSamples block;
+    block.asset_id = "A";
+    block.recording_id = "A-" + date;
+    block.boundary = BlockBoundary::end;
+    block.start_time_known = block.header.event_time_known = true;
+    block.start_time_ns = block.header.event_time_ns = parse_utc(date).value().nanoseconds;
+    block.header.replay = true;
+    block.header.message_id = "raw_samples/" + date + "/" + std::to_string(++sent_);
+    const std::size_t before = process.outputs().size();
+    say(process, block);
+    return process.outputs().size() > before;
+  }
+  void retract(Process& process, std::string_view kind, const std::string& what) {
+    MaintenanceEvent event = replaced("J. Silva", process.clock().now());
+    event.kind = kind;
+    event.header.message_id = retraction_id("A", kind, what, process.clock().now());
+    say(process, event);
+    retraction_ = event.header.message_id;
+    process.clock().set(add_seconds(process.clock().now(), 60.0));
+    now_ = process.clock().now();
+  }
+  int sent_ = 0;
+  std::string retraction_;
+  UtcTime now_;
+};
+
+TEST_F(DatesInAcquisition, ARetractedTestIsNotTheNewestAlsoAfterARestart) {
+  {
+    const auto process = start();
+    ASSERT_TRUE(takes(*process, "2045-01-01T00:00:00Z")) << "the first of a history that is played back";
+    ASSERT_TRUE(takes(*process, "2045-12-01T00:00:00Z"));
+    retract(*process, kTestRetracted, "A-2045-12-01T00:00:00Z");
+    EXPECT_FALSE(takes(*process, "2046-11-01T00:00:00Z")) << "more than a year after the newest that counts";
+  }
+  const auto process = start();
+  process->clock().set(now_);
+  EXPECT_FALSE(takes(*process, "2046-11-01T00:00:00Z")) << "it is known after a restart";
+  retract(*process, kRetractionWithdrawn, retraction_);
+  EXPECT_TRUE(takes(*process, "2046-11-01T00:00:00Z"));
+}
+
+TEST_F(DatesInAcquisition, AllSinceADateMeansTheTestsThatWereKnownThen) {
+  {
+    const auto process = start();
+    ASSERT_TRUE(takes(*process, "2045-01-01T00:00:00Z"));
+    ASSERT_TRUE(takes(*process, "2045-06-01T00:00:00Z"));
+    retract(*process, kTestsRetracted, "2045-05-01T00:00:00Z");
+    ASSERT_TRUE(takes(*process, "2045-12-01T00:00:00Z")) << "made later, it counts";
+  }
+  const auto process = start();
+  process->clock().set(now_);
+  EXPECT_TRUE(takes(*process, "2046-11-01T00:00:00Z")) << "less than a year after it";
+}
+
 }  // namespace
 }  // namespace sealwatch::testing

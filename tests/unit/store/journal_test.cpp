@@ -218,11 +218,11 @@ TEST_P(JournalTest, AJournalOfAnotherServiceIsRefused) {
 
 TEST_P(JournalTest, ANewerSchemaIsRefusedWithWhatToDo) {
   open();
-  place_.execute("UPDATE meta SET value = '3' WHERE name = 'schema_version'");
-  if (GetParam() == "sqlite3") place_.execute("PRAGMA user_version = 3");
+  place_.execute("UPDATE meta SET value = '4' WHERE name = 'schema_version'");
+  if (GetParam() == "sqlite3") place_.execute("PRAGMA user_version = 4");
   const Result<Journal> journal = Journal::open(place_.connection(), "state_detection");
   ASSERT_FALSE(journal.has_value());
-  EXPECT_THAT(journal.error().describe(), HasSubstr("'3': must be at most 2, the version that this program knows"));
+  EXPECT_THAT(journal.error().describe(), HasSubstr("'4': must be at most 3, the version that this program knows"));
   EXPECT_THAT(journal.error().advice, HasSubstr("install the sealwatch that wrote this journal"));
 }
 

@@ -226,7 +226,7 @@ TEST_F(Mend, TheNameOfADamagedJournalIsNew) {
 }
 
 TEST_F(Mend, ATurnedBitOfTheVersionIsNoNewerVersion) {
-  place_.execute("UPDATE meta SET value = '3' WHERE name = 'schema_version'");
+  place_.execute("UPDATE meta SET value = '4' WHERE name = 'schema_version'");
   EXPECT_FALSE(open().writer_id().empty());
   place_.execute("UPDATE meta SET value = 'r' WHERE name = 'schema_version'");
   EXPECT_FALSE(open().writer_id().empty());

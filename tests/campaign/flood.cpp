@@ -1,0 +1,84 @@
+// A stranger that floods the services' topics, for the campaign (campaign.py, trial flood):
+//
+//   flood raw|statuses|resends SECONDS DOMAIN
+//
+// raw: tests of ever new actuators, as fast as DDS takes them. statuses: each from a writer that nobody heard before, as
+// fast as DDS takes them, 100 000 at least. resends: of the streams that heartbeats name, all ranges. Prints how many it
+// sent.
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "services/common/transport/dds_bus.hpp"
+
+namespace {
+
+using namespace sealwatch;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kRows = 10;
+
+RawSamples block_of(std::uint64_t number) {
+  RawSamples block;
+  block.asset_id = "FLOOD-" + std::to_string(number / 100 % 1000);
+  block.recording_id = "flood-" + std::to_string(number / 100);
+  block.source_id = "flood";
+  block.block_number = number % 100;
+  block.boundary = number % 100 == 0 ? BlockBoundary::begin : BlockBoundary::inside;
+  for (std::size_t k = 0; k < kRows; ++k)
+    block.samples.time_s.push_back(0.005 * static_cast<double>(number % 100 * kRows + k));
+  block.samples.channels.push_back({"position", "m", 0.0, std::vector<double>(kRows, 0.01)});
+  return block;
+}
+
+ServiceStatus status_of(std::uint64_t number) {
+  ServiceStatus status;
+  status.service = "data_acquisition";
+  status.writer_id = "data_acquisition-flood-" + std::to_string(number);
+  status.state = "running";
+  status.started_ns = static_cast<std::int64_t>(number);
+  status.written = {{"sample_block", status.writer_id, 1'000'000 + number}};
+  return status;
+}
+
+/// Of the streams that somebody has spoken of, all of each.
+std::vector<ResendRequest> requests_for(Bus& bus) {
+  std::vector<ResendRequest> requests;
+  for (const auto end = Clock::now() + std::chrono::seconds(3); Clock::now() < end;)
+    for (const BusItem& item : bus.receive(std::chrono::milliseconds(100)))
+      if (const auto* status = std::get_if<ServiceStatus>(&item))
+        for (const StreamPosition& position : status->written)
+          requests.push_back({position.writer_id, position.topic, 1, ~std::uint64_t{0}, "flood"});
+  return requests;
+}
+
+std::uint64_t flood(Bus& bus, const std::string& what, std::chrono::seconds duration) {
+  const std::vector<ResendRequest> requests = what == "resends" ? requests_for(bus) : std::vector<ResendRequest>();
+  std::uint64_t sent = 0;
+  const auto end = Clock::now() + duration;
+  for (std::uint64_t number = 0; Clock::now() < end || (what == "statuses" && number < 100'000); ++number) {
+    Status done = {};
+    if (what == "raw") done = bus.publish(Message(block_of(number)));
+    if (what == "statuses") done = bus.publish(status_of(number));
+    if (what == "resends" && !requests.empty()) done = bus.publish(requests[number % requests.size()]);
+    sent += done ? 1 : 0;
+  }
+  return sent;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() != 3) return 2;
+  Configuration configuration;
+  configuration.domain = std::atoi(words[2].c_str());
+  const auto bus = open_dds_bus(configuration);
+  if (!bus || !(*bus)->subscribe_service_topics()) return 1;
+  const std::uint64_t sent = flood(**bus, words[0], std::chrono::seconds(std::atoi(words[1].c_str())));
+  std::printf("%llu\n", static_cast<unsigned long long>(sent));
+  return sent > 0 ? 0 : 1;
+}

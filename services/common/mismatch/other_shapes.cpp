@@ -85,8 +85,6 @@ bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
   return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
 }
 
-bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
-
 // The model without one of its laws.
 std::optional<Trial> without_law(const Naming& naming, std::size_t slot, const Data& data, int threads) {
   Trial fewer{.effects = naming.best.effects, .model = nullptr};
@@ -173,8 +171,8 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
     const auto left = screen(*fewer->model, data, {.seed = options.seed, .threads = options.threads});
     if (!left) continue;
     std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : ranked_laws(*left, kOtherLaws + 1))
-      if (!same(start.effect, naming.best.effects[slot]) && starts.size() < kOtherLaws)
+    for (LawStart& start : ranked_laws(*left, kOtherLaws + kSingleLaws))
+      if (start.effect.element != naming.best.effects[slot].element && starts.size() < kOtherLaws)
         starts.push_back({std::move(start)});
     for (Trial& trial : refit(*fewer, starts, data, options.threads)) trials.push_back(std::move(trial));
   }

@@ -14,8 +14,9 @@ namespace sealwatch::mismatch {
 void from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
                        const ExplainOptions& options);
 
-/// Each law that was found before another one competes with those that would do best in its place beside the others: it
-/// was chosen when the others were not yet there.
+/// Each law that was found before another one competes with those of other elements that would do best in its place: where
+/// something is missing was decided when the others were not yet there. (At its own element a law with more freedom always
+/// does as well.)
 void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions& options);
 
 /// Several laws at one element may be parts of one (dry friction, drag and friction by pressure: a Stribeck curve):

@@ -75,7 +75,8 @@ TEST(RealPlants, EmpsLacksDryFrictionAndAnOffset) {
   ASSERT_NE(offset, nullptr) << found->summary;
   EXPECT_NEAR(value_of(*friction, "F_c"), 20.39, 3.0);
   EXPECT_NEAR(value_of(*offset, "F_0"), -3.16, 2.0);
-  EXPECT_NEAR(shared_value(*found, "M"), 95.11, 7.0);  // 6 s of the record
+  EXPECT_NEAR(shared_value(*found, "M"), 95.11,
+              9.0);  // the least misfit of these 6 s is at 87 kg; of half the record, 91
   EXPECT_NEAR(shared_value(*found, "F_v"), 203.5, 20.0);
   for (const FoundEffect& effect : found->effects) {
     std::set<std::array<std::string, 3>> told;
@@ -86,8 +87,9 @@ TEST(RealPlants, EmpsLacksDryFrictionAndAnOffset) {
   EXPECT_LT(position.rms_after, 0.3 * position.rms_before) << "a free run of the held-out part";
 }
 
-// Schoukens, Mattsson, Wigren, Noel (2016): the upper tank runs over, into the lower one, and the sensor ends at 10 V.
-TEST(RealPlants, CascadedTanksRunOverAndTheirSensorSaturates) {
+// Schoukens, Mattsson, Wigren, Noel (2016): the upper tank runs over, partly into the lower one, and with a delay that one
+// runs over too. Its level then stays at 10 V, as with a sensor that ends there.
+TEST(RealPlants, CascadedTanksRunOver) {
   const std::optional<Recording> whole = recording_of("cascaded_tanks");
   if (!whole) GTEST_SKIP() << "no shared recordings: cascaded_tanks";
   const std::vector<Recording> halves = {part_of(*whole, "first half", 0, 512),
@@ -95,13 +97,15 @@ TEST(RealPlants, CascadedTanksRunOverAndTheirSensorSaturates) {
   const auto found = explain(naive_model("cascaded_tanks"), halves, {});  // each half is left out in turn
   ASSERT_TRUE(found) << found.error().describe();
   ASSERT_EQ(found->verdict, Verdict::mismatch) << found->summary;
-  const FoundEffect *overflow = find_effect(*found, "tank_overflow", "upper_outlet"),
-                    *saturation = find_effect(*found, "sensor_saturation", "sensor:level_voltage");
-  ASSERT_NE(overflow, nullptr) << found->summary;
-  ASSERT_NE(saturation, nullptr) << found->summary;
-  EXPECT_NEAR(value_of(*saturation, "y_max"), 10.0, 0.8);  // its standard error is 0.3 V
+  EXPECT_NE(find_effect(*found, "tank_overflow", "upper_outlet"), nullptr) << found->summary;
+  const FoundEffect *lower = find_effect(*found, "tank_overflow", "lower_tank"),
+                    *sensor = find_effect(*found, "sensor_saturation", "sensor:level_voltage");
+  ASSERT_TRUE(lower != nullptr || sensor != nullptr) << found->summary;
+  const FoundEffect& end = lower != nullptr ? *lower : *sensor;
+  EXPECT_NEAR(value_of(end, end.what.id == "tank_overflow" ? "level_max" : "y_max"), 10.0, 0.8);
   const ChannelComparison& level = found->holdout.channels.at(0);
-  EXPECT_LT(level.rms_after, 0.8 * level.rms_before);
+  constexpr double kGoal_V = 0.4;  // free run of the half that is left out; naive 0.7 to 0.8
+  EXPECT_LT(level.rms_after * found->recordings.back().recorded.channels.at(0).noise_std, kGoal_V);
 }
 
 // The whole record as one file, which is split where it is long enough: the same laws as in halves that were cut by hand.

@@ -1,7 +1,9 @@
 // What a drawing gives is known within a tolerance: within it nothing is missing, beyond it the value is named.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sealwatch/mismatch/explain.hpp"
 #include "services/common/mismatch/tolerance.hpp"
@@ -64,6 +66,54 @@ TEST(Tolerance, WithinItNothingIsMissing) {
   EXPECT_FALSE(found->statistically_significant) << found->summary;
   EXPECT_THAT(found->effects, IsEmpty());
   EXPECT_THAT(found->asset_values, IsEmpty());
+}
+
+AssetConfig with_inexact_sensors() {
+  AssetConfig truth = actuator();
+  truth.sensors.at("flow").gain_error = 0.004;
+  truth.sensors.at("pressure_a").gain_error = -0.003;
+  truth.sensors.at("shaft_speed").gain_error = 0.003;
+  truth.sensors.at("position").offset_error = 2e-5;
+  return truth;
+}
+
+TEST(Tolerance, SensorsHaveTheAssetsToleranceOrTheUsualOne) {
+  AssetConfig asset = actuator();
+  asset.sensors.at("flow").gain_tolerance = 1e-4;
+  const TimeSeries samples = recording_of(asset, 1.0).samples;
+  const PemProblem problem = make_pem_problem(asset, {&samples, 1}).value();
+  const auto [least, largest] = std::ranges::minmax(samples.find("position")->values);
+  std::map<std::string, double> known;
+  for (const KnownValue& one : known_sensors(asset, problem)) known[one.name] = one.standard_deviation;
+  EXPECT_DOUBLE_EQ(known.at("sensor:flow.gain_error"), 1e-4);
+  EXPECT_DOUBLE_EQ(known.at("sensor:pressure_a.gain_error"), kUsualSensorTolerance);
+  EXPECT_DOUBLE_EQ(known.at("sensor:position.offset_error"), kUsualSensorTolerance * (largest - least));
+}
+
+TEST(Tolerance, SensorsOffByLessThanTheyMayBeAreNoFault) {
+  const auto found = explain(actuator(), tests_of(with_inexact_sensors()), {});
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_FALSE(found->statistically_significant) << found->summary;
+  EXPECT_THAT(found->effects, IsEmpty());
+}
+
+TEST(Tolerance, SensorsOffByLessThanTheyMayBeHideNoPhysics) {
+  AssetConfig truth = with_inexact_sensors();
+  truth.physics = {{"external_leakage", "chamber_a", {{"G", {4e-14, 0.0, 1e-10, false}}}}};
+  const auto found = explain(actuator(), tests_of(truth), {});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->effects.size(), 1U) << found->summary;
+  EXPECT_EQ(found->effects[0].what.id, "external_leakage") << found->summary;
+}
+
+TEST(Tolerance, ASensorThatIsFurtherOffIsAFault) {
+  AssetConfig truth = actuator();
+  truth.sensors.at("flow").gain_error = 0.02;
+  const auto found = explain(actuator(), tests_of(truth), {});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->effects.size(), 1U) << found->summary;
+  EXPECT_EQ(found->effects[0].what.id, "sensor_gain");
+  EXPECT_EQ(found->effects[0].what.element, "sensor:flow");
 }
 
 }  // namespace

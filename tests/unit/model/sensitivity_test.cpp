@@ -22,11 +22,12 @@ struct Differences {
 };
 
 std::vector<FreeQuantity> all_quantities(const PlantSimulation& simulation, bool initial_states) {
-  std::vector<FreeQuantity> free;
+  std::vector<FreeQuantity> free = {simulation.find(sensor_gain_name(simulation.channels().front())).value()};
   for (const auto& parameter : simulation.plant().parameters) free.push_back(simulation.find(parameter.name).value());
   free.push_back(simulation.find("load_factor").value());
   if (initial_states)
     for (const auto& state : simulation.slow_state_names()) free.push_back(simulation.find("initial:" + state).value());
+  free.push_back(simulation.find(sensor_offset_name(simulation.channels().back())).value());
   return free;
 }
 

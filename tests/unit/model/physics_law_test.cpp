@@ -1,5 +1,5 @@
 // The catalogue of laws: every law as one would check a new one. Derivatives against central differences, absent at
-// strength zero, proportional to its strengths, finite, well formed, in docs/reference/laws.md and docs/laws.md. When the
+// strength zero, proportional to its strengths, finite, well formed, in docs/reference/laws.md, its id in docs/laws.md. When the
 // documentation's test fails, paste the rows that it prints. Energy: physics_law_energy_test.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -257,20 +257,6 @@ std::string text_of_page(const std::string& page) {
   return content.str();
 }
 
-/// The row of the overview: what it is, and from which size on each of its strengths matters.
-std::string short_row_of(const Law& law) {
-  std::string row = "| `";
-  row.append(law.id).append("` | ").append(law.form).append(" | ").append(law.equation).append(" | ");
-  row.append(law.meaning).append(" | ");
-  std::string sizes;
-  for (const LawParameter& p : law.parameters) {
-    if (!(p.significant > 0.0)) continue;
-    sizes.append(sizes.empty() ? "" : ", ").append(text_of(p.significant));
-    if (p.unit != "1") sizes.append(" ").append(p.unit);
-  }
-  return row.append(sizes).append(" |");
-}
-
 TEST(PhysicsLaws, StandInTheDocumentation) {
   const std::string catalogue = text_of_page("reference/laws.md");
   const std::string overview = text_of_page("laws.md");
@@ -278,8 +264,7 @@ TEST(PhysicsLaws, StandInTheDocumentation) {
     const std::string row = row_of(law);
     EXPECT_NE(catalogue.find(row + "\n"), std::string::npos) << "docs/reference/laws.md lacks the row\n" << row;
     if (law.closed_form) continue;
-    const std::string short_row = short_row_of(law);
-    EXPECT_NE(overview.find(short_row + "\n"), std::string::npos) << "docs/laws.md lacks the row\n" << short_row;
+    EXPECT_NE(overview.find("`" + std::string(law.id) + "`"), std::string::npos) << "docs/laws.md lacks " << law.id;
   }
 }
 

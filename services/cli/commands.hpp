@@ -1,4 +1,4 @@
-// The subcommands of `sealwatch`, each with its options. Every run_* returns the exit status of INTERFACES section 3:
+// The subcommands of `sealwatch`, each with its options. Every run_* returns an exit status:
 // 0 ok, 1 the command ran and the answer is "no", 2 bad usage or input, 3 internal failure.
 #pragma once
 
@@ -266,6 +266,18 @@ struct PlantCheckOptions {
   bool json = false;
 };
 int run_plant_check(const PlantCheckOptions& options);
+
+struct PlantShowOptions {
+  std::string name;  ///< of a built-in plant, or a plant file
+  bool json = false;
+};
+int run_plant_show(const PlantShowOptions& options);
+
+struct LawsOptions {
+  std::string asked;  ///< a law's id, an element or a kind of site; "": all
+  bool json = false;
+};
+int run_laws(const LawsOptions& options);
 
 /// Prints the shell's completion script, made from the program's own options.
 struct CompletionOptions {

@@ -1,5 +1,5 @@
 // `sealwatch explain`: where simulation and recordings differ, by what physics, and whether adding it helps
-// (INTERFACES sections 3 and 4).
+// (docs/reference/report.schema.json).
 #include "sealwatch/mismatch/explain.hpp"
 
 #include <malloc.h>

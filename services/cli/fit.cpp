@@ -1,4 +1,4 @@
-// `sealwatch fit`: gray-box prediction-error minimisation of recorded tests (INTERFACES section 6).
+// `sealwatch fit`: gray-box prediction-error minimisation of recorded tests.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

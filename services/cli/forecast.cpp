@@ -1,4 +1,4 @@
-// `sealwatch forecast`: remaining useful life from a history of estimates (INTERFACES section 6).
+// `sealwatch forecast`: remaining useful life from a history of estimates.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -47,6 +47,7 @@ class CommandLine {
     add_backup();
     add_accept();
     add_plant();
+    add_laws();
     add_fleet();
     add_asset();
     add_configuration();
@@ -98,8 +99,7 @@ class CommandLine {
     subcommand
         ->add_option(
             "--map", map_file,
-            "YAML file with channels: (columns and units of somebody's own log, docs/logs.md), in place of the "
-            "asset file's")
+            "YAML file with channels: (columns and units of your own log, docs/logs.md), instead of the asset file's")
         ->check(CLI::ExistingFile);
   }
 
@@ -244,7 +244,7 @@ class CommandLine {
     explain->add_option("--seed", explain_.seed, "same seed, same report")->check(not_negative)->capture_default_str();
     explain
         ->add_option("--time-limit", explain_.time_limit_s,
-                     "seconds after which the best answer so far is given, with what was not asked")
+                     "seconds after which it gives the best answer so far and says what it left out")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     explain->add_option("--threads", explain_.threads, "threads to compute with")
@@ -270,7 +270,7 @@ class CommandLine {
         ->check(an_asset_file, "FILE");
     add_map(replay, replay_.map_file);
     replay->add_option("--results", replay_.results_directory,
-                       "write every message there, a JSON line each, a file a topic");
+                       "directory for every message: a file for each topic, a JSON object a line");
     replay->add_option("--page", replay_.page,
                        "HTML file to write at the end: forecast of each asset, history, decision, reasons");
     replay->add_flag("--offline", replay_.offline, "without DDS and services: the same layers in this process");
@@ -329,7 +329,7 @@ class CommandLine {
                                     "sealwatch acknowledge XT03-MV2 ADVISORY_ID --by 'J. Silva'",
                                     [this] { return run_acknowledge(acknowledge_); });
     add_config(acknowledge, acknowledge_.config);
-    acknowledge->add_option("asset", acknowledge_.asset_id, "asset id; - for an alarm about none")->required();
+    acknowledge->add_option("asset", acknowledge_.asset_id, "asset id; - for an alarm about no asset")->required();
     acknowledge
         ->add_option("advisory", acknowledge_.advisory_id, "advisory id, or an alarm's id as `status --json` shows it")
         ->required();
@@ -360,7 +360,7 @@ class CommandLine {
                                  [this] { return run_shelve(shelve_); });
     for (CLI::App* one : {shelve, unshelve}) {
       add_config(one, shelve_.config);
-      one->add_option("asset", shelve_.asset_id, "asset id; - for an alarm about none")->required();
+      one->add_option("asset", shelve_.asset_id, "asset id; - for an alarm about no asset")->required();
       one->add_option("alarm", shelve_.alarm_id, "the alarm's id as `status --json` shows it")->required();
       one->add_option("--by", shelve_.by, "who")->required();
     }
@@ -384,11 +384,12 @@ class CommandLine {
   }
 
   void add_retract() {
-    CLI::App* retract = command("retract",
-                                "tell the system that a test, or all since a date, must not count; reversible, nothing "
-                                "is deleted",
-                                "sealwatch retract XT03-MV2 --test PST_ID --by 'J. Silva' --reason 'wrong valve'",
-                                [this] { return run_retract(retract_); });
+    CLI::App* retract =
+        command("retract",
+                "exclude a test, or all tests since a date, from every conclusion; reversible, nothing is "
+                "deleted",
+                "sealwatch retract XT03-MV2 --test PST_ID --by 'J. Silva' --reason 'wrong valve'",
+                [this] { return run_retract(retract_); });
     add_config(retract, retract_.config);
     retract->add_option("asset", retract_.asset_id, "asset id")->required();
     CLI::Option_group* what = retract->add_option_group("what");
@@ -408,16 +409,15 @@ class CommandLine {
                 "sealwatch confirm XT03-MV2 ACT_ID --by 'M. Okoye'", [this] { return run_confirm(confirm_); });
     add_config(confirm, confirm_.config);
     confirm->add_option("asset", confirm_.asset_id, "asset id")->required();
-    confirm->add_option("act", confirm_.act_id, "id of what waits, as `status` shows it")->required();
-    confirm->add_flag("--reject", confirm_.reject, "it never counts; whoever reported it may say so, too");
+    confirm->add_option("act", confirm_.act_id, "id of the waiting act, as `status` shows it")->required();
+    confirm->add_flag("--reject", confirm_.reject, "reject it: it never counts (its reporter may do so, too)");
     confirm->add_option("--by", confirm_.by, "who: not the one who reported it")->required();
     confirm->add_option("--remark", confirm_.remark, "free text");
   }
 
   void add_quarantine() {
     CLI::App* quarantine = app_.add_subcommand(
-        "quarantine",
-        "tests that were set aside because a service failed on them twice: list them, have them tried again");
+        "quarantine", "list tests that were set aside because a service failed on them twice, or retry them");
     quarantine->require_subcommand(1);
     quarantine->footer(std::string("Examples:\n  sealwatch quarantine list --state STATE\n"
                                    "  sealwatch quarantine retry test_window/XT03-MV2-20180324T033939Z-ca97c069 --by "
@@ -426,10 +426,10 @@ class CommandLine {
     CLI::App* list = quarantine->add_subcommand("list", "what is set aside, since when and why");
     list->footer(std::string("Example:\n  sealwatch quarantine list --state /var/lib/sealwatch\n") + kExitStatus +
                  " Here 1 says that something is set aside.");
-    list->add_flag("--all", quarantine_.all, "also what was tried again since, and by whom");
+    list->add_flag("--all", quarantine_.all, "include what was retried since, and by whom");
     list->add_flag("--json", quarantine_.json, "machine-readable result (schema sealwatch.quarantine/1)");
     list->callback([this] { chosen_ = [this] { return run_quarantine_list(quarantine_); }; });
-    CLI::App* retry = quarantine->add_subcommand("retry", "have a message and its test tried again");
+    CLI::App* retry = quarantine->add_subcommand("retry", "retry a message and its test");
     retry->footer(
         std::string("Example:\n  sealwatch quarantine retry sample_block/XT03-MV2-20180324T033939Z-ca97c069/30 "
                     "--by 'J. Silva'\nA service that runs does so within seconds, another when it starts. "
@@ -446,33 +446,32 @@ class CommandLine {
   }
 
   void add_audit() {
-    CLI::App* audit =
-        command("audit",
-                "what people did (acknowledged, retracted, replaced, accepted, had tried again), from the "
-                "services' journals, and whether that record is as it was written",
-                "sealwatch audit --state STATE\n  sealwatch audit --asset XT03-MV2 --json\n  sealwatch "
-                "audit --contains HASH",
-                [this] { return run_audit(audit_); });
+    CLI::App* audit = command("audit",
+                              "show what people did (acknowledged, retracted, replaced, accepted, retried), from the "
+                              "services' journals, and whether that record is unaltered",
+                              "sealwatch audit --state STATE\n  sealwatch audit --asset XT03-MV2 --json\n  sealwatch "
+                              "audit --contains HASH",
+                              [this] { return run_audit(audit_); });
     add_config(audit, audit_.config);
     audit->add_option("--state", audit_.state_directory,
                       "state directory of the services, which need not run, instead of the configuration's");
     audit->add_option("--asset", audit_.asset_id, "acts about one asset; the whole record is checked all the same");
     audit->add_option("--contains", audit_.contains,
-                      "a hash that was told earlier: where no record has it any more, its end was cut off");
+                      "a hash noted earlier: if no record has it any more, its end was cut off");
     audit->add_flag("--json", audit_.json, "machine-readable result (schema sealwatch.audit/1)");
   }
 
   void add_backup() {
     CLI::App* backup =
         command("backup",
-                "copy the services' journals, each as it is at one moment, while they run; the "
-                "configuration is not in it",
+                "copy the services' journals while they run, each as of one moment; the configuration "
+                "is not included",
                 "sealwatch backup --state STATE --to /backup/2031-04-12", [this] { return run_backup(backup_); });
     backup->add_option("--to", backup_.directory, "directory for the copies: SERVICE.db")->required();
     CLI::App* restore =
         command("restore",
-                "put copies of journals in the place of the services' own, which are moved aside; "
-                "those services must not run, the others may",
+                "replace services' journals by copies and move the old ones aside; these services must "
+                "not run, the others may",
                 "sealwatch restore --state STATE --from /backup/2031-04-12", [this] { return run_restore(backup_); });
     restore->add_option("--from", backup_.directory, "directory with the copies: SERVICE.db of each to restore")
         ->required();
@@ -498,7 +497,7 @@ class CommandLine {
   }
 
   void add_plant() {
-    CLI::App* plant = app_.add_subcommand("plant", "plants of one's own: as text, as Functional Mock-up Units");
+    CLI::App* plant = app_.add_subcommand("plant", "plants: built in, as text, as Functional Mock-up Units");
     plant->require_subcommand(1);
     CLI::App* unit = plant->add_subcommand("import", "write a first plant file for an FMU, to be completed");
     unit->footer(std::string("Example:\n  sealwatch plant import model.fmu --out model.yaml\n") + kExitStatus);
@@ -518,6 +517,22 @@ class CommandLine {
     check->callback([this] { chosen_ = [this] { return run_plant_check(plant_check_); }; });
     check->add_option("file", plant_check_.file, "the plant's YAML file")->required();
     check->add_flag("--json", plant_check_.json, "machine-readable result");
+    CLI::App* show = plant->add_subcommand("show", "states, channels, parameters and elements of a plant");
+    show->footer(std::string("Example:\n  sealwatch plant show eha\n"
+                             "  sealwatch plant show config/plants/spring_return.yaml --json\n") +
+                 kExitStatus);
+    show->callback([this] { chosen_ = [this] { return run_plant_show(plant_show_); }; });
+    show->add_option("plant", plant_show_.name, "eha, eha_switched, emps, cascaded_tanks, or a plant's YAML file")
+        ->required();
+    show->add_flag("--json", plant_show_.json, "machine-readable (schema sealwatch.plant/1)");
+  }
+
+  void add_laws() {
+    CLI::App* laws = command("laws", "physics that a model may lack: the catalogue that explain searches",
+                             "sealwatch laws\n  sealwatch laws piston\n  sealwatch laws coulomb_friction --json",
+                             [this] { return run_laws(laws_); });
+    laws->add_option("asked", laws_.asked, "a law's id, an element of a plant, or a kind of site (default: all)");
+    laws->add_flag("--json", laws_.json, "machine-readable (schema sealwatch.laws/1)");
   }
 
   void add_fleet() {
@@ -609,6 +624,8 @@ class CommandLine {
   AcceptOptions accept_;
   ConfigCheckOptions config_check_;
   PlantCheckOptions plant_check_;
+  PlantShowOptions plant_show_;
+  LawsOptions laws_;
   CompletionOptions completion_;
 };
 

@@ -1,70 +1,25 @@
 // `sealwatch plant check`: what was understood of a plant that is written as text, or every fault with its line.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "services/cli/columns.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/plant_laws.hpp"
 #include "services/common/equations/own_law.hpp"
 #include "services/common/runtime/plant_file.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
-using Row = std::vector<std::string>;
-
-std::string shown(double number) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", number);
-  return text.data();
-}
-
-/// A heading and rows in columns.
-void print_table(const std::string& heading, const std::vector<Row>& rows) {
-  if (rows.empty()) return;
-  std::vector<std::size_t> width;
-  for (const Row& row : rows)
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      width.resize(std::max(width.size(), row.size()), 0);
-      width[k] = std::max(width[k], row[k].size());
-    }
-  std::printf("\n%s\n", heading.c_str());
-  for (const Row& row : rows) {
-    std::string line;
-    for (std::size_t k = 0; k < row.size(); ++k)
-      line += "  " + row[k] + (k + 1 < row.size() ? std::string(width[k] - row[k].size(), ' ') : "");
-    std::printf("%s\n", line.c_str());
-  }
-}
-
-std::string joined(const std::vector<std::string>& parts, const char* between) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
-  return text;
-}
-
 bool drives(const RuntimePlant& plant, const std::string& channel) {
   return std::ranges::find(plant.inputs, channel, &RuntimeInput::channel) != plant.inputs.end();
-}
-
-std::vector<std::string> laws_at(const equations::TextSite& site, const std::vector<Law>& own) {
-  std::vector<std::string> ids;
-  const auto add = [&](const Law& law) {
-    const bool fits = law.kind == site.kind && !law.closed_form &&
-                      (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end());
-    if (fits && (!law.plant.empty() || !equations::is_inert(law, site)) && std::ranges::find(ids, law.id) == ids.end())
-      ids.emplace_back(law.id);
-  };
-  for (const Law& law : all_laws())
-    if (law.plant.empty()) add(law);
-  for (const Law& law : own) add(law);
-  return ids;
 }
 
 void print_plant(const std::string& file, const ReadPlant& read) {
   const PlantDescription& plant = read.built.plant.description;
   std::printf("%s: valid: plant %s, %s\n", file.c_str(), plant.name.c_str(), plant.meaning.c_str());
-  std::vector<Row> rows;
+  std::vector<TableRow> rows;
   for (const equations::TextInput& input : read.text.inputs)
     rows.push_back({input.channel.name, "[" + input.channel.unit + "]",
                     drives(read.built.plant, input.channel.name) ? "drives the plant" : "stands in no equation",
@@ -72,9 +27,10 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   print_table("Inputs", rows);
   rows.clear();
   for (const equations::TextOutput& output : read.text.outputs)
-    rows.push_back({output.channel.name, "[" + output.channel.unit + "]", "= " + output.value,
-                    output.channel.noise_std > 0.0 ? "noise " + shown(output.channel.noise_std) : "noise as recorded",
-                    output.channel.meaning});
+    rows.push_back(
+        {output.channel.name, "[" + output.channel.unit + "]", "= " + output.value,
+         output.channel.noise_std > 0.0 ? "noise " + short_number(output.channel.noise_std) : "noise as recorded",
+         output.channel.meaning});
   print_table("Outputs", rows);
   rows.clear();
   for (std::size_t k = 0; k < read.text.states.size(); ++k) {
@@ -90,8 +46,8 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   print_table("Definitions", rows);
   rows.clear();
   for (const ParameterDescription& parameter : plant.parameters)
-    rows.push_back({parameter.name, shown(parameter.value) + " " + parameter.unit,
-                    "from " + shown(parameter.min) + " to " + shown(parameter.max),
+    rows.push_back({parameter.name, short_number(parameter.value) + " " + parameter.unit,
+                    "from " + short_number(parameter.min) + " to " + short_number(parameter.max),
                     parameter.estimate ? "estimated" : "fixed", parameter.meaning});
   print_table("Parameters", rows);
   rows.clear();
@@ -101,19 +57,20 @@ void print_plant(const std::string& file, const ReadPlant& read) {
       seen.push_back(signal.name + " = " + signal.value + " [" + signal.unit + "]");
     rows.push_back(
         {site.element, std::string(name_of(site.kind)) + " [" + site.unit + "]", "sees " + joined(seen, ", ")});
-    rows.push_back({"", "", "tried there: " + joined(laws_at(site, read.built.laws), ", ")});
+    const std::vector<std::string> laws = laws_at(site, read.built.laws);
+    rows.push_back({"", "", "tried there: " + (laws.empty() ? "nothing" : joined(laws, ", "))});
   }
   print_table("Sites, where physics may be missing", rows);
   rows.clear();
   for (const equations::NeededSize& size : equations::needed_sizes(read.text)) {
     const double factor = read.text.law_sizes.at(size.unit);
     const LawParameter& parameter = *size.parameter;
-    const auto here = [&](double value) { return shown(factor * value) + " " + size.unit; };
+    const auto here = [&](double value) { return short_number(factor * value) + " " + size.unit; };
     rows.push_back(
-        {size.unit, "x " + shown(factor),
+        {size.unit, "x " + short_number(factor),
          std::string(size.law->id) + ": " + std::string(parameter.name) + " usually " + here(parameter.start.front()),
          parameter.strength ? "matters from " + here(parameter.significant) : "",
-         "from " + shown(parameter.min) + " to " + shown(parameter.max)});
+         "from " + short_number(parameter.min) + " to " + short_number(parameter.max)});
   }
   print_table("Sizes of laws here, each unit by one law that has it (law_sizes)", rows);
 }

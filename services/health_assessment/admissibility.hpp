@@ -1,7 +1,7 @@
 // Whether a test's recording may be used for prognosis. A test that may not is kept and marked with the reasons.
 //
 //   - the test was not judged (cut, no position, not a stroke test) or aborted
-//   - no hold was found: the holds are the mandatory control of the leakage resistance (MODEL section 4)
+//   - no hold was found: the holds are the mandatory control of the leakage resistance (docs/estimation.md)
 //   - the drive was saturated, the oil off its temperature, or too many samples were missing: the test alone stands in
 //     the warning region of drive_saturation, fluid_temperature_deviation or missing_share
 //   - neither the cylinder circuit (flow, pressures or their difference, position or velocity) nor the whole actuator

@@ -1,7 +1,7 @@
 // What each fault would do to the judged quantities: its signature, to first order about the test's operating point.
 //
 // Operating point while extending against the load (+) and holding (h), from the test's own figures, else the asset's
-// parameters (MODEL section 2, steady state, line losses left out):
+// parameters (docs/model.md, steady state, line losses left out):
 //   q_h = dp/R, q_+ = A v + dp/R, omega = (q + G_P dp)/alpha_P, i = (alpha_P dp + D omega)/T_M, u = E omega + R_M i
 //
 //   fault                     moves (by one unit of the fault)
@@ -38,7 +38,7 @@ namespace sealwatch {
 
 struct Signature {
   FaultKind kind = FaultKind::internal_leakage;
-  std::string element;  ///< of INTERFACES section 5
+  std::string element;  ///< of the plant: sealwatch plant show
   bool either_sign = false;
   std::map<std::string, double> moves;  ///< quantity -> change in its unit
 };

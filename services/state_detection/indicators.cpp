@@ -12,7 +12,7 @@
 namespace sealwatch {
 namespace {
 
-/// Temperature of the oil at the seabed, for which the asset's parameters hold (MODEL section 1).
+/// Temperature of the oil at the seabed, for which the asset's parameters hold (docs/health.md).
 constexpr double kDesignTemperature_K = 277.15;
 
 using Optional = std::optional<double>;

@@ -8,7 +8,7 @@
 namespace sealwatch {
 namespace {
 
-/// The valve must close its full stroke in this time (MODEL section 1).
+/// The valve must close its full stroke in this time (docs/health.md).
 constexpr double kClosingTime_s = 60.0;
 /// A ramp that is followed to the percent still measures a few percent long over its steady part.
 constexpr double kClosingTolerance = 1.05;

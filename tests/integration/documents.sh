@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
 # The pages of this repository: relative links and their anchors resolve, lines are at most 120 characters outside code,
-# tables, headings and links, user pages together have at most 18 500 words and end with what to read next, and the
-# phrases that the glossary replaces stay away.
+# tables, headings and links, user pages together have at most 18 500 words and end with what to read next, reference,
+# records and decisions together at most 11 500, a decision at most 120, and the phrases that the glossary replaces stay
+# away from pages and from what the programs say.
 #   documents.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"
 export LC_ALL=C.UTF-8
 most_words=18500
+most_words_behind=11500  # in reference, records and decisions
+most_words_of_a_decision=120
 longest_line=120
 user_pages=(README.md CONTRIBUTING.md docs/*.md)
 mapfile -t pages < <(printf '%s\n' "${user_pages[@]}" CHANGELOG.md; find docs -mindepth 2 -name '*.md' | sort)
@@ -35,7 +38,6 @@ for page in "${pages[@]}"; do
     [ -z "$anchor" ] || [[ $target != *.md ]] || anchors_of "$target" | grep -qxF -- "$anchor" ||
       fault "$page: link to $link: no such heading"
   done < <(prose_of "$page" | grep -oE '\]\([^) ]+\)' | sed -E 's/^\]\(|\)$//g' || true)
-  [[ $page == docs/records/* ]] && continue
   while IFS=: read -r number line; do
     fault "$page:$number: ${#line} characters, at most $longest_line"
   done < <(prose_of "$page" | awk '/^ *\|/ || /^    / || /^#/ || /^ *!?\[[^]]*\]\([^)]*\)$/ { print ""; next } { print }' |
@@ -44,6 +46,13 @@ done
 
 words=$(cat "${user_pages[@]}" | wc -w)
 [ "$words" -le $most_words ] || fault "user pages have $words words, at most $most_words: shorten, or move measurements to docs/records"
+behind=$(cat docs/{reference,records,decisions}/*.md | wc -w)
+[ "$behind" -le $most_words_behind ] || fault "reference, records and decisions have $behind words, at most $most_words_behind: shorten, or move rows to a .tsv beside the record"
+for page in docs/decisions/*.md; do
+  length=$(wc -w < "$page")
+  [[ $page == */README.md ]] || [ "$length" -le $most_words_of_a_decision ] ||
+    fault "$page: $length words, at most $most_words_of_a_decision"
+done
 for page in docs/*.md; do
   tail -4 "$page" | grep -q '^Next: ' || fault "$page: does not end with what to read next (a paragraph that begins with 'Next: ')"
 done
@@ -57,8 +66,12 @@ for pair in "${phrases[@]}"; do
   old=${pair%%=*}
   new=${pair#*=}
   while IFS= read -r hit; do fault "$hit: say '$new' (docs/glossary.md)"; done < <(
-    grep -nF -- "$old" "${user_pages[@]}" docs/reference/*.md | grep -v '^docs/glossary.md:' | cut -d: -f1,2 || true)
+    {
+      grep -nF -- "$old" "${pages[@]}" | grep -vE '^(docs/glossary|CHANGELOG)\.md:'
+      # What a program says: between quotes, in sources of its own.
+      grep -rnE --include='*.[ch]pp' -- "\"[^\"]*$old" services include
+    } | cut -d: -f1,2 || true)
 done
 
 [ $faults -eq 0 ] || { echo "$faults faults"; exit 1; }
-echo "${#pages[@]} pages, $words words in those for users"
+echo "${#pages[@]} pages, $words words in those for users, $behind behind them"

@@ -1,5 +1,5 @@
 // What is known of one actuator and of the place where it works: plain data, filled by services/common/runtime from
-// YAML (INTERFACES section 2) and by tests directly.
+// YAML (docs/asset-file.md) and by tests directly.
 #pragma once
 
 #include <map>
@@ -38,7 +38,7 @@ struct SensorSetting {
   double offset_error = 0.0;
 };
 
-/// Seal condition theta as a line through two leakage resistances (MODEL section 4).
+/// Seal condition theta as a line through two leakage resistances (docs/model.md).
 struct SealSetting {
   double resistance_100_Pa_s_m3 = 2.6e13;  ///< R_CL of a new seal, theta = 1
   double resistance_60_Pa_s_m3 = 4.64e12;  ///< R_CL at theta = 0.6
@@ -55,7 +55,7 @@ struct SealSetting {
   }
 };
 
-/// The partial stroke test as it should run (MODEL section 3).
+/// The partial stroke test as it should run (docs/model.md).
 struct PstSetting {
   double start_m = 0.060;
   double stroke_m = -0.016;
@@ -68,7 +68,7 @@ struct PstSetting {
   }
 };
 
-/// Physics that `explain` found and that the model carries (INTERFACES section 6).
+/// Physics that `explain` found and that the model carries.
 struct PhysicsTerm {
   std::string id;
   std::string element;
@@ -93,7 +93,7 @@ struct AssetConfig {
   PstSetting pst;
   std::vector<PhysicsTerm> physics;
   std::map<std::string, AlertLimits> alert_limits;  ///< by quantity (config/judged_quantities.hpp); missing: defaults
-  ChannelMap channel_map;                           ///< how its recordings are written; empty: as INTERFACES section 1
+  ChannelMap channel_map;                           ///< how its recordings are written; empty: as docs/recordings.md
 
   /// Value of a parameter that the model has (asserts that it has it).
   [[nodiscard]] double parameter(const std::string& name) const { return parameters.at(name).value; }

@@ -32,7 +32,7 @@ struct LogLayout {
 struct ChannelMap {
   std::map<std::string, ColumnMapping> columns;  ///< by channel, `time` among them; what is not named keeps its name
   LogLayout log;
-  /// The format of INTERFACES section 1.
+  /// The format of docs/recordings.md.
   [[nodiscard]] bool empty() const { return columns.empty() && log == LogLayout(); }
   bool operator==(const ChannelMap&) const = default;
 };

@@ -1,4 +1,4 @@
-// One test of one actuator as it was recorded (INTERFACES section 1), already in SI units.
+// One test of one actuator as it was recorded (docs/recordings.md), already in SI units.
 #pragma once
 
 #include <map>

@@ -10,7 +10,7 @@
 namespace sealwatch {
 
 struct Series {
-  std::string name;            ///< channel name of INTERFACES section 1, e.g. "pressure_a"
+  std::string name;            ///< channel name of docs/recordings.md, e.g. "pressure_a"
   std::string unit;            ///< SI unit, e.g. "Pa"
   double noise_std = 0.0;      ///< standard deviation of one sample's noise, in `unit`; 0 when not known
   std::vector<double> values;  ///< one per time

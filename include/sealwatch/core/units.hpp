@@ -1,4 +1,4 @@
-// Units at the border: everything inside sealwatch is SI; recordings may use the units of INTERFACES section 1.
+// Units at the border: everything inside sealwatch is SI; recordings may use the units of docs/recordings.md.
 #pragma once
 
 #include <string>

@@ -4,7 +4,7 @@
 //   chamber A       dp_A/dt = beta/V_A (q - A_C v - (p_A - p_B)/R_CL),   V_A = V_0 + A_C x
 //   integrated      y(t) = int q dt - A_C x = (1/R_CL) int (p_A - p_B) dt + (1/beta) int V_A dp_A + constant
 //
-// q: flow into chamber A [m3/s], x: position [m], p: pressure [Pa], positive as in MODEL section 2. The integrated form
+// q: flow into chamber A [m3/s], x: position [m], p: pressure [Pa], positive as in docs/model.md. The integrated form
 // needs no derivative of a noisy signal, and its noise is known: white flow noise sums to a random walk, position noise
 // stays white,
 //

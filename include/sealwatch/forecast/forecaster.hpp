@@ -1,7 +1,7 @@
 // From a history of seal conditions to the remaining useful life: one interface, any number of forecasters side by
 // side.
 //
-//   t_RUL = t_hat(theta_max) - now        (MODEL section 6)
+//   t_RUL = t_hat(theta_max) - now        (docs/forecast.md)
 //
 // States. `past_threshold`: the condition is at or below theta_max. `insufficient_history`: the window is not filled.
 // `no_significant_trend`: the condition does not fall significantly, or so slowly that no date can be told. Only `ok`
@@ -88,7 +88,7 @@ inline constexpr int kWholeLife_months = 240;  ///< 20 years of service
 [[nodiscard]] const std::vector<std::string>& forecast_methods();
 [[nodiscard]] Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings);
 
-/// The one in charge first: state_space, by the comparison in docs/forecast.md; then the lines of MODEL section 6, and
+/// The primary one first: state_space, by the comparison in docs/forecast.md; then the lines of the same page, and
 /// the others for comparison.
 [[nodiscard]] std::vector<ForecasterSettings> default_forecasters();
 

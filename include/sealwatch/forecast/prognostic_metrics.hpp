@@ -38,7 +38,7 @@ struct Tolerance {
   [[nodiscard]] bool holds(const ScoredMonth& month) const;
 };
 
-// ---- MODEL section 7
+// ---- docs/reference/metrics.md, "The published experiment"
 // -------------------------------------------------------------------------------------------------
 
 struct LifeCriteria {

@@ -10,7 +10,7 @@ SEALWATCH_ENUM(FaultKind, internal_leakage, friction, pump, sensor, load, driver
 /// One member of the ambiguity group (OSA-CBM proposed event).
 struct ProposedFault {
   FaultKind kind = FaultKind::internal_leakage;
-  std::string element;             ///< element of INTERFACES section 5: "piston_seal", "sensor:pressure_a"
+  std::string element;             ///< element of the plant: "piston_seal", "sensor:pressure_a"
   double likelihood = 0.0;         ///< 0..1; all proposals and "no fault" add up to 1
   std::string iso14224_code;       ///< failure mode code, e.g. "INL" (internal leakage, valves)
   std::string iso14224_mechanism;  ///< failure mechanism code, e.g. "1.1 Leakage"
@@ -53,7 +53,7 @@ struct ModelParameter {
 
 /// One law that the explained model adds to an element.
 struct ModelPhysics {
-  std::string id;  ///< of INTERFACES section 5
+  std::string id;  ///< of docs/laws.md
   std::string element;
   std::vector<ModelParameter> parameters;
   SEALWATCH_FIELDS(ModelPhysics, id, element, parameters)
@@ -81,7 +81,7 @@ struct DiscrepancyLocation {
 
 /// A law that was found.
 struct DiscrepancyPhysics {
-  std::string id;  ///< of INTERFACES section 5, or "unlisted"
+  std::string id;  ///< of docs/laws.md, or "unlisted"
   std::string element;
   std::string law;      ///< closed form
   std::string meaning;  ///< for an engineer

@@ -21,7 +21,7 @@ using Verdict = MismatchVerdict;
 
 /// A law at an element: what an effect can be named.
 struct LawAt {
-  std::string id;       ///< of INTERFACES section 5, or "unlisted"
+  std::string id;       ///< of docs/laws.md, or "unlisted"
   std::string form;     ///< which form of the law; "" where there is one
   std::string element;  ///< "piston", "sensor:flow"
   std::string law;      ///< closed form, "F_c tanh(v / v_s)"

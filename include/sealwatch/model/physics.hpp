@@ -97,7 +97,7 @@ struct HiddenState {
 };
 
 struct Law {
-  std::string_view id;    ///< of INTERFACES section 5; several forms may share one id
+  std::string_view id;    ///< of docs/laws.md; several forms may share one id
   std::string_view form;  ///< which form: "laminar"; "" where there is one
   SiteKind kind = SiteKind::piston_force;
   std::string_view equation;  ///< "F_c tanh(v / v_s)"

@@ -48,7 +48,7 @@ struct StateDescription {
 };
 
 struct ElementDescription {
-  std::string name;  ///< of INTERFACES section 5: "piston_seal"
+  std::string name;  ///< as reports name it: "piston_seal"
   std::string meaning;
 };
 

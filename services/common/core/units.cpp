@@ -17,7 +17,7 @@ struct KnownUnit {
 
 constexpr double kRevolution = 2.0 * std::numbers::pi;
 
-// SI units first, then those of INTERFACES section 1 with their definitions.
+// SI units first, then those of docs/recordings.md with their definitions.
 constexpr std::array kUnits = {
     KnownUnit{"1", {1.0, 0.0, "1"}},
     KnownUnit{"s", {1.0, 0.0, "s"}},

@@ -13,7 +13,7 @@
 namespace sealwatch::forecast {
 namespace {
 
-// Of the lives of MODEL section 5: see docs/forecast.md, "The straight lines".
+// Of the lives of docs/model.md: see docs/forecast.md, "The straight lines".
 constexpr const char* kStraightLine = "ols";
 constexpr double kSlopeDrift = 0.20;
 constexpr int kFewestTestsWithFleet = 3;  // the fleet says the rest

@@ -1,4 +1,4 @@
-// History of estimates from a CSV file, for `sealwatch forecast` (INTERFACES section 6).
+// History of estimates from a CSV file, for `sealwatch forecast`.
 //
 //   time[iso8601],theta[1],theta_std[1]                     seal condition and its standard error
 //   time[iso8601],R_CL[Pa s/m3],R_CL_std[Pa s/m3]           leakage resistance: needs the asset's seal resistances

@@ -3,38 +3,43 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr SignalWords kCurrent{"motor current", "A"};
-constexpr SignalWords kShaftSpeed{"shaft speed", "rad/s"};
-constexpr SignalWords kPumpPressure{"pump pressure difference", "Pa"};
-constexpr SignalWords kValveFlow{"flow into the chamber", "m3/s"};
-constexpr SignalWords kValveDrop{"pressure drop over the valve", "Pa"};
-constexpr SignalWords kVelocity{"piston velocity", "m/s"};
-constexpr SignalWords kPosition{"piston position", "m"};
-constexpr SignalWords kNone{"", ""};
+constexpr SignalWords kCurrent{"motor current", "A", "i"};
+constexpr SignalWords kShaftSpeed{"shaft speed", "rad/s", "omega"};
+constexpr SignalWords kPumpPressure{"pump pressure difference", "Pa", "p_1 - p_2"};
+constexpr SignalWords kValveFlow{"flow into the chamber", "m3/s", "q"};
+constexpr SignalWords kValveDrop{"pressure drop over the valve", "Pa", "D"};
+constexpr SignalWords kVelocity{"piston velocity", "m/s", "v"};
+constexpr SignalWords kPosition{"piston position", "m", "x"};
+constexpr SignalWords kNone{"", "", ""};
 
-constexpr SiteWords kDriver{"voltage lost in the driver",
-                            "V",
-                            {kCurrent, {"commanded voltage", "V"}, {"rate of the commanded voltage", "V/s"}, kNone}};
+constexpr SiteWords kDriver{
+    "voltage lost in the driver",
+    "V",
+    {kCurrent, {"commanded voltage", "V", "u"}, {"rate of the commanded voltage", "V/s", "du/dt"}, kNone}};
 constexpr SiteWords kWinding{"voltage lost in the winding", "V", {kCurrent, kShaftSpeed, kNone, kNone}};
 constexpr SiteWords kShaft{"torque against the rotation", "N m", {kShaftSpeed, kPumpPressure, kCurrent, kNone}};
 constexpr SiteWords kPump{"flow from port 1 to port 2", "m3/s", {kPumpPressure, kShaftSpeed, kNone, kNone}};
 constexpr SiteWords kLine{"pressure drop on the way to the chamber", "Pa", {kValveFlow, kValveDrop, kNone, kNone}};
 constexpr SiteWords kCrack{"lowering of the cracking pressure", "Pa", {kValveDrop, kValveFlow, kNone, kNone}};
-constexpr SiteWords kOutflow{
-    "flow out of the chamber", "m3/s", {SignalWords{"pressure above the reservoir", "Pa"}, kNone, kNone, kNone}};
+constexpr SiteWords kOutflow{"flow out of the chamber",
+                             "m3/s",
+                             {SignalWords{"pressure above the reservoir", "Pa", "p - p_0"}, kNone, kNone, kNone}};
 constexpr SiteWords kCompliance{
-    "compliance of the chamber", "m3/Pa", {SignalWords{"chamber pressure", "Pa"}, kNone, kNone, kNone}};
-constexpr SiteWords kSeal{"flow from chamber A to B",
-                          "m3/s",
-                          {SignalWords{"pressure difference across the piston", "Pa"}, kVelocity, kPosition, kNone}};
+    "compliance of the chamber", "m3/Pa", {SignalWords{"chamber pressure", "Pa", "p"}, kNone, kNone, kNone}};
+constexpr SiteWords kSeal{
+    "flow from chamber A to B",
+    "m3/s",
+    {SignalWords{"pressure difference across the piston", "Pa", "p_A - p_B"}, kVelocity, kPosition, kNone}};
 constexpr SiteWords kPiston{
-    "force against +x", "N", {kVelocity, kPosition, {"pressure in chamber A", "Pa"}, {"pressure in chamber B", "Pa"}}};
+    "force against +x",
+    "N",
+    {kVelocity, kPosition, {"pressure in chamber A", "Pa", "p_A"}, {"pressure in chamber B", "Pa", "p_B"}}};
 constexpr SiteWords kModulus{
-    "softness of the oil, 1/beta", "1/Pa", {SignalWords{"pressure", "Pa"}, kNone, kNone, kNone}};
+    "softness of the oil, 1/beta", "1/Pa", {SignalWords{"pressure", "Pa", "p"}, kNone, kNone, kNone}};
 constexpr SiteWords kViscosity{
-    "relative change of viscosity", "1", {SignalWords{"dissipated power", "W"}, kNone, kNone, kNone}};
-constexpr SiteWords kTank{"flow out of the tank", "V/s", {SignalWords{"level", "V"}, kNone, kNone, kNone}};
-constexpr SiteWords kOwn{"what is lost", "", {SignalWords{"first signal", ""}, kNone, kNone, kNone}};
+    "relative change of viscosity", "1", {SignalWords{"dissipated power", "W", "P"}, kNone, kNone, kNone}};
+constexpr SiteWords kTank{"flow out of the tank", "V/s", {SignalWords{"level", "V", "level"}, kNone, kNone, kNone}};
+constexpr SiteWords kOwn{"what is lost", "", {SignalWords{"first signal", "", ""}, kNone, kNone, kNone}};
 constexpr SiteWords kRecording{"error of the recording", "", {kNone, kNone, kNone, kNone}};
 constexpr SiteWords kSensor{"shift of the reading", "", {kNone, kNone, kNone, kNone}};
 

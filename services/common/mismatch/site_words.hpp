@@ -11,6 +11,7 @@ namespace sealwatch::mismatch {
 struct SignalWords {
   std::string_view name;  ///< "piston velocity"; empty: the kind has no such signal
   std::string_view unit;
+  std::string_view symbol = {};  ///< in the laws' equations: "v"
 };
 
 struct SiteWords {

@@ -74,7 +74,7 @@ Result<Log> read_vectors(const std::string& path, const PlantDescription& plant,
   return log;
 }
 
-/// A file with none of the map's columns and with the header of INTERFACES section 1: what this program wrote for an
+/// A file with none of the map's columns and with the header of docs/recordings.md: what this program wrote for an
 /// asset whose own logs look otherwise.
 bool is_in_own_format(const FoundLayout& layout, const ChannelMap& map) {
   const auto is_time = [](const std::string& cell) { return cell == "time" || cell.starts_with("time["); };

@@ -1,4 +1,4 @@
-// Recordings on disk (INTERFACES section 1): NAME.csv or NAME.mat, with an optional sidecar NAME.yaml; or somebody's own
+// Recordings on disk (docs/recordings.md): NAME.csv or NAME.mat, with an optional sidecar NAME.yaml; or somebody's own
 // log, read by a channel map (docs/logs.md).
 //
 // Rows are counted as an editor shows them: row 1 is the header, row 2 the first sample (in a MAT file row 1 is the

@@ -1,4 +1,4 @@
-// The sidecar NAME.yaml of a recording (INTERFACES section 1); every key is optional, an unknown one is an error.
+// The sidecar NAME.yaml of a recording (docs/recordings.md); every key is optional, an unknown one is an error.
 #pragma once
 
 #include <map>

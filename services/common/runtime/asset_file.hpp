@@ -1,4 +1,4 @@
-// Asset files (INTERFACES section 2): what is known of one actuator, as YAML.
+// Asset files (docs/asset-file.md): what is known of one actuator, as YAML.
 //
 //   asset_id: XT03-MV2
 //   site: north_field            segment: XT03 master valve 2         model: eha

@@ -1,4 +1,4 @@
-// Mass balance of chamber A over a stretch of time T (MODEL section 2, chamber_a):
+// Mass balance of chamber A over a stretch of time T (docs/model.md, chamber_a):
 //
 //   q_leak = mean(q) - A_A (x(T) - x(0)) / T - (V_A / beta) (p_A(T) - p_A(0)) / T,   V_A = V_0 + A_A mean(x)
 //

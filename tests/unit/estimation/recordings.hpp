@@ -15,7 +15,7 @@ namespace sealwatch::test {
 /// The nominal asset of a plant: every parameter and sensor of its table.
 [[nodiscard]] AssetConfig nominal_asset(const std::string& plant = "eha");
 
-/// A clean CSV of INTERFACES section 1; asserts that it can be read.
+/// A clean CSV of docs/recordings.md; asserts that it can be read.
 [[nodiscard]] TimeSeries read_recording(const std::filesystem::path& file);
 
 /// SEALWATCH_SHARED_DATA / `relative`.

@@ -61,7 +61,7 @@ TEST(ProofTest, DueAndOverdue) {
   EXPECT_EQ(next_test_due(std::nullopt, start, 1.0, start).overdue_months, 0.0);
 }
 
-// MODEL section 1: at 60 % of the modulus about 28 % of the inlet flow passes the gap at nominal load.
+// The dissertation: at 60 % of the modulus about 28 % of the inlet flow passes the gap at nominal load.
 TEST(ClosingMargin, OfAFailedAndANewSeal) {
   const ClosingMargin failed = closing_margin(4.64e12, {}).value();
   const double full_flow_s = 5.89e-3 * 0.080 / 7.85e-6;

@@ -1,4 +1,4 @@
-// How much of a forecast's error no forecaster can avoid: the table "What the oracle knows" of docs/records/verification.md.
+// How much of a forecast's error no forecaster can avoid: the exact Bayes posterior of docs/records/verification.md.
 //
 //   forecast_history_bound [LIVES] [SEED]   300 lives of the constants published_ln_t; first seed 500001, which no
 //                                           verification and no calibration has used

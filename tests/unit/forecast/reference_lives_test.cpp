@@ -1,4 +1,4 @@
-// How forecasts do on seals that age by the reference recursion (MODEL section 5), which no straight line follows: the
+// How forecasts do on seals that age by the reference recursion (docs/model.md), which no straight line follows: the
 // claims of docs/forecast.md that decisions depend on.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// RFC 4180 and every rule of INTERFACES section 1 about the data file.
+// RFC 4180 and every rule of docs/recordings.md about the data file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 Json written(const mismatch::Explanation& explanation) { return Json::parse(explanation_to_json(explanation)); }
 
-// The keys and kinds of the fixed schema, INTERFACES section 4.
+// The keys and kinds of the fixed schema, docs/reference/report.schema.json.
 TEST(ReportJson, KeepsTheFixedSchema) {
   const Json json = written(example_explanation());
   EXPECT_EQ(json["schema"], "sealwatch.mismatch/1");

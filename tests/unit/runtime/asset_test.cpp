@@ -1,4 +1,4 @@
-// Asset files (INTERFACES section 2): defaults from the plant table, every fault named, write and read back.
+// Asset files (docs/asset-file.md): defaults from the plant table, every fault named, write and read back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 // The piston runs x_0 -> x_0 + stroke -> x_0 with raised-cosine changes of speed. Massless piston and rigid circuit:
 //   p_A - p_B = (phi + f_C v) / A_C,   p_B constant,   q = A_C v + (p_A - p_B)/R_CL + (V_A/beta) dp_A/dt
 //   omega = A_C v / alpha_P,   u = 0.2 omega,   i = 1 + v / speed
-// Sensors: delay by `late_s`, sign by `sign`, Gaussian noise of MODEL section 3 times `noise`.
+// Sensors: delay by `late_s`, sign by `sign`, Gaussian noise of docs/model.md times `noise`.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace sealwatch::test {
 
 struct SyntheticPst {
   double rate_Hz = 200.0;
-  double noise = 1.0;  ///< times the sensors' noise of MODEL section 3
+  double noise = 1.0;  ///< times the sensors' noise of docs/model.md
   unsigned seed = 1;
   double duration_s = 31.0;
   double start_m = 0.060, stroke_m = -0.016, speed_m_s = 1.33e-3, ramp_s = 0.6, rest_s = 1.0, hold_s = 3.0;

@@ -1,4 +1,4 @@
-// A partial stroke test made up from the steady-state balances of MODEL section 2, with faults of the actuator and of
+// A partial stroke test made up from the steady-state balances of docs/model.md, with faults of the actuator and of
 // its sensors put in at the physics, so that what a layer finds is not what the test told it.
 //
 //   q_h = dp/R, q = A v + dp/R, omega = (q + slip dp)/alpha_P, i = (alpha_P dp + drag omega)/T_M, u = emf omega + R_M i

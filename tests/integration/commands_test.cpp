@@ -366,6 +366,29 @@ TEST_F(Commands, ReplayWritesThePageOfTheForecastThatItShows) {
   EXPECT_THAT(html.str(), HasSubstr(json::parse(last)["recommendation"].get<std::string>().substr(0, 40)));
 }
 
+TEST_F(Commands, HelpGroupsTheCommandsInFewWordsAndEachHasAnExample) {
+  const Finished help = run({"sealwatch", "--help"});
+  ASSERT_EQ(help.status, 0) << help.output;
+  for (const char* group : {"Analyse:", "Run:", "Operate:", "Maintain:"}) EXPECT_THAT(help.output, HasSubstr(group));
+  EXPECT_THAT(help.output, Not(HasSubstr("Subcommands:"))) << "a command in no group";
+  std::istringstream lines(help.output.substr(help.output.find("Analyse:")));
+  std::size_t commands = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  ") || line.starts_with("   ")) continue;
+    std::istringstream words(line);
+    std::string name, word;
+    words >> name;
+    std::size_t count = 0;
+    while (words >> word) ++count;
+    EXPECT_LE(count, 10U) << line;
+    const Finished one = run({"sealwatch", name, "--help"});
+    EXPECT_EQ(one.status, 0) << name;
+    EXPECT_THAT(one.output, HasSubstr("Example")) << name;
+    ++commands;
+  }
+  EXPECT_GE(commands, 31U);
+}
+
 TEST_F(Commands, WhatIsKeptIsLookedForWithWords) {
   const Finished nothing = run({"sealwatch", "show", "advisory/A", "--state", folder_.string()});
   EXPECT_EQ(nothing.status, 2) << nothing.output;

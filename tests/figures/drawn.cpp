@@ -102,10 +102,12 @@ class Lanes {
     }
     canvas.raw("<path d=\"" + path + "\" style=\"fill:none;stroke:var(" + ink + ");stroke-width:1.4\"/>\n<path d=\"" +
                heads + "\" style=\"fill:var(" + ink + ")\"/>\n");
-    canvas.raw("<text class=\"named\" text-anchor=\"middle\" transform=\"translate(" + at(lane + 12.0) +
-               at(0.5 * (high + low)) + ") rotate(-90)\" style=\"fill:var(" + ink + ")\">" +
-               std::string(name_of(route.topic)) + "</text>\n");
+    names_ += "<text class=\"named\" text-anchor=\"middle\" transform=\"translate(" + at(lane + 12.0) +
+              at(0.5 * (high + low)) + ") rotate(-90)\" style=\"fill:var(" + ink + ")\">" +
+              std::string(name_of(route.topic)) + "</text>\n";
   }
+  /// The topics' names, to be drawn over all lines.
+  [[nodiscard]] const std::string& names() const { return names_; }
 
  private:
   static std::string at(double pixels) { return std::to_string(std::lround(pixels)) + ' '; }
@@ -123,6 +125,7 @@ class Lanes {
     return lane;
   }
 
+  std::string names_;
   std::array<int, kNodes> ports_{}, used_{};
   std::vector<std::vector<std::pair<double, double>>> taken_;
 };
@@ -157,6 +160,7 @@ std::string layers() {
   const std::vector<Route> routes = all_routes();
   Lanes lanes(routes);
   for (const Route& route : routes) lanes.draw(route, canvas);
+  canvas.raw(lanes.names());
   return canvas.svg();
 }
 

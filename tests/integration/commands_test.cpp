@@ -230,7 +230,7 @@ TEST_F(Commands, ForecastTakesCampaignsFromTheConfiguration) {
 TEST_F(Commands, ForecastTellsNoProbabilityWithoutAForecast) {
   const Finished steady = run({"sealwatch", "forecast", "--history", history(48, 0.0), "--before", "2025-06-01"});
   EXPECT_EQ(steady.status, 1);
-  EXPECT_THAT(steady.output, HasSubstr("P(failure)       cannot be told"));
+  EXPECT_THAT(steady.output, HasSubstr("P(failure)       unknown"));
   const Finished failed =
       run({"sealwatch", "forecast", "--history", history(48, 0.01), "--before", "2025-06-01", "--json"});
   EXPECT_EQ(failed.status, 1);

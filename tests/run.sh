@@ -7,4 +7,5 @@ cd "$(dirname "$0")/.."
 deploy/install_packages.sh test
 deploy/build.sh release -DSEALWATCH_TESTS=ON
 cd build/release
-exec ctest --output-on-failure --parallel "$(nproc)" "$@"
+# Two more than there are cores: those that wait run beside those that compute (deploy/cmake/sealwatch.cmake).
+exec ctest --output-on-failure --parallel "$(($(nproc) + 2))" "$@"

@@ -3,6 +3,9 @@
 #   sealwatch_library(sealwatch_core SOURCES a.cpp LINK tl::expected PRIVATE_LINK Ceres::ceres)
 #   sealwatch_executable(sealwatch-state-detection SOURCES main.cpp LINK sealwatch_runtime)
 #   sealwatch_test(core_test SOURCES core_test.cpp LINK sealwatch_core LABELS unit)
+#   sealwatch_waits(campaign_kills)
+#
+# Tests start in the order of COST: by default their TIMEOUT in seconds, so that what may take long starts first.
 
 add_library(sealwatch_flags INTERFACE)
 target_compile_options(sealwatch_flags INTERFACE
@@ -35,12 +38,13 @@ function(sealwatch_executable name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 endfunction()
 
-# Tests find the repository and the public recordings through these definitions.
+# Tests find the repository and the public recordings through these definitions. SHARDS n: the program's tests are dealt
+# out to n tests of ctest, name_1 to name_n, which run side by side.
 function(sealwatch_test name)
   if(NOT SEALWATCH_TESTS)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT" "SOURCES;LINK;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT;SHARDS" "SOURCES;LINK;LABELS")
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gmock GTest::gtest_main sealwatch_flags)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
@@ -56,6 +60,26 @@ function(sealwatch_test name)
   if(SEALWATCH_SANITIZE)
     math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")
   endif()
-  add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  if(NOT ARG_SHARDS)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+    return()
+  endif()
+  foreach(shard RANGE 1 ${ARG_SHARDS})
+    math(EXPR index "${shard} - 1")
+    add_test(NAME ${name}_${shard} COMMAND ${name})
+    set_tests_properties(${name}_${shard} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+  endforeach()
+endfunction()
+
+# Tests that wait for processes more than they compute: they start first, two at a time, beside those that compute
+# (tests/run.sh runs two more tests than there are cores). More at once would strain the services' heartbeats.
+function(sealwatch_waits)
+  foreach(test ${ARGN})
+    get_property(waiting GLOBAL PROPERTY SEALWATCH_WAITING)
+    math(EXPR lane "(0${waiting} + 1) % 2")
+    set_property(GLOBAL PROPERTY SEALWATCH_WAITING ${lane})
+    set_tests_properties(${test} PROPERTIES COST 3000 RESOURCE_LOCK waiting_${lane})
+  endforeach()
 endfunction()

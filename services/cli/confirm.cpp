@@ -57,7 +57,7 @@ int run_confirm(const ConfirmOptions& options) {
   }
   const Statuses before = listen(*session->bus);
   if (!waits(before, options.act_id) && tells_all(before))
-    return complain_of(options, "waits for nobody", "`sealwatch status` shows what waits, with its id");
+    return complain_of(options, "waits for no confirmation", "`sealwatch status` shows what waits, with its id");
   MaintenanceEvent event;
   event.asset_id = options.asset_id;
   event.kind = options.reject ? kActRejected : kActConfirmed;

@@ -126,7 +126,7 @@ void print_effect(const FoundEffect& effect) {
     others += (others.empty() ? "" : ", ") + (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
                                                                             : report::words_of(other.id) + " of the " +
                                                                                   report::element_name(other.element));
-  if (!others.empty()) std::printf("    %s\n", wrapped("cannot be told apart from: " + others, kWidth, 4).c_str());
+  if (!others.empty()) std::printf("    %s\n", wrapped("indistinguishable from: " + others, kWidth, 4).c_str());
 }
 
 void print_channels(const char* which, const mismatch::PooledFit& fit, bool changed) {
@@ -184,7 +184,7 @@ void print_text(const Explanation& explanation, const Files& files) {
               wrapped(explanation.summary, kWidth, 2).c_str());
   for (const FoundEffect& effect : explanation.effects) print_effect(effect);
   const bool as_well = !explanation.effects.empty() && !explanation.asset_values.empty();
-  if (as_well) std::printf("    cannot be told apart from: a value of the asset file (above)\n");
+  if (as_well) std::printf("    indistinguishable from: a value of the asset file (above)\n");
   const bool changed = explanation.changed();
   if (changed) print_prognosis(explanation);
   print_bounds(explanation);

@@ -82,7 +82,7 @@ void print_text(const ForecastQuestion& question, const forecast::ForecastPanel:
               percent(question.request.threshold, 0).c_str(), forecast_table(answer.forecasts).c_str(),
               decision_chart(decision).c_str());
   if (!question.request.horizons.empty() && !tells_probability(answer.forecasts.front()))
-    std::printf("  P(failure)       cannot be told before any date without a forecast\n");
+    std::printf("  P(failure)       unknown without a forecast\n");
   if (question.without_error > 0)
     std::printf("standard errors: not known of %zu of %zu tests; how the tests scatter stands for them\n",
                 question.without_error, question.request.history.size());

@@ -94,9 +94,8 @@ std::string decision_table(const std::vector<DecisionOption>& decision) {
 
 std::string cost_words(const ForecastQuestion& question) {
   if (!question.costs)
-    return "What replacements cost is not known: give --costs, or `costs` of the asset's site in the configuration, "
-           "and "
-           "expected costs stand beside the probabilities.";
+    return "Expected costs are not shown because replacement costs are unknown. Give --costs, or set `costs` of the "
+           "asset's site in the configuration.";
   const SiteCosts& costs = *question.costs;
   std::string text =
       "Costs: planned " + number(costs.planned, 3) + ", after a failure " + number(costs.after_failure, 3);
@@ -118,11 +117,12 @@ std::string inside(const std::vector<DecisionOption>& decision) {
 std::string forecast_decision_part(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
                                    const std::vector<DecisionOption>& decision) {
   if (decision.empty())
-    return report::section("Decision", report::paragraph("Without a forecast no date can be weighed."));
+    return report::section("Decision", report::paragraph("Without a forecast, dates cannot be compared."));
   return report::folded_section("Decision", inside(decision),
                                 decision_table(decision) +
                                     decision_plots(question, *answer.distributions.front(), decision) +
-                                    report::paragraph(cost_words(question), "muted"));
+                                    report::paragraph(cost_words(question), "muted"),
+                                report::Paper::printed);
 }
 
 double calendar_year(UtcTime time) {

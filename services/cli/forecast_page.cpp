@@ -27,6 +27,7 @@ constexpr int kWide = 980;
 constexpr double kShortestView_months = 12.0;
 constexpr double kLongestView_months = 240.0;
 constexpr double kBeyond = 1.15;  // a little past the last date of interest
+constexpr double kPercent = 100.0;
 constexpr double kNormal97_5 = 1.959963984540054;
 
 double quantile_factor(int degrees_of_freedom, double probability) {
@@ -51,7 +52,7 @@ report::Scatter tests_of(const std::vector<ConditionSample>& samples, Ink ink, c
   report::Scatter scatter{.x = {}, .y = {}, .ink = ink, .label = label, .radius = 2.2};
   for (const ConditionSample& sample : samples) {
     scatter.x.push_back(calendar_year(sample.time));
-    scatter.y.push_back(sample.condition);
+    scatter.y.push_back(kPercent * sample.condition);
   }
   return scatter;
 }
@@ -60,9 +61,9 @@ report::Intervals intervals_of(const std::vector<ConditionSample>& samples) {
   report::Intervals intervals{.x = {}, .y = {}, .low = {}, .high = {}, .ink = Ink::first, .label = "test, 95 %"};
   for (const ConditionSample& sample : samples) {
     intervals.x.push_back(calendar_year(sample.time));
-    intervals.y.push_back(sample.condition);
-    intervals.low.push_back(sample.condition - kNormal97_5 * sample.condition_std);
-    intervals.high.push_back(sample.condition + kNormal97_5 * sample.condition_std);
+    intervals.y.push_back(kPercent * sample.condition);
+    intervals.low.push_back(kPercent * (sample.condition - kNormal97_5 * sample.condition_std));
+    intervals.high.push_back(kPercent * (sample.condition + kNormal97_5 * sample.condition_std));
   }
   return intervals;
 }
@@ -77,26 +78,41 @@ std::pair<double, double> view_of(const ForecastQuestion& question, const std::v
 
 void add_forecast_band(const std::vector<ConditionForecast>& conditions, double threshold, Plot& plot) {
   report::Line middle{.x = {}, .y = {}, .ink = Ink::second, .label = "forecast"};
-  report::Band band{.x = {}, .low = {}, .high = {}, .ink = Ink::second, .label = "95 % of the condition"};
+  report::Band band{.x = {}, .low = {}, .high = {}, .ink = Ink::second, .label = "forecast, 95 %"};
   for (const ConditionForecast& at : conditions) {
     const double half = quantile_factor(at.degrees_of_freedom, 0.975) * at.condition_std;
     if (at.condition + half < threshold - 0.1) break;  // long failed: nothing to see there
     band.x.push_back(calendar_year(at.time));
-    band.low.push_back(at.condition - half);
-    band.high.push_back(at.condition + half);
+    band.low.push_back(kPercent * (at.condition - half));
+    band.high.push_back(kPercent * (at.condition + half));
     middle.x.push_back(band.x.back());
-    middle.y.push_back(at.condition);
+    middle.y.push_back(kPercent * at.condition);
   }
   plot.marks.emplace_back(std::move(band));
   plot.marks.emplace_back(std::move(middle));
 }
 
+/// The day by which something has to be done, and the campaigns that are in view.
+void add_dates(const ForecastQuestion& question, Plot& plot) {
+  const auto add = [&plot](UtcTime day, const std::string& label, Ink ink) {
+    const double at = calendar_year(day);
+    if (at >= plot.x.range->first && at <= plot.x.range->second)
+      plot.marks.emplace_back(report::Reference{.at = at, .vertical = true, .ink = ink, .label = label});
+  };
+  if (question.advice && question.advice->latest_by_known) {
+    const UtcTime day{question.advice->latest_by_ns};
+    add(day, "act by " + format_date(day), Ink::bad);
+  }
+  for (const forecast::FailureHorizon& campaign : question.request.horizons)
+    if (campaign.before > question.request.now) add(campaign.before, campaign.label, Ink::third);
+}
+
 Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
             const std::vector<ConditionForecast>& conditions) {
   const double threshold = question.request.threshold;
-  Plot plot{.title = "Seal condition, leakage-derived index: 1 is new",
+  Plot plot{.title = "Seal condition, index derived from leakage (new seal: 100)",
             .x = {.label = "year", .unit = "1", .range = view_of(question, conditions)},
-            .y = {.label = "condition", .unit = "1"},
+            .y = {.label = "condition", .unit = "%"},
             .marks = {},
             .width = kWide,
             .height = 300};
@@ -104,16 +120,20 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
   plot.marks.emplace_back(intervals_of(answer.used));
   plot.marks.emplace_back(tests_of(answer.used, Ink::first, ""));
   if (!answer.left_out.empty()) plot.marks.emplace_back(tests_of(answer.left_out, Ink::bad, "left out"));
-  plot.marks.emplace_back(report::Reference{.at = threshold, .ink = Ink::bad, .label = "failed"});
+  plot.marks.emplace_back(report::Reference{.at = kPercent * threshold,
+                                            .ink = Ink::bad,
+                                            .label = "failed below " + report::percent_text(threshold),
+                                            .named_at_left = true});
   const Forecast& primary = answer.forecasts.front();
   if (primary.state == ForecastState::ok) {
     const auto year = [&](double months) { return calendar_year(add_months(question.request.now, months)); };
     plot.marks.emplace_back(report::Line{.x = {year(primary.rul_p10_months), year(primary.rul_p90_months)},
-                                         .y = {threshold, threshold},
+                                         .y = {kPercent * threshold, kPercent * threshold},
                                          .ink = Ink::bad,
                                          .label = "end of life, 80 %",
                                          .width = 5.0});
   }
+  add_dates(question, plot);
   return plot;
 }
 
@@ -207,10 +227,11 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
   for (const TestNotCounted& test : question.not_counted)
     list.append("<li>").append(report::escaped(format_date(test.time) + ", left out by the services: " + test.why));
   return report::folded_section("Reasons", "what the advice and the forecast rest on, what was left out",
-                                list + "</ul>");
+                                list + "</ul>", report::Paper::printed);
 }
 
-std::string headline(const Forecast& forecast) {
+/// "37 months left (80 %: 35 to 39), end of life about 2021-04-15", or why there is no such forecast.
+std::string outlook(const Forecast& forecast) {
   if (forecast.state != ForecastState::ok)
     return report::words_of(name_of(forecast.state)) + ": " + forecast.explanation;
   return forecast::in_months(forecast.rul_months) + " left (80 %: " + forecast::in_months(forecast.rul_p10_months) +
@@ -228,11 +249,28 @@ const char* colour_of(const std::optional<Advisory>& advice, ForecastState state
   return advice->priority >= AdvisoryPriority::low ? "warn" : "good";
 }
 
-std::string advice_line(const Advisory& advice) {
-  std::string priority(name_of(advice.priority));
-  priority.front() = static_cast<char>(std::toupper(priority.front()));
-  const bool seen = advice.state == AdvisoryState::acknowledged;
-  return priority + ": " + advice.recommendation + (seen ? " (Acknowledged by " + advice.acknowledged_by + ".)" : "");
+/// Dates and percentages stay on one line.
+std::string in_lines(const std::string& text) {
+  std::string html = report::unbroken(report::escaped(text));
+  for (std::size_t at = 0; (at = html.find(" %", at)) != std::string::npos;) html.replace(at, 1, "\u00a0");
+  return html;
+}
+
+/// What to do, and why.
+struct Headline {
+  std::string action, why;
+};
+
+/// The recommendation begins with what to do; the sentences after it say why.
+Headline headline_of(const Advisory& advice) {
+  const std::string& text = advice.recommendation;
+  const std::size_t end = std::min(text.find(". "), text.size());
+  Headline headline{.action = text.substr(0, std::min(end + 1, text.size())),
+                    .why = text.substr(std::min(end + 2, text.size()))};
+  headline.why +=
+      std::string(headline.why.empty() ? "" : " ").append("Priority: ").append(name_of(advice.priority)).append(".");
+  if (advice.state == AdvisoryState::acknowledged) headline.why += " Acknowledged by " + advice.acknowledged_by + ".";
+  return headline;
 }
 
 void add_figure(const std::string& value, const std::string& meaning, std::string& html) {
@@ -240,60 +278,58 @@ void add_figure(const std::string& value, const std::string& meaning, std::strin
   html.append("</b><span>").append(report::escaped(meaning)).append("</span></div>\n");
 }
 
-/// Condition now, when it ends, and the day by which something has to be done.
+/// By when something has to be done, the condition now, what is left and when it ends.
 std::string figures(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
   const Forecast& primary = answer.forecasts.front();
   const auto day = [&](double months) { return format_date(add_months(question.request.now, months)); };
   std::string html = "<div class=\"figures\">\n";
-  if (!answer.used.empty())
-    add_figure(forecast::condition_in_percent(answer.used.back().condition),
-               "seal condition, " + format_date(answer.used.back().time), html);
-  add_figure(report::percent_text(question.request.threshold), "failed at", html);
-  if (primary.state == ForecastState::ok) {
-    add_figure(date(primary.end_of_life_ns), "end of life, median", html);
-    add_figure(day(primary.rul_p10_months) + " to " + day(primary.rul_p90_months), "end of life, 80 %", html);
-  }
   if (question.advice && question.advice->latest_by_known)
     add_figure(date(question.advice->latest_by_ns), "act by", html);
+  if (!answer.used.empty())
+    add_figure(forecast::condition_in_percent(answer.used.back().condition),
+               "seal condition; failed below " + report::percent_text(question.request.threshold), html);
+  if (primary.state == ForecastState::ok) {
+    add_figure(forecast::in_months(primary.rul_months),
+               "left; 80 %: " + number(primary.rul_p10_months, 3) + " to " + number(primary.rul_p90_months, 3), html);
+    add_figure(date(primary.end_of_life_ns),
+               "end of life; 80 %: " + day(primary.rul_p10_months) + " to " + day(primary.rul_p90_months), html);
+  }
   return html.append("</div>\n");
 }
 
 /// What follows where no service has given advice: from the forecast alone.
-std::string step_without_advice(const ForecastQuestion& question, const Forecast& primary) {
+Headline headline_without_advice(const ForecastQuestion& question, const Forecast& primary) {
   const auto day = [&](double months) { return format_date(add_months(question.request.now, months)); };
+  const std::string why = outlook(primary) + ".";
   switch (primary.state) {
     case ForecastState::ok:
-      return "Replace the seal before " + day(primary.rul_p10_months) +
-             ", when one in ten would have failed, and book " + "the vessel " + number(question.months_to_vessel, 3) +
-             " months ahead, by " + day(primary.rul_p10_months - question.months_to_vessel) +
-             ". The services give advice with hysteresis.";
+      return {"Book a vessel by " + day(primary.rul_p10_months - question.months_to_vessel) +
+                  " to replace the seal before " + day(primary.rul_p10_months) + ".",
+              why + " By that day one seal in ten would have failed; a vessel takes " +
+                  number(question.months_to_vessel, 3) +
+                  " months. The advisory of the services may differ: it needs confirmation by several tests."};
     case ForecastState::past_threshold:
-      return "The seal has reached its limit. Follow the procedure for a valve that may not close, and replace it.";
+      return {"Replace the seal now: it has reached its limit.",
+              why + " Follow the procedure for a valve that may not close."};
     case ForecastState::no_significant_trend:
-      return "Nothing to plan: the condition does not fall beyond the scatter of the tests. Go on testing every month.";
+      return {"No action needed: the condition does not fall beyond the scatter of the tests.",
+              why + " Continue with monthly tests."};
     case ForecastState::insufficient_history:
       break;
   }
-  return "Go on testing every month: the history is too short for a forecast.";
-}
-
-std::string next_step(const ForecastQuestion& question, const Forecast& primary) {
-  return std::string("<div class=\"steps\">\n<h2>What to do next</h2>\n<p>")
-      .append(report::unbroken(
-          report::escaped(question.advice ? advice_line(*question.advice) : step_without_advice(question, primary))))
-      .append("</p>\n</div>\n");
+  return {"Continue with monthly tests: the history is too short for a forecast.", why};
 }
 
 std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
   const std::string of = question.asset_id.empty() ? "" : " of " + question.asset_id;
   const Forecast& primary = answer.forecasts.front();
-  std::string html = "<h1>Remaining life of the piston seal" + report::escaped(of) + "</h1>";
-  html.append(report::paragraph(history_words(question) + ". The seal condition is an index derived from its leakage: "
-                                                          "100 % is a new seal.",
-                                "muted small"));
+  const Headline headline =
+      question.advice ? headline_of(*question.advice) : headline_without_advice(question, primary);
+  std::string html = "<h1>Piston seal" + report::escaped(of) + "</h1>";
+  html.append(report::paragraph(history_words(question), "muted small"));
   html.append("<div class=\"banner ").append(colour_of(question.advice, primary.state));
-  html.append("\"><p class=\"verdict\">").append(report::unbroken(report::escaped(headline(primary)))).append("</p>");
-  html.append("</div>");
+  html.append("\"><p class=\"verdict\">").append(in_lines(headline.action));
+  html.append("</p><p>").append(in_lines(headline.why)).append("</p></div>");
   if (question.tests > 0) html += figures(question, answer);
   return html;
 }
@@ -302,9 +338,7 @@ std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& 
 
 Result<std::string> forecast_body(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
                                   const std::vector<DecisionOption>& decision) {
-  if (question.tests == 0)
-    return head(question, answer) + next_step(question, answer.forecasts.front()) +
-           forecast_decision_part(question, answer, decision);
+  if (question.tests == 0) return head(question, answer) + forecast_decision_part(question, answer, decision);
   const auto primary = forecast::make_forecaster(question.forecasters.front());
   if (!primary) return fail(primary.error());
   forecast::ForecastRequest request = question.request;
@@ -314,7 +348,6 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
     conditions = (*primary)->predict_conditions(request, months_ahead(request.now, view_months(answer)));
   std::string body = head(question, answer);
   body += report::to_svg(course(question, answer, conditions));
-  body += next_step(question, answer.forecasts.front());
   body += report::folded_section(
       "Remaining life", "all methods side by side",
       remaining_life_table(answer) + methods_note(answer) + report::to_svg(side_by_side(answer)));
@@ -326,7 +359,7 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
 Status write_forecast_page(const std::string& file, const Result<std::string>& body) {
   if (!body) return fail(body.error());
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << report::html_page("Remaining life of the piston seal", *body);
+  stream << report::html_page("Piston seal: what to do, by when, why", *body);
   stream.close();
   if (stream) return {};
   return fail(Error{.file = file, .place = "--page", .value = {}, .rule = "cannot be written", .advice = {}});

@@ -35,7 +35,7 @@ std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
                  .place = "--withdraw",
                  .value = what,
                  .rule = "is no retraction of asset " + options.asset_id,
-                 .advice = "give the id that sealwatch retract printed; it stands in the advisory's reasons too"});
+                 .advice = "give the id printed by sealwatch retract; the advisory's reasons show it, too"});
   return std::nullopt;
 }
 

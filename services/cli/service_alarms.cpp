@@ -30,10 +30,10 @@ constexpr std::array kTable = {
     Row{"sensor_lost", Ne107::failure, "sensor lost"},
     Row{"awaits_confirmation", Ne107::maintenance_required, "an act waits for a second person"},
     Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},
-    Row{"refused_right", Ne107::out_of_specification, "somebody was refused"},
+    Row{"refused_right", Ne107::out_of_specification, "connection refused"},
     Row{kAdviceAlarm, Ne107::maintenance_required, "asked for"},
     Row{kOverdueAlarm, Ne107::maintenance_required, "a test is overdue"},
-    Row{kOutOfServiceAlarm, Ne107::function_check, "somebody works on it"},
+    Row{kOutOfServiceAlarm, Ne107::function_check, "work in progress"},
 };
 
 const Row* row_of(std::string_view kind) {

@@ -149,7 +149,7 @@ void AlignmentCheck::judge_signs() {
     if (with > against)
       note_sign(one.channel, true, "against most other channels; corrected");
     else
-      note_sign(one.channel, false, "it contradicts position, and which of the two is wrong cannot be told");
+      note_sign(one.channel, false, "it contradicts position, and it is unknown which of the two is wrong");
   }
 }
 
@@ -168,7 +168,7 @@ void AlignmentCheck::judge_offsets() {
   if (late.empty()) return;
   if (timed.size() == 1) {
     note_offset(late[0]->channel, late[0]->estimate.offset_s, late[0]->estimate.offset_std_s, false,
-                "against position, and which of the two is wrong cannot be told");
+                "against position, and it is unknown which of the two is wrong");
     return;
   }
   const signal::OffsetEstimate& a = timed[0]->estimate;
@@ -184,7 +184,7 @@ void AlignmentCheck::judge_offsets() {
   for (const Comparison* one : late)
     note_offset(one->channel, one->estimate.offset_s, one->estimate.offset_std_s, told,
                 told ? "against the other channels; corrected"
-                     : "against position, and which of the channels is wrong cannot be told");
+                     : "against position, and it is unknown which of the channels is wrong");
 }
 
 /// Without the chambers' pressures: while the piston stands, oil leaks from the higher pressure to the lower, and the
@@ -236,7 +236,7 @@ void AlignmentCheck::compare_pressures() {
   if (std::abs(estimate->correlation) >= options_.least_correlation &&
       offset_noticed(estimate->offset_s, estimate->offset_std_s))
     note_offset("pressure_differential", estimate->offset_s, estimate->offset_std_s, false,
-                "against pressure_a - pressure_b, and which is wrong cannot be told");
+                "against pressure_a - pressure_b, and it is unknown which is wrong");
 }
 
 }  // namespace

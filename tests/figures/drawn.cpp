@@ -1,5 +1,7 @@
 // Pictures that no recording is needed for, and those that are taken from pages of the program.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "sealwatch/message/topics.hpp"
@@ -10,22 +12,48 @@
 namespace sealwatch::figures {
 namespace {
 
-struct Layer {
-  std::string_view name, concludes;
-  std::vector<Topic> topics;
+// Boxes from top to bottom: what runs the tests, the six layers, the operators.
+enum Node : std::size_t { control, acquisition, manipulation, detection, health, prognosis, advice, operators, kNodes };
+
+struct Box {
+  std::string_view name, says;
+  std::vector<Topic> next = {};  ///< what it passes to the box below
 };
 
-/// As docs/topics.md has them: what each passes to the next.
-std::vector<Layer> all_layers() {
-  return {{"data acquisition", "id of the test, channel status", {Topic::sample_block}},
-          {"data manipulation", "window, phases, features", {Topic::test_window, Topic::test_features}},
-          {"state detection", "alert regions, verdict, overdue", {Topic::state_report}},
-          {"health assessment", "grade, likely faults, mismatch", {Topic::health_report}},
-          {"prognostic assessment", "leakage, remaining life", {Topic::leakage_estimate, Topic::remaining_life}},
-          {"advisory generation", "what to do, by when, why", {Topic::advisory}}};
+/// As docs/topics.md has them.
+std::array<Box, kNodes> all_boxes() {
+  return {{{"Master Control System, virtual bench, sealwatch replay", "run the tests", {Topic::raw_samples}},
+           {"data acquisition", "id of the test, channel status", {Topic::sample_block}},
+           {"data manipulation", "window, phases, features", {Topic::test_window, Topic::test_features}},
+           {"state detection", "alert regions, verdict, overdue", {Topic::state_report}},
+           {"health assessment", "grade, likely faults, mismatch", {Topic::health_report}},
+           {"prognostic assessment", "leakage, remaining life", {Topic::leakage_estimate, Topic::remaining_life}},
+           {"advisory generation", "what to do, by when, why", {Topic::advisory}},
+           {"operators' systems, sealwatch status and watch", "and a subscriber of your own"}}};
 }
 
-constexpr std::array kFromOperators{Topic::acknowledgement, Topic::maintenance_event, Topic::model_acceptance};
+/// A topic that goes elsewhere than to the box below.
+struct Route {
+  Topic topic;
+  Node from;
+  std::vector<Node> to;
+};
+
+/// The short ones first: they get the lanes next to the boxes.
+std::vector<Route> all_routes() {
+  return {{Topic::test_features, manipulation, {health}},
+          {Topic::acknowledgement, operators, {advice}},
+          {Topic::health_report, health, {advice}},
+          {Topic::test_window, manipulation, {health, prognosis}},
+          {Topic::model_discrepancy, health, {operators}},
+          {Topic::state_report, detection, {advice}},
+          {Topic::model_acceptance, operators, {detection, prognosis}},
+          {Topic::pst_request, prognosis, {control}},
+          {Topic::maintenance_event, operators, {acquisition, detection, prognosis, advice}}};
+}
+
+constexpr double kStep = 92.0, kHeight = 52.0, kWidth = 400.0, kLeft = 20.0, kTop = 14.0;
+constexpr double kLane = 27.0;
 
 std::string joined(const std::vector<Topic>& topics) {
   std::string text;
@@ -46,6 +74,62 @@ std::string arrow(double x, double from, double to) {
          "Z\" style=\"fill:var(--muted)\"/>\n";
 }
 
+/// Routes on the right of the boxes: each topic in a lane of its own, with an arrow into each of its readers.
+class Lanes {
+ public:
+  explicit Lanes(const std::vector<Route>& routes) {
+    for (const Route& route : routes) {
+      ++ports_[route.from];
+      for (const Node node : route.to) ++ports_[node];
+    }
+  }
+  void draw(const Route& route, Canvas& canvas) {
+    const std::string ink = route.from == operators ? "--second" : "--first";
+    const double begin = next_port(route.from);
+    double high = begin, low = begin;
+    std::vector<double> ends;
+    for (const Node node : route.to) {
+      ends.push_back(next_port(node));
+      high = std::min(high, ends.back()), low = std::max(low, ends.back());
+    }
+    const double lane = kLeft + kWidth + kLane * (1.0 + static_cast<double>(free_lane(high, low)));
+    std::string path =
+        "M" + at(kLeft + kWidth) + at(begin) + "H" + at(lane) + "M" + at(lane) + at(high) + "V" + at(low);
+    std::string heads;
+    for (const double end : ends) {
+      path += "M" + at(lane) + at(end) + "H" + at(kLeft + kWidth + 6.0);
+      heads += "M" + at(kLeft + kWidth) + at(end) + "l8-4v8Z";
+    }
+    canvas.raw("<path d=\"" + path + "\" style=\"fill:none;stroke:var(" + ink + ");stroke-width:1.4\"/>\n<path d=\"" +
+               heads + "\" style=\"fill:var(" + ink + ")\"/>\n");
+    names_ += "<text class=\"named\" text-anchor=\"middle\" transform=\"translate(" + at(lane + 12.0) +
+              at(0.5 * (high + low)) + ") rotate(-90)\" style=\"fill:var(" + ink + ")\">" +
+              std::string(name_of(route.topic)) + "</text>\n";
+  }
+  /// The topics' names, to be drawn over all lines.
+  [[nodiscard]] const std::string& names() const { return names_; }
+
+ private:
+  static std::string at(double pixels) { return std::to_string(std::lround(pixels)) + ' '; }
+  double next_port(Node node) {
+    const double share = static_cast<double>(++used_[node]) / static_cast<double>(ports_[node] + 1);
+    return kTop + kStep * static_cast<double>(node) + share * kHeight;
+  }
+  /// The first in which nothing else is between the two heights.
+  std::size_t free_lane(double high, double low) {
+    std::size_t lane = 0;
+    const auto apart = [&](const std::pair<double, double>& other) { return low < other.first || high > other.second; };
+    while (lane < taken_.size() && !std::ranges::all_of(taken_[lane], apart)) ++lane;
+    if (lane == taken_.size()) taken_.emplace_back();
+    taken_[lane].emplace_back(high, low);
+    return lane;
+  }
+
+  std::string names_;
+  std::array<int, kNodes> ports_{}, used_{};
+  std::vector<std::vector<std::pair<double, double>>> taken_;
+};
+
 }  // namespace
 
 std::string actuator() {
@@ -59,35 +143,24 @@ std::string actuator() {
 }
 
 std::string layers() {
-  constexpr double kStep = 74.0, kHeight = 44.0, kWidth = 400.0, kLeft = 20.0, kMiddle = kLeft + 0.5 * kWidth;
-  const std::vector<Layer> layers = all_layers();
-  Canvas canvas("The six layers with their topics", 760,
-                static_cast<int>(kStep * static_cast<double>(layers.size() + 2)));
-  double y = 14.0;
-  const auto node = [&](std::string_view name, std::string_view says, std::string_view topics) {
+  constexpr double kMiddle = kLeft + 0.5 * kWidth;
+  const std::array<Box, kNodes> boxes = all_boxes();
+  Canvas canvas("The six layers with their topics", 700, static_cast<int>(kStep * static_cast<double>(kNodes)));
+  double y = kTop;
+  for (const Box& one : boxes) {
     canvas.raw(box(kLeft, y, kWidth, kHeight));
-    canvas.text(name, kMiddle, y + 18.0, "title", "middle");
-    canvas.text(says, kMiddle, y + 35.0, "tick", "middle");
-    canvas.raw(arrow(kMiddle, y + kHeight, y + kStep));
-    canvas.text(topics, kMiddle + 14.0, y + kHeight + 19.0);
+    canvas.text(one.name, kMiddle, y + 22.0, "title", "middle");
+    canvas.text(one.says, kMiddle, y + 39.0, "tick", "middle");
+    if (!one.next.empty()) {
+      canvas.raw(arrow(kMiddle, y + kHeight, y + kStep));
+      canvas.text(joined(one.next), kMiddle + 14.0, y + kHeight + 24.0);
+    }
     y += kStep;
-  };
-  node("Master Control System, virtual bench, sealwatch replay", "run the tests", name_of(Topic::raw_samples));
-  for (const Layer& layer : layers) node(layer.name, layer.concludes, joined(layer.topics));
-  canvas.raw(box(kLeft, y, kWidth, kHeight));
-  canvas.text("operators' systems, sealwatch status and watch", kMiddle, y + 18.0, "title", "middle");
-  canvas.text("and a subscriber of your own", kMiddle, y + 35.0, "tick", "middle");
-  const double right = kLeft + kWidth + 26.0;
-  canvas.text("from prognosis to the Master Control System:", right, 30.0, "tick");
-  canvas.text(name_of(Topic::pst_request), right, 46.0, "title");
-  canvas.text("from health assessment to operators:", right, y - 40.0, "tick");
-  canvas.text(name_of(Topic::model_discrepancy), right, y - 24.0, "title");
-  canvas.text("from operators to the layers:", right, y, "tick");
-  double line = y + 16.0;
-  for (const Topic topic : kFromOperators) {
-    canvas.text(name_of(topic), right, line, "title");
-    line += 15.0;
   }
+  const std::vector<Route> routes = all_routes();
+  Lanes lanes(routes);
+  for (const Route& route : routes) lanes.draw(route, canvas);
+  canvas.raw(lanes.names());
   return canvas.svg();
 }
 
@@ -118,9 +191,12 @@ std::string before_and_after(const std::string& report_page, const std::string& 
   return canvas.svg();
 }
 
-std::string forecast_curve(const std::string& forecast_page) {
-  Canvas canvas("Seal condition over the years, forecast and end of life", 980, 300);
-  canvas.place(drawing_in(forecast_page, "<body>", "Seal condition"), 0.0, 0.0);
+std::string forecast_screen(const std::string& forecast_page) {
+  constexpr int kScreenWidth = 1180, kScreenHeight = 590;
+  Canvas canvas("The forecast page: what to do, by when, and why", kScreenWidth, kScreenHeight);
+  canvas.raw("<foreignObject x=\"0\" y=\"0\" width=\"" + std::to_string(kScreenWidth) + "\" height=\"" +
+             std::to_string(kScreenHeight) + "\"><body xmlns=\"http://www.w3.org/1999/xhtml\">\n" +
+             between(forecast_page, "<body>", "<section") + "</body></foreignObject>\n");
   return canvas.svg();
 }
 

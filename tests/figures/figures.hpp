@@ -19,9 +19,9 @@ namespace sealwatch::figures {
 [[nodiscard]] std::string layers();
 
 /// Of pages that the program wrote: the first screen of a report; recording, old and new simulation of a channel beside
-/// the missing term; the forecast's curve.
+/// the missing term; the first screen of the forecast page.
 [[nodiscard]] std::string first_screen(const std::string& report_page);
 [[nodiscard]] std::string before_and_after(const std::string& report_page, const std::string& channel);
-[[nodiscard]] std::string forecast_curve(const std::string& forecast_page);
+[[nodiscard]] std::string forecast_screen(const std::string& forecast_page);
 
 }  // namespace sealwatch::figures

@@ -40,7 +40,7 @@ void write_all(const std::string& plain_file, const std::string& hidden_file, co
                                                     {"concealed", concealed_effect(plain, hidden)},
                                                     {"report", first_screen(report)},
                                                     {"explain", before_and_after(report, "pressure A")},
-                                                    {"forecast", forecast_curve(text_of(forecast_file))}};
+                                                    {"forecast", forecast_screen(text_of(forecast_file))}};
   for (const auto& [name, svg] : pictures)
     if (!(std::ofstream(directory + "/" + name + ".svg") << svg))
       throw std::runtime_error(directory + " cannot be written");

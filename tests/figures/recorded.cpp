@@ -85,7 +85,7 @@ std::string valve_signature(const Recording& recording) {
   Plot plot{.title = "load pressure over position: the distance between the ways is friction",
             .x = {.label = "position", .unit = "m"},
             .y = {.unit = "Pa"},
-            .width = 720,
+            .width = kWide,
             .height = 340};
   const auto& position = test.position();
   const auto& pressure = test.smooth_load_pressure();

@@ -230,7 +230,7 @@ TEST_F(Commands, ForecastTakesCampaignsFromTheConfiguration) {
 TEST_F(Commands, ForecastTellsNoProbabilityWithoutAForecast) {
   const Finished steady = run({"sealwatch", "forecast", "--history", history(48, 0.0), "--before", "2025-06-01"});
   EXPECT_EQ(steady.status, 1);
-  EXPECT_THAT(steady.output, HasSubstr("P(failure)       cannot be told"));
+  EXPECT_THAT(steady.output, HasSubstr("P(failure)       unknown"));
   const Finished failed =
       run({"sealwatch", "forecast", "--history", history(48, 0.01), "--before", "2025-06-01", "--json"});
   EXPECT_EQ(failed.status, 1);
@@ -357,12 +357,36 @@ TEST_F(Commands, ReplayWritesThePageOfTheForecastThatItShows) {
   std::ostringstream html;
   html << std::ifstream(page).rdbuf();
   const std::string end_of_life = format_date(UtcTime{in_charge["end_of_life_ns"].get<std::int64_t>()});
-  EXPECT_THAT(html.str(), ::testing::AllOf(HasSubstr("Remaining life of the piston seal of XT03-MV2"),
-                                           HasSubstr("end of life about <span class=\"whole\">" + end_of_life),
-                                           HasSubstr("left out by the services: not judged")));
+  EXPECT_THAT(html.str(),
+              ::testing::AllOf(HasSubstr("<h1>Piston seal of XT03-MV2"),
+                               HasSubstr("<span class=\"whole\">" + end_of_life + "</span></b><span>end of life"),
+                               HasSubstr("left out by the services: not judged")));
   std::ifstream advisories(folder_ / "advisory.jsonl");
   for (std::string line; std::getline(advisories, line);) last = line;
   EXPECT_THAT(html.str(), HasSubstr(json::parse(last)["recommendation"].get<std::string>().substr(0, 40)));
+}
+
+TEST_F(Commands, HelpGroupsTheCommandsInFewWordsAndEachHasAnExample) {
+  const Finished help = run({"sealwatch", "--help"});
+  ASSERT_EQ(help.status, 0) << help.output;
+  for (const char* group : {"Analyse:", "Run:", "Operate:", "Maintain:"}) EXPECT_THAT(help.output, HasSubstr(group));
+  EXPECT_THAT(help.output, Not(HasSubstr("Subcommands:"))) << "a command in no group";
+  std::istringstream lines(help.output.substr(help.output.find("Analyse:")));
+  std::size_t commands = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  ") || line.starts_with("   ")) continue;
+    std::istringstream words(line);
+    std::string name, word;
+    words >> name;
+    std::size_t count = 0;
+    while (words >> word) ++count;
+    EXPECT_LE(count, 10U) << line;
+    const Finished one = run({"sealwatch", name, "--help"});
+    EXPECT_EQ(one.status, 0) << name;
+    EXPECT_THAT(one.output, HasSubstr("Example")) << name;
+    ++commands;
+  }
+  EXPECT_GE(commands, 31U);
 }
 
 TEST_F(Commands, WhatIsKeptIsLookedForWithWords) {

@@ -366,7 +366,7 @@ TEST_F(Operator, CountsAReplacementOnceAnotherPersonConfirmsIt) {
   const auto confirm = [&](const std::string& who, const std::string& what) {
     return run({"sealwatch", "confirm", "--config", strict, "XT03-MV2", what, "--by", who});
   };
-  EXPECT_THAT(confirm("M. Okoye", "maintenance_event/XT03-MV2/other").output, HasSubstr("waits for nobody"));
+  EXPECT_THAT(confirm("M. Okoye", "maintenance_event/XT03-MV2/other").output, HasSubstr("waits for no confirmation"));
   const Finished himself = confirm("J. Silva", act);
   EXPECT_EQ(himself.status, 1);
   EXPECT_THAT(himself.output, HasSubstr("it takes another person"));

@@ -50,6 +50,7 @@ inline constexpr std::string_view kChannelQuantity = "channel.";
 [[nodiscard]] inline std::vector<std::string> judged_quantities(const std::vector<std::string>& simulated,
                                                                 const std::vector<std::string>& measured) {
   std::vector<std::string> names;
+  names.reserve(kJudgedIndicators.size() + simulated.size() + measured.size());
   for (const JudgedIndicator& indicator : kJudgedIndicators) names.emplace_back(indicator.name);
   for (const std::string& channel : simulated) names.push_back(std::string(kResidualQuantity).append(channel));
   for (const std::string& channel : measured) names.push_back(std::string(kChannelQuantity).append(channel));

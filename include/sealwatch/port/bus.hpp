@@ -1,5 +1,5 @@
 // The bus between processes, as layers' runners see it. Implemented over Cyclone DDS in services/common/transport and
-// in memory (port/in_memory_bus.hpp); one contract suite tests both.
+// in memory (tests/unit/port/in_memory_bus.hpp); one contract suite tests both.
 #pragma once
 
 #include <chrono>

@@ -167,9 +167,9 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
                                    condition_in_percent(line->condition_at(axis.y(axis.now_months))) +
                                    " now, the limit is " + condition_in_percent(request.threshold))};
   if (remaining->quantile(0.5) > options_.horizon_months)
-    return {say(forecast, ForecastState::no_significant_trend,
-                "at this rate the end of life is more than " + in_months(options_.horizon_months) +
-                    " away: no date can be told")};
+    return {say(
+        forecast, ForecastState::no_significant_trend,
+        "at this rate the end of life is more than " + in_months(options_.horizon_months) + " away: no date is given")};
   fill_numbers(forecast, request, *remaining);
   fill_failure_probabilities(forecast, request, *line, axis);
   return {say(forecast, ForecastState::ok, describe_ok(forecast, request, *line)), std::move(remaining)};

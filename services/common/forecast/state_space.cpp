@@ -185,9 +185,9 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
     return {say(forecast, ForecastState::no_significant_trend,
                 "the condition does not fall significantly (probability that it falls: " + in_percent(falls) + ")")};
   if (remaining.quantile(0.5) > options_.horizon_months)
-    return {say(forecast, ForecastState::no_significant_trend,
-                "at this rate the end of life is more than " + in_months(options_.horizon_months) +
-                    " away: no date can be told")};
+    return {say(
+        forecast, ForecastState::no_significant_trend,
+        "at this rate the end of life is more than " + in_months(options_.horizon_months) + " away: no date is given")};
   fill_numbers(forecast, request, remaining);
   return {say(forecast, ForecastState::ok, describe_ok(forecast, opinion, opened, request)), std::move(remaining)};
 }

@@ -38,9 +38,9 @@ LawAt law_of(const BalanceFinding& finding, const PlantDescription& plant) {
 
 std::string evidence_of(const BalanceFinding& finding, double held_out_gain) {
   std::string text = finding_in_words(finding);
-  text.append(". Put back, it costs ").append(number(finding.weight)).append(" of the criterion (12 is decisive)");
+  text.append(". Without it, the criterion is worse by ").append(number(finding.weight)).append(" (12 is decisive)");
   if (held_out_gain > 0.0)
-    text.append(" and ").append(number(held_out_gain)).append(" of the likelihood of recordings that took no part");
+    text.append(" and ").append(number(held_out_gain)).append(" in the likelihood of held-out recordings");
   return text.append(".");
 }
 
@@ -57,9 +57,10 @@ void weigh(FoundEffect& effect, const BalanceFinding& finding, const PlantDescri
     if (cannot_tell && law.element != effect.what.element) effect.same_elements.push_back(law.element);
     effect.alternatives.push_back({.what = law,
                                    .misfit_above_best = other.weight,
-                                   .why_not = cannot_tell ? "These recordings cannot tell it from what was chosen."
-                                                          : "In its place the balances are worse by " +
-                                                                number(other.weight) + " (12 counts as decisive)."});
+                                   .why_not = cannot_tell
+                                                  ? "These recordings cannot distinguish it from the chosen one."
+                                                  : "In its place the balances are worse by " + number(other.weight) +
+                                                        " (12 counts as decisive)."});
   }
   effect.probability = std::min(1.0 / all, kNeverCertain);
   effect.element_probability = std::min(element / all, kNeverCertain);
@@ -124,7 +125,8 @@ std::string leakage_in_words(const BalanceFit& fit) {
     text.append(number(leakage->after)).append(" +- ").append(number(leakage->after_std)).append(" Pa s/m3.");
   else
     text +=
-        "cannot be told from these recordings: while the valves are open the pump's leakage takes the same course, "
+        "is not identifiable from these recordings: while the valves are open the pump's leakage takes the same "
+        "course, "
         "and while they are closed the chambers' pressures hold.";
   return text;
 }
@@ -147,7 +149,7 @@ std::string gross_summary(const Explanation& explanation) {
     if (!effect.indistinguishable.empty())
       text.append(" (or ").append(element_in_words(effect.indistinguishable.front().element)).append(")");
   }
-  text += ". On recordings that took no part the free run reproduces";
+  text += ". On held-out recordings the free run reproduces";
   for (const ChannelComparison& channel : explanation.holdout.channels)
     text.append(" ")
         .append(channel.channel)

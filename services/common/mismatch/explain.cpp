@@ -83,7 +83,7 @@ class Analysis {
     allow(1.0);
     if (why_none_) best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_};
     if (!best_.effects.empty()) {
-      tell("proving on recordings that took no part", 0.75);
+      tell("proving on held-out recordings", 0.75);
       prove();
     }
     if (!lacks_a_pressure() && !why_none_ && was_all_asked()) look_again();
@@ -244,7 +244,7 @@ class Analysis {
     instead_of_ = best_.effects.size();
   }
 
-  // Not where the value does not help on recordings that took no part: it is not claimed either.
+  // Not where the value does not help on held-out recordings: it is not claimed either.
   void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of) {
     std::vector<RecordingComparison> compared;
     const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
@@ -472,17 +472,17 @@ class Analysis {
 
   static std::string does_not_help(const Effect& effect) {
     return "A law that fits better (" + law_in_words(law_at(effect)) +
-           ") does not improve the recordings that took no part: it is not claimed.";
+           ") does not improve the held-out recordings: it is not claimed.";
   }
 
   [[nodiscard]] std::string why_not_proven(const Result<BlockGains>& blocks) const {
     const std::string law = "A law that fits better (" + law_in_words(law_at(best_.effects.back())) + ") ";
     if (!blocks)
-      return law + "cannot be simulated on the recordings that took no part (" + reason_in_words(blocks.error()) +
+      return law + "cannot be simulated on the held-out recordings (" + reason_in_words(blocks.error()) +
              "): it is not claimed.";
     if (!blocks->gain.empty()) return does_not_help(best_.effects.back());
     if (blocks->not_compared.empty()) return "With one recording nothing can be held out: what fits it is not claimed.";
-    return law + "has nothing to be compared with on the recordings that took no part: it is not claimed.";
+    return law + "cannot be compared with anything on the held-out recordings: it is not claimed.";
   }
 
   void note_not_compared(const BlockGains& blocks) {
@@ -589,7 +589,7 @@ class Analysis {
     if (lacks_a_pressure())
       result_.next_test =
           "Record the pressures of both chambers, or the motor's voltage: with the flow and the differential pressure "
-          "alone, what chamber B's pressure does cannot be told from missing physics.";
+          "alone, the pressure of chamber B cannot be separated from missing physics.";
     result_.summary = summary_of(result_);
     say_what_else_is_known();
     return {};
@@ -622,7 +622,7 @@ class Analysis {
     return true;
   }
 
-  // Nor where a channel of recordings that took no part comes out worse: other loads and speeds do not bear it out.
+  // Nor where a channel of held-out recordings comes out worse: other loads and speeds do not bear it out.
   bool takes_back_what_does_not_carry_over() {
     const ChannelComparison* worse = best_.effects.empty() ? nullptr : made_worse(result_.holdout);
     if (worse == nullptr) return false;

@@ -52,7 +52,7 @@ class GrossMismatch {
     take_back_what_does_not_hold(*balances);
     tell("simulating with it and without", 0.3);
     if (!compare_fit()) return std::nullopt;
-    tell("proving on recordings that took no part", 0.7);
+    tell("proving on held-out recordings", 0.7);
     compare_held_out();
     describe();
     tell("done", 1.0);
@@ -140,9 +140,8 @@ class GrossMismatch {
         kept.push_back(std::move(finding));
         continue;
       }
-      result_.notes.push_back(
-          "What fits better (" + finding_in_words(finding) +
-          ") does not improve the balances of the recordings that took no part: it is not claimed.");
+      result_.notes.push_back("What fits better (" + finding_in_words(finding) +
+                              ") does not improve the balances of the held-out recordings: it is not claimed.");
       put_back(found_.model, asset_, finding.what);
     }
     const bool fewer = kept.size() < found_.findings.size();
@@ -251,7 +250,7 @@ class GrossMismatch {
                             "each channel's spread; what stays is the model's error, not noise.");
     for (std::size_t b = 0; b < SwitchedBalances::kBalances.size(); ++b)
       result_.notes.push_back(balance_in_words(b, found_));
-    result_.notes.push_back("Gain of likelihood on recordings that took no part: " + number(gain_.gain) + " (" +
+    result_.notes.push_back("Gain of likelihood on held-out recordings: " + number(gain_.gain) + " (" +
                             number(gain_.low) + " to " + number(gain_.high) + ").");
     if (const std::string leakage = leakage_in_words(found_); !leakage.empty()) result_.notes.push_back(leakage);
     for (const BalanceParameter& parameter : found_.free)

@@ -27,11 +27,11 @@ const ChannelComparison* most_improved_channel(const PooledFit& fit) {
 // Which change of the test's conditions tells apart laws of these kinds.
 std::string separating_test(const FoundEffect& effect) {
   if (!effect.same_elements.empty() && effect.what.element.starts_with("sensor:"))
-    return "Compare the sensor with a reference at rest at two known values; a test cannot tell its error from the "
+    return "Compare the sensor with a reference at rest, at two known values. No test can separate its error from the "
            "plant's.";
-  return "Record tests that differ more in what these laws depend on: one at a third and one at twice the ramp speed, "
-         "one "
-         "with a clearly lower and one with a clearly higher load, and one over another part of the stroke.";
+  return "Record tests that separate these laws: one at a third and one at twice the ramp speed, one with a clearly "
+         "lower "
+         "and one with a clearly higher load, and one over another part of the stroke.";
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::string joined(const std::vector<std::string>& words, const char* last) {
 }
 
 std::string law_in_words(const LawAt& law) {
-  return (law.id == "unlisted" ? "physics without a name" : in_words(law.id))
+  return (law.id == "unlisted" ? "unlisted physics" : in_words(law.id))
       .append(" at ")
       .append(element_in_words(law.element));
 }
@@ -73,14 +73,14 @@ std::string left_in_words(const PooledFit& fit) {
   constexpr double kNearly = 3.0;
   const auto most = std::ranges::max_element(fit.channels, {}, &ChannelComparison::weighed_rms_after);
   if (most == fit.channels.end() || most->weighed_rms_after < kNearly) return {};
-  return " Not all is explained: " + in_words(most->channel) + " still misses by " + number(most->rms_after) +
+  return " A part remains unexplained: " + in_words(most->channel) + " still misses by " + number(most->rms_after) +
          " times the noise.";
 }
 
 std::string proof_in_words(const PooledFit& holdout) {
   const ChannelComparison* proof = most_improved_channel(holdout);
   if (proof == nullptr) return {};
-  return "the misfit of " + in_words(proof->channel) + " on recordings that took no part falls from " +
+  return "the misfit of " + in_words(proof->channel) + " on held-out recordings falls from " +
          number(proof->rms_before) + " to " + number(proof->rms_after) + " times the noise";
 }
 
@@ -110,16 +110,14 @@ std::string next_test_of(const Explanation& explanation) {
     if (!effect.indistinguishable.empty()) return separating_test(effect);
   if (explanation.verdict != Verdict::undetermined) return {};
   if (explanation.fit_recordings.size() < 2)
-    return "Record at least three more tests under other loads, speeds and strokes, one of them to be held out: one "
-           "recording "
-           "can hide an effect in its own parameters and leaves nothing to prove a law on.";
+    return "Record at least three more tests at other loads, speeds and strokes, and hold one of them out. In a single "
+           "recording, the parameters can absorb an effect, and nothing is left to prove a law on.";
   if (!explanation.statistically_significant)
-    return "Record tests under conditions that these lack: another load (by at least 20 %), half and twice the ramp "
-           "speed, "
-           "and a longer stroke; include a rest and a hold of 3 s.";
-  return "Record the same asset under two further loads and speeds, with all channels that the bench has, and hold two "
-         "of "
-         "these recordings out.";
+    return "Record tests under new conditions: a load that differs by at least 20 %, half and twice the ramp speed, "
+           "and a "
+           "longer stroke. Include a rest and a hold of 3 s.";
+  return "Record the same asset at two further loads and speeds, with all available channels, and hold two of these "
+         "recordings out.";
 }
 
 std::string summary_of(const Explanation& explanation) {
@@ -127,7 +125,7 @@ std::string summary_of(const Explanation& explanation) {
   const ChannelComparison* worst = worst_channel(explanation.fit);
   if (explanation.verdict == Verdict::consistent) {
     text =
-        "Simulation and recordings agree within the noise once the free parameters are fitted; no physics is missing "
+        "Simulation and recordings agree within the noise once the free parameters are fitted. No physics is missing "
         "that these tests could have shown.";
     return text;
   }
@@ -143,14 +141,15 @@ std::string summary_of(const Explanation& explanation) {
       for (const LawAt& other : effect.indistinguishable)
         others.push_back(effect.is_another_form(other) ? "another form of it (" + other.law + ")"
                                                        : law_in_words(other));
-      text.append(" These recordings cannot tell ").append(law_in_words(effect.what));
+      text.append(" These recordings cannot distinguish ").append(law_in_words(effect.what));
       text.append(" from ").append(joined(others, " or ")).append(".");
     }
     return text;
   }
   if (!explanation.statistically_significant)
-    return "No difference beyond the noise was found, but these recordings could not have shown effects of a size that "
-           "matters.";
+    return "No difference beyond the noise was found, but these recordings could not have shown effects of a "
+           "significant "
+           "size.";
   text = "Simulation and recordings differ beyond the noise";
   if (worst != nullptr)
     text.append(" (")
@@ -159,12 +158,10 @@ std::string summary_of(const Explanation& explanation) {
         .append(number(worst->rms_before))
         .append(" times the noise)");
   const bool single = explanation.fit_recordings.size() < 2 && explanation.holdout_recordings.empty();
-  text += single ? "; with a single recording no law can be proven."
-                 : ", and no law was found that explains it and holds on recordings that took no part.";
+  text += single ? "; a single recording cannot prove a law."
+                 : ", and no law was found that also explains held-out recordings.";
   if (!explanation.location.empty())
-    text.append(" The first place to look is ")
-        .append(element_in_words(explanation.location.front().element))
-        .append(".");
+    text.append(" Look first at ").append(element_in_words(explanation.location.front().element)).append(".");
   return text;
 }
 

@@ -37,14 +37,14 @@ WhyNone something_changed(const ChangeBetweenTests& change) {
 
 WhyNone seal_changed_but_not_by_wear(const std::string& course) {
   return {.summary = course +
-                     " That is no wear: the seal was changed, or something else changed between these "
-                     "tests, and laws for all of them cannot be told from it.",
+                     " This is not wear: the seal was changed, or something else changed between these "
+                     "tests. One law for all of them cannot be identified.",
           .next_test = kTestsOfOneTime,
           .element = "piston_seal"};
 }
 
 WhyNone seal_aged_and_no_more(const std::string& course) {
-  return {.summary = course + " The piston seal aged; nothing else was found to be missing.",
+  return {.summary = course + " The piston seal aged; nothing else is missing.",
           .next_test = kTestsOfOneTime,
           .element = "piston_seal"};
 }
@@ -56,13 +56,14 @@ WhyNone value_of_the_asset_file(const std::string& values, bool several, const s
       several ? "Values that the asset file fixes may be wrong: " : "A value that the asset file fixes may be wrong: ";
   const std::string with = (several ? "With them " : "With it ") + (beside.empty() ? "" : "and " + beside + " ");
   const std::string explains = several || !beside.empty() ? " Together they explain" : " It explains";
-  return {.summary = start + values + "." + (proof.empty() ? "" : " " + with + proof + ".") + left_in_words(holdout) +
-                     (proof.empty() ? " No recording was left to prove it on." : "") + explains +
-                     " these recordings as well as " + instead_of + " would, or better: no physics is named" +
-                     (beside.empty() ? "." : " before that is checked."),
-          .next_test =
-              "Check this against the drawing or the datasheet. Only where neither tells, let it be estimated "
-              "(estimate: true in the asset file) and analyse again: a fault that acts like it would then be hidden."};
+  return {
+      .summary = start + values + "." + (proof.empty() ? "" : " " + with + proof + ".") + left_in_words(holdout) +
+                 (proof.empty() ? " No recording was left for a proof." : "") + explains +
+                 " these recordings as well as " + instead_of + " would, or better. No physics is named" +
+                 (beside.empty() ? "." : " before that is checked."),
+      .next_test =
+          "Check this against the drawing or the datasheet. Only if neither gives it, estimate it (estimate: true in "
+          "the asset file) and analyse again: the estimate would hide a fault with the same effect."};
 }
 
 WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const PooledFit& before) {
@@ -70,28 +71,26 @@ WhyNone nowhere_near(const ChannelComparison& far, const Data& fit, const Pooled
       "Check the units, signs and wiring of the recorded channels, then the parameters in the asset file.";
   if (const std::string unit = hardly_moves(before); !unit.empty()) check += " First: " + unit + ".";
   const bool several_days = are_of_several_days(fit);
-  return {
-      .summary =
-          "The simulation comes nowhere near these recordings, whatever law is added: with the best it still misses " +
-          in_words(far.channel) + " by " + number(far.rms_after) +
-          " times the noise, more than half of the course (the tables are without it). No physics is named for that." +
-          (several_days ? " What is missing may also differ from test to test." : ""),
-      .next_test = several_days ? "These tests are of different days: analyse each alone, or those of one time "
-                                  "together. Where even one alone is missed: " +
-                                      check
-                                : check};
+  return {.summary =
+              "The simulation is far from these recordings, whatever law is added: with the best law it still misses " +
+              in_words(far.channel) + " by " + number(far.rms_after) +
+              " times the noise, more than half of the signal (the tables are without that law). No physics is named." +
+              (several_days ? " What is missing may also differ from test to test." : ""),
+          .next_test = several_days ? "These tests are from different days: analyse each alone, or those of one "
+                                      "period together. If even a single one misfits: " +
+                                          check
+                                    : check};
 }
 
 std::string does_not_carry_over(const ChannelComparison& worse) {
-  return "What fits better does not carry over: on recordings that took no part it takes " + in_words(worse.channel) +
-         " from " + number(worse.rms_before) + " to " + number(worse.rms_after) +
-         " times its noise. It is not claimed.";
+  return "The better fit does not carry over: on held-out recordings it takes " + in_words(worse.channel) + " from " +
+         number(worse.rms_before) + " to " + number(worse.rms_after) + " times its noise. It is not claimed.";
 }
 
 WhyNone those_kept_aside_differ(const ChannelComparison& worst) {
   return {
-      .summary = "The fitted recordings agree with the model, those that were held out do not: " +
-                 in_words(worst.channel) + " misses by " + number(worst.rms_after) +
+      .summary = "The fitted recordings agree with the model, the held-out ones do not: " + in_words(worst.channel) +
+                 " misses by " + number(worst.rms_after) +
                  " times the noise. The asset changed between them, or what is missing acts in these alone.",
       .next_test = "Fit some of the held-out recordings together with the others, and hold out others of each kind."};
 }

@@ -1,5 +1,6 @@
 #include "services/common/report/explanation_html.hpp"
 
+#include <cctype>
 #include <cmath>
 #include <string_view>
 
@@ -25,11 +26,11 @@ VerdictWords words_of(const Explanation& explanation) {
     case Verdict::mismatch:
       return {"bad", explanation.asset_values.empty()
                          ? "Mismatch found and explained"
-                         : "Mismatch found and explained, by physics or by a value of the asset file"};
+                         : "Mismatch found and explained: missing physics, or a wrong value in the asset file"};
     case Verdict::undetermined:
       if (!explanation.asset_values.empty()) return {"warn", "Undetermined: a value of the asset file may be wrong"};
-      return {"warn", explanation.statistically_significant ? "Undetermined: a mismatch that is not explained"
-                                                            : "Undetermined: these recordings cannot tell"};
+      return {"warn", explanation.statistically_significant ? "Undetermined: a mismatch without an explanation"
+                                                            : "Undetermined: these recordings cannot decide"};
   }
   return {"warn", "Undetermined"};
 }
@@ -52,22 +53,22 @@ std::string list_of(const std::vector<std::string>& names) {
 std::string step_for(const mismatch::FoundEffect& effect) {
   const std::string& element = effect.what.element;
   const bool sensor = element.starts_with("sensor:") || element.starts_with("input:") || element == "clock";
-  std::string step = (sensor ? "Check the " : "Inspect the ") + element_name(element) +
-                     (sensor ? " against a reference: " : " for ") + law_name(effect.what);
-  if (!effect.what.meaning.empty()) step += " (" + effect.what.meaning + ")";
+  std::string step = (sensor ? "Check " : "Inspect ") + the_element(element) +
+                     (sensor ? " against a reference for " : " for ") + law_name(effect.what);
+  if (!effect.what.meaning.empty()) step += ": " + effect.what.meaning;
   step += ". ";
   if (effect.engineering_share >= 1.0)
-    step += "It is " + number_text(effect.engineering_share, 2) +
-            " times the size that matters: do it before the seal's condition is judged. If it belongs there, keep it "
-            "in the asset file.";
+    step += "At " + number_text(effect.engineering_share, 2) +
+            " times the significance threshold, do this before you rely on the seal condition. If the effect is normal "
+            "for this actuator, keep it in the asset file.";
   else if (effect.engineering_share > 0.0)
     step += "At " + number_text(effect.engineering_share, 2) +
-            " of the size that matters it can wait for the next planned work; follow it in the next tests.";
+            " of the significance threshold, it can wait for the next planned work. Follow it in the next tests.";
   else
-    step += "It belongs there, or it is a fault.";
+    step += "It is either normal for this actuator or a fault.";
   std::vector<std::string> others;
-  for (const std::string& other : effect.same_elements) others.push_back(element_name(other));
-  if (!others.empty()) step += " It may as well sit in: " + list_of(others) + ".";
+  for (const std::string& other : effect.same_elements) others.push_back(the_element(other));
+  if (!others.empty()) step += " These recordings fit equally well with it in: " + list_of(others) + ".";
   return step;
 }
 
@@ -76,8 +77,8 @@ std::string steps_after(const Explanation& explanation) {
   std::string html = "<ol>\n";
   const auto add = [&html](const std::string& step) { html.append("<li>").append(escaped(step)).append("</li>\n"); };
   for (const mismatch::FoundEffect& effect : explanation.effects) add(step_for(effect));
-  add("Calculate with asset.explained.yaml in place of the asset file (fit, forecast, simulate, explain). In the "
-      "services, accept this discrepancy (sealwatch accept), which can be revoked.");
+  add("Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. To use it in the "
+      "services, run sealwatch accept; --revoke undoes that.");
   if (!explanation.next_test.empty()) add(explanation.next_test);
   return html.append("</ol>\n");
 }
@@ -88,18 +89,22 @@ std::string arrow(double before, double after) {
 
 std::string figures(const Explanation& explanation) {
   std::string html = "<div class=\"figures\">\n";
-  add_figure(p_value_text(explanation.p_value), "probability of noise alone", html);
+  add_figure(p_value_text(explanation.p_value), "chance that noise alone explains it", html);
   const bool changed = explanation.changed();
   const auto add_misfit = [&html, changed](const mismatch::PooledFit& fit, const std::string& where) {
     const Misfit misfit = overall(fit);
     if (misfit.known)
       add_figure(changed ? arrow(misfit.before, misfit.after) : number_text(misfit.before, 3),
-                 std::string("misfit over noise, ").append(where), html);
+                 std::string("misfit, ").append(where), html);
   };
   add_misfit(explanation.holdout, explanation.holdout_recordings.empty() ? "left out in turn" : "held out");
   add_misfit(explanation.fit, "fitted");
   if (changed) add_figure(percent_text(explanation.explained_share), "of the misfit explained", html);
-  return html.append("</div>\n");
+  return html.append("</div>\n")
+      .append(
+          paragraph("Misfit: rms of recording minus simulation, in multiples of the sensor noise. 1 means that only "
+                    "noise is left.",
+                    "small muted"));
 }
 
 }  // namespace
@@ -133,6 +138,14 @@ std::string element_name(const std::string& element) {
   return element.starts_with(kSensor) ? "sensor of " + words_of(element.substr(kSensor.size())) : words_of(element);
 }
 
+std::string the_element(const std::string& element) {
+  const std::string name = element_name(element);
+  const std::size_t last = name.find_last_of(' ');
+  const bool numbered = last != std::string::npos &&
+                        (last + 2 == name.size() || std::isdigit(static_cast<unsigned char>(name[last + 1])) != 0);
+  return numbered && !element.starts_with("sensor:") && !element.starts_with("input:") ? name : "the " + name;
+}
+
 std::string banner(const Explanation& explanation) {
   const VerdictWords verdict = words_of(explanation);
   std::string aside = std::to_string(explanation.holdout_recordings.size()) + " held out.";
@@ -164,13 +177,14 @@ std::string notes_section(const Explanation& explanation) {
     html.append("<li>").append(escaped("Held out: " + list_of(explanation.holdout_recordings) + ".")).append("</li>\n");
   for (const std::string& note : explanation.notes) html.append("<li>").append(escaped(note)).append("</li>\n");
   html +=
-      "<li>Misfit over noise: root mean square of (recording - simulation) / noise of the sensor; 1 is the floor. "
-      "Fit: 100 % is perfect, 0 % no better than a constant.</li>\n"
-      "<li>p, white: how likely noise alone leaves residuals as smooth as these; p, independent of input: as much like "
-      "the input. Below 0.01 a residual has a course of its own that the model does not explain.</li>\n"
-      "<li>A recording that was held out took no part in any fit or choice, but for its own starting state and "
-      "load.</li>\n</ul>\n";
-  return folded_section("Notes", "recordings, noise, what was tried", html);
+      "<li>Misfit / noise: root mean square of (recording - simulation) / sensor noise; 1 is the floor. Fit: 100 % is "
+      "perfect, 0 % is no better than a constant.</li>\n"
+      "<li>p, white: probability that pure noise gives residuals as smooth as these. p, independent of input: "
+      "probability that pure noise correlates as much with the input. Below 0.01, the residual contains dynamics that "
+      "the model does not explain.</li>\n"
+      "<li>A held-out recording takes no part in any fit or choice. Only its own initial state and load are "
+      "estimated.</li>\n</ul>\n";
+  return folded_section("Notes", "recordings, definitions, what was tried", html);
 }
 
 std::string explanation_to_html(const Explanation& explanation) {

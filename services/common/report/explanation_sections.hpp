@@ -14,6 +14,9 @@ namespace sealwatch::report {
 /// "piston", "sensor of level voltage"
 [[nodiscard]] std::string element_name(const std::string& element);
 
+/// In a sentence: "the piston", "chamber A", "the sensor of level voltage".
+[[nodiscard]] std::string the_element(const std::string& element);
+
 /// Root mean square over channels of the noise-normalised rms.
 struct Misfit {
   double before = 0.0, after = 0.0;
@@ -26,7 +29,7 @@ struct Misfit {
 [[nodiscard]] std::string first_screen(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string next_steps(const mismatch::Explanation& explanation);
 
-/// Below it, closed until they are opened or printed.
+/// Below it, closed until they are opened. Paper gets the missing term, traces and totals; without a finding the power.
 [[nodiscard]] std::string where_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string effects_section(const mismatch::Explanation& explanation);
 [[nodiscard]] std::string asset_values_section(const mismatch::Explanation& explanation);

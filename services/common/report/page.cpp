@@ -58,7 +58,7 @@ svg .frame{fill:none;stroke:var(--muted);stroke-width:.8}
 .ink-foreground{--ink:var(--text)}.ink-muted{--ink:var(--muted)}.ink-first{--ink:var(--first)}.ink-second{--ink:var(--second)}
 .ink-third{--ink:var(--third)}.ink-fourth{--ink:var(--fourth)}.ink-bad{--ink:var(--bad)}
 .stroke{fill:none;stroke:var(--ink)}.fill{fill:var(--ink);stroke:none}.area{fill:var(--ink);fill-opacity:.18;stroke:none}
-.part{fill:var(--metal);stroke:var(--muted);stroke-width:1.2}.hot{fill:var(--second);stroke:var(--second);stroke-width:2.2}
+svg .part{fill:var(--metal);stroke:var(--muted);stroke-width:1.2}.hot{fill:var(--second);stroke:var(--second);stroke-width:2.2}
 .same{stroke-dasharray:5 3}.symbol{fill:none;stroke:var(--text);stroke-width:1.2;pointer-events:none}.symbol .solid{fill:var(--text)}
 .pipe{fill:none;stroke:var(--first);stroke-width:3;stroke-opacity:.55}.wire{fill:none;stroke:var(--muted);stroke-width:2}
 .rod{fill:var(--metal);stroke:var(--muted)}.lead{fill:none;stroke:var(--muted);stroke-width:.8;stroke-dasharray:2 2}
@@ -67,7 +67,7 @@ svg .share{fill:var(--second);font-weight:700}svg .letters{font-size:10px}
 linear-gradient(90deg,var(--line),transparent) 0/.9rem 100%,linear-gradient(270deg,var(--line),transparent) 100%/.9rem 100%;
 background-repeat:no-repeat;background-attachment:local,local,scroll,scroll}
 @media (min-width:1001px){table:has(td.prose) td:not(.prose){white-space:nowrap}}
-@media (max-width:1000px){table{font-size:.8rem}th,td{padding-right:.5rem}td.prose{min-width:9rem}}
+@media screen and (max-width:1000px){table{font-size:.8rem}th,td{padding-right:.5rem}td.prose{min-width:9rem}}
 details{margin:.5rem 0}summary{cursor:pointer;color:var(--first)}
 .part{margin:0}.part>summary{padding:.35rem 0;border-bottom:1px solid var(--line)}.part>summary h2{display:inline;border:0;
 margin:0;font-size:1.02rem;color:var(--text)}.part>summary span{margin-left:.7rem;color:var(--muted);font-size:.86rem}
@@ -76,20 +76,27 @@ margin:0;font-size:1.02rem;color:var(--text)}.part>summary span{margin-left:.7re
 .screen .drawing text{font-size:15px}.screen .drawing .letters{font-size:13px}
 .steps{border-left:.45rem solid var(--first);background:var(--soft);padding:.5rem 1.1rem;margin:.6rem 0 1.2rem;border-radius:.2rem}
 .steps h2{border:0;padding:0}.steps ol,.steps p{max-width:none;margin:.2rem 0}
-@media (max-width:800px){.screen{grid-template-columns:1fr}}
-@media print{:root{color-scheme:light;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
+@media screen and (max-width:800px){.screen{grid-template-columns:1fr}}
+@media print{:root{color-scheme:light;font-size:12px;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
 --second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
-@page{size:A4;margin:14mm}body{max-width:none;padding:0;font-size:10pt}section,.plots>div,tr,.banner,.steps,.screen>div{break-inside:avoid}
-section.long{break-inside:auto}summary{break-after:avoid}.part>summary{list-style:none}
-h2,h3{break-after:avoid}.plots{gap:.2rem .8rem}.plots>div{width:48%}}
+@page{size:A4;margin:12mm}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}
+body{max-width:none;padding:0;font-size:12px;line-height:1.4}h1{font-size:15pt}h2{font-size:11pt;margin-top:1rem}p,ul,ol{max-width:none}
+.plots>div,tr,.banner,.steps,.screen>div,.drawing{break-inside:avoid}h2,h3{break-after:avoid}summary{break-after:avoid;list-style:none}
+.part:not([open])>summary{padding:.1rem 0;border:0;break-after:auto}.part:not([open])>summary h2{font-size:9pt}.part details:not([open]){display:none}
+.scroll{overflow:visible;background:none}table{font-size:8pt}.figures{gap:.3rem 1.5rem;margin:.4rem 0}.figures div{min-width:0}.figures b{font-size:11pt}
+.banner,.steps{padding:.4rem .8rem;margin:.5rem 0}.plots{gap:.2rem .8rem}.plots>div{width:48.5%}
+svg[role]{width:100%}svg text{font-size:12px}}
 )css";
 
 /// What a drawing as a file of its own needs.
 constexpr std::string_view kOnScreen = kStyle.substr(0, kStyle.find("@media print"));
 
-/// Closed parts would be missing on paper.
+/// What belongs on paper is opened for printing, and closed again; what its reader opened is printed as well.
 constexpr std::string_view kScript =
-    "addEventListener('beforeprint',()=>document.querySelectorAll('details').forEach(d=>d.open=true))";
+    "let opened=[];"
+    "addEventListener('beforeprint',()=>{opened=[...document.querySelectorAll('details.paper:not([open])')];"
+    "opened.forEach(d=>d.open=true)});"
+    "addEventListener('afterprint',()=>opened.forEach(d=>d.open=false))";
 
 }  // namespace
 
@@ -167,8 +174,10 @@ std::string section(std::string_view title, std::string_view body) {
       .append("</section>\n");
 }
 
-std::string folded_section(std::string_view title, std::string_view inside, std::string_view body) {
-  return std::string("<section class=\"long\">\n<details class=\"part\"><summary><h2>")
+std::string folded_section(std::string_view title, std::string_view inside, std::string_view body, Paper paper) {
+  return std::string("<section class=\"long\">\n<details class=\"part")
+      .append(paper == Paper::printed ? " paper" : "")
+      .append("\"><summary><h2>")
       .append(escaped(title))
       .append("</h2><span>")
       .append(escaped(inside))

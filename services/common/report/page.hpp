@@ -24,13 +24,17 @@ namespace sealwatch::report {
 /// "<section><h2>title</h2>body</section>", the title escaped.
 [[nodiscard]] std::string section(std::string_view title, std::string_view body);
 
-/// A section that is closed at first: its title, and in a few words what is inside, open it (and printing does).
-[[nodiscard]] std::string folded_section(std::string_view title, std::string_view inside, std::string_view body);
+/// Whether a section that is closed on the screen is opened for printing.
+enum class Paper { closed, printed };
+
+/// A section that is closed at first: its title, and in a few words what is inside, open it.
+[[nodiscard]] std::string folded_section(std::string_view title, std::string_view inside, std::string_view body,
+                                         Paper paper = Paper::closed);
 
 /// "<p>" with escaped text.
 [[nodiscard]] std::string paragraph(std::string_view text, std::string_view css_class = {});
 
-/// A closed part that opens on click (and for print). The label is escaped.
+/// A closed part that opens on click. The label is escaped.
 [[nodiscard]] std::string folded(std::string_view label, std::string_view body);
 
 /// A table. Cells are escaped unless given as html. All cells wrap where the page is too narrow.

@@ -78,7 +78,8 @@ struct Reference {
   double at = 0.0;
   bool vertical = false;
   Ink ink = Ink::muted;
-  std::string label = {};  ///< beside the line
+  std::string label = {};      ///< beside the line
+  bool named_at_left = false;  ///< of a line across: else its label is at the right end
 };
 
 using Mark = std::variant<Line, Band, Scatter, Bars, Boxes, Intervals, Reference>;

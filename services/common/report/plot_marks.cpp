@@ -9,6 +9,8 @@
 namespace sealwatch::report {
 namespace {
 
+constexpr double kLetter = 6.1;  ///< mean width of a letter of a name, pixels
+
 /// A path in tenths of a pixel, relative moves: a third of the length of absolute decimals. Rounding does not add up,
 /// as each move starts from the rounded place.
 class Path {
@@ -75,9 +77,39 @@ std::string rectangle(const std::string& css_class, double x, double y, double w
                  with("x", x).append(with("y", y)).append(with("width", width)).append(with("height", height)));
 }
 
+/// Names of lines, drawn over all marks; those of vertical lines each in the first row in which it overlaps no other.
+class Names {
+ public:
+  /// Baseline below the top, in pixels.
+  double baseline(double left, double right) {
+    std::size_t row = 0;
+    const auto free = [&](const std::pair<double, double>& other) {
+      return right < other.first || left > other.second;
+    };
+    while (row < rows_.size() && !std::ranges::all_of(rows_[row], free)) ++row;
+    if (row == rows_.size()) rows_.emplace_back();
+    rows_[row].emplace_back(left, right);
+    return 11.0 + 13.0 * static_cast<double>(row);
+  }
+  void add(const std::string& label, double text_x, double text_y, bool ends) {
+    svg_.append("<text class=\"tick named\" ")
+        .append(with("x", text_x))
+        .append(with("y", text_y))
+        .append(ends ? "text-anchor=\"end\">" : ">")
+        .append(escaped(label))
+        .append("</text>\n");
+  }
+  [[nodiscard]] const std::string& svg() const { return svg_; }
+
+ private:
+  std::string svg_;
+  std::vector<std::vector<std::pair<double, double>>> rows_;
+};
+
 struct Draw {
   const Scale& x;
   const Scale& y;
+  Names& names;
 
   [[nodiscard]] std::size_t columns() const { return static_cast<std::size_t>(std::abs(x.to - x.from)); }
 
@@ -173,17 +205,19 @@ struct Draw {
   std::string operator()(const Reference& line) const {
     const double at = line.vertical ? x(line.at) : y(line.at);
     if (!std::isfinite(at)) return {};
-    std::string svg = line.vertical ? segment(line.ink, at, y.from, at, y.to, "stroke-dasharray=\"4 3\"")
-                                    : segment(line.ink, x.from, at, x.to, at, "stroke-dasharray=\"4 3\"");
-    if (line.label.empty()) return svg;
-    const double text_x = line.vertical ? at + 4.0 : x.to - 4.0;
-    const double text_y = line.vertical ? y.to + 11.0 : std::max(at - 4.0, 10.0);
-    return svg.append("<text class=\"tick named\" ")
-        .append(with("x", text_x))
-        .append(with("y", text_y))
-        .append(line.vertical ? ">" : "text-anchor=\"end\">")
-        .append(escaped(line.label))
-        .append("</text>\n");
+    if (!line.label.empty() && line.vertical) name_beside(line, at);
+    if (!line.label.empty() && !line.vertical)
+      names.add(line.label, line.named_at_left ? 4.0 : x.to - 4.0, std::max(at - 4.0, 10.0), !line.named_at_left);
+    return line.vertical ? segment(line.ink, at, y.from, at, y.to, "stroke-dasharray=\"4 3\"")
+                         : segment(line.ink, x.from, at, x.to, at, "stroke-dasharray=\"4 3\"");
+  }
+
+  /// Right of the line, or left of it where the plot ends.
+  void name_beside(const Reference& line, double at) const {
+    const double width = kLetter * static_cast<double>(line.label.size());
+    const bool left = at + 4.0 + width > x.to;
+    const double begin = left ? at - 4.0 - width : at + 4.0;
+    names.add(line.label, left ? at - 4.0 : begin, y.to + names.baseline(begin, begin + width), left);
   }
 };
 
@@ -197,8 +231,9 @@ std::string pixel(double value) {
 
 std::string svg_of_marks(const Plot& plot, const Scale& x, const Scale& y) {
   std::string svg;
-  for (const Mark& mark : plot.marks) svg += std::visit(Draw{x, y}, mark);
-  return svg;
+  Names names;
+  for (const Mark& mark : plot.marks) svg += std::visit(Draw{x, y, names}, mark);
+  return svg.append(names.svg());
 }
 
 }  // namespace sealwatch::report

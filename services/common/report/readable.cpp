@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -57,10 +58,8 @@ std::string unit_text(std::string_view si_unit) {
     const bool after_letter = k > 0 && std::isalpha(static_cast<unsigned char>(si_unit[k - 1])) != 0;
     if (si_unit[k] == ' ')
       text += "·";
-    else if (after_letter && si_unit[k] == '2')
-      text += "²";
-    else if (after_letter && si_unit[k] == '3')
-      text += "³";
+    else if (after_letter && std::isdigit(static_cast<unsigned char>(si_unit[k])) != 0)
+      text += superscript(si_unit[k] - '0');
     else
       text += si_unit[k];
   }

@@ -34,11 +34,11 @@ std::string with_error(double value, double error) {
   return error > 0.0 && std::isfinite(error) ? readable_with_error(value, error, "") : number_text(value, 4);
 }
 
-/// The value with its error, or that it ended at a bound, or that the recordings do not tell it.
+/// The value with its error, or that it ended at a bound, or that the recordings do not identify it.
 std::string told(double value, double error, bool at_bound) {
   std::string text = with_error(value, error);
   if (at_bound) return text.append(", at its bound");
-  return std::isfinite(error) ? text : text.append(", cannot be told");
+  return std::isfinite(error) ? text : text.append(", not identifiable");
 }
 
 /// What a reader has to see first: those at a bound, then those that moved most over their error.
@@ -73,9 +73,10 @@ bool could_hide(const Power& power) {
 }
 
 std::string power_words(const Power& power) {
-  if (!std::isfinite(power.minimum_detectable)) return "these recordings cannot show it";
-  if (could_hide(power)) return "could be there unseen at a size that matters";
-  return power.absorbed_share > kAbsorbed ? "mostly absorbed by the free parameters, yet seen" : "would be seen";
+  if (!std::isfinite(power.minimum_detectable)) return "cannot be detected in these recordings";
+  if (could_hide(power)) return "a significant one could go undetected";
+  return power.absorbed_share > kAbsorbed ? "mostly absorbed by the free parameters, but detectable"
+                                          : "would be detected";
 }
 
 }  // namespace
@@ -105,12 +106,11 @@ std::string parameters_section(const Explanation& explanation) {
     for (std::string& cell : cells) cell = escaped(cell);
     table.row_of_html(cells, at_bound || (changed && errors > kClearShift) ? "strong" : "");
   }
-  const char* words = changed ? "A parameter that moves when what was found is put in had been standing in for it. "
-                                "In bold: at a bound, or moved by more than three standard errors."
-                              : "The parameters as fitted to the recordings.";
-  const char* bound =
-      " One at its bound wants to go further than its range allows: something else is asked of it, or its range is "
-      "wrong.";
+  const char* words = changed
+                          ? "A parameter that moves once the found law is added had been compensating for it. Bold: "
+                            "at a bound, or moved by more than three standard errors."
+                          : "The parameters as fitted to the recordings.";
+  const char* bound = " A parameter at its bound is compensating for something else, or its range is wrong.";
   const bool any_at_bound = std::ranges::any_of(explanation.parameters, [](const ParameterShift& shift) {
     return shift.before_at_bound || shift.after_at_bound;
   });
@@ -137,13 +137,11 @@ std::string asset_values_section(const Explanation& explanation) {
   }
   std::string beside;
   for (const mismatch::LawAt& law : explanation.beside_asset_values)
-    beside +=
-        paragraph("Fitted beside it: " + law_name(law) + " of the " + element_name(law.element) +
-                  ". That something is missing there is likely; what it is, is asked again once the value is right.");
-  return section("A value of the asset file that may be wrong",
-                 paragraph("The analysis takes these as exact. With another value the recordings would be explained "
-                           "without the physics that was found, or with less of it: check the drawing or the datasheet "
-                           "before anything else.",
+    beside += paragraph("Fitted together with it: " + law_name(law) + " of " + the_element(law.element) +
+                        ". Something is probably missing there; run explain again once the value is right.");
+  return section("A value in the asset file may be wrong",
+                 paragraph("The analysis treats these values as exact. With the fitted value, less missing physics "
+                           "would explain the recordings, or none. Check the drawing or datasheet first.",
                            "small muted")
                      .append(table.html())
                      .append(beside));
@@ -163,13 +161,14 @@ std::string prognosis_section(const Explanation& explanation) {
   const auto months = [](double value) { return std::isfinite(value) ? std::to_string(std::lround(value)) : "–"; };
   table.row({"months left of a mean seal", months(prognosis.months_before), months(prognosis.months_after),
              change_text(prognosis.months_before, prognosis.months_after)});
-  return folded_section("What it does to the remaining life", "R_CL and seal condition before and after",
+  return folded_section("Effect on the remaining life", "R_CL and seal condition before and after",
                         paragraph(prognosis.sentence).append(table.html()));
 }
 
 std::string power_section(const Explanation& explanation) {
   if (explanation.power.empty()) return {};
-  const std::vector<std::string> columns = {"law", "element", ">smallest that shows", ">matters from", ">absorbed", ""};
+  const std::vector<std::string> columns = {"law",       "element", ">minimum detectable", ">significant from",
+                                            ">absorbed", ""};
   Table blind(columns);
   Table seen(columns);
   std::size_t blind_count = 0;
@@ -183,19 +182,20 @@ std::string power_section(const Explanation& explanation) {
   }
   const std::size_t seen_count = explanation.power.size() - blind_count;
   std::string words =
-      "The smallest size of each effect that these recordings would show (80 % of the time, with 1 % false alarms). ";
+      "Minimum detectable: the size that these recordings reveal 80 % of the time, with 1 % false alarms. ";
   words.append(std::to_string(seen_count)).append(" of ").append(std::to_string(explanation.power.size()));
   words.append(
-      " effects would be seen from the size at which they matter. Absorbed: the share of an effect that the "
-      "fitted parameters would absorb.");
+      " effects would be detected as soon as they are significant. Absorbed: the share of an effect that the fitted "
+      "parameters would absorb.");
   std::string html = paragraph(words, "small muted");
   if (blind_count > 0) html += blind.html();
-  if (seen_count > 0) html += folded("The " + std::to_string(seen_count) + " effects that would be seen", seen.html());
-  return folded_section("What could have been seen",
+  if (seen_count > 0)
+    html += folded("The " + std::to_string(seen_count) + " effects that would be detected", seen.html());
+  return folded_section("What these recordings could detect",
                         std::to_string(seen_count) + " of " + std::to_string(explanation.power.size()) +
-                            " effects would be seen at the size that matters" +
-                            (blind_count > 0 ? ", " + std::to_string(blind_count) + " could hide" : ""),
-                        html);
+                            " effects would be detected once significant" +
+                            (blind_count > 0 ? ", " + std::to_string(blind_count) + " could go undetected" : ""),
+                        html, explanation.effects.empty() ? Paper::printed : Paper::closed);
 }
 
 }  // namespace sealwatch::report

@@ -46,7 +46,7 @@ std::string parameter_table(const FoundEffect& effect) {
   for (const mismatch::FoundParameter& parameter : effect.parameters) {
     std::string meaning = meaning_of(effect.what, parameter.name);
     if (parameter.at_bound || !std::isfinite(parameter.std_error))
-      meaning.append(meaning.empty() ? "" : "; ").append("these recordings cannot tell its value");
+      meaning.append(meaning.empty() ? "" : "; ").append("not identifiable from these recordings");
     table.row({parameter.name, readable_with_error(parameter.value, parameter.std_error, parameter.unit), meaning});
   }
   return table.empty() ? std::string() : table.html();
@@ -54,13 +54,13 @@ std::string parameter_table(const FoundEffect& effect) {
 
 std::string same_laws(const FoundEffect& effect) {
   if (effect.indistinguishable.empty()) return {};
-  std::string html = paragraph("These recordings cannot tell it from:");
+  std::string html = paragraph("These recordings cannot distinguish it from:");
   html += "<ul>\n";
   for (const mismatch::LawAt& other : effect.indistinguishable)
     html.append("<li>")
         .append(escaped(law_name(other)))
-        .append(" of the ")
-        .append(escaped(element_name(other.element)))
+        .append(" of ")
+        .append(escaped(the_element(other.element)))
         .append(": <code>")
         .append(escaped(other.law))
         .append("</code></li>\n");
@@ -69,22 +69,22 @@ std::string same_laws(const FoundEffect& effect) {
 
 /// How large the effect is to an engineer, apart from how sure it is.
 std::string size_words(double share) {
-  if (std::isnan(share)) return "From which size on an engineer would care is not known of this law.";
+  if (std::isnan(share)) return "No significance threshold is defined for this law.";
   if (!(share > 0.0)) return {};
   if (share < 1.0)
     return std::string("Its size is ")
         .append(number_text(share, 2))
-        .append(" of what an engineer would act on: real, but small.");
+        .append(" of the significance threshold: real, but small.");
   return std::string("Its size is ")
       .append(number_text(share, 2))
-      .append(" times what an engineer would care about (about 1 % of what the element carries).");
+      .append(" times the significance threshold (about 1 % of what the element carries).");
 }
 
-/// "External leakage (laminar) of the chamber A"
+/// "External leakage (laminar) of chamber A"
 std::string title_of(const FoundEffect& effect) {
   std::string title = law_name(effect.what);
   if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  return title.append(" of the ").append(element_name(effect.what.element));
+  return title.append(" of ").append(the_element(effect.what.element));
 }
 
 /// The law, its figures and what it may be taken for, in a few lines.
@@ -99,8 +99,8 @@ std::string effect_in_short(const FoundEffect& effect) {
                     "small muted");
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
-    others += (others.empty() ? "" : "; ") + law_name(other) + " of the " + element_name(other.element);
-  if (!others.empty()) html += paragraph("Cannot be told apart from: " + others + ".", "small muted");
+    others += (others.empty() ? "" : "; ") + law_name(other) + " of " + the_element(other.element);
+  if (!others.empty()) html += paragraph("Cannot be distinguished from: " + others + ".", "small muted");
   return html;
 }
 
@@ -109,21 +109,21 @@ std::string effect_html(const FoundEffect& effect) {
   if (!effect.what.meaning.empty()) html += paragraph(effect.what.meaning);
   html += law_line(effect.what.law);
   html += parameter_table(effect);
-  std::string sure = std::string("Probability ")
-                         .append(percent_text(effect.probability))
-                         .append(" among the laws tried; that it sits in this element ");
-  sure.append(percent_text(effect.element_probability)).append(". Without it the model stands ");
-  sure.append(number_text(-effect.delta_bic, 3))
-      .append(" behind (squared misfit and a penalty for each parameter, BIC; 12 decides). ")
+  std::string sure =
+      std::string("Probability ").append(percent_text(effect.probability)).append(" among the laws tried; ");
+  sure.append(percent_text(effect.element_probability))
+      .append(
+          " that it sits in this element. Without it, the BIC (squared misfit plus a penalty for each parameter) is ")
+      .append(number_text(-effect.delta_bic, 3))
+      .append(" higher; 12 is decisive. ")
       .append(size_words(effect.engineering_share));
   html += paragraph(sure);
   if (!effect.regime.empty()) html += paragraph(std::string("It acts: ").append(effect.regime).append("."));
   if (!effect.evidence.empty()) html += paragraph(effect.evidence);
   html += same_laws(effect);
   if (!effect.same_elements.empty())
-    html += paragraph(std::string("Elements that these recordings cannot tell apart from it: ")
-                          .append(joined(effect.same_elements))
-                          .append("."));
+    html += paragraph(
+        std::string("These recordings fit equally well with it in: ").append(joined(effect.same_elements)).append("."));
   return html;
 }
 
@@ -141,7 +141,7 @@ void add_alternative(const mismatch::Alternative& alternative, Table& table) {
 std::string alternatives_to(const FoundEffect& effect) {
   constexpr std::size_t kOpen = 5;
   const std::vector<std::string> columns = {"~instead of " + law_name(effect.what), "element",
-                                            ">criterion behind the best", "~why not"};
+                                            ">criterion above the best", "~why not"};
   Table near(columns);
   Table far(columns);
   for (std::size_t k = 0; k < effect.alternatives.size(); ++k)
@@ -155,13 +155,13 @@ std::string alternatives_to(const FoundEffect& effect) {
 /// In the order of what they would have taken.
 std::string rejected_html(const std::vector<mismatch::Rejected>& list) {
   std::string words =
-      "Each law looked at by itself on the model as it was, before anything was added: these would have fitted with a "
-      "value that physics rules out, and are not claimed. Mostly they mimic what was really missing.";
+      "Each law was first tried alone on the original model. These would fit only with a physically impossible value "
+      "and are not claimed. Most of them mimic what is really missing.";
   if (list.front().allowed_share > 0.0)
-    words.append(" The best law with a possible value would have taken ")
+    words.append(" The best law with a possible value would have explained ")
         .append(percent_text(list.front().allowed_share))
-        .append(" of the misfit beyond the noise.");
-  Table table({"law", "element", ">share of the misfit it would have taken", "~why it is rejected"});
+        .append(" of the misfit beyond noise.");
+  Table table({"law", "element", ">share of the misfit explained", "~why it is rejected"});
   for (const mismatch::Rejected& rejected : list)
     table.row_of_html({std::string(escaped(law_name(rejected.what)))
                            .append("<br/><code class=\"small muted\">")
@@ -184,7 +184,7 @@ std::string first_screen(const Explanation& explanation) {
   if (found.empty()) {
     for (const mismatch::Location& place : explanation.location)
       found += paragraph(element_name(place.element) + ", " + percent_text(place.probability) + ": " + place.evidence);
-    found += paragraph(explanation.location.empty() ? "No element stands out." : "No law is claimed there.", "muted");
+    found += paragraph(explanation.location.empty() ? "No element stands out." : "No law is claimed for it.", "muted");
   }
   return std::string("<div class=\"screen\">\n<div>\n<h2>")
       .append(explanation.effects.empty() ? "What stands out" : "What the model lacks")
@@ -197,19 +197,19 @@ std::string first_screen(const Explanation& explanation) {
 
 std::string where_section(const Explanation& explanation) {
   if (explanation.location.empty()) return {};
-  Table table({"element", ">probability", "cannot be told apart from", "~evidence"});
+  Table table({"element", ">probability", "indistinguishable from", "~evidence"});
   for (const mismatch::Location& place : explanation.location) {
     const std::string element = element_name(place.element);
     table.row({element, percent_text(place.probability), joined(place.indistinguishable_from), place.evidence});
   }
-  return folded_section("Where it sits", "probability and evidence of each element", table.html());
+  return folded_section("Location", "probability and evidence for each element", table.html());
 }
 
 std::string effects_section(const Explanation& explanation) {
   if (explanation.effects.empty()) return {};
   std::string html;
   for (const FoundEffect& effect : explanation.effects) html += effect_html(effect);
-  return folded_section("What the model lacked", "each law in full: parameters, size, where it acts", html);
+  return folded_section("The laws in full", "parameters, size, where each acts", html);
 }
 
 std::string candidates_section(const Explanation& explanation) {
@@ -219,8 +219,8 @@ std::string candidates_section(const Explanation& explanation) {
     table.row({law_name(cause.what), element_name(cause.what.element), percent_text(cause.share),
                percent_text(cause.probability)});
   return folded_section(
-      "What else was seen", "candidates beside the claimed effects; none of them is claimed",
-      paragraph("What each would take of what the model still misses, by itself and to first order.", "small muted")
+      "Other candidates", "seen beside the claimed effects, not claimed",
+      paragraph("Share of the remaining misfit that each would explain alone, to first order.", "small muted")
           .append(table.html()));
 }
 
@@ -230,7 +230,7 @@ std::string alternatives_section(const Explanation& explanation) {
   if (!explanation.rejected.empty()) {
     html += rejected_html(explanation.rejected);
   }
-  return html.empty() ? std::string() : folded_section("The alternatives, and why not", "laws that fit worse", html);
+  return html.empty() ? std::string() : folded_section("Alternatives, and why not", "laws that fit worse", html);
 }
 
 }  // namespace sealwatch::report

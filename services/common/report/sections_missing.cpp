@@ -25,10 +25,10 @@ constexpr double kActs = 0.1;            ///< of its largest size, from which a 
 constexpr double kMostlyOutside = 0.5;   ///< share of the points inside the band below which it is said
 constexpr double kOneValued = 0.1;       ///< of the law's range: the two ways through a state differ by less
 
-/// "Coulomb friction of the piston: missing force against +x"; the axes say in which unit.
+/// "Coulomb friction of the piston: missing force against +x", "External leakage of chamber A: missing flow"; the axes say in which unit.
 std::string title_of(const MissingTerm& term) {
   std::string title = element_name(term.element);
-  if (!term.what.id.empty()) title = law_name(term.what).append(" of the ").append(title);
+  if (!term.what.id.empty()) title = law_name(term.what).append(" of ").append(the_element(term.element));
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   return title.append(": missing ").append(term.quantity);
 }
@@ -48,7 +48,7 @@ Plot over_time(const MissingTerm& term) {
   }
   plot.marks.emplace_back(Reference{.at = 0.0});
   if (size > 0) plot.marks.emplace_back(std::move(band));
-  plot.marks.emplace_back(Line{.x = term.time_s, .y = term.demanded, .ink = Ink::first, .label = "data demand"});
+  plot.marks.emplace_back(Line{.x = term.time_s, .y = term.demanded, .ink = Ink::first, .label = "required by data"});
   if (has_law(term))
     plot.marks.emplace_back(Line{.x = term.time_s, .y = term.law, .ink = Ink::second, .label = "law", .width = 1.8});
   return plot;
@@ -140,7 +140,7 @@ Plot over_state(const MissingTerm& term) {
             .x = {.label = term.state, .unit = term.state_unit},
             .y = {.unit = term.unit},
             .height = 240};
-  Scatter dots{.ink = Ink::first, .label = "data demand"};
+  Scatter dots{.ink = Ink::first, .label = "required by data"};
   const std::size_t size = std::min(term.state_value.size(), term.demanded.size());
   const std::size_t step = size / kMostDots + 1;
   for (std::size_t k = 0; k < size; k += step) {
@@ -173,12 +173,12 @@ double share_inside(const MissingTerm& term) {
 std::string agreement_of(const MissingTerm& term) {
   if (!has_law(term)) return {};
   const double inside = share_inside(term);
-  std::string words = "Where the law acts it runs inside the band at " + percent_text(inside) + " of the points.";
+  std::string words = "Where the law acts, it lies inside the band at " + percent_text(inside) + " of the points.";
   if (inside < kMostlyOutside)
     words +=
-        " Where it does not, the data ask for another course as well, or the law answers to the missing term itself "
-        "(an "
-        "overflow, a stop, dry friction) and hides it, and the band is too narrow.";
+        " Elsewhere a further effect is missing, or the law itself responds to the missing term (overflow, end stop, "
+        "dry "
+        "friction), which makes the band too narrow.";
   return paragraph(words, "small muted");
 }
 
@@ -194,10 +194,10 @@ std::string plots_of(const MissingTerm& term) {
 std::string missing_section(const mismatch::Explanation& explanation) {
   if (explanation.missing.empty()) return {};
   std::string html = paragraph(
-      "What the data demand is estimated without any law, from the recording and the balance of the element, as means "
-      "over a quarter of a second or more, over the recording in which the law does most; its band is the 95 % "
-      "interval. "
-      "Where the law runs inside the band it says what the data say.",
+      "The term that the data require is estimated without any law, from the recording and the element's balance, "
+      "averaged over at least a quarter of a second. Shown is the recording in which the law acts most. The band is "
+      "the "
+      "95 % interval: inside it, law and data agree.",
       "small muted");
   for (std::size_t k = 0; k < explanation.missing.size(); ++k) {
     const MissingTerm& term = explanation.missing[k];
@@ -207,7 +207,7 @@ std::string missing_section(const mismatch::Explanation& explanation) {
     else
       html += folded(label, plots_of(term));
   }
-  return folded_section("The missing term", "what the data demand without any law, and the law", html);
+  return folded_section("The missing term", "what the data require without any law, and the law", html, Paper::printed);
 }
 
 }  // namespace sealwatch::report

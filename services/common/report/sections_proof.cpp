@@ -153,10 +153,11 @@ std::string overlays_section(const Explanation& explanation) {
     first = false;
   }
   if (left_out > 0)
-    html += paragraph("Plots of " + std::to_string(left_out) + " more recordings are left out to keep this page small.",
+    html += paragraph("Plots of " + std::to_string(left_out) + " more recordings are omitted to keep this page small.",
                       "muted small");
-  return html.empty() ? html
-                      : folded_section("Recording and simulation", "traces over each other, and what is left", html);
+  return html.empty()
+             ? html
+             : folded_section("Recording and simulation", "overlaid traces and residuals", html, Paper::printed);
 }
 
 std::string comparison_section(const Explanation& explanation) {
@@ -176,7 +177,7 @@ std::string comparison_section(const Explanation& explanation) {
   if (html.empty()) return {};
   if (changed) html += gains(explanation);
   return folded_section(changed ? "Before and after, in figures" : "The fit, in figures",
-                        "misfit of each channel and recording", html);
+                        "misfit of each channel and recording", html, Paper::printed);
 }
 
 }  // namespace sealwatch::report

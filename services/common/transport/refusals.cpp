@@ -63,7 +63,7 @@ std::optional<std::string> refused_by_security() {
   const std::lock_guard lock(known.mutex);
   if (known.count == 0) return std::nullopt;
   known.count = 0;
-  return "DDS Security refuses somebody; Cyclone says last: " + known.last;
+  return "DDS Security refused a connection; last message of Cyclone: " + known.last;
 }
 
 }  // namespace sealwatch

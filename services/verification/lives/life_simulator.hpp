@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "sealwatch/forecast/oracle.hpp"
 #include "services/verification/lives/circuit_truth.hpp"
 #include "services/verification/lives/life_record.hpp"
+#include "services/verification/lives/oracle.hpp"
 #include "services/verification/lives/setting.hpp"
 #include "services/virtual_bench/simulate_life.hpp"
 

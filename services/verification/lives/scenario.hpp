@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
-#include "sealwatch/forecast/oracle.hpp"
+#include "services/verification/lives/oracle.hpp"
 #include "services/virtual_bench/simulate_life.hpp"
 
 namespace sealwatch::verification {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sealwatch/port/in_memory_bus.hpp"
+#include "tests/unit/port/in_memory_bus.hpp"
 
 namespace sealwatch::cli {
 namespace {

@@ -15,9 +15,9 @@
 #include <string>
 
 #include "sealwatch/forecast/forecaster.hpp"
-#include "sealwatch/forecast/oracle.hpp"
 #include "sealwatch/forecast/prognostic_metrics.hpp"
 #include "sealwatch/forecast/proper_scores.hpp"
+#include "services/verification/lives/oracle.hpp"
 #include "tests/unit/forecast/random_life.hpp"
 
 using namespace sealwatch;

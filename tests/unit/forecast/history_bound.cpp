@@ -24,7 +24,7 @@
 
 #include "sealwatch/forecast/forecaster.hpp"
 #include "sealwatch/forecast/normal.hpp"
-#include "sealwatch/forecast/oracle.hpp"
+#include "services/verification/lives/oracle.hpp"
 #include "services/virtual_bench/random.hpp"
 #include "tests/unit/forecast/lives.hpp"
 

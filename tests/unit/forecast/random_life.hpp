@@ -10,7 +10,7 @@
 
 #include "sealwatch/forecast/condition_history.hpp"
 #include "sealwatch/forecast/degradation.hpp"
-#include "sealwatch/forecast/oracle.hpp"
+#include "services/verification/lives/oracle.hpp"
 #include "tests/unit/forecast/lives.hpp"
 
 namespace sealwatch::forecast::test {

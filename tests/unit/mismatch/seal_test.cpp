@@ -85,7 +85,7 @@ TEST(Seal, ThatWasReplacedBetweenTestsNamesNoLaw) {
   EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
   EXPECT_TRUE(explanation->effects.empty());
   EXPECT_NE(explanation->summary.find("R_CL is 1.2e+13 (1970-01-31), 2.6"), std::string::npos) << explanation->summary;
-  EXPECT_NE(explanation->summary.find("no wear"), std::string::npos) << explanation->summary;
+  EXPECT_NE(explanation->summary.find("not wear"), std::string::npos) << explanation->summary;
 }
 
 TEST(Seal, IsNotSaidToHaveChangedBetweenTestsOfOneDay) {

@@ -22,10 +22,10 @@ TEST(Summary, NamesWhichLawCannotBeToldFromWhich) {
   friction.indistinguishable = {{"presliding_friction", "", "piston", "sigma_0 z", ""}};
   found.effects = {load, friction};
   const std::string text = summary_of(found);
-  EXPECT_NE(text.find("cannot tell position dependent load at the piston from another form of it (k_q |x - x_q|)."),
+  EXPECT_NE(text.find("cannot distinguish position dependent load at the piston from another form of it (k_q |x - x_q|)."),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("cannot tell coulomb friction at the piston from presliding friction at the piston."),
+  EXPECT_NE(text.find("cannot distinguish coulomb friction at the piston from presliding friction at the piston."),
             std::string::npos)
       << text;
 }
@@ -37,7 +37,7 @@ TEST(Summary, ShowsTheChannelThatImproved) {
   found.effects[0].what = {"sensor_bias", "", "sensor:position", "b", ""};
   found.holdout.channels = {{.channel = "motor_current", .rms_before = 1.03, .rms_after = 1.03},
                             {.channel = "pressure_a", .rms_before = 1.02, .rms_after = 0.98}};
-  EXPECT_NE(summary_of(found).find("the misfit of pressure A on recordings that took no part falls from 1.02 to 0.98"),
+  EXPECT_NE(summary_of(found).find("the misfit of pressure A on held-out recordings falls from 1.02 to 0.98"),
             std::string::npos)
       << summary_of(found);
 }
@@ -79,7 +79,7 @@ TEST(Summary, SaysWhereMuchIsLeft) {
   position.channel = "position";
   position.rms_before = 9000.0;
   position.rms_after = position.weighed_rms_after = 1700.0;
-  EXPECT_NE(summary_of(found).find("Not all is explained: position still misses by 1700 times the noise."),
+  EXPECT_NE(summary_of(found).find("A part remains unexplained: position still misses by 1700 times the noise."),
             std::string::npos)
       << summary_of(found);
   position.rms_after = position.weighed_rms_after = 1.02;

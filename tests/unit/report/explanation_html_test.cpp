@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "services/common/report/actuator_drawing.hpp"
+#include "services/common/report/explanation_sections.hpp"
 #include "tests/unit/report/example.hpp"
 #include "tests/unit/report/well_formed.hpp"
 
@@ -64,7 +65,7 @@ TEST(ReportHtml, TellsWhichValueOfTheAssetFileMayBeWrongBeforeWhatCouldHaveBeenS
   for (const char* part : {"Undetermined: a value of the asset file may be wrong", "piston area on chamber A",
                            "dead volume of one chamber", "+3.0 %", "+20 %"})
     EXPECT_THAT(html, HasSubstr(part));
-  EXPECT_LT(html.find("A value of the asset file that may be wrong"), html.find("What could have been seen"));
+  EXPECT_LT(html.find("A value in the asset file may be wrong"), html.find("What these recordings could detect"));
 }
 
 TEST(ReportHtml, TellsWhatWasFound) {
@@ -73,18 +74,18 @@ TEST(ReportHtml, TellsWhatWasFound) {
        {"Mismatch found and explained", "dry friction of 4.0 kN", "Stribeck friction of the piston", "98 %",
         "(F_c + F_x exp(-(v / v_st)^2)) tanh(v / v_s)", "4.010 ± 0.060 kN", "old model", "new model", "holdout_0",
         "coulomb friction", "misses the rise near standstill", "fits better only with oil flowing",
-        "had been standing in for it", "13 % more worn", "these recordings cannot show it",
-        "Record a stroke at 0.2 mm/s", "Inspect the piston for ", "accept this discrepancy", "117 laws were tried"})
+        "had been compensating for it", "13 % more worn", "cannot be detected in these recordings",
+        "Record a stroke at 0.2 mm/s", "Inspect the piston for ", "run sealwatch accept", "117 laws were tried"})
     EXPECT_THAT(html, HasSubstr(part));
 }
 
 TEST(ReportHtml, ShowsWhatWasSeenBesideTheClaimedEffects) {
   mismatch::Explanation explanation = example_explanation();
-  EXPECT_THAT(explanation_to_html(explanation), Not(HasSubstr("What else was seen")));
+  EXPECT_THAT(explanation_to_html(explanation), Not(HasSubstr("Other candidates")));
   explanation.candidates = {{{"line_resistance", "laminar", "valve_1", "R q_f", ""}, 0.12, 0.4}};
   const std::string html = explanation_to_html(explanation);
   EXPECT_EQ(what_is_wrong(html), "");
-  for (const char* part : {"What else was seen", "line resistance (laminar)", "12 %", "40 %"})
+  for (const char* part : {"Other candidates", "line resistance (laminar)", "12 %", "40 %"})
     EXPECT_THAT(html, HasSubstr(part));
 }
 
@@ -114,7 +115,7 @@ TEST(ReportHtml, SaysHowMuchAForbiddenFitWouldHaveTaken) {
   explanation.rejected.front().allowed_share = 0.61;
   const std::string html = explanation_to_html(explanation);
   EXPECT_THAT(html, HasSubstr("43 %"));
-  EXPECT_THAT(html, HasSubstr("with a possible value would have taken 61 % of the misfit"));
+  EXPECT_THAT(html, HasSubstr("with a possible value would have explained 61 % of the misfit"));
 }
 
 TEST(ReportHtml, NamesTheLawOfAMissingTermAndSaysWhereItLeavesTheBand) {
@@ -124,17 +125,42 @@ TEST(ReportHtml, NamesTheLawOfAMissingTermAndSaysWhereItLeavesTheBand) {
   term.element = "sensor:level_voltage";
   std::string html = explanation_to_html(explanation);
   EXPECT_THAT(html, HasSubstr("Sensor bias of the sensor of level voltage: missing force against +x, recording fit_0"));
-  EXPECT_THAT(html, Not(HasSubstr("the band is too narrow")));
+  EXPECT_THAT(html, Not(HasSubstr("makes the band too narrow")));
   for (double& value : term.law) value += 5000.0;
   html = explanation_to_html(explanation);
-  EXPECT_THAT(html, HasSubstr("runs inside the band at 0 % of the points"));
-  EXPECT_THAT(html, HasSubstr("the band is too narrow"));
+  EXPECT_THAT(html, HasSubstr("lies inside the band at 0 % of the points"));
+  EXPECT_THAT(html, HasSubstr("makes the band too narrow"));
+}
+
+TEST(ReportHtml, NamesElementsAsAnEngineerDoes) {
+  mismatch::Explanation explanation = example_explanation();
+  explanation.effects.front().what = {"external_leakage", "laminar", "chamber_a", "G (p - p_0)",
+                                      "oil that leaves the chamber past the rod seal, through a narrow gap"};
+  const std::string html = explanation_to_html(explanation);
+  EXPECT_THAT(html, HasSubstr("External leakage (laminar) of chamber A"));
+  EXPECT_THAT(html, HasSubstr("Inspect chamber A for external leakage (laminar): oil that leaves the chamber"));
+  EXPECT_THAT(html, Not(HasSubstr("the chamber A")));
+  EXPECT_EQ(the_element("sensor:pressure_a"), "the sensor of pressure A");
+  EXPECT_EQ(the_element("valve_2"), "valve 2");
+  EXPECT_EQ(the_element("piston_seal"), "the piston seal");
+}
+
+TEST(ReportHtml, PrintsTheProofAndLeavesTheRestClosed) {
+  const auto printed = [](const mismatch::Explanation& explanation, const std::string& title) {
+    const std::string html = explanation_to_html(explanation);
+    return html.find("<details class=\"part paper\"><summary><h2>" + title) != std::string::npos;
+  };
+  for (const char* title : {"The missing term", "Recording and simulation", "Before and after, in figures"})
+    EXPECT_TRUE(printed(example_explanation(), title)) << title;
+  for (const char* title : {"Notes", "Alternatives, and why not", "What these recordings could detect"})
+    EXPECT_FALSE(printed(example_explanation(), title)) << title;
+  EXPECT_TRUE(printed(consistent_example(), "What these recordings could detect"));
 }
 
 TEST(ReportHtml, ConsistentClaimsNothing) {
   const std::string html = explanation_to_html(consistent_example());
   EXPECT_THAT(html, HasSubstr("agree within the noise"));
-  EXPECT_THAT(html, Not(HasSubstr("What the model lacked")));
+  EXPECT_THAT(html, Not(HasSubstr("The laws in full")));
   EXPECT_THAT(html, Not(HasSubstr("The missing term")));
 }
 
@@ -180,7 +206,7 @@ TEST(ReportHtml, StaysSmallWithManyLongRecordings) {
   for (int k = 0; k < 60; ++k) explanation.recordings.push_back(one);
   const std::string html = explanation_to_html(explanation);
   EXPECT_LT(html.size(), 3'000'000U);
-  EXPECT_THAT(html, HasSubstr("more recordings are left out"));
+  EXPECT_THAT(html, HasSubstr("more recordings are omitted"));
 }
 
 TEST(Drawing, HasAPlaceForEveryElementOfEveryPlant) {

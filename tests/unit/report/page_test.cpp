@@ -49,6 +49,12 @@ TEST(Page, NeedsNoNetwork) {
     EXPECT_EQ(page.find(fetched), std::string::npos) << fetched;
 }
 
+TEST(Page, StylesOfDrawingsDoNotReachTheTextOfAPart) {
+  const std::string page = html_page("t", folded_section("T", "inside", "<svg><text>x</text></svg>", Paper::printed));
+  EXPECT_NE(page.find("<details class=\"part paper\">"), std::string::npos);
+  EXPECT_EQ(page.find("\n.part{fill"), std::string::npos) << "text inside would inherit its stroke, and look smeared";
+}
+
 TEST(WellFormed, SeesWhatIsWrong) {
   EXPECT_NE(what_is_wrong("<p><b></p></b>"), "");
   EXPECT_NE(what_is_wrong("<p>a & b</p>"), "");

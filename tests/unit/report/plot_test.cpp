@@ -82,6 +82,19 @@ TEST(Plot, DrawsEveryMarkWellFormed) {
   EXPECT_EQ(svg, to_svg(one_of_each()));
 }
 
+TEST(Plot, NamesOfVerticalLinesDoNotOverlap) {
+  Plot plot{.x = {.range = {{0.0, 10.0}}}, .y = {.range = {{0.0, 1.0}}}};
+  plot.marks = {Line{.x = {0.0, 10.0}, .y = {0.0, 1.0}},
+                Reference{.at = 5.0, .vertical = true, .label = "act by 2018-05-31"},
+                Reference{.at = 5.5, .vertical = true, .label = "summer 2019"},
+                Reference{.at = 9.9, .vertical = true, .label = "summer 2021"}};
+  const std::string svg = to_svg(plot);
+  EXPECT_EQ(what_is_wrong(svg), "") << svg;
+  EXPECT_THAT(svg, HasSubstr("y=\"11.0\" >act by 2018-05-31"));
+  EXPECT_THAT(svg, HasSubstr("y=\"24.0\" >summer 2019"));
+  EXPECT_THAT(svg, HasSubstr("y=\"11.0\" text-anchor=\"end\">summer 2021")) << "left of its line, where the plot ends";
+}
+
 TEST(Plot, PlacesValuesOnTheScale) {
   Plot plot{.x = {.range = {{0.0, 10.0}}}, .y = {.range = {{0.0, 1.0}}}, .width = 166, .height = 100};
   plot.x.tick_labels = false;

@@ -57,6 +57,7 @@ TEST(Readable, Identifiers) {
   EXPECT_EQ(words_of("line_resistance"), "line resistance");
   EXPECT_EQ(words_of("sensor:pressure_a"), "sensor: pressure A");
   EXPECT_EQ(unit_text("Pa s/m3"), "Pa·s/m³");
+  EXPECT_EQ(unit_text("Pa s2/m6"), "Pa·s²/m⁶");
   EXPECT_EQ(unit_text("1"), "");
 }
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "sealwatch/port/in_memory_bus.hpp"
 #include "services/common/runtime/layer_runner.hpp"
+#include "tests/unit/port/in_memory_bus.hpp"
 #include "tests/unit/runtime/fake_layers.hpp"
 #include "tests/unit/store/place.hpp"
 

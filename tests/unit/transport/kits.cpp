@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "sealwatch/port/in_memory_bus.hpp"
+#include "tests/unit/port/in_memory_bus.hpp"
 
 namespace sealwatch::test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sealwatch/port/in_memory_bus.hpp"
+#include "tests/unit/port/in_memory_bus.hpp"
 #include "tests/unit/virtual_bench/nominal.hpp"
 
 namespace sealwatch::bench {

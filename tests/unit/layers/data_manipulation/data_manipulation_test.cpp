@@ -276,7 +276,7 @@ TEST(Alignment, TwoChannelsAloneAreNamedAndLeftAlone) {
   ASSERT_NE(remark_on(swapped, "velocity"), nullptr);
   EXPECT_TRUE(remark_on(swapped, "velocity")->sign_swapped);
   EXPECT_FALSE(remark_on(swapped, "velocity")->corrected);
-  EXPECT_THAT(remark_on(swapped, "velocity")->remark, HasSubstr("cannot be told"));
+  EXPECT_THAT(remark_on(swapped, "velocity")->remark, HasSubstr("it is unknown which"));
   const Result late =
       conclude(only(SyntheticPst{.late_s = {{"flow", 0.2}}}.record(), {"position", "flow", "pressure_a"}));
   ASSERT_NE(remark_on(late, "flow"), nullptr);

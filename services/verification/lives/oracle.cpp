@@ -1,4 +1,4 @@
-#include "sealwatch/forecast/oracle.hpp"
+#include "services/verification/lives/oracle.hpp"
 
 #include <cmath>
 

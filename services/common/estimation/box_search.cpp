@@ -137,7 +137,8 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     const double tolerance = rule.at_cost(cost_);
     Eigen::VectorXd by = here.step(kUndamped);
     if (!by.allFinite()) return SearchEnd::stuck;
-    if (here.promised(by) <= tolerance) return SearchEnd::converged;
+    promised_ = here.promised(by);
+    if (promised_ <= tolerance) return SearchEnd::converged;
     const Eigen::VectorXd limited = here.step(damping, radius);
     const bool promises = here.promised(limited) > tolerance;
     if (shortened && !promises)  // the slope is known no better than that, or the way is barred
@@ -164,6 +165,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     if (change <= tolerance && kept > kLinear) return SearchEnd::converged;
     here = linear_model();
   }
+  promised_ = here.promised(here.step(kUndamped));
   return SearchEnd::out_of_iterations;
 }
 

@@ -40,6 +40,8 @@ class BoxSearch {
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double cost() const { return cost_; }
+  /// By how much the linear model at the point would let the cost fall.
+  [[nodiscard]] double promised() const { return promised_; }
 
  private:
   /// Sum of squares, linear in the residuals, about the point.
@@ -63,6 +65,7 @@ class BoxSearch {
   Eigen::Index size_ = 0;
   int iterations_ = 0;
   double cost_ = 0.0;
+  double promised_ = 0.0;
 };
 
 }  // namespace sealwatch

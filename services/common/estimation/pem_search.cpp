@@ -173,6 +173,7 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   SearchEnd end = in_box.run(rule, options.maximum_iterations);
   optimum.iterations = in_box.iterations();
   optimum.cost = in_box.cost();
+  optimum.promised = end == SearchEnd::stuck ? std::numeric_limits<double>::infinity() : in_box.promised();
   if (end == SearchEnd::stuck) end = search_on(ceres_problem, rule, options, problem, optimum);
   optimum.converged = end == SearchEnd::converged;
   optimum.hopeless = end == SearchEnd::hopeless;

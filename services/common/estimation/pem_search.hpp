@@ -19,6 +19,7 @@ struct PemOptimum {
   PemPoint point;
   std::vector<Linearisation> at_optimum;  ///< per recording
   double cost = 0.0;
+  double promised = 0.0;  ///< fall of the cost by the linear model where the search ended; infinite: not known
   bool converged = false;
   bool hopeless = false;  ///< given up far from the recording
   int iterations = 0;

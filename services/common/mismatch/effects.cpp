@@ -61,19 +61,23 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   const bool asked = std::ranges::any_of(
       found, [&](const Trial& trial) { return trial.effects.back().law->id != best.effects[slot].law->id; });
   if (best.effects.size() > 1 || !asked) {
-    AssetConfig asset = best.model->asset;
-    asset.physics.erase(asset.physics.begin() + static_cast<std::ptrdiff_t>(place_of(best, slot)));
-    Result<FittedModel> fewer = fit_model(asset, data, best.model.get(), options.threads);
-    if (!fewer) return found;
-    from.model = std::make_shared<const FittedModel>(std::move(*fewer));
-    const auto screening = screen(*from.model, data, {.seed = options.seed, .threads = options.threads});
+    Result<Screening> screening = naming.first;
+    if (!others.empty()) {
+      AssetConfig asset = best.model->asset;
+      asset.physics.erase(asset.physics.begin() + static_cast<std::ptrdiff_t>(place_of(best, slot)));
+      Result<FittedModel> fewer = fit_model(asset, data, best.model.get(), options.threads);
+      if (!fewer) return found;
+      from.model = std::make_shared<const FittedModel>(std::move(*fewer));
+      screening = screen(*from.model, data, {.seed = options.seed, .threads = options.threads});
+    }
     if (!screening) return found;
     for (LawStart& start : ranked_laws(*screening, kAlternatives))
       if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
   }
-  for (Trial& trial : refit(from, starts, data, options.threads, {}, true)) found.push_back(std::move(trial));
+  const RefitOptions rivals{.again_smaller = true, .to_beat = best.model->misfit};
+  for (Trial& trial : refit(from, starts, data, options.threads, rivals)) found.push_back(std::move(trial));
   constexpr double kNear = 1.01;  // times the misfit: further off a twin is told apart without its last iterations
-  for (Trial& twin : refit(from, twins_of(naming, best, slot), data, options.threads, {}, true))
+  for (Trial& twin : refit(from, twins_of(naming, best, slot), data, options.threads, rivals))
     found.push_back(twin.model->misfit < kNear * best.model->misfit ? polished(std::move(twin), data, options.threads)
                                                                     : std::move(twin));
   return found;

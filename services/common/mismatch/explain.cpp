@@ -133,7 +133,13 @@ class Analysis {
     Data data = prepared(fit_);
     data.sensors = known_sensors(asset_, baseline_->problem);
     Result<Naming> naming = name_effects(baseline_, data, options, progress_, from.value_or(Trial{{}, baseline_}));
-    if (naming && naming->sensor_within_tolerance) naming = beside_inexact_sensors(std::move(*naming), options);
+    if (naming && naming->sensors_are_inexact) {
+      Result<Naming> again = beside_inexact_sensors(*naming, options);
+      if (again || !deadline_.passed())
+        naming = std::move(again);
+      else
+        naming->not_asked.emplace_back("what was found beside sensors within their tolerances");
+    }
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
     say_how_likely_by_noise(naming_.first);
@@ -158,19 +164,24 @@ class Analysis {
     return {};
   }
 
-  // A sensor is off by no more than it may be: all of them may be, and what was found is asked again beside that.
-  Result<Naming> beside_inexact_sensors(Naming found, const ExplainOptions& options) {
-    std::ranges::copy(known_sensors(asset_, baseline_->problem), std::back_inserter(fit_.known));
-    Result<FittedModel> baseline = fit_model(baseline_->asset, prepared(fit_), baseline_.get(), options_.threads);
-    const Trial laws = without_last(found.best);
-    Result<FittedModel> with_laws = fit_model(laws.model->asset, prepared(fit_), laws.model.get(), options_.threads);
+  // What was found is asked again beside sensors that are off by no more than they may be.
+  Result<Naming> beside_inexact_sensors(const Naming& found, const ExplainOptions& options) {
+    Data inexact = fit_;
+    std::ranges::copy(known_sensors(asset_, baseline_->problem), std::back_inserter(inexact.known));
+    Result<FittedModel> baseline = fit_model(baseline_->asset, prepared(inexact), baseline_.get(), options_.threads);
+    const Trial& laws = found.best;
+    Result<FittedModel> with_laws = fit_model(laws.model->asset, prepared(inexact), laws.model.get(), options_.threads);
     if (!baseline) return fail(baseline.error());
     if (!with_laws) return fail(with_laws.error());
-    baseline_ = std::make_shared<const FittedModel>(std::move(*baseline));
+    auto with_sensors = std::make_shared<const FittedModel>(std::move(*baseline));
     const Trial from{laws.effects, std::make_shared<const FittedModel>(std::move(*with_laws))};
     tell("looking again, with sensors within their tolerances", 0.5);
-    return name_effects(baseline_, prepared(fit_), options, progress_,
-                        laws.effects.empty() ? Trial{{}, baseline_} : from);
+    Result<Naming> again = name_effects(with_sensors, prepared(inexact), options, progress_,
+                                        laws.effects.empty() ? Trial{{}, with_sensors} : from);
+    if (!again) return again;
+    baseline_ = with_sensors;
+    fit_ = std::move(inexact);
+    return again;
   }
 
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "services/common/mismatch/candidates.hpp"
@@ -98,7 +100,8 @@ void try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& op
     if (!screening || !promising(*screening, *from.model)) continue;
     std::vector<std::vector<LawStart>> starts;
     for (LawStart& start : ranked_laws(*screening, kClosedForms)) starts.push_back({std::move(start)});
-    for (Trial& trial : refit(from, starts, data, options.threads)) trials.push_back(std::move(trial));
+    for (Trial& trial : refit(from, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))
+      trials.push_back(std::move(trial));
     if (naming.best.effects.empty()) break;
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
@@ -143,8 +146,61 @@ bool one_law_does(const std::vector<Trial>& trials, Naming& naming, const Data& 
   return left && !differs(left->p_value, *best->model, options.false_alarm_rate);
 }
 
-// Refits with another law: first the single laws that promise most, where none of them does the others, in a gross
-// misfit from second starts too; where none does, pairs.
+// The model with all sensors off by what they may be. Nothing where that leaves a gross misfit, or promises to.
+std::optional<FittedModel> with_inexact_sensors(const FittedModel& exact, const Data& data, int threads) {
+  Data inexact = data;
+  std::ranges::copy(data.sensors, std::back_inserter(inexact.known));
+  const auto there = fit_model(exact.asset, inexact, &exact, threads, 0);
+  if (!there || there->misfit - 4.0 * there->optimum.promised > kGross * there->residuals) return std::nullopt;
+  constexpr int kIterations = 30;
+  Result<FittedModel> model = continue_fit(*there, inexact, threads, kIterations);
+  if (!model || excess(*model) > kGross) return std::nullopt;
+  return std::move(*model);
+}
+
+// Whether sensors that are not exact explain more than anything tried, beside what was found before or beside the best
+// law tried now, which then is the naming's. What the recordings tell of the sensors is paid for (occam_factor): else
+// they could imitate much of what small effects do.
+bool sensors_are_inexact(Naming& naming, const std::vector<Trial>& trials, const Data& data, int threads) {
+  if (data.sensors.empty()) return false;
+  const bool asked_before = naming.exact_beside == naming.best.model;
+  if (asked_before && trials.empty()) return false;
+  naming.exact_beside = naming.best.model;
+  double phi = smallest_dispersion(trials, *naming.best.model);
+  const Trial* law = best_of(trials, phi);
+  std::vector<std::pair<Trial, std::optional<FittedModel>>> asked;
+  if (!asked_before) asked.emplace_back(naming.best, with_inexact_sensors(*naming.best.model, data, threads));
+  if (law != nullptr) asked.emplace_back(*law, with_inexact_sensors(*law->model, data, threads));
+  for (const auto& [trial, inexact] : asked)
+    if (inexact) phi = std::min(phi, dispersion(*inexact));
+  double known = criterion(*naming.best.model, phi);
+  if (law != nullptr) known = std::min(known, criterion(*law->model, phi));
+  double best = known - kWorthAnother;
+  bool any = false;
+  for (const auto& [trial, inexact] : asked) {
+    if (!inexact) continue;
+    const double gain = (trial.model->misfit - inexact->misfit) / phi - occam_factor(*inexact, data.sensors, phi);
+    const double score = criterion(*trial.model, phi) - gain;
+    if (score > best) continue;
+    best = score - kWorthAnother;  // what a law more must bring
+    naming.best = trial;
+    any = true;
+  }
+  return any;
+}
+
+// A sensor's gain or offset that is no further off than its tolerance lets it be is no fault.
+bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::vector<KnownValue>& sensors) {
+  const std::string name = tolerated_name(effect);
+  const auto known = std::ranges::find(sensors, name, &KnownValue::name);
+  if (name.empty() || known == sensors.end()) return false;
+  const std::string strength = physics_parameter_name(effect.element, effect.law->id,
+                                                      effect.law->parameters[strengths_of(*effect.law).front()].name);
+  return std::abs(*estimate_of(*trial.model, strength)) <= kWithinTolerance * known->standard_deviation;
+}
+
+// Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
+// Where none of them does, sensors that are not exact; else the other laws, then pairs.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
@@ -156,26 +212,21 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     for (LawStart& start : second_starts(asked)) singles.push_back({std::move(start)});
   std::vector<Trial> trials;
   const auto refit_also = [&](const std::vector<std::vector<LawStart>>& starts) {
-    for (Trial& trial : refit(naming.best, starts, data, options.threads)) trials.push_back(std::move(trial));
+    RefitOptions refits;
+    for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
+    for (Trial& trial : refit(naming.best, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
   };
   const auto first = static_cast<std::ptrdiff_t>(gross ? singles.size() : nearly_as_promising(asked, singles.size()));
   refit_also({singles.begin(), singles.begin() + first});
-  if (first < std::ssize(singles) && !one_law_does(trials, naming, data, options))
+  if (!one_law_does(trials, naming, data, options)) {
+    naming.sensors_are_inexact = sensors_are_inexact(naming, trials, data, options.threads);
+    if (naming.sensors_are_inexact) return trials;
     refit_also({singles.begin() + first, singles.end()});
-  if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
-    refit_also(ranked_pairs(asked, naming.best.model->misfit));
+    if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
+      refit_also(ranked_pairs(asked, naming.best.model->misfit));
+  }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return trials;
-}
-
-// A sensor's gain or offset that is no further off than its tolerance lets it be.
-bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::vector<KnownValue>& sensors) {
-  const std::string name = tolerated_name(effect);
-  const auto known = std::ranges::find(sensors, name, &KnownValue::name);
-  if (name.empty() || known == sensors.end()) return false;
-  const std::string strength = physics_parameter_name(effect.element, effect.law->id,
-                                                      effect.law->parameters[strengths_of(*effect.law).front()].name);
-  return std::abs(*estimate_of(*trial.model, strength)) <= kWithinTolerance * known->standard_deviation;
 }
 
 }  // namespace
@@ -212,6 +263,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
     const std::vector<Trial> trials = try_laws(naming, data, options);
+    if (naming.sensors_are_inexact) return naming;
     const double phi = smallest_dispersion(trials, *naming.best.model);
     const Trial* best = best_of(trials, phi);
     // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
@@ -223,10 +275,18 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       break;
     }
     const Screening asked = naming.last;
+    const Trial before = naming.best;
     if (!take(naming, *best, data, options)) break;
-    naming.sensor_within_tolerance = excess(*naming.best.model) <= kGross &&
-                                     is_within_tolerance(naming.best.effects.back(), naming.best, data.sensors);
-    if (naming.sensor_within_tolerance) return naming;
+    if (excess(*naming.best.model) <= kGross &&
+        is_within_tolerance(naming.best.effects.back(), naming.best, data.sensors)) {
+      naming.best = before;
+      naming.sensors_are_inexact = true;
+      return naming;
+    }
+    // What is left may lie in the sensors: before many forms of the law bend to that.
+    naming.sensors_are_inexact = differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) &&
+                                 sensors_are_inexact(naming, {}, data, options.threads);
+    if (naming.sensors_are_inexact) return naming;
     if (in_time("other shapes of the law found")) from_other_shapes(naming, level, asked, data, options);
     if (in_time("other laws in place of those found before")) another_law_for_each(naming, data, options);
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);

@@ -32,7 +32,10 @@ struct Naming {
   std::vector<std::string> remarks = {};              ///< what was not taken for a reason of computation
   std::shared_ptr<const FittedModel> looked_at = {};  ///< the model that was screened last,
   Screening seen = {};                                ///< and what that showed
-  bool sensor_within_tolerance = false;  ///< the last law found is no more than that (Data::sensors): the search ended
+  /// Sensors that are off by what they may be (Data::sensors) explain more than any law: the search ended there, and
+  /// `best` is to be asked beside them.
+  bool sensors_are_inexact = false;
+  std::shared_ptr<const FittedModel> exact_beside = {};  ///< the model beside which that was asked last, and denied
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
 };
 

@@ -153,7 +153,9 @@ void from_other_shapes(Naming& naming, std::size_t before, const Screening& aske
     const auto& physics = naming.best.model->asset.physics;
     const PhysicsTerm& term = physics[physics.size() - naming.best.effects.size() + added];
     const auto starts = other_starts(naming.best.effects[added], term, asked, forms);
-    for (Trial& trial : refit(naming.best, starts, data, options.threads, {added})) trials.push_back(std::move(trial));
+    for (Trial& trial : refit(naming.best, starts, data, options.threads,
+                              {.in_place_of = {added}, .to_beat = naming.best.model->misfit}))
+      trials.push_back(std::move(trial));
   }
   const double phi = smallest_dispersion(trials, *naming.best.model);
   const Trial* best = best_of(trials, phi);
@@ -174,7 +176,8 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
     for (LawStart& start : ranked_laws(*left, kOtherLaws + kSingleLaws))
       if (start.effect.element != naming.best.effects[slot].element && starts.size() < kOtherLaws)
         starts.push_back({std::move(start)});
-    for (Trial& trial : refit(*fewer, starts, data, options.threads)) trials.push_back(std::move(trial));
+    for (Trial& trial : refit(*fewer, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))
+      trials.push_back(std::move(trial));
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   const double phi = smallest_dispersion(trials, *naming.best.model);
@@ -193,7 +196,8 @@ void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions&
     for (std::size_t k = 0; k < naming.best.effects.size(); ++k)
       if (naming.best.effects[k].element == element) several.push_back(k);
     if (several.size() < 2) continue;
-    for (Trial& trial : refit(naming.best, laws_of(element, naming.first), data, options.threads, several))
+    for (Trial& trial :
+         refit(naming.best, laws_of(element, naming.first), data, options.threads, {.in_place_of = several}))
       trials.push_back(std::move(trial));
   }
   const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));

@@ -12,14 +12,13 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr int kFirstRound = 8;           // iterations of every refit
-constexpr std::size_t kSecondRound = 5;  // refits that go on,
-constexpr int kChunk = 10;               // so many iterations at a time,
-constexpr int kChunks = 3;               // so often,
-constexpr double kNearer = 0.5;          // while each leaves at most this share of the distance to the best
-constexpr double kFar = 100.0;           // times the noise: a model that misses by more says nothing of sizes
-constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
-constexpr double kHopeful = 10.0;        // times the best misfit: further off a refit does not go on
+constexpr int kSizes = 8;            // iterations with shapes held, at most
+constexpr int kRound = 5;            // iterations of a round
+constexpr int kRounds = 7;           // after the first one
+constexpr std::size_t kGoOn = 5;     // refits that go on after a round
+constexpr double kOptimistic = 2.0;  // times what the linear model promises: no search has done better by far
+constexpr double kFar = 100.0;       // times the noise: a model that misses by more says nothing of sizes
+constexpr double kSmaller = 0.1;     // strength with which one starts again that set out too far
 
 // Whether a strength of the laws added last has come to an end of its range: nothing depends on their shapes there.
 bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added) {
@@ -45,9 +44,9 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
       if (!parameter.strength)
         asset.physics[asset.physics.size() - added.size() + k].parameters.at(std::string(parameter.name)).estimate =
             false;
-  const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
+  const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kSizes);
   const bool sizes_fit = sized && !came_to_an_end(*sized, added);
-  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound);
+  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kRound);
 }
 
 // A trial while it is being worked on.
@@ -71,6 +70,23 @@ bool lost_its_core(const Refit& refit) {
     if (std::abs(value) < kNothing * plant.law_size(core.unit) * core.significant) return true;
   }
   return false;
+}
+
+// The least misfit that its search can come to, at best.
+double could_reach(const FittedModel& model) {
+  if (model.optimum.converged) return model.misfit;
+  return model.misfit - kOptimistic * 2.0 * model.optimum.promised;
+}
+
+// Which of the refits, the best first, go on: those that may come near the best of them, or what is to beat. Further off
+// than twice what decides they are no alternative to it.
+std::vector<std::size_t> going_on(const std::vector<Refit>& refits, double to_beat) {
+  const FittedModel& best = *refits.front().model;
+  const double limit = std::min(best.misfit, to_beat) + 2.0 * kWorthAnother * dispersion(best);
+  std::vector<std::size_t> open;
+  for (std::size_t k = 0; k < refits.size() && open.size() < kGoOn; ++k)
+    if (!refits[k].model->optimum.converged && could_reach(*refits[k].model) <= limit) open.push_back(k);
+  return open;
 }
 
 // Only those near the best keep their derivatives: ten recordings' worth of them take as much memory as all else.
@@ -101,11 +117,11 @@ Trial polished(Trial trial, const Data& data, int threads) {
 }
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
-                         int threads, const std::vector<std::size_t>& in_place_of, bool again_smaller) {
+                         int threads, const RefitOptions& options) {
   const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
     Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
-    for (const std::size_t out : in_place_of | std::views::reverse) {
+    for (const std::size_t out : options.in_place_of | std::views::reverse) {
       asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(refit.effects.size() - out));
       refit.effects.erase(refit.effects.begin() + static_cast<std::ptrdiff_t>(out));
     }
@@ -115,41 +131,37 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
-    Result<FittedModel> model = in_place_of.empty() ? fit_model(asset, data, from.model.get(), 1, kFirstRound)
-                                                    : sizes_first(asset, added, data, *from.model);
+    Result<FittedModel> model = options.in_place_of.empty() ? fit_model(asset, data, from.model.get(), 1, kRound)
+                                                            : sizes_first(asset, added, data, *from.model);
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
   };
   // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
   const auto one = [&](const std::vector<LawStart>& added) -> Refit {
     Refit refit = start(added, 1.0);
-    const bool worse = again_smaller && in_place_of.empty() && excess(*from.model) < kFar &&
+    const bool worse = options.again_smaller && options.in_place_of.empty() && excess(*from.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from.model->misfit);
     if (!worse) return refit;
     Refit again = start(added, kSmaller);
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
     return better ? again : refit;
   };
-  // Those that are not far from the best go on, and on while they come nearer.
-  const auto further = [&](Refit refit, double best) -> Refit {
-    for (int chunk = 0; chunk < kChunks && !refit.model->optimum.converged; ++chunk) {
-      const double distance = refit.model->misfit - best;
-      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kChunk);
-      if (!model || model->misfit > refit.model->misfit) break;
-      refit.model = std::make_shared<FittedModel>(std::move(*model));
-      if (refit.model->misfit - best > kNearer * std::max(distance, 0.0)) break;
-    }
+  const auto further = [&](Refit refit) -> Refit {
+    Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound);
+    if (model && model->misfit <= refit.model->misfit) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
   };
   std::vector<Refit> refits = in_parallel<Refit>(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); });
   std::erase_if(refits, [](const Refit& refit) { return refit.model == nullptr; });
   if (refits.empty()) return {};
-  std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
-  const double best = refits.front().model->misfit, limit = kHopeful * best;
-  const auto far = std::ranges::find_if(refits, [&](const Refit& refit) { return refit.model->misfit > limit; });
-  const auto count = std::min(static_cast<std::size_t>(far - refits.begin()), kSecondRound);
-  std::ranges::move(in_parallel<Refit>(count, threads, [&](std::size_t k) { return further(refits[k], best); }),
-                    refits.begin());
+  for (int round = 0; round < kRounds; ++round) {
+    std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
+    const std::vector<std::size_t> open = going_on(refits, options.to_beat);
+    if (open.empty()) break;
+    std::vector<Refit> gone_on =
+        in_parallel<Refit>(open.size(), threads, [&](std::size_t k) { return further(refits[open[k]]); });
+    for (std::size_t k = 0; k < open.size(); ++k) refits[open[k]] = std::move(gone_on[k]);
+  }
   std::erase_if(refits, lost_its_core);
   return trials_of(std::move(refits));
 }

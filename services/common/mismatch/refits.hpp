@@ -1,6 +1,7 @@
 // The fitted model with some laws more, refitted: start values in, trials out.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,13 +28,21 @@ struct LawStart {
   std::vector<double> parameters;
 };
 
+struct RefitOptions {
+  /// Indices of effects of the model set out from that are taken out first, ascending.
+  std::vector<std::size_t> in_place_of = {};
+  /// A refit that ends worse than what it set out from starts again with a tenth of its strength (for alternatives; a
+  /// search takes the law that is easier to find).
+  bool again_smaller = false;
+  /// Misfit of an explanation that is known: what cannot come near it is cut too.
+  double to_beat = std::numeric_limits<double>::infinity();
+};
+
 /// Refits of `laws` (each with its start values) added to `from`, on `threads` threads; those that fail are left out.
-/// `in_place_of`: indices of effects of `from` that are taken out first, ascending. `again_smaller`: a refit that ends
-/// worse than `from` starts again with a tenth of its strength (for alternatives; a search takes the law that is easier
-/// to find).
+/// All go on in rounds of a few iterations. Between them, those are cut that cannot come near the best, however well the
+/// rest of their search went: by twice what their linear model promises.
 [[nodiscard]] std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws,
-                                       const Data& data, int threads, const std::vector<std::size_t>& in_place_of = {},
-                                       bool again_smaller = false);
+                                       const Data& data, int threads, const RefitOptions& options = {});
 
 /// A search that ran out of iterations goes on from where it is.
 [[nodiscard]] Trial polished(Trial trial, const Data& data, int threads);

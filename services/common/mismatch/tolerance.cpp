@@ -54,6 +54,29 @@ std::vector<KnownValue> known_sensors(const AssetConfig& asset, const PemProblem
   return known;
 }
 
+double occam_factor(const FittedModel& model, const std::vector<KnownValue>& of, double phi) {
+  Eigen::MatrixXd gram = normal_equations(model).gram / phi;
+  std::vector<Eigen::Index> asked, others;
+  for (Eigen::Index k = 0; k < gram.cols(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Unknown* unknown = at < model.problem.shared.size() ? &model.problem.shared[at] : nullptr;
+    const bool is_asked = unknown != nullptr && std::ranges::find(of, unknown->name, &KnownValue::name) != of.end();
+    (is_asked ? asked : others).push_back(k);
+    if (unknown == nullptr || !unknown->is_known()) continue;
+    if (!is_asked) gram(k, k) += 1.0 / (unknown->prior_std * unknown->prior_std);
+    if (!is_asked) continue;
+    gram.row(k) *= unknown->prior_std;
+    gram.col(k) *= unknown->prior_std;
+  }
+  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd given_way = submatrix(scale.asDiagonal() * gram * scale.asDiagonal(), others);
+  given_way.diagonal().array() += kRidge;
+  const Eigen::MatrixXd across = scale(others).asDiagonal() * gram(others, asked);
+  Eigen::MatrixXd left = submatrix(gram, asked) - across.transpose() * given_way.ldlt().solve(across);
+  left.diagonal().array() += 1.0;
+  return left.ldlt().vectorD().cwiseMax(1.0).array().log().sum();
+}
+
 std::string tolerated_name(const Effect& effect) {
   constexpr std::string_view kSensor = "sensor:";
   if (!effect.element.starts_with(kSensor)) return {};

@@ -3,8 +3,8 @@
 // (datasheet.hpp).
 //
 // Sensors' gains and offsets are known within tolerances too. They would imitate much of what small effects do: sensors
-// are taken for exact until one of them is found to be off by no more than its tolerance. From then on all of them are
-// unknowns of every fit, and only what lies beyond is a cause (laws sensor_gain and sensor_bias).
+// are exact until their being off explains more than any law does (naming.cpp). From then on all of them are unknowns of
+// every fit, and only what lies beyond is a cause (laws sensor_gain and sensor_bias).
 //
 // Only values that show take part: those whose change by one tolerance would raise the misfit by more than a quarter
 // though everything that is estimated gives way,
@@ -38,6 +38,11 @@ inline constexpr double kUsualSensorTolerance = 0.0025;
 
 /// What a law of a sensor's gain or offset is called there; "" of other laws.
 [[nodiscard]] std::string tolerated_name(const Effect& effect);
+
+/// ln det(I + T F T / phi): what the recordings tell of unknowns that were known before, T their tolerances, F what the
+/// recordings tell of them though everything else gives way (Schur complement of the normal matrix). The price of having
+/// them at all, in units of the criterion: -2 ln of the Occam factor of their evidence.
+[[nodiscard]] double occam_factor(const FittedModel& model, const std::vector<KnownValue>& of, double phi);
 
 /// Those of `known` that show in these recordings, at `model`; none where the model cannot be linearised.
 [[nodiscard]] std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const FittedModel& model,

@@ -36,11 +36,11 @@ trap 'rm -f "$looked"' EXIT
 export build looked seconds
 look() {
   [ "$(awk '{ used += $1 } END { print int(used) }' "$looked")" -lt "$seconds" ] || return 0
-  local before after status=0
-  before=$(times | awk 'NR == 2 { split($1, m, /[ms]/); print 60 * m[1] + m[2] }')
-  clang-tidy -p "$build" --quiet "$1" 2>/dev/null || { echo "found in $1"; status=1; }
-  after=$(times | awk 'NR == 2 { split($1, m, /[ms]/); print 60 * m[1] + m[2] }')
-  echo "$(awk -v a="$after" -v b="$before" 'BEGIN { print a - b }') $1" >>"$looked"
+  local status=0 spent TIMEFORMAT='%U %S'
+  spent=$(mktemp)
+  { time clang-tidy -p "$build" --quiet "$1" 2>/dev/null; } 2>"$spent" || { echo "found in $1"; status=1; }
+  echo "$(tail -1 "$spent" | awk '{ print $1 + $2 }') $1" >>"$looked"
+  rm -f "$spent"
   return $status
 }
 export -f look

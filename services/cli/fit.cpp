@@ -42,6 +42,7 @@ bool inputs_recorded(const PlantDescription& plant, const std::vector<Recording>
 
 FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings) {
   std::vector<TimeSeries> samples;
+  samples.reserve(recordings.size());
   for (const Recording& recording : recordings) samples.push_back(recording.samples);
   // A seal's leakage means nothing when the model does not come near the recording, and the search is given up. Of a
   // plant without a seal the question may be just how far its naive model is off.
@@ -198,6 +199,7 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
                                               : options.model == kCylinderCircuit;
   if (!cylinder) return fit_whole(asset, recordings);
   std::vector<FitReport> fits;
+  fits.reserve(recordings.size());
   for (const Recording& recording : recordings) fits.push_back(fit_cylinder(asset, recording));
   return FitResult{.report = pooled(std::move(fits)), .loads = {}};
 }

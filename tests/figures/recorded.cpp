@@ -82,7 +82,7 @@ std::string partial_stroke(const Recording& recording) {
 
 std::string valve_signature(const Recording& recording) {
   const signal::TestRecord test = record_of(recording);
-  Plot plot{.title = "load pressure over position: the distance between the ways is friction",
+  Plot plot{.title = "load pressure over position: the gap between out and back is friction",
             .x = {.label = "position", .unit = "m"},
             .y = {.unit = "Pa"},
             .width = kWide,

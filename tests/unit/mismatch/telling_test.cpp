@@ -22,8 +22,9 @@ TEST(Summary, NamesWhichLawCannotBeToldFromWhich) {
   friction.indistinguishable = {{"presliding_friction", "", "piston", "sigma_0 z", ""}};
   found.effects = {load, friction};
   const std::string text = summary_of(found);
-  EXPECT_NE(text.find("cannot distinguish position dependent load at the piston from another form of it (k_q |x - x_q|)."),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("cannot distinguish position dependent load at the piston from another form of it (k_q |x - x_q|)."),
+      std::string::npos)
       << text;
   EXPECT_NE(text.find("cannot distinguish coulomb friction at the piston from presliding friction at the piston."),
             std::string::npos)

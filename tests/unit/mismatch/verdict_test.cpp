@@ -133,8 +133,7 @@ TEST(Verdict, WildSamplesSendToTheirSensor) {
   ASSERT_FALSE(explanation->location.empty());
   EXPECT_EQ(explanation->location.front().element, "sensor:pressure_a");
   EXPECT_NE(explanation->location.front().evidence.find("no law asks for any of that"), std::string::npos);
-  EXPECT_NE(explanation->next_test.find("for outliers"), std::string::npos)
-      << explanation->next_test;
+  EXPECT_NE(explanation->next_test.find("for outliers"), std::string::npos) << explanation->next_test;
 }
 
 }  // namespace

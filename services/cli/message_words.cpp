@@ -125,11 +125,18 @@ std::string content(const ModelDiscrepancy& m) {
 }
 std::string content(const ModelAcceptance& m) { return acceptance_words(m); }
 
+/// Nothing where the sender's clock is kept, or nobody knows.
+std::string clock_words(const Header& header) {
+  const bool is_kept =
+      header.clock_quality == ClockQuality::synchronised || header.clock_quality == ClockQuality::unknown;
+  return is_kept ? "" : " [its sender's clock: " + std::string(name_of(header.clock_quality)) + "]";
+}
+
 }  // namespace
 
 std::string one_line(const Message& message) {
   return event_date(header_of(message)) + "  " + asset_of(message) + "  " + std::string(name_of(topic_of(message))) +
-         "  " + std::visit([](const auto& m) { return content(m); }, message);
+         "  " + std::visit([](const auto& m) { return content(m); }, message) + clock_words(header_of(message));
 }
 
 std::string one_line(const ServiceStatus& status) {

@@ -138,6 +138,7 @@ RunnerOptions runner_options(const DaemonParts& parts, const Configuration& conf
   options.commissioned = configuration.commissioned;
   options.watches_clock = parts.service == "data_acquisition";  // where tests get their time; six would say the same
   options.read_clock = read_clock;
+  options.retention = configuration.retention;
   options.strangers = {.services = service_names(), .senders = configuration.senders};
   options.acts_confirmed_by_second = configuration.acts_confirmed_by_second;
   options.refused_by_bus = parts.refused_by_bus;

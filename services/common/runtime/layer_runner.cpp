@@ -34,6 +34,7 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       resends_(options_.resent_at_once),
       admission_(options_.commissioned),
       strangers_(options_.strangers),
+      retention_(options_.retention),
       lanes_(
           make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
           [&bus] { bus.wake(); }, options_.lanes) {}
@@ -146,6 +147,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     if (Status status = let_time_pass(); !status) return status;
     if (resends_.empty())
       if (Status status = publish_latest(); !status) return status;
+    if (Status status = drop_old_samples(); !status) return status;
   }
   report_progress();
   return {};
@@ -242,6 +244,7 @@ Status LayerRunner::take(Message message) {
   if (for_desk && !refused) refused = tell_desk(message);
   InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;
   if (!for_desk || desk_) state = note_act(message, refused, state);
+  if (state == InputState::open && has_no_samples_any_more(message)) state = InputState::consumed;
   const std::string asset_id = asset_of(message);
   taken_ids_[**id] = taken_.size();
   if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;

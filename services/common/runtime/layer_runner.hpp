@@ -36,6 +36,7 @@
 #include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/outbox.hpp"
 #include "services/common/runtime/resend_queue.hpp"
+#include "services/common/runtime/retention.hpp"
 #include "services/common/runtime/stranger_watch.hpp"
 #include "services/common/runtime/stream_reader.hpp"
 #include "services/common/store/journal.hpp"
@@ -79,6 +80,8 @@ struct RunnerOptions {
   AlarmsOfOutput alarms_of_output = {};
   std::optional<AlarmDesk::Options> desk = {};  ///< of the one service that keeps the states of all alarms
   AdviceOfOutput advice_of_output = {};
+  RetentionConfig retention = {};
+  std::chrono::milliseconds retention_pause{60'000};  ///< between two looks for old samples
 };
 
 class LayerRunner {
@@ -175,6 +178,14 @@ class LayerRunner {
   /// Retractions and withdrawals that counted before this start, in order.
   [[nodiscard]] Result<std::deque<PastAct>> past_retractions();
 
+  // What is kept for how long (layer_runner_retention.cpp).
+  [[nodiscard]] Status drop_old_samples();
+  /// Whether any were dropped.
+  [[nodiscard]] Result<bool> drop_old_samples(const Retention::Sample& sample);
+  [[nodiscard]] bool is_needed(const Retention::Sample& sample, const Journal::Kept& one) const;
+  [[nodiscard]] bool is_set_aside_anywhere(const std::string& asset_id, const std::string& pst_id) const;
+  bool has_no_samples_any_more(const Message& message);
+
   // What is set aside (layer_runner_quarantine.cpp).
   [[nodiscard]] Status restore_quarantine();
   [[nodiscard]] bool is_set_aside(const Message& message) const;
@@ -223,6 +234,13 @@ class LayerRunner {
   ClockReading clock_reading_;   ///< at the last look
   std::int64_t started_ns_ = 0;  ///< as the heartbeat says it
   StrangerWatch strangers_;
+  Retention retention_;
+  struct KeptSamples {
+    std::uint64_t looked_at = 0;        ///< up to here samples have gone
+    std::vector<Journal::Kept> needed;  ///< but for these
+  };
+  std::map<Topic, KeptSamples> kept_samples_;
+  std::chrono::steady_clock::time_point next_retention_{};
   std::vector<SetAside> set_aside_;
   std::map<std::string, std::set<std::string>> set_aside_elsewhere_;  ///< tests, by the service that did so
   std::uint64_t waiting_in_vain_ = 0;                                 ///< open inputs of those tests

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sealwatch/forecast/words.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "services/cli/summary.hpp"
 #include "services/cli/terminal.hpp"
 
@@ -125,11 +126,23 @@ std::string content(const ModelDiscrepancy& m) {
 }
 std::string content(const ModelAcceptance& m) { return acceptance_words(m); }
 
+std::string samples_words(const Header& header) {
+  return is_expired(header.producer) ? " [its samples are kept no more]" : "";
+}
+
+/// Nothing where the sender's clock is kept, or nobody knows.
+std::string clock_words(const Header& header) {
+  const bool is_kept =
+      header.clock_quality == ClockQuality::synchronised || header.clock_quality == ClockQuality::unknown;
+  return is_kept ? "" : " [its sender's clock: " + std::string(name_of(header.clock_quality)) + "]";
+}
+
 }  // namespace
 
 std::string one_line(const Message& message) {
   return event_date(header_of(message)) + "  " + asset_of(message) + "  " + std::string(name_of(topic_of(message))) +
-         "  " + std::visit([](const auto& m) { return content(m); }, message);
+         "  " + std::visit([](const auto& m) { return content(m); }, message) + samples_words(header_of(message)) +
+         clock_words(header_of(message));
 }
 
 std::string one_line(const ServiceStatus& status) {

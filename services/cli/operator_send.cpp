@@ -63,6 +63,7 @@ int send(std::optional<Session>& session, Message message, std::vector<std::stri
   header.writer_id = unique_name("operator");
   header.stream_sequence = 1;
   header.producer = "sealwatch command line " SEALWATCH_VERSION;
+  stamp_clock(header, read_clock());
   Status done = session->bus->subscribe_service_topics();
   if (done) done = publish_patiently(*session->bus, message);
   const auto end = std::chrono::steady_clock::now() + kPatience;

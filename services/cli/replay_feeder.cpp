@@ -65,6 +65,7 @@ void ReplayFeeder::feed(Bus& bus, std::chrono::steady_clock::time_point now) {
     if (!due(now)) return;
     unsent_.front().header.writer_id = writer_id_;
     unsent_.front().header.stream_sequence = last_sequence_ + 1;
+    stamp_clock(unsent_.front().header, read_clock());
     if (!publish(bus, unsent_.front())) return;
     ++last_sequence_;
     waiting_.push_back(std::move(unsent_.front()));

@@ -6,6 +6,7 @@
 
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/message_words.hpp"
 #include "services/cli/provenance_tree.hpp"
@@ -118,6 +119,13 @@ Status free_for_recording(const std::string& file) {
 
 Status write_waveform(const SourceNode& root, const std::string& file) {
   const TestWindow* window = window_of(root);
+  if (window != nullptr && is_expired(window->header.producer))
+    return fail(Error{.file = {},
+                      .place = "--csv",
+                      .value = window->header.message_id,
+                      .rule = "has no samples any more: retention has dropped them",
+                      .advice = "its conclusions are there without them; key retention of the configuration says how "
+                                "long samples are kept"});
   if (window == nullptr || window->samples.time_s.empty())
     return fail(Error{.file = {},
                       .place = "--csv",

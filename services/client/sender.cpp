@@ -49,6 +49,7 @@ Status Sender::add(RawSamples block) {
                       .advice = "the same text whenever this block is sent: source, recording and block number"});
   block.header.writer_id = writer_id_;
   block.header.stream_sequence = ++added_;
+  stamp_clock(block.header, read_clock());
   waiting_.push_back(std::move(block));
   return {};
 }

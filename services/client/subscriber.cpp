@@ -84,6 +84,7 @@ Status Subscriber::acknowledge(const Advisory& advisory, const std::string& who,
   header.producer = options_.name;
   header.event_time_known = true;
   header.event_time_ns = header.publishing_time_ns = now_ns();
+  stamp_clock(header, read_clock());
   return publish_patiently(*bus_, Message(acknowledgement));
 }
 

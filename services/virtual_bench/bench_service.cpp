@@ -29,6 +29,7 @@ Status BenchService::step(std::chrono::milliseconds timeout) {
     if (!blocks) return fail(blocks.error());
     for (RawSamples& block : *blocks) {
       block.header.publishing_time_ns = clock_.now().nanoseconds;
+      stamp_clock(block.header, read_clock());
       if (Status status = publish_patiently(bus_, Message(std::move(block))); !status) return status;
     }
   }

@@ -29,7 +29,7 @@ std::string read_file(const std::filesystem::path& file) {
 
 pid_t spawn(const std::vector<std::string>& arguments, const std::filesystem::path& output) {
   std::vector<std::string> words = arguments;
-  words[0] = std::string(SEALWATCH_BINARY_DIR) + "/bin/" + words[0];
+  if (!words[0].starts_with('/')) words[0] = std::string(SEALWATCH_BINARY_DIR) + "/bin/" + words[0];
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);

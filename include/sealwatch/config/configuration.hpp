@@ -54,6 +54,13 @@ struct FleetConstants {
                    rate_steepening_correlation, irregularity_std)
 };
 
+/// For how long a service's journal keeps samples (sample_block, test_window) that all readers have; conclusions stay for
+/// ever. 0: for ever, or however much.
+struct RetentionConfig {
+  double days = 0.0;
+  double megabytes = 0.0;  ///< of one journal
+};
+
 struct Configuration {
   std::int32_t domain = 0;
   std::string state_directory = "state";
@@ -69,7 +76,8 @@ struct Configuration {
   std::vector<AssetConfig> assets;
   std::map<std::string, UtcTime> commissioned;  ///< by asset id, where it is known: no test is older
   std::vector<std::string> senders;             ///< sources of raw samples that are expected; none: all are
-  bool acts_confirmed_by_second = false;        ///< what lowers an advisory counts once a second person confirms it
+  RetentionConfig retention;
+  bool acts_confirmed_by_second = false;  ///< what lowers an advisory counts once a second person confirms it
 
   [[nodiscard]] const AssetConfig* find_asset(const std::string& asset_id) const {
     for (const AssetConfig& asset : assets)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/core/clock_reading.hpp"
 #include "sealwatch/core/fields.hpp"
 #include "sealwatch/core/time_series.hpp"
 
@@ -28,10 +29,21 @@ struct Header {
   bool replay = false;                  ///< recorded data played back, not live
   std::string writer_id;                ///< which writer's stream stream_sequence counts in
   std::uint64_t stream_sequence = 0;    ///< 1, 2, 3, ... without gaps for each topic and writer; stamped by the journal
+  std::int64_t writer_started_ns = 0;   ///< started_ns of the writer's heartbeat; stamped at publishing, 0 from outside
+  ClockQuality clock_quality = ClockQuality::unknown;  ///< of the clock of who published it, at that time; stamped then
+  bool clock_error_known = false;
+  double clock_error_s = 0.0;  ///< estimated error of that clock
   SEALWATCH_FIELDS(Header, schema_version, message_id, pst_id, source_ids, producer, event_time_known, event_time_ns,
-                   publishing_time_ns, replay, writer_id, stream_sequence)
+                   publishing_time_ns, replay, writer_id, stream_sequence, writer_started_ns, clock_quality,
+                   clock_error_known, clock_error_s)
   friend bool operator==(const Header&, const Header&) = default;
 };
+
+inline void stamp_clock(Header& header, const ClockReading& clock) {
+  header.clock_quality = clock.quality;
+  header.clock_error_known = clock.error_known;
+  header.clock_error_s = clock.error_s;
+}
 
 /// OSA-CBM data acquisition status of one channel.
 SEALWATCH_ENUM(ChannelState, OK, FAILED, UNKNOWN, NOT_USED)

@@ -1,4 +1,5 @@
-// Which topics come from outside the services, and what a service sends in place of a message that it has lost.
+// Which topics come from outside the services, and what a service sends in place of a message that it has lost or whose
+// samples it keeps no more.
 #pragma once
 
 #include <string_view>
@@ -14,5 +15,10 @@ namespace sealwatch {
 /// What the id of a message begins with that stands for one whose row in its writer's journal is damaged: readers count
 /// on, and take nothing from it.
 inline constexpr std::string_view kDamagedMessage = "damaged/";
+
+/// What the producer of a message begins with whose samples its writer keeps no more (retention): readers count on, and
+/// conclude nothing from it.
+inline constexpr std::string_view kExpired = "expired: ";
+[[nodiscard]] constexpr bool is_expired(std::string_view producer) { return producer.starts_with(kExpired); }
 
 }  // namespace sealwatch

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -14,6 +16,12 @@
 namespace sealwatch {
 
 using BusItem = std::variant<Message, ServiceStatus, ResendRequest>;
+
+/// What was dropped of a stranger who sent more than a stranger may.
+struct Flood {
+  std::string source;  ///< who it says it is, else the topic
+  std::uint64_t dropped = 0;
+};
 
 /// One participant's view of the bus. Not thread-safe but for wake(): one thread publishes and receives (the heartbeat
 /// thread of a daemon owns a second Bus).
@@ -37,6 +45,8 @@ class Bus {
   [[nodiscard]] virtual std::vector<BusItem> receive(std::chrono::milliseconds timeout, std::size_t most = 64) = 0;
   /// Makes a receive that waits in another thread (or a signal handler) return.
   virtual void wake() = 0;
+  /// What was dropped since the last call.
+  [[nodiscard]] virtual std::vector<Flood> floods() { return {}; }
 };
 
 }  // namespace sealwatch

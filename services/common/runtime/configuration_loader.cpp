@@ -100,6 +100,17 @@ void read_senders(YamlMap& root, Configuration& configuration) {
   }
 }
 
+/// Of less than a day a test could still be running.
+void read_retention(YamlMap& root, Configuration& configuration) {
+  constexpr NumberRule kDays{.min = 1.0, .words = "must be 1 or more; leave it out to keep samples for ever"};
+  constexpr NumberRule kMegabytes{.min = 10.0, .words = "must be 10 or more; leave it out for no bound"};
+  auto map = root.map("retention");
+  if (!map) return;
+  map->read("days", configuration.retention.days, kDays);
+  map->read("megabytes", configuration.retention.megabytes, kMegabytes);
+  map->finish();
+}
+
 void read_operator_acts(YamlMap& root, Configuration& configuration) {
   auto map = root.map("operator_acts");
   if (!map) return;
@@ -280,6 +291,7 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   read_services(map, configuration);
   read_topics(map, configuration);
   read_senders(map, configuration);
+  read_retention(map, configuration);
   read_operator_acts(map, configuration);
   read_sites(map, overrides.now, configuration);
   const std::vector<std::string> files = asset_files(map, file.parent_path());

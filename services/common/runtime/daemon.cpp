@@ -137,7 +137,8 @@ RunnerOptions runner_options(const DaemonParts& parts, const Configuration& conf
   options.version = kVersion;
   options.commissioned = configuration.commissioned;
   options.watches_clock = parts.service == "data_acquisition";  // where tests get their time; six would say the same
-  if (options.watches_clock) options.clock_is_synchronised = clock_is_synchronised;
+  options.read_clock = read_clock;
+  options.retention = configuration.retention;
   options.strangers = {.services = service_names(), .senders = configuration.senders};
   options.acts_confirmed_by_second = configuration.acts_confirmed_by_second;
   options.refused_by_bus = parts.refused_by_bus;

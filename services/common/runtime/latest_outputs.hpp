@@ -22,6 +22,11 @@ class LatestOutputs {
   void concluded(const Message& output, std::uint64_t sequence);
   /// A stamped output went out.
   void published(const Message& output);
+  /// Whether it is the one that late subscribers are to get.
+  [[nodiscard]] bool is_latest(Topic topic, const std::string& asset_id, std::uint64_t sequence) const {
+    const auto known = latest_.find({topic, asset_id});
+    return known != latest_.end() && known->second.sequence == sequence;
+  }
   /// Sequence numbers of the latest outputs that were not the last published of their topic and asset.
   [[nodiscard]] std::map<Key, std::uint64_t> to_publish() const;
 

@@ -31,8 +31,10 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       journal_(journal),
       clock_(clock),
       options_(std::move(options)),
+      resends_(options_.resent_at_once),
       admission_(options_.commissioned),
       strangers_(options_.strangers),
+      retention_(options_.retention),
       lanes_(
           make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
           [&bus] { bus.wake(); }, options_.lanes) {}
@@ -56,13 +58,15 @@ Status LayerRunner::start() {
   if (Status status = restore_quarantine(); !status) return status;
   if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
+  started_ns_ = clock_.now().nanoseconds;
+  look_at_clock();
   if (Status status = publish_latest(); !status) return status;
   started_ = steady_clock::now();
   ServiceStatus status;
   status.service = kind_->name();
   status.writer_id = journal_.writer_id();
   status.version = options_.version;
-  status.started_ns = clock_.now().nanoseconds;
+  status.started_ns = started_ns_;
   status.process_id = ::getpid();
   status.state = "running";
   Heartbeat::Options beats = options_.heartbeat;
@@ -127,7 +131,10 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   const bool may_resend = !resends_.empty() && resends_.may_send(steady_clock::now());
   const bool work_waits = !ready_.empty() || may_resend;
   std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);
-  drained_ = items.size() < kBatch;
+  if (items.size() < kBatch)
+    full_since_.reset();
+  else if (!full_since_)
+    full_since_ = steady_clock::now();
   for (BusItem& item : items) sort_in(std::move(item));
   if (Status status = take_ready(); !status) return status;
   send_outbox();
@@ -140,6 +147,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     if (Status status = let_time_pass(); !status) return status;
     if (resends_.empty())
       if (Status status = publish_latest(); !status) return status;
+    if (Status status = drop_old_samples(); !status) return status;
   }
   report_progress();
   return {};
@@ -236,6 +244,7 @@ Status LayerRunner::take(Message message) {
   if (for_desk && !refused) refused = tell_desk(message);
   InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;
   if (!for_desk || desk_) state = note_act(message, refused, state);
+  if (state == InputState::open && has_no_samples_any_more(message)) state = InputState::consumed;
   const std::string asset_id = asset_of(message);
   taken_ids_[**id] = taken_.size();
   if (stream.sequence == 0) last_unnumbered_[{topic_of(message), asset_id}] = **id;
@@ -324,17 +333,22 @@ Status LayerRunner::let_time_pass() {
       ready_.push_back(std::move(message));
       took_local_ = true;
     }
-  // A test is not overdue or lost while messages about it may be on their way.
-  const bool up_to_date = drained_ && ready_.empty() && !reader_->is_behind();
-  if (!up_to_date || steady_clock::now() - started_ < options_.settling) return {};
+  const auto now = steady_clock::now();
+  if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};
   for (const std::string& asset_id : lanes_.assets()) {
     Layer* const layer = lanes_.at_rest(asset_id);
-    if (layer == nullptr || replaying_[asset_id]) continue;
+    if (layer == nullptr || replaying_[asset_id] || may_be_on_its_way(asset_id)) continue;
     Conclusion conclusion = layer->tick(clock_.now());
     if (conclusion.outputs.empty() && conclusion.consumed.empty()) continue;
     if (Status status = in_batch([&] { return keep(std::move(conclusion)); }); !status) return status;
   }
   return {};
+}
+
+/// A test is not overdue or lost while messages about it may be on their way.
+bool LayerRunner::may_be_on_its_way(const std::string& asset_id) const {
+  return reader_->is_behind(asset_id) ||
+         std::ranges::any_of(ready_, [&](const Message& message) { return asset_of(message) == asset_id; });
 }
 
 // With its time: it stays in the status until another one comes.

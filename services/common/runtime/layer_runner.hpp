@@ -36,6 +36,7 @@
 #include "services/common/runtime/latest_outputs.hpp"
 #include "services/common/runtime/outbox.hpp"
 #include "services/common/runtime/resend_queue.hpp"
+#include "services/common/runtime/retention.hpp"
 #include "services/common/runtime/stranger_watch.hpp"
 #include "services/common/runtime/stream_reader.hpp"
 #include "services/common/store/journal.hpp"
@@ -54,6 +55,9 @@ struct RunnerOptions {
   std::chrono::milliseconds settling{3000};
   /// The layer of an asset, where nothing is under way in it.
   using LayerAtRest = std::function<const Layer*(const std::string& asset_id)>;
+  /// Nor while the bus is not emptied, but for no longer than this: what then still waits is a flood's, as a bus gives
+  /// each sender its turn.
+  std::chrono::milliseconds longest_wait{5000};
   /// Inputs that come from no bus (recordings dropped into a directory), asked for about once a second. A message that
   /// comes twice is taken once, by its id.
   std::function<std::vector<Message>(const LayerAtRest&)> local_inputs = {};
@@ -62,17 +66,22 @@ struct RunnerOptions {
   AssetLanes::Options lanes = {};
   StreamReader::Limits streams = {};
   std::map<std::string, UtcTime> commissioned = {};  ///< by asset; no test is older
-  bool watches_clock = false;                        ///< that of this machine, by which tests are dated
-  /// Whether that clock follows a time source; nothing where it cannot be asked. Asked about once a second.
-  std::function<std::optional<bool>()> clock_is_synchronised = {};
+  /// Whether a clock of this machine that was set or follows no time source is an alarm of this service: tests are
+  /// dated by it.
+  bool watches_clock = false;
+  /// How well that clock is kept, which stands in every message. Asked about once a second.
+  std::function<ClockReading()> read_clock = {};
   bool acts_confirmed_by_second = false;  ///< see message/confirmation.hpp
   StrangerWatch::Options strangers = {};
   std::chrono::milliseconds strangers_stand{3'600'000};  ///< how long an alarm of who is heard no more stands
   /// What the bus has refused to others since the last call, in words; nothing when it was nothing.
   std::function<std::optional<std::string>()> refused_by_bus = {};
+  std::chrono::milliseconds resent_at_once = ResendQueue::kAtOnce;  ///< the same is not sent again to one reader
   AlarmsOfOutput alarms_of_output = {};
   std::optional<AlarmDesk::Options> desk = {};  ///< of the one service that keeps the states of all alarms
   AdviceOfOutput advice_of_output = {};
+  RetentionConfig retention = {};
+  std::chrono::milliseconds retention_pause{60'000};  ///< between two looks for old samples
 };
 
 class LayerRunner {
@@ -119,11 +128,12 @@ class LayerRunner {
   void give_memory_back();
   [[nodiscard]] Status keep(Conclusion conclusion);
   [[nodiscard]] Status let_time_pass();
+  [[nodiscard]] bool may_be_on_its_way(const std::string& asset_id) const;
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest();
   void send_requests();
   /// False when the bus did not take it now.
-  bool publish(const Message& message, std::string_view event);
+  bool publish(Message& message, std::string_view event);
   void send_outbox();
   void note_error(const std::string& text);
   void report_progress();
@@ -132,8 +142,10 @@ class LayerRunner {
   void note_rival(const ServiceStatus& rival);
   void hear_name(const ServiceStatus& status);
   void note_strangers(const std::vector<StrangerWatch::Stranger>& strangers);
-  void watch_clock();
-  void watch_synchronisation();
+  void look_at_clock();
+  void tell_of_step();
+  void tell_of_synchronisation(ClockQuality quality);
+  void tell_of_floods();
   void note_alarms_of(const Message& output);
   void look_for_trouble();
 
@@ -165,6 +177,14 @@ class LayerRunner {
   };
   /// Retractions and withdrawals that counted before this start, in order.
   [[nodiscard]] Result<std::deque<PastAct>> past_retractions();
+
+  // What is kept for how long (layer_runner_retention.cpp).
+  [[nodiscard]] Status drop_old_samples();
+  /// Whether any were dropped.
+  [[nodiscard]] Result<bool> drop_old_samples(const Retention::Sample& sample);
+  [[nodiscard]] bool is_needed(const Retention::Sample& sample, const Journal::Kept& one) const;
+  [[nodiscard]] bool is_set_aside_anywhere(const std::string& asset_id, const std::string& pst_id) const;
+  bool has_no_samples_any_more(const Message& message);
 
   // What is set aside (layer_runner_quarantine.cpp).
   [[nodiscard]] Status restore_quarantine();
@@ -202,15 +222,25 @@ class LayerRunner {
   LatestOutputs latest_;
   ResendQueue resends_;
   Admission admission_;
-  bool took_local_ = false;                ///< of the running batch: inputs that came from no bus
-  bool drained_ = false;                   ///< the bus had nothing more at the last look
+  bool took_local_ = false;  ///< of the running batch: inputs that came from no bus
+  std::optional<std::chrono::steady_clock::time_point> full_since_;  ///< the bus had more than was taken at each look
+  std::chrono::steady_clock::time_point asked_{};                    ///< last look at what is missing
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
   std::string last_error_;                 ///< with its time
   Alarms alarms_;
   std::optional<AlarmDesk> desk_;
   ServiceStatus told_at_desk_;  ///< its part of the heartbeat
   ClockWatch clock_watch_;
+  ClockReading clock_reading_;   ///< at the last look
+  std::int64_t started_ns_ = 0;  ///< as the heartbeat says it
   StrangerWatch strangers_;
+  Retention retention_;
+  struct KeptSamples {
+    std::uint64_t looked_at = 0;        ///< up to here samples have gone
+    std::vector<Journal::Kept> needed;  ///< but for these
+  };
+  std::map<Topic, KeptSamples> kept_samples_;
+  std::chrono::steady_clock::time_point next_retention_{};
   std::vector<SetAside> set_aside_;
   std::map<std::string, std::set<std::string>> set_aside_elsewhere_;  ///< tests, by the service that did so
   std::uint64_t waiting_in_vain_ = 0;                                 ///< open inputs of those tests

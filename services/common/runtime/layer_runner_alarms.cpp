@@ -17,6 +17,8 @@ constexpr const char* kUnknownWriter = "unknown_writer";
 constexpr const char* kRefusedRight = "refused_right";
 constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
+constexpr const char* kFlood = "flood";
+constexpr std::chrono::seconds kFloodIsOver{60};
 /// A service beats once a second.
 constexpr std::chrono::seconds kRivalIsSilent{10};
 
@@ -63,8 +65,15 @@ void LayerRunner::note_strangers(const std::vector<StrangerWatch::Stranger>& str
   }
 }
 
-void LayerRunner::watch_clock() {
-  if (!clock_watch_.look(clock_.now(), steady_now())) return;
+void LayerRunner::look_at_clock() {
+  const bool step_changed = clock_watch_.look(clock_.now(), steady_now());
+  if (options_.read_clock) clock_reading_ = options_.read_clock();
+  if (options_.watches_clock) tell_of_synchronisation(clock_reading_.quality);
+  if (options_.watches_clock && step_changed) tell_of_step();
+  if (options_.read_clock && clock_watch_.step_s()) clock_reading_.quality = ClockQuality::stepped;
+}
+
+void LayerRunner::tell_of_step() {
   alarms_.clear(kClockStep, {}, {});
   const auto step_s = clock_watch_.step_s();
   if (!step_s) return log_event(LogLevel::info, "the clock goes on as it did", {});
@@ -80,10 +89,9 @@ void LayerRunner::watch_clock() {
   log_event(LogLevel::error, "clock was set", {{"error", text}});
 }
 
-void LayerRunner::watch_synchronisation() {
-  const std::optional<bool> synchronised = options_.clock_is_synchronised();
-  if (!synchronised) return;  // what stood, stands: nothing was learnt
-  if (*synchronised) {
+void LayerRunner::tell_of_synchronisation(ClockQuality quality) {
+  if (quality == ClockQuality::unknown) return;  // what stood, stands: nothing was learnt
+  if (quality == ClockQuality::synchronised) {
     if (alarms_.clear(kClockUnsynchronised, {}, {})) log_event(LogLevel::info, "the clock is synchronised", {});
     return;
   }
@@ -110,10 +118,25 @@ void LayerRunner::note_alarms_of(const Message& output) {
       log_event(LogLevel::warn, one.kind, {{"asset", one.asset_id}, {"subject", one.subject}, {"error", one.text}});
 }
 
+void LayerRunner::tell_of_floods() {
+  for (const Flood& flood : bus_.floods()) {
+    const std::string text = "more comes of " + flood.source +
+                             " than a stranger may send; the rest is dropped: configure its assets, or stop it";
+    alarms_.raise({.kind = kFlood,
+                   .asset_id = {},
+                   .subject = flood.source,
+                   .pst_id = {},
+                   .text = text,
+                   .since_ns = clock_.now().nanoseconds},
+                  steady_now() + kFloodIsOver);
+    log_event(LogLevel::warn, "flood", {{"source", flood.source}, {"dropped", std::to_string(flood.dropped)}});
+  }
+}
+
 /// About once a second.
 void LayerRunner::look_for_trouble() {
-  if (options_.watches_clock) watch_clock();
-  if (options_.clock_is_synchronised) watch_synchronisation();
+  tell_of_floods();
+  look_at_clock();
   note_strangers(strangers_.look(steady_now()));
   const auto refused = options_.refused_by_bus ? options_.refused_by_bus() : std::nullopt;
   if (refused)

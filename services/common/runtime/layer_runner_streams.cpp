@@ -8,10 +8,13 @@
 namespace sealwatch {
 namespace {
 
-/// Messages sent again at once, before new ones are looked at.
-constexpr std::size_t kPiece = 64;
+/// For how long messages are sent again before new ones are looked at, and how many before the time is.
+constexpr std::chrono::milliseconds kTurn{5};
+constexpr std::uint64_t piece_of(Topic topic) { return topic == Topic::test_window ? 1 : 16; }
 /// A topic that the bus has not taken for so long is worth a line: a reader is stuck, not only slow.
 constexpr std::chrono::seconds kStuck{2};
+
+constexpr std::chrono::seconds kLongestWithoutAsking{1};
 
 /// Samples come many times a second; a test begins and ends, and is concluded from, once a month.
 LogLevel level_of(const Message& message) {
@@ -54,7 +57,7 @@ void LayerRunner::note_reused_number(const Message& message) {
   const auto known = journal_.known_input(message);
   if (!known) return;
   if (*known == KnownInput::same)
-    reader_->note_known(stream, header.stream_sequence);
+    reader_->note_known(message);
   else if (reader_->read_again(stream, steady_seconds()))
     start_anew(stream);
 }
@@ -64,6 +67,7 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
   hear_name(status);
   if (status.service == kind_->name()) note_rival(status);
   note_set_aside_elsewhere(status);
+  retention_.hear(status, journal_.writer_id());
   if (desk_) desk_->hear(status, std::chrono::steady_clock::now().time_since_epoch(), clock_.now());
   for (Message& next : reader_->note_start(status.writer_id, status.started_ns, steady_seconds()))
     ready_.push_back(std::move(next));
@@ -88,17 +92,23 @@ void LayerRunner::start_anew(const Key& stream) {
 void LayerRunner::sort_in(const ResendRequest& request) {
   const auto topic = value_of<Topic>(request.topic);
   if (request.writer_id != journal_.writer_id() || !topic || !journal_.written().contains(*topic)) return;
+  // What waits in the outbox comes anyhow.
+  const std::uint64_t sent = outbox_.first(*topic).value_or(journal_.written().at(*topic) + 1) - 1;
+  // Strangers have one share, whatever names they invent.
+  const std::string by = strangers_.knows(request.requested_by) ? request.requested_by : std::string();
+  if (!resends_.add({*topic, request.first_sequence, request.last_sequence}, sent, by,
+                    std::chrono::steady_clock::now()))
+    return;
   log_event(LogLevel::info, "sending again",
             {{"topic", request.topic},
              {"first", std::to_string(request.first_sequence)},
              {"last", std::to_string(request.last_sequence)},
              {"for", request.requested_by}});
-  // What waits in the outbox comes anyhow.
-  const std::uint64_t sent = outbox_.first(*topic).value_or(journal_.written().at(*topic) + 1) - 1;
-  resends_.add({*topic, request.first_sequence, request.last_sequence}, sent);
 }
 
-bool LayerRunner::publish(const Message& message, std::string_view event) {
+bool LayerRunner::publish(Message& message, std::string_view event) {
+  header_of(message).writer_started_ns = started_ns_;
+  stamp_clock(header_of(message), clock_reading_);
   const Topic topic = topic_of(message);
   const auto now = std::chrono::steady_clock::now();
   const auto refused_since = outbox_.refused_since(topic);
@@ -117,20 +127,23 @@ bool LayerRunner::publish(const Message& message, std::string_view event) {
 }
 
 void LayerRunner::send_outbox() {
-  outbox_.send(std::chrono::steady_clock::now(),
-               [this](const Message& message) { return publish(message, "concluded"); });
+  outbox_.send(std::chrono::steady_clock::now(), [this](Message& message) { return publish(message, "concluded"); });
 }
 
 Status LayerRunner::serve_resends() {
   const auto begin = std::chrono::steady_clock::now();
-  const auto range = resends_.may_send(begin) ? resends_.take(kPiece) : std::nullopt;
-  if (!range || outbox_.pauses(range->topic, begin)) return {};
-  const auto messages = journal_.outputs(range->topic, range->first, range->last, kPiece);
-  if (!messages) return fail(messages.error());
-  for (const Message& message : *messages)
-    if (!publish(message, "sent again")) break;  // who misses the rest asks again
+  if (resends_.empty() || !resends_.may_send(begin)) return {};
+  bool goes_on = true;
+  while (goes_on) {
+    const auto range = resends_.take(piece_of(resends_.next_topic()));
+    if (outbox_.pauses(range->topic, begin)) break;  // who misses it asks again
+    auto messages = journal_.outputs(range->topic, range->first, range->last, range->last - range->first + 1);
+    if (!messages) return fail(messages.error());
+    goes_on = std::ranges::all_of(*messages, [this](Message& message) { return publish(message, "sent again"); }) &&
+              !resends_.empty() && std::chrono::steady_clock::now() - begin < kTurn;
+  }
   resends_.note_sent(begin, std::chrono::steady_clock::now());
-  if (heartbeat_) heartbeat_->beat_soon();  // readers wait for it after half a window
+  if (heartbeat_) heartbeat_->beat_soon();  // readers of an older sealwatch wait for it after half a window
   return resends_.empty() ? publish_latest() : Status();
 }
 
@@ -139,15 +152,18 @@ Status LayerRunner::publish_latest() {
   for (const auto& [key, sequence] : latest_.to_publish()) {
     const bool comes_anyhow = outbox_.first(key.first).value_or(sequence + 1) <= sequence;
     if (comes_anyhow || outbox_.pauses(key.first, std::chrono::steady_clock::now())) continue;
-    const auto latest = journal_.outputs(key.first, sequence, sequence, 1);
+    auto latest = journal_.outputs(key.first, sequence, sequence, 1);
     if (!latest) return fail(latest.error());
-    for (const Message& message : *latest) (void)publish(message, "published again");  // again a second later, if not
+    for (Message& message : *latest) (void)publish(message, "published again");  // again a second later, if not
   }
   return {};
 }
 
 void LayerRunner::send_requests() {
-  if (!drained_ || !ready_.empty()) return;
+  // What waits on the bus is not missing; but under a flood something always waits.
+  const auto now = std::chrono::steady_clock::now();
+  if (!ready_.empty() || (full_since_ && now - asked_ < kLongestWithoutAsking)) return;
+  asked_ = now;
   for (const ResendRequest& request : reader_->requests(steady_seconds())) {
     log_event(LogLevel::info, "asking again",
               {{"topic", request.topic},

@@ -19,7 +19,7 @@ void Outbox::add(Message stamped) {
   waiting_.push_back(std::move(stamped));
 }
 
-void Outbox::send(Time now, const std::function<bool(const Message&)>& publish) {
+void Outbox::send(Time now, const std::function<bool(Message&)>& publish) {
   for (auto next = waiting_.begin(); next != waiting_.end();) {
     const Topic topic = topic_of(*next);
     if (pauses(topic, now) || !publish(*next)) {

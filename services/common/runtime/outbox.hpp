@@ -25,7 +25,7 @@ class Outbox {
 
   void add(Message stamped);
   /// Gives to `publish`, which says whether the bus took it, all that may go now.
-  void send(Time now, const std::function<bool(const Message&)>& publish);
+  void send(Time now, const std::function<bool(Message&)>& publish);
   /// The bus did, or did not, take a message of this topic.
   void note(Topic topic, bool taken, Time now);
   /// Whether this topic was refused a moment ago.

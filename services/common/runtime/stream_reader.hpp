@@ -9,12 +9,16 @@
 // gap: after `given_up_s` without progress it is asked for, but not waited for), and not that it is the stream that was
 // read before (a writer whose journal was restored uses its numbers again for other messages: whenever a writer starts,
 // the last messages that were read of it are asked for again, and whoever knows ids and numbers compares: read_again).
+// Each message says when its writer started (Header::writer_started_ns): of a start that has not been compared nothing
+// is handed out, so that the comparison always reaches back to what was read before it, whoever is killed meanwhile. Of
+// writers that do not say so (an older sealwatch) half a window is handed out between two heartbeats.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,7 +42,7 @@ class StreamReader {
     double reread_s = 60.0;      ///< between two times that a stream is read from its start
     std::size_t streams = 4096;  ///< known at once: strangers' words about more are passed over
     std::size_t requests = 64;   ///< at a time
-    double start_s = 5.0;        ///< between two starts of a writer that are believed
+    double start_s = 1.0;        ///< between two starts of a writer for which what was read last is asked for
     bool compares = true;        ///< whether its owner compares ids: note_known, read_again
   };
   using Key = std::pair<std::string, std::string>;  // topic, writer id
@@ -52,18 +56,20 @@ class StreamReader {
   /// Takes note of how far a writer's stream goes. True when the writer was set back (its journal was restored from a
   /// backup): the stream is then read again from its start, as known messages are recognised by their ids.
   bool note_written(const StreamPosition& written, double now_s);
-  /// Takes note of a heartbeat and of when its writer started: when it is new, the last messages read of each of its
-  /// streams are asked for again, a window's worth. So that these always reach back to what was read before its start,
-  /// not more than half a window is handed out between two heartbeats; returns what waited for this one.
+  /// Takes note of a heartbeat and of when its writer started; returns what waited for this.
   [[nodiscard]] std::vector<Message> note_start(const std::string& writer_id, std::int64_t started_ns, double now_s);
   /// A message came again that is committed, and known under this number.
-  void note_known(const Key& stream, std::uint64_t sequence);
+  void note_known(const Message& message);
   /// A number that was read before came with another message: the stream is read again from its start. False
   /// when it has just been.
   bool read_again(const Key& stream, double now_s);
   /// What to ask for now. Call it only when nothing is waiting to be received: what waits is not missing.
   [[nodiscard]] std::vector<ResendRequest> requests(double now_s);
-  /// Whether a stream is known to go further than it was read, and moves.
+  /// Whether a stream that may be about this asset is known to go further than it was read, and moves. Services write
+  /// about all assets, a sender about those that it has written about. Streams of which nothing was read, whose writers
+  /// anybody can make up, are waited for `given_up_s` all together, until something is read of one.
+  [[nodiscard]] bool is_behind(const std::string& asset_id) const;
+  /// Whether any stream is.
   [[nodiscard]] bool is_behind() const;
   /// Streams of which something was read and that were heard of lately.
   [[nodiscard]] std::vector<Key> active() const;
@@ -74,18 +80,20 @@ class StreamReader {
     std::uint64_t claimed = 0;   ///< how far it goes by its writer's last word
     std::uint64_t seen = 0;      ///< the highest number that came
     std::map<std::uint64_t, Message> held;
-    std::optional<double> heard_s;      ///< since the start
-    std::uint64_t last_position = 0;    ///< at the last look, to notice progress
-    double moved_s = 0.0;               ///< last progress
-    bool given_up = false;              ///< it has not moved for long
+    std::optional<double> heard_s;    ///< since the start
+    std::uint64_t last_position = 0;  ///< at the last look, to notice progress
+    std::uint64_t waited_position = 0;
+    double waited_s = 0.0;              ///< how long it was behind without progress, all together
+    std::set<std::string> assets;       ///< of a sender: what was read of it was about these
     std::uint64_t requested_until = 0;  ///< end of the last request
     double waiting_since_s = 0.0;       ///< last progress or request
     double wait_s = 0.0;                ///< before the next request; 0: not waiting
     std::optional<double> set_back_since_s;
-    std::optional<double> reread_s;  ///< when it was last read from its start
-    std::int64_t writer_started_ns = 0;
-    std::optional<double> start_heard_s;
-    std::optional<std::uint64_t> sure;  ///< read up to here of a writer that had not started anew
+    std::optional<double> reread_s;       ///< when it was last read from its start
+    std::int64_t checked_ns = 0;          ///< start of its writer whose messages are handed out
+    std::int64_t checking_ns = 0;         ///< one that is being compared; 0: none
+    std::optional<double> start_heard_s;  ///< when that one was heard of
+    std::optional<std::uint64_t> sure;    ///< of messages that do not say their start: read up to here of a checked one
     /// What had been read last when its writer or this reader was new; it is to come again, in order. Empty: it has.
     std::uint64_t check_first = 1;
     std::uint64_t check_last = 0;
@@ -97,8 +105,18 @@ class StreamReader {
   /// Null for a stranger's stream too many.
   [[nodiscard]] Stream* stream_of(const Key& key);
   void forget_strangers();
+  /// A message says when its writer started, 0 where it does not.
+  void hear_start(const Key& key, Stream& stream, std::int64_t started_ns) const;
+  /// The writer of this stream may have started anew.
+  void begin_check(const Key& key, Stream& stream, std::int64_t started_ns) const;
+  /// Compared, where all of it was.
+  static void end_check(Stream& stream);
+  static void forget_check(Stream& stream);
+  [[nodiscard]] bool is_given_up(const Stream& stream) const { return stream.waited_s >= limits_.given_up_s; }
+  void note_waiting(double now_s);
+  [[nodiscard]] bool is_behind(const Stream& stream) const;
   void reread(Stream& stream, double now_s) const;
-  [[nodiscard]] static std::vector<Message> hand_out(const Key& key, Stream& stream);
+  [[nodiscard]] std::vector<Message> hand_out(const Key& key, Stream& stream);
   [[nodiscard]] bool is_due(Stream& stream, double now_s) const;
   [[nodiscard]] bool is_check_due(Stream& stream, double now_s) const;
   [[nodiscard]] ResendRequest request(const Key& key, std::uint64_t first, std::uint64_t last) const;
@@ -107,6 +125,8 @@ class StreamReader {
   Limits limits_;
   double now_s_ = 0.0;  ///< at the last call that said it
   double swept_s_ = 0.0;
+  std::optional<double> looked_s_;  ///< last look at what is missing
+  double unread_waited_s_ = 0.0;    ///< how long streams were behind of which nothing was read
   std::map<Key, Stream> streams_;
 };
 

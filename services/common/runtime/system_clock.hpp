@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 
 #include "sealwatch/core/time.hpp"
 
@@ -15,9 +14,5 @@ class SystemClock final : public Clock {
     return {std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count()};
   }
 };
-
-/// Whether the kernel says that a time source (chrony, systemd-timesyncd, ...) keeps this machine's clock; nothing where
-/// it may not be asked.
-[[nodiscard]] std::optional<bool> clock_is_synchronised();
 
 }  // namespace sealwatch

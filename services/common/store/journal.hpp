@@ -131,6 +131,20 @@ class Journal {
   /// Notes that its writer now sends a known input under this number.
   [[nodiscard]] Status renumber_input(const Message& message);
 
+  /// What the journal takes on its disk, without what is free in it [bytes].
+  [[nodiscard]] Result<double> used_bytes();
+  /// An output whose samples are kept.
+  struct Kept {
+    std::uint64_t sequence = 0;
+    std::string asset_id;
+    std::string pst_id;
+    UtcTime concluded;
+  };
+  /// Those of one topic behind `after`, the oldest first.
+  [[nodiscard]] Result<std::vector<Kept>> kept_samples(Topic topic, std::uint64_t after, std::size_t most);
+  /// Drops the samples of an output for ever; all else that it says stays, and its producer says so (is_expired).
+  [[nodiscard]] Status expire(Topic topic, std::uint64_t sequence);
+
   /// What became of alarms, as kept; rows that are not as they were written are left out.
   [[nodiscard]] Result<std::vector<AlarmEntry>> alarms();
   /// Keeps it in the place of an earlier one of the same kind, asset and subject.

@@ -40,7 +40,7 @@ std::vector<Row> damaged_rows(soci::session& sql, bool outputs) {
   const std::string query =
       outputs
           ? "SELECT ordinal, topic, '', sequence, message_id, asset_id, pst_id, payload, checksum FROM outputs"
-            " WHERE checksum <> 'damaged'"
+            " WHERE checksum NOT IN ('damaged', 'expired')"
           : "SELECT receipt, topic, writer_id, sequence, message_id, asset_id, pst_id, payload, checksum FROM inputs"
             " WHERE payload IS NOT NULL OR consumed <> 1";
   Row row;

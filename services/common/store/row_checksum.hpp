@@ -11,6 +11,9 @@ namespace sealwatch {
 /// In place of a checksum: the row was found damaged, and nobody reads it until it is concluded again.
 inline constexpr const char* kDamaged = "damaged";
 
+/// Of an output whose samples were dropped: what is left of it is not looked at.
+inline constexpr const char* kExpiredRow = "expired";
+
 /// Of the fields, each with its length before it: nothing moves from one to the next unseen.
 [[nodiscard]] inline std::string row_checksum(std::initializer_list<std::string> fields) {
   ContentHasher hasher;

@@ -108,7 +108,9 @@ bool Channel::take_batch(std::vector<Stamped>& taken) const {
   if (count <= 0) return false;  // below 0: called by the listener before dds_create_reader is through
   for (std::size_t k = 0; static_cast<dds_return_t>(k) < count; ++k)
     if (infos[k].valid_data)
-      taken.push_back({.published = infos[k].source_timestamp, .item = type_->decode((*buffer_)[k])});
+      taken.push_back({.published = infos[k].source_timestamp,
+                       .writer = infos[k].publication_handle,
+                       .item = type_->decode((*buffer_)[k])});
   return static_cast<std::size_t>(count) == buffer_->size();
 }
 
@@ -119,7 +121,7 @@ void Channel::take() {
   while (take_batch(taken)) {
   }
   std::ranges::stable_sort(taken, {}, &Stamped::published);
-  for (Stamped& one : taken) inbox_->put(std::move(one.item), limit);
+  for (Stamped& one : taken) inbox_->put(one.writer, std::move(one.item), limit);
 }
 
 Status Channel::open_writer() {

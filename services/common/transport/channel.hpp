@@ -12,6 +12,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "dds/dds.h"
@@ -25,15 +26,20 @@ namespace sealwatch::transport {
 
 class Channel {
  public:
+  static constexpr std::string_view kServiceStatus = "service_status";
+
   /// `type` must outlive the channel; the participant owns and deletes the entities.
   Channel(dds_entity_t participant, const TopicType& type, TopicQos qos, SlowReader slow_reader)
       : participant_(participant),
         type_(&type),
         qos_(qos),
         slow_reader_(slow_reader),
-        takes_at_once_(slow_reader == SlowReader::asks_again && qos.keep_all) {}
+        takes_at_once_(slow_reader == SlowReader::asks_again && (qos.keep_all || type.name == kServiceStatus)) {}
 
   [[nodiscard]] bool subscribed() const { return reader_ > 0; }
+  /// Else DDS keeps the last of each asset until receive is called. Of heartbeats DDS would keep the last that anybody
+  /// wrote in a service's name: a stranger's words would hide its own.
+  [[nodiscard]] bool takes_at_once() const { return takes_at_once_; }
   /// Makes the reader; channel and inbox must outlive the participant.
   [[nodiscard]] Status subscribe(Inbox& inbox);
   /// A sample was stored: called by DDS's threads.
@@ -51,6 +57,7 @@ class Channel {
   [[nodiscard]] Status open_writer();
   struct Stamped {
     dds_time_t published;
+    Inbox::Writer writer;
     BusItem item;
   };
   /// Takes one batch; whether there may be more.
@@ -60,7 +67,7 @@ class Channel {
   const TopicType* type_;
   TopicQos qos_;
   SlowReader slow_reader_;
-  bool takes_at_once_;  ///< else DDS keeps the last of each asset until receive is called
+  bool takes_at_once_;
   dds_entity_t topic_ = 0;
   dds_entity_t reader_ = 0;
   dds_entity_t writer_ = 0;

@@ -1,6 +1,8 @@
 #include "services/common/transport/dds_bus.hpp"
 
+#include <algorithm>
 #include <mutex>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -25,6 +27,9 @@ class CycloneBus final : public DdsBus {
       const TopicQos qos = overridden == configuration.topics.end() ? type.qos : overridden->second;
       channels_.emplace_back(participant_.handle(), type, qos, slow_reader);
     }
+    std::set<std::string> assets;
+    for (const AssetConfig& asset : configuration.assets) assets.insert(asset.asset_id);
+    inbox_.know(std::move(assets), {configuration.senders.begin(), configuration.senders.end()});
   }
 
   [[nodiscard]] bool ok() const { return inbox_.signal.ok(); }
@@ -54,8 +59,13 @@ class CycloneBus final : public DdsBus {
       const bool woken = inbox_.signal.clear();  // before the take: what arrives after it notifies again
       std::vector<BusItem> items = take(most);
       if (!items.empty() || woken || Clock::now() >= deadline) return items;
-      inbox_.signal.wait_until(deadline);
+      inbox_.signal.wait_until(std::min(deadline, Clock::now() + longest_wait()));
     }
+  }
+
+  std::vector<Flood> floods() override {
+    const std::lock_guard lock(inbox_.mutex);
+    return inbox_.floods();
   }
 
   void wake() override { inbox_.signal.wake(); }
@@ -79,10 +89,16 @@ class CycloneBus final : public DdsBus {
  private:
   std::vector<BusItem> take(std::size_t most) {
     const std::lock_guard lock(inbox_.mutex);
-    if (inbox_.empty())
-      for (Channel& channel : channels_)
-        if (channel.subscribed()) channel.take();
-    return inbox_.take(most);
+    const bool all = inbox_.empty();  // what DDS keeps for a client it goes on thinning out until all is asked for
+    for (Channel& channel : channels_)
+      if (channel.subscribed() && (all || channel.takes_at_once())) channel.take();
+    return inbox_.take(most, Clock::now());
+  }
+
+  [[nodiscard]] Clock::duration longest_wait() {
+    constexpr std::chrono::milliseconds kOfStrangers{20};
+    const std::lock_guard lock(inbox_.mutex);
+    return inbox_.strangers_wait() ? Clock::duration(kOfStrangers) : Clock::duration(std::chrono::hours(1));
   }
 
   transport::Inbox inbox_;         // both outlive the participant,

@@ -1,13 +1,25 @@
-// What has arrived at a bus and was not asked for yet, bounded by topic. Beyond a topic's limit what comes again anyhow
-// is left out: numbered messages, as their writer has them in its journal and the reader asks for what it misses; and
-// heartbeats and requests, which are repeated. A message that is not numbered is kept up to twice the limit, then left
-// in DDS, which makes its sender wait.
+// What has arrived at a bus and was not asked for yet, bounded, and fair between those who sent it: each DDS writer has
+// a queue of its own, and they take turns, so that whoever sends a flood waits behind itself alone.
+//
+//   numbered        beyond a topic's limit left out of whoever has more than its share waiting: their writer has them
+//                   in its journal, and the reader asks for what it misses
+//   service status  only a writer's last word about each service waits
+//   requests        left out as numbered messages are: they are repeated
+//   not numbered    kept up to twice the topic's limit, then left in DDS, which makes its sender wait
+//   of strangers    that is, not numbered, about no configured asset and from no configured sender: so many a second are
+//                   taken, whoever sends them, and so many wait; the rest is dropped and counted
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
+#include <map>
 #include <mutex>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/port/bus.hpp"
@@ -18,20 +30,48 @@ namespace sealwatch::transport {
 
 class Inbox {
  public:
+  using Time = std::chrono::steady_clock::time_point;
+  using Writer = std::uint64_t;  ///< as DDS tells writers apart
+  /// A stranger's actuator at 200 Hz sends 20 blocks a second.
+  static constexpr std::size_t kStrangersASecond = 200;
+  static constexpr std::size_t kMostOfStrangers = 1024;
+  static constexpr std::size_t kMostStatuses = 16;  ///< of one writer
+
   Signal signal;     ///< something arrived
   std::mutex mutex;  ///< for all that follows
 
-  [[nodiscard]] bool empty() const { return items_.empty(); }
+  /// Who is no stranger. Nobody is one where there are no assets.
+  void know(std::set<std::string> assets, std::set<std::string> senders);
+
+  [[nodiscard]] bool empty() const { return turns_.empty(); }
+  /// Whether strangers' messages wait until more of them may be taken.
+  [[nodiscard]] bool strangers_wait() const { return strangers_waiting_ > 0; }
   /// Whether nothing more of that topic should be taken from DDS.
   [[nodiscard]] bool is_full(std::size_t topic, std::size_t limit) const { return waiting_[topic] >= 2 * limit; }
   /// Adds it, or leaves it out.
-  void put(BusItem item, std::size_t limit);
-  /// The oldest, at most `most`.
-  [[nodiscard]] std::vector<BusItem> take(std::size_t most);
+  void put(Writer writer, BusItem item, std::size_t limit);
+  /// At most `most`, writers in turn; those of one writer in the order in which they came.
+  [[nodiscard]] std::vector<BusItem> take(std::size_t most, Time now);
+  /// What was dropped since the last call.
+  [[nodiscard]] std::vector<Flood> floods();
 
  private:
-  std::deque<BusItem> items_;
-  std::array<std::size_t, kTopicCount> waiting_{};  ///< by topic, as topic_types() counts them
+  using Key = std::pair<bool, Writer>;  ///< whether it is a stranger's
+  [[nodiscard]] bool is_strangers(const BusItem& item) const;
+  [[nodiscard]] bool is_left_out(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const;
+  void drop(const BusItem& item);
+  [[nodiscard]] BusItem take_one(const Key& key);
+
+  std::set<std::string> assets_;
+  std::set<std::string> senders_;
+  std::map<Key, std::deque<BusItem>> queues_;       ///< none is empty
+  std::deque<Key> turns_;                           ///< each queue once
+  std::array<std::size_t, kTopicCount> waiting_{};  ///< by topic, as topic_types() counts them; without strangers'
+  std::array<std::size_t, kTopicCount> writers_{};  ///< queues by topic, likewise
+  std::size_t strangers_waiting_ = 0;
+  double strangers_may_ = 0.0;  ///< how many may be taken now
+  Time strangers_looked_{};
+  std::map<std::string, std::uint64_t> dropped_;  ///< by who sent it
 };
 
 }  // namespace sealwatch::transport

@@ -42,6 +42,10 @@ TEST(OneLine, SaysWhatMattersWithUnits) {
   estimate.resistance_std_Pa_s_m3 = 2.0e11;
   estimate.used_for_forecast = true;
   EXPECT_EQ(one_line(Message(estimate)), "2031-04-12  A  leakage_estimate  R_CL 1.00e+13 +- 2.0e+11 Pa s/m3");
+  estimate.header.clock_quality = ClockQuality::stepped;
+  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3 [its sender's clock: stepped]"));
+  estimate.header.clock_quality = ClockQuality::synchronised;
+  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3"));
   estimate.estimated = false;
   estimate.reasons = {"cut"};
   EXPECT_THAT(one_line(Message(estimate)), HasSubstr("no estimate: cut"));

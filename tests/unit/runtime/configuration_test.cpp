@@ -124,6 +124,9 @@ const BadCase kBadCases[] = {
     {"second_person", "operator_acts: {confirmed_by_two: true}\n",
      "sealwatch.yaml: line 1, key operator_acts.confirmed_by_two: 'confirmed_by_two': is not a known key; did you mean "
      "'confirmed_by_second'?"},
+    {"retention", "retention: {days: 0.5}\n",
+     "sealwatch.yaml: line 1, key retention.days: '0.5': must be 1 or more; leave it out to keep samples for "
+     "ever"},
     {"root_not_a_map", "- a\n- b\n", "sealwatch.yaml: line 1: must be a mapping of keys to values"},
     {"twice", "domain: 1\ndomain: 2\n", "sealwatch.yaml: line 2, key domain: 'domain': stands twice; keep one of them"},
     {"empty_state_directory", "state_directory: \"\"\n",
@@ -142,6 +145,19 @@ TEST(Configuration, NamesItsSendersAndAsksForASecondPersonWhereItSaysSo) {
   ASSERT_TRUE(strict);
   EXPECT_THAT(strict->senders, ElementsAre("MCS-1", "MCS-2"));
   EXPECT_TRUE(strict->acts_confirmed_by_second);
+}
+
+TEST(Configuration, KeepsSamplesForEverUnlessItSaysOtherwise) {
+  const YamlPlace place;
+  const auto plain = load_configuration(place.write("sealwatch.yaml", "domain: 1\n"), {});
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->retention.days, 0.0);
+  EXPECT_EQ(plain->retention.megabytes, 0.0);
+  const auto bounded =
+      load_configuration(place.write("sealwatch.yaml", "retention: {days: 400, megabytes: 20000}\n"), {});
+  ASSERT_TRUE(bounded);
+  EXPECT_EQ(bounded->retention.days, 400.0);
+  EXPECT_EQ(bounded->retention.megabytes, 20'000.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BadConfiguration, ::testing::ValuesIn(kBadCases),

@@ -104,6 +104,7 @@ inline RunnerOptions fast_options() {
   options.settling = std::chrono::milliseconds(0);
   options.batch_pause = std::chrono::milliseconds(0);
   options.batch_time = std::chrono::seconds(5);  // on a busy machine too, a step concludes from what it took
+  options.resent_at_once = std::chrono::milliseconds(5);
   options.streams.patience_s = 0.003;
   options.streams.retry_s = 0.01;
   return options;

@@ -38,6 +38,7 @@ struct Rules {
   bool checks_after_a_start = true;           ///< the last messages read come again, their ids are compared
   bool checks_off_what_is_compared = true;    ///< which takes that the reader has committed it
   bool drops_what_is_held_at_a_start = true;
+  bool proves_its_start = true;  ///< each message says it, and of a start that was not compared nothing is handed out
 };
 
 struct Bounds {
@@ -46,6 +47,7 @@ struct Bounds {
   char writer_kills = 1;
   char reader_kills = 1;
   bool backup = false;          ///< taken once, restored once
+  Number reach = 3;             ///< how far back what was read is compared after a start
   bool sender_forgets = false;  ///< what the reader claims to have
 };
 
@@ -61,19 +63,26 @@ struct State {
   Number published = 0;
   Content pending = 0;  ///< published before it is committed: only where that rule is left out
   char writer_kills = 0;
-  /// numbers and contents in pairs, sorted
-  std::vector<std::pair<Number, Content>> flight;
+  struct Sent {
+    Number number = 0;
+    Content content = 0;
+    char start = 0;  ///< of its writer
+    friend auto operator<=>(const Sent&, const Sent&) = default;
+  };
+  std::vector<Sent> flight;  ///< sorted
   // the reader's journal
   std::string taken;
+  std::string numbers;  ///< under which each of them came last
   Number position = 0;
   // the reader's process
   bool reads = true;
   Number received = 0;   ///< last one handed out in order
   Number committed = 0;  ///< as the process knows it
-  std::vector<std::pair<Number, Content>> held;
-  std::vector<std::pair<Number, Content>> ready;
+  std::vector<Sent> held;
+  std::vector<Sent> ready;
   Number claimed = 0;  ///< how far the stream goes
-  char start_heard = 0;
+  char checked = 0;    ///< start whose messages are handed out
+  char checking = 0;   ///< one that is being compared; 0 none
   Number check_first = 1;
   Number check_last = 0;
   char reader_kills = 0;
@@ -81,14 +90,14 @@ struct State {
   [[nodiscard]] std::string key() const {
     std::string text = log + '|' + backup + '|';
     for (const char value : {backups, forgotten, static_cast<char>(writes), starts, published, pending, writer_kills,
-                             static_cast<char>(reads), position, received, committed, claimed, start_heard, check_first,
-                             check_last, reader_kills})
+                             static_cast<char>(reads), position, received, committed, claimed, checked, checking,
+                             check_first, check_last, reader_kills})
       text += value;
-    for (const auto* pairs : {&flight, &held, &ready}) {
+    for (const auto* all : {&flight, &held, &ready}) {
       text += '|';
-      for (const auto& [number, content] : *pairs) text.append({number, content});
+      for (const auto& [number, content, start] : *all) text.append({number, content, start});
     }
-    return text + '|' + taken;
+    return text + '|' + taken + '|' + numbers;
   }
   /// For people.
   [[nodiscard]] std::string describe() const {
@@ -98,23 +107,37 @@ struct State {
       for (const Content content : contents) text << int{content};
       text << "] ";
     };
-    const auto in_pairs = [&text](const char* name, const std::vector<std::pair<Number, Content>>& all) {
+    const auto in_order = [&text](const char* name, const std::vector<Sent>& all) {
       text << name << '[';
-      for (const auto& [number, content] : all) text << ' ' << int{number} << '=' << int{content};
+      for (const auto& [number, content, start] : all)
+        text << ' ' << int{number} << '=' << int{content} << " of start " << int{start};
       text << " ] ";
     };
     digits(writes ? "writer " : "(dead) writer ", log);
     digits("backup ", backup);
-    in_pairs("flight ", flight);
+    in_order("flight ", flight);
     digits(reads ? "reader " : "(dead) reader ", taken);
     text << "position " << int{position} << " received " << int{received} << " claimed " << int{claimed} << " check "
          << int{check_first} << ".." << int{check_last} << ' ';
-    in_pairs("held ", held);
-    in_pairs("ready ", ready);
+    in_order("held ", held);
+    in_order("ready ", ready);
     return text.str();
   }
   [[nodiscard]] Number written() const { return static_cast<Number>(log.size()); }
   [[nodiscard]] bool has(Content content) const { return taken.find(content) != std::string::npos; }
+  [[nodiscard]] bool has(Content content, Number number) const {
+    const std::size_t place = taken.find(content);
+    return place != std::string::npos && numbers[place] == number;
+  }
+  void take(Content content, Number number, bool drops_known_ids) {
+    const std::size_t place = taken.find(content);
+    if (place != std::string::npos && drops_known_ids) {
+      numbers[place] = number;
+    } else {
+      taken += content;
+      numbers += number;
+    }
+  }
 };
 
 class Model {
@@ -153,7 +176,7 @@ class Model {
   /// A network that is full loses what is sent.
   void send(State& state, Number number, Content content) const {
     if (state.flight.size() >= bounds_.in_flight) return;
-    state.flight.emplace_back(number, content);
+    state.flight.push_back({number, content, state.starts});
     std::ranges::sort(state.flight);
   }
 
@@ -213,15 +236,15 @@ class Model {
   void reader_steps(const State& now) {
     for (std::size_t k = 0; k < now.flight.size(); ++k) {
       State then = now;
-      const auto [number, content] = now.flight[k];
+      const State::Sent sent = now.flight[k];
       then.flight.erase(then.flight.begin() + static_cast<std::ptrdiff_t>(k));
-      accept(then, number, content);
+      accept(then, sent);
       step(std::move(then));
     }
     if (!now.ready.empty()) {
       State then = now;
-      for (const auto& [number, content] : std::exchange(then.ready, {})) {
-        if (!then.has(content) || !rules_.drops_known_ids) then.taken += content;
+      for (const auto& [number, content, start] : std::exchange(then.ready, {})) {
+        then.take(content, number, rules_.drops_known_ids);
         then.position = then.committed = number;
       }
       step(std::move(then));
@@ -232,7 +255,7 @@ class Model {
       then.reads = false;
       then.held.clear();
       then.ready.clear();
-      then.received = then.committed = then.claimed = then.start_heard = then.check_last = 0;
+      then.received = then.committed = then.claimed = then.checked = then.checking = then.check_last = 0;
       then.check_first = 1;
       step(std::move(then));
     }
@@ -248,29 +271,75 @@ class Model {
   void start_anew(State& state) const {
     state.received = state.committed = 0;
     state.held.clear();
-    state.check_first = 1;
-    state.check_last = 0;
+    forget_check(state);
+    state.checked = 0;
   }
 
-  void accept(State& state, Number number, Content content) const {
-    const bool is_compared = number <= state.committed;
-    if (rules_.checks_after_a_start && is_compared && !state.has(content)) start_anew(state);
-    const bool counts = is_compared || !rules_.checks_off_what_is_compared;
-    if (counts && number == state.check_first && number <= state.check_last) ++state.check_first;
-    if (number <= state.received && rules_.drops_known_numbers) return;
-    if (!rules_.waits_beyond_a_gap || number <= state.received) {
-      state.received = std::max(state.received, number);
-      state.ready.emplace_back(number, content);
+  /// What a sender without a journal has forgotten nobody can compare.
+  [[nodiscard]] bool compares() const { return rules_.checks_after_a_start && !bounds_.sender_forgets; }
+
+  void begin_check(State& state, char start) const {
+    if (start == state.checked || start == state.checking) return;
+    state.checking = start;
+    state.check_last = state.received;
+    state.check_first = static_cast<Number>(std::max(0, state.received - bounds_.reach) + 1);
+    end_check(state);
+  }
+
+  void forget_check(State& state) const {
+    state.check_first = 1;
+    state.check_last = state.checking = 0;
+    if (!rules_.drops_what_is_held_at_a_start || !rules_.proves_its_start) return;
+    std::erase_if(state.held, [&](const State::Sent& one) { return one.start != state.checked; });
+  }
+
+  /// What was handed out of the start before, meanwhile, is compared as well.
+  void end_check(State& state) const {
+    if (state.checking == 0 || state.check_first <= state.check_last) return;
+    if (state.check_last < state.received) {
+      state.check_last = state.received;
       return;
     }
-    const bool is_held = std::ranges::any_of(state.held, [&](const auto& one) { return one.first == number; });
-    if (!is_held) state.held.emplace_back(number, content);
-    std::ranges::sort(state.held);
-    while (!state.held.empty() && state.held.front().first == state.received + 1) {
+    state.checked = state.checking;
+    forget_check(state);
+  }
+
+  void hand_out(State& state) const {
+    while (!state.held.empty() && state.held.front().number == state.received + 1) {
+      if (compares() && rules_.proves_its_start && state.held.front().start != state.checked) return;
       state.ready.push_back(state.held.front());
       state.held.erase(state.held.begin());
       ++state.received;
     }
+  }
+
+  void compare(State& state, const State::Sent& sent) const {
+    const auto [number, content, start] = sent;
+    const bool is_compared = number <= state.committed;
+    if (compares() && is_compared && !state.has(content, number)) return start_anew(state);
+    if (rules_.proves_its_start && start != state.checking) return;
+    const bool counts = is_compared || !rules_.checks_off_what_is_compared;
+    if (counts && number == state.check_first && number <= state.check_last) ++state.check_first;
+    end_check(state);
+  }
+
+  void accept(State& state, const State::Sent& sent) const {
+    const auto [number, content, start] = sent;
+    if (compares() && rules_.proves_its_start) {
+      if (start == state.checked) forget_check(state);  // a heartbeat was older, or forged
+      begin_check(state, start);
+    }
+    compare(state, sent);
+    if (number <= state.received && rules_.drops_known_numbers) return hand_out(state);
+    if (!rules_.waits_beyond_a_gap || number <= state.received) {
+      state.received = std::max(state.received, number);
+      state.ready.push_back(sent);
+      return;
+    }
+    std::erase_if(state.held, [&](const auto& one) { return one.number == number; });
+    state.held.push_back(sent);
+    std::ranges::sort(state.held);
+    hand_out(state);
   }
 
   /// Heartbeats of both, and requests with what answers them.
@@ -278,12 +347,8 @@ class Model {
     if (rules_.tells_how_far_it_goes) {
       State then = now;
       then.claimed = now.written();
-      if (rules_.checks_after_a_start && now.start_heard != now.starts) {
-        then.start_heard = now.starts;
-        then.check_first = 1;
-        then.check_last = now.received;
-        if (rules_.drops_what_is_held_at_a_start) then.held.clear();
-      }
+      if (compares()) begin_check(then, now.starts);
+      hand_out(then);
       step(then);
       if (now.written() < now.received) {  // and stays so
         start_anew(then);
@@ -296,7 +361,7 @@ class Model {
       step(std::move(then));
     }
     if (!rules_.asks_for_what_is_missing) return;
-    const Number gap_end = now.held.empty() ? now.claimed : static_cast<Number>(now.held.front().first - 1);
+    const Number gap_end = now.held.empty() ? now.claimed : static_cast<Number>(now.held.front().number - 1);
     for (Number number = 1; number <= now.published; ++number) {
       const bool missing = number > now.received && number <= gap_end;
       const bool checked = number >= now.check_first && number <= now.check_last;
@@ -366,6 +431,8 @@ void expect_nothing_lost_or_doubled(Bounds bounds, std::size_t at_least) {
 
 constexpr Bounds kKills = {};
 constexpr Bounds kRestore = {.in_flight = 1, .backup = true};
+/// Fewer messages are compared after a start than were read before.
+constexpr Bounds kShortReach = {.in_flight = 1, .backup = true, .reach = 2};
 constexpr Bounds kForgetfulSender = {.sender_forgets = true};
 /// Where a rule is left out two messages do.
 constexpr Bounds kFewKills = {.contents = 2};
@@ -376,6 +443,10 @@ TEST(StreamModel, LosesAndDoublesNothingWhoeverIsKilledWhenever) { expect_nothin
 
 TEST(StreamModel, LosesAndDoublesNothingWhenAWritersJournalIsRestoredFromABackup) {
   expect_nothing_lost_or_doubled(kRestore, 5'000);
+}
+
+TEST(StreamModel, WhatIsComparedAfterAStartAlwaysReachesBackToWhatWasReadBefore) {
+  expect_nothing_lost_or_doubled(kShortReach, 5'000);
 }
 
 TEST(StreamModel, ASenderMayForgetWhatIsClaimed) { expect_nothing_lost_or_doubled(kForgetfulSender, 10'000); }
@@ -400,7 +471,7 @@ TEST_P(StreamModelWithout, BreaksDown) {
 INSTANTIATE_TEST_SUITE_P(
     Rules, StreamModelWithout,
     ::testing::Values(
-        LeftOut{"commits_before_publishing", &Rules::commits_before_publishing, kFewKills, true},
+        LeftOut{"commits_before_publishing", &Rules::commits_before_publishing, kFewForgetful, true},
         LeftOut{"tells_how_far_it_goes", &Rules::tells_how_far_it_goes, kFewKills, true},
         LeftOut{"asks_for_what_is_missing", &Rules::asks_for_what_is_missing, kFewKills, true},
         LeftOut{"waits_beyond_a_gap", &Rules::waits_beyond_a_gap, kFewKills, true},
@@ -408,6 +479,7 @@ INSTANTIATE_TEST_SUITE_P(
         LeftOut{"checks_after_a_start", &Rules::checks_after_a_start, kFewRestore, true},
         LeftOut{"checks_off_what_is_compared", &Rules::checks_off_what_is_compared, kFewRestore, true},
         LeftOut{"drops_what_is_held_at_a_start", &Rules::drops_what_is_held_at_a_start, kFewRestore, true},
+        LeftOut{"proves_its_start", &Rules::proves_its_start, kShortReach, true},
         LeftOut{"drops_known_ids", &Rules::drops_known_ids, kFewRestore, false}),
     [](const auto& left_out) { return left_out.param.name; });
 

@@ -75,14 +75,15 @@ class Writer {
         outbox_.add(message_of(topic, id, log.size()));
       }
   }
-  void take(const ResendRequest& request) {
+  void take(const ResendRequest& request, Outbox::Time now) {
     const Topic topic = *value_of<Topic>(request.topic);
     const std::uint64_t sent = outbox_.first(topic).value_or(journal_[topic].size() + 1) - 1;
-    resends_.add({topic, request.first_sequence, request.last_sequence}, sent);
+    (void)resends_.add({topic, request.first_sequence, request.last_sequence}, sent, request.requested_by, now);
   }
   template <class Publish>
   void send(Outbox::Time now, const Publish& publish) {
-    const auto attempt = [&](const Message& message) {
+    const auto attempt = [&](Message message) {
+      header_of(message).writer_started_ns = started_ns_;
       const bool taken = publish(message);
       outbox_.note(topic_of(message), taken, now);
       return taken;
@@ -132,7 +133,7 @@ class Reader {
   Reader(Taken& journal, Mistake mistake)
       : journal_(journal),
         mistake_(mistake),
-        streams_("reader", journal.as_positions()),
+        streams_("reader", journal.as_positions(), limits(compares())),
         committed_(journal.positions) {}
 
   void take(Message message, double now_s) {
@@ -143,8 +144,8 @@ class Reader {
         committed != committed_.end() && header.stream_sequence <= committed->second) {
       if (journal_.has(topic, header.message_id) &&
           journal_.numbers[topic][header.message_id] == header.stream_sequence)
-        streams_.note_known(key, header.stream_sequence);
-      else if (mistake_ != Mistake::believes_every_writer && streams_.read_again(key, now_s))
+        streams_.note_known(message);
+      else if (compares() && streams_.read_again(key, now_s))
         start_anew(topic);
     }
     for (Message& next : streams_.accept(std::move(message))) {
@@ -153,7 +154,7 @@ class Reader {
     }
   }
   void take(const ServiceStatus& status, double now_s) {
-    if (mistake_ != Mistake::believes_every_writer)
+    if (compares())
       for (Message& next : streams_.note_start(status.writer_id, status.started_ns, now_s))
         ready_.push_back(std::move(next));
     for (const StreamPosition& written : status.written)
@@ -174,6 +175,15 @@ class Reader {
   }
 
  private:
+  /// What is claimed too early, too, is found when it is compared.
+  [[nodiscard]] bool compares() const {
+    return mistake_ != Mistake::believes_every_writer && mistake_ != Mistake::claims_before_it_commits;
+  }
+  [[nodiscard]] static StreamReader::Limits limits(bool compares) {
+    StreamReader::Limits limits;
+    limits.compares = compares;
+    return limits;
+  }
   void start_anew(Topic topic) {
     committed_.erase(topic);
     std::erase_if(ready_, [topic](const Message& message) { return topic_of(message) == topic; });
@@ -232,7 +242,7 @@ class Simulation {
     for (auto& reader : readers_) {
       if (!reader) continue;
       for (const ResendRequest& request : reader->requests(now_s_))
-        if (writer_ && !fault()) writer_->take(request);
+        if (writer_ && !fault()) writer_->take(request, now_);
     }
   }
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -235,7 +236,6 @@ TEST_F(StreamReaderTest, StrangersAreBoundedAndForgottenAndTheOwnWritersStay) {
 }
 
 TEST_F(StreamReaderTest, WhenAWriterStartsTheLastMessagesReadAreAskedForAgain) {
-  const StreamReader::Key kStream = {"advisory", "w"};
   note(2, 0.0);
   EXPECT_THAT(asked(0.0), IsEmpty());
   (void)reader_.note_start("w", 111, 0.0);
@@ -244,10 +244,10 @@ TEST_F(StreamReaderTest, WhenAWriterStartsTheLastMessagesReadAreAskedForAgain) {
   EXPECT_THAT(asked(1.2), ElementsAre(1, 2)) << "no answer";
   EXPECT_THAT(accept(2), IsEmpty());
   EXPECT_THAT(asked(3.3), ElementsAre(1, 2)) << "whoever knows the ids has not compared them";
-  reader_.note_known(kStream, 2);
-  reader_.note_known(kStream, 1);
+  reader_.note_known(numbered(2));
+  reader_.note_known(numbered(1));
   EXPECT_THAT(asked(9.0), ElementsAre(2, 2)) << "not all of it came in order";
-  reader_.note_known(kStream, 2);
+  reader_.note_known(numbered(2));
   EXPECT_THAT(asked(99.0), IsEmpty());
   (void)reader_.note_start("w", 111, 99.0);
   EXPECT_THAT(asked(99.0), IsEmpty()) << "the same start";
@@ -268,7 +268,7 @@ TEST_F(StreamReaderTest, NoMoreThanHalfAWindowIsHandedOutBetweenTwoHeartbeats) {
   };
   EXPECT_EQ(reader.accept(window(1)).size(), 1U);
   EXPECT_TRUE(reader.note_start("w", 111, 0.0).empty());
-  reader.note_known({"test_window", "w"}, 1);
+  reader.note_known(window(1));
   EXPECT_TRUE(reader.note_start("w", 111, 0.0).empty());
   std::size_t handed_out = 0;
   for (std::uint64_t k = 2; k <= 2 * half; ++k) handed_out += reader.accept(window(k)).size();
@@ -276,6 +276,95 @@ TEST_F(StreamReaderTest, NoMoreThanHalfAWindowIsHandedOutBetweenTwoHeartbeats) {
   EXPECT_TRUE(reader.requests(100.0).empty()) << "nothing is missing";
   EXPECT_TRUE(reader.requests(200.0).empty());
   EXPECT_EQ(reader.note_start("w", 111, 0.0).size(), half - 1);
+}
+
+Message window_of_start(std::uint64_t sequence, std::int64_t writer_started_ns) {
+  TestWindow message;
+  message.header.writer_id = "w";
+  message.header.stream_sequence = sequence;
+  message.header.writer_started_ns = writer_started_ns;
+  return message;
+}
+
+TEST_F(StreamReaderTest, MessagesThatSayWhenTheirWriterStartedWaitForNoHeartbeat) {
+  const std::uint64_t window = stream_window("test_window");
+  StreamReader reader("reader", {});
+  std::size_t handed_out = 0;
+  for (std::uint64_t k = 1; k <= 10 * window; ++k) {
+    handed_out += reader.accept(window_of_start(k, 111)).size();
+    if (k == 1) (void)reader.note_start("w", 111, 0.0);
+  }
+  EXPECT_EQ(handed_out, 10 * window);
+}
+
+TEST_F(StreamReaderTest, OfANewStartNothingIsHandedOutUntilWhatWasReadBeforeIsCompared) {
+  StreamReader reader("reader", {});
+  EXPECT_EQ(reader.accept(window_of_start(1, 111)).size(), 1U);
+  EXPECT_EQ(reader.accept(window_of_start(2, 111)).size(), 1U);
+  EXPECT_TRUE(reader.requests(100.0).empty());
+  EXPECT_TRUE(reader.accept(window_of_start(3, 222)).empty()) << "the message itself says that its writer started anew";
+  EXPECT_EQ(reader.accept(window_of_start(3, 111)).size(), 1U) << "it was on its way";
+  EXPECT_TRUE(reader.accept(window_of_start(4, 222)).empty());
+  const auto asked = reader.requests(101.1);
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked[0].first_sequence, 1U);
+  EXPECT_EQ(asked[0].last_sequence, 3U);
+  EXPECT_TRUE(reader.note_start("w", 222, 102.0).empty()) << "a heartbeat proves nothing of what was read before";
+  std::size_t handed_out = 0;
+  for (const std::uint64_t k : {1, 2, 3}) {
+    reader.note_known(window_of_start(k, 222));
+    EXPECT_EQ(handed_out, 0U);
+    handed_out += reader.accept(window_of_start(k, 222)).size();
+  }
+  EXPECT_EQ(handed_out, 1U) << "what waited for the comparison";
+}
+
+TEST_F(StreamReaderTest, AForgedHeartbeatHoldsUpNoMessageOfTheWriterItself) {
+  StreamReader reader("reader", {});
+  for (std::uint64_t k = 1; k <= 100; ++k) {
+    EXPECT_EQ(reader.accept(window_of_start(k, 111)).size(), 1U);
+    (void)reader.note_start("w", 1000 + static_cast<std::int64_t>(k), 0.01 * static_cast<double>(k));
+  }
+  EXPECT_LE(reader.requests(1.0).size(), 1U);
+}
+
+TEST_F(StreamReaderTest, OnlyTheAssetsThatAStreamIsAboutWaitForIt) {
+  const auto block = [](std::uint64_t sequence, const std::string& asset_id) {
+    RawSamples message;
+    message.asset_id = asset_id;
+    message.header.writer_id = "sender";
+    message.header.stream_sequence = sequence;
+    return Message(message);
+  };
+  EXPECT_EQ(reader_.accept(block(1, "A")).size(), 1U);
+  EXPECT_TRUE(reader_.accept(block(3, "A")).empty());
+  EXPECT_TRUE(reader_.is_behind("A"));
+  EXPECT_FALSE(reader_.is_behind("B")) << "what a sender lost about another actuator";
+  note(9, 0.0);
+  EXPECT_TRUE(reader_.is_behind("B")) << "services write about all";
+}
+
+TEST_F(StreamReaderTest, WritersThatNothingWasReadOfAreWaitedForAMinuteAllTogether) {
+  const auto stranger = [](int k) { return StreamPosition{"advisory", "stranger " + std::to_string(k), 7}; };
+  double now_s = 0.0;
+  for (int k = 0; now_s < 70.0; now_s += 0.5) {
+    if (std::fmod(now_s, 30.0) == 0.0) reader_.note_written(stranger(++k), now_s);  // before the last one is given up
+    EXPECT_EQ(reader_.is_behind("A"), now_s <= 60.0) << now_s;
+    (void)reader_.requests(now_s);
+  }
+  EXPECT_EQ(sequences(reader_.accept(numbered(1, "stranger 1"))).size(), 1U);
+  reader_.note_written(stranger(99), now_s);
+  (void)reader_.requests(now_s);
+  EXPECT_TRUE(reader_.is_behind("A")) << "one of them was real";
+}
+
+TEST_F(StreamReaderTest, AForgedWordThatComesAndGoesIsWaitedForNoLongerThanOneThatStays) {
+  for (double now_s = 0.0; now_s < 200.0; now_s += 0.5) {
+    note(std::fmod(now_s, 5.0) == 0.0 ? 2 : kHighest, now_s);  // the writer itself says 2
+    (void)reader_.requests(now_s);
+  }
+  note(kHighest, 200.0);
+  EXPECT_FALSE(reader_.is_behind("A"));
 }
 
 TEST_F(StreamReaderTest, AWriterThatCountsAnewIsReadFromItsStartButNotForEver) {
@@ -302,13 +391,33 @@ TEST(ResendQueueTest, ServesBoundedPieces) {
 
 TEST(ResendQueueTest, ServesSeveralReadersThatMissTheSameOnce) {
   ResendQueue queue;
-  queue.add({Topic::advisory, 1, 10}, kSent);
-  queue.add({Topic::advisory, 5, 20}, kSent);
-  queue.add({Topic::advisory, 21, 22}, kSent);
-  queue.add({Topic::state_report, 5, 6}, kSent);
+  EXPECT_TRUE(queue.add({Topic::advisory, 1, 10}, kSent, "one"));
+  EXPECT_TRUE(queue.add({Topic::advisory, 5, 20}, kSent, "another"));
+  EXPECT_TRUE(queue.add({Topic::advisory, 21, 22}, kSent, "one"));
+  EXPECT_TRUE(queue.add({Topic::state_report, 5, 6}, kSent, "one"));
   EXPECT_EQ(queue.take(64), (Range{Topic::advisory, 1, 22}));
   EXPECT_EQ(queue.take(64), (Range{Topic::state_report, 5, 6}));
   EXPECT_TRUE(queue.empty());
+}
+
+TEST(ResendQueueTest, WhoAsksForTheSameAllTheTimeGetsItOnceInAWhile) {
+  ResendQueue queue;
+  int served = 0;
+  for (int ms = 0; ms < 9000; ++ms) {
+    queue.add({Topic::advisory, 1, kHighest}, kSent, "flood", ResendQueue::Time(std::chrono::milliseconds(ms)));
+    served += queue.take(kHighest) ? 1 : 0;
+  }
+  EXPECT_EQ(served, 10);
+  EXPECT_TRUE(queue.add({Topic::advisory, 1, 2}, kSent, "reader")) << "another one has not had it";
+}
+
+TEST(ResendQueueTest, WhoAsksForEverythingLeavesRoomForOthers) {
+  ResendQueue queue;
+  for (std::uint64_t k = 0; k < 1000; ++k) queue.add({Topic::advisory, 256 * k + 1, 256 * k + 256}, kSent, "flood");
+  ASSERT_TRUE(queue.add({Topic::state_report, 1, 256}, kSent, "reader"));
+  std::uint64_t before = 0;
+  for (auto range = queue.take(16); range && range->topic == Topic::advisory; range = queue.take(16)) before += 16;
+  EXPECT_LE(before, 32U) << "ranges take turns";
 }
 
 TEST(ResendQueueTest, TakesTopicsInTurn) {
@@ -351,7 +460,8 @@ TEST(ResendQueueTest, AFloodOfRequestsWaitsBounded) {
   while (const auto range = scattered.take(64)) messages += range->last - range->first + 1;
   EXPECT_LE(messages, ResendQueue::kMostWaiting);
   ResendQueue joined;  // each touches the one before: the whole journal would be one range
-  for (std::uint64_t k = 0; k < 1000; ++k) joined.add({Topic::advisory, 256 * k + 1, 256 * k + 256}, kSent);
+  for (std::uint64_t k = 0; k < 1000; ++k)
+    joined.add({Topic::advisory, 256 * k + 1, 256 * k + 256}, kSent, "reader " + std::to_string(k % 8));
   for (messages = 0; const auto range = joined.take(64);) messages += range->last - range->first + 1;
   EXPECT_LE(messages, ResendQueue::kMostWaiting);
   EXPECT_GE(messages, 1000U);

@@ -116,6 +116,60 @@ TEST_P(JournalTest, TheSameConclusionTwiceIsKeptOnce) {
   EXPECT_EQ(header_of(conclude(journal, {message("b")}).at(0)).stream_sequence, 2U) << "no gap is left";
 }
 
+Message window(const std::string& id, const std::string& asset, std::size_t rows) {
+  TestWindow made;
+  made.asset_id = asset;
+  made.header.message_id = id;
+  made.header.pst_id = "pst-" + id;
+  made.header.producer = "data_manipulation";
+  made.header.event_time_known = true;
+  made.header.event_time_ns = 4711;
+  made.samples.time_s.assign(rows, 0.5);
+  return made;
+}
+
+TEST_P(JournalTest, AnOutputThatExpiresKeepsAllButItsSamples) {
+  constexpr std::size_t kRows = 20'000;
+  {
+    Journal journal = open();
+    (void)conclude(journal, {window("a", "A", kRows), window("b", "B", kRows), window("c", "A", kRows)});
+    const double before = journal.used_bytes().value();
+    ASSERT_TRUE(journal.begin());
+    for (const std::uint64_t sequence : {1U, 2U}) {
+      const Status expired = journal.expire(Topic::test_window, sequence);
+      ASSERT_TRUE(expired) << expired.error().describe();
+    }
+    ASSERT_TRUE(journal.commit());
+    if (GetParam() == "sqlite3") {
+      EXPECT_LT(journal.used_bytes().value(), before - 2 * 8 * kRows) << "it is used again";
+    }
+    const auto kept = journal.kept_samples(Topic::test_window, 0, 10).value();
+    ASSERT_EQ(kept.size(), 1U);
+    EXPECT_EQ(kept[0].sequence, 3U);
+    EXPECT_EQ(kept[0].asset_id, "A");
+    EXPECT_EQ(kept[0].pst_id, "pst-c");
+    EXPECT_EQ(kept[0].concluded, UtcTime{77});
+    EXPECT_THAT(conclude(journal, {window("a", "A", kRows)}), IsEmpty()) << "known for ever";
+  }
+  place_.execute("UPDATE outputs SET payload = 'no message' WHERE message_id = 'b'");
+  Journal journal = open();
+  EXPECT_THAT(journal.quarantine().value(), IsEmpty()) << "what is left of it is not missed";
+  const std::vector<Message> outputs = all_outputs(journal);
+  EXPECT_THAT(ids(outputs), ElementsAre("a", "b", "c"));
+  EXPECT_EQ(header_of(outputs[0]).producer, "expired: data_manipulation");
+  EXPECT_EQ(header_of(outputs[0]).event_time_ns, 4711);
+  EXPECT_EQ(asset_of(outputs[1]), "B");
+  EXPECT_EQ(header_of(outputs[1]).pst_id, "pst-b");
+  const auto again = journal.outputs(Topic::test_window, 1, 3, 64).value();
+  ASSERT_EQ(again.size(), 3U);
+  for (const std::size_t k : {0U, 1U}) {
+    EXPECT_TRUE(std::get<TestWindow>(again[k]).samples.time_s.empty());
+    EXPECT_TRUE(header_of(again[k]).producer.starts_with("expired: "));
+    EXPECT_EQ(header_of(again[k]).stream_sequence, k + 1) << "readers count on";
+  }
+  EXPECT_EQ(std::get<TestWindow>(again[2]).samples.time_s.size(), kRows);
+}
+
 TEST_P(JournalTest, OpenInputsComeBackInOrderOfReceiptUntilConsumed) {
   {
     Journal journal = open();

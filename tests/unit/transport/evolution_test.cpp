@@ -90,6 +90,9 @@ TEST_F(Evolution, AnOlderWritersMessageHasEmptyNewFields) {
   EXPECT_EQ(got.due_time_ns, 42);
   EXPECT_EQ(got.reason, "");
   EXPECT_EQ(got.header.writer_id, "");
+  EXPECT_EQ(got.header.writer_started_ns, 0);
+  EXPECT_EQ(got.header.clock_quality, ClockQuality::unknown);
+  EXPECT_FALSE(got.header.clock_error_known);
 }
 
 TEST_F(Evolution, ANewerWritersAdditionsAreLeftOut) {
@@ -101,11 +104,15 @@ TEST_F(Evolution, ANewerWritersAdditionsAreLeftOut) {
   sample.header.message_id = const_cast<char*>("pst_request/1");
   sample.due_time_ns = 42;
   sample.reason = const_cast<char*>("monthly test");
+  sample.header.writer_started_ns = 7;
+  sample.header.clock_quality = evolution_newer_CLOCK_QUALITY_STEPPED;
   sample.urgency = evolution_newer_URGENCY_HIGH;
   newer.write(&sample);
   const PstRequest got = received();
   EXPECT_EQ(got.header.message_id, "pst_request/1");
   EXPECT_EQ(got.header.writer_id, "text");
+  EXPECT_EQ(got.header.writer_started_ns, 7);
+  EXPECT_EQ(got.header.clock_quality, ClockQuality::stepped);
   EXPECT_EQ(got.due_time_ns, 42);
   EXPECT_EQ(got.reason, "monthly test");
 }

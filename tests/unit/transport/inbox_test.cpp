@@ -1,0 +1,117 @@
+// Who sends much waits behind itself alone, and what a stranger sends too much of is dropped and told.
+#include "services/common/transport/inbox.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sealwatch::transport {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::ElementsAre;
+using ::testing::SizeIs;
+
+constexpr std::size_t kLimit = 512;
+
+BusItem block(const std::string& asset_id, std::uint64_t number, const std::string& writer_id = {}) {
+  RawSamples raw;
+  raw.asset_id = asset_id;
+  raw.source_id = "sender of " + asset_id;
+  raw.block_number = number;
+  raw.header.writer_id = writer_id;
+  raw.header.stream_sequence = writer_id.empty() ? 0 : number;
+  return Message(raw);
+}
+
+std::uint64_t number_of(const BusItem& item) { return std::get<RawSamples>(std::get<Message>(item)).block_number; }
+std::string asset_of(const BusItem& item) { return sealwatch::asset_of(std::get<Message>(item)); }
+
+class InboxTest : public ::testing::Test {
+ protected:
+  InboxTest() { inbox_.know({"A", "B"}, {"sender of CONFIGURED"}); }
+  std::vector<BusItem> take(std::size_t most, milliseconds at = milliseconds(1000)) {
+    return inbox_.take(most, Inbox::Time(at));
+  }
+  Inbox inbox_;
+};
+
+TEST_F(InboxTest, ABlockWaitsBehindNoFloodOfAnother) {
+  for (std::uint64_t k = 1; k <= 1000; ++k) inbox_.put(1, block("A", k), kLimit);
+  for (std::uint64_t k = 1; k <= 3; ++k) inbox_.put(2, block("B", k), kLimit);
+  std::vector<std::uint64_t> numbers;
+  for (const BusItem& item : take(8))
+    if (asset_of(item) == "B") numbers.push_back(number_of(item));
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 3));
+  std::uint64_t last = 0;
+  while (!inbox_.empty())
+    for (const BusItem& item : take(64)) {
+      EXPECT_GT(number_of(item), last) << "each writer's in order";
+      last = number_of(item);
+    }
+  EXPECT_EQ(last, 1000U);
+}
+
+TEST_F(InboxTest, OfNumberedMessagesWhoHasMoreThanItsShareWaitingIsLeftOut) {
+  for (std::uint64_t k = 1; k <= 10 * kLimit; ++k) inbox_.put(1, block("A", k, "flood"), kLimit);
+  for (std::uint64_t k = 1; k <= 100; ++k) inbox_.put(2, block("B", k, "live"), kLimit);
+  std::size_t live = 0;
+  std::size_t all = 0;
+  while (!inbox_.empty())
+    for (const BusItem& item : take(64)) {
+      live += asset_of(item) == "B" ? 1 : 0;
+      ++all;
+    }
+  EXPECT_EQ(live, 100U);
+  EXPECT_EQ(all, kLimit + 100);
+}
+
+TEST_F(InboxTest, AStrangersFloodIsTakenSlowlyAndDroppedAndTold) {
+  (void)take(1, milliseconds(0));
+  for (std::uint64_t k = 1; k <= 5000; ++k) inbox_.put(7, block("UNKNOWN", k), kLimit);
+  inbox_.put(1, block("A", 1), kLimit);
+  EXPECT_FALSE(inbox_.is_full(static_cast<std::size_t>(Topic::raw_samples), kLimit)) << "nobody waits for it in DDS";
+  std::size_t strangers = 0;
+  std::size_t known = 0;
+  for (int ms = 1; ms <= 2000; ++ms)
+    for (const BusItem& item : take(64, milliseconds(ms))) ++(asset_of(item) == "A" ? known : strangers);
+  EXPECT_EQ(known, 1U);
+  EXPECT_GE(strangers, 2 * Inbox::kStrangersASecond - 1);
+  EXPECT_LE(strangers, 2 * Inbox::kStrangersASecond);
+  const auto floods = inbox_.floods();
+  ASSERT_THAT(floods, SizeIs(1));
+  EXPECT_EQ(floods[0].source, "sender of UNKNOWN");
+  EXPECT_EQ(floods[0].dropped, 5000 - Inbox::kMostOfStrangers);
+  EXPECT_TRUE(inbox_.strangers_wait());
+  EXPECT_THAT(inbox_.floods(), SizeIs(0)) << "told once";
+}
+
+TEST_F(InboxTest, AConfiguredSenderIsNoStrangerAndNobodyIsWhereNothingIsConfigured) {
+  Inbox open;
+  for (std::uint64_t k = 1; k <= 1000; ++k) {
+    inbox_.put(7, block("CONFIGURED", k), kLimit);
+    open.put(7, block("UNKNOWN", k), kLimit);
+  }
+  std::size_t came = 0;
+  while (!inbox_.empty()) came += take(64).size();
+  while (!open.empty()) came += open.take(64, Inbox::Time()).size();
+  EXPECT_EQ(came, 2000U);
+}
+
+TEST_F(InboxTest, AStrangersHeartbeatsHideNoServicesOwn) {
+  const auto beat = [](const std::string& writer_id, std::int64_t started_ns) {
+    ServiceStatus status;
+    status.service = "data_acquisition";
+    status.writer_id = writer_id;
+    status.started_ns = started_ns;
+    return BusItem(status);
+  };
+  inbox_.put(1, beat("itself", 1), kLimit);
+  for (int k = 0; k < 100'000; ++k) inbox_.put(2, beat("stranger " + std::to_string(k), k), kLimit);
+  inbox_.put(1, beat("itself", 2), kLimit);
+  const auto taken = take(64);
+  ASSERT_THAT(taken, SizeIs(2)) << "the last word of each";
+  EXPECT_EQ(std::get<ServiceStatus>(taken[0]).started_ns, 2);
+}
+
+}  // namespace
+}  // namespace sealwatch::transport

@@ -51,7 +51,9 @@ int run_explain(const ExplainOptions& options);
 
 struct PlantImportOptions {
   std::string fmu;
-  std::string file;  ///< plant file to write
+  std::string file;                   ///< plant file to write
+  std::string interface;              ///< "me", "cs"; "": whichever there is
+  std::vector<std::string> settings;  ///< NAME=VALUE
 };
 int run_plant_import(const PlantImportOptions& options);
 

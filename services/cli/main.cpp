@@ -519,6 +519,10 @@ class CommandLine {
     unit->callback([this] { chosen_ = [this] { return run_plant_import(plant_import_); }; });
     unit->add_option("fmu", plant_import_.fmu, "FMU of FMI 2.0 or 3.0, for Linux on x86-64")->required();
     unit->add_option("--out", plant_import_.file, "plant file to write (YAML)")->required();
+    unit->add_option("--interface", plant_import_.interface, "me or cs, of a unit that has both; without it me")
+        ->check(CLI::IsMember({"me", "cs"}));
+    unit->add_option("--set", plant_import_.settings, "NAME=VALUE: a parameter that is set once, as a size or a text")
+        ->allow_extra_args(false);
     CLI::App* back = plant->add_subcommand("export", "write an asset's plant with its laws as an FMU");
     back->footer(
         std::string("Example:\n  sealwatch plant export --asset report/asset.explained.yaml --fmu explained.fmu\n") +

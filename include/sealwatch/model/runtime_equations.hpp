@@ -79,6 +79,10 @@ class RuntimeEvaluator {
   /// What went wrong last, in words for the user; "": nothing that is known.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
 
+  /// Where states start by the equations' own account (RuntimeState::by_equations), and the derivatives by the parameters
+  /// that the evaluator was asked to differentiate by; other states are left as they are.
+  [[nodiscard]] virtual bool start(std::span<double>, RuntimeMatrix&) { return true; }
+
   // Events, where equations or states change at once. Points come in the order of time; what happens at an event is
   // remembered by the evaluator.
   [[nodiscard]] virtual bool has_events() const { return false; }
@@ -110,9 +114,10 @@ class RuntimeEquations {
 };
 
 struct RuntimeState {
-  double scale = 1.0;    ///< allowed local error of one step at the relative tolerance 1e-6
-  bool slow = true;      ///< its initial value is each recording's own and is estimated
-  bool settles = false;  ///< starts where its time derivative is zero, its neighbours being held
+  double scale = 1.0;         ///< allowed local error of one step at the relative tolerance 1e-6
+  bool slow = true;           ///< its initial value is each recording's own and is estimated
+  bool settles = false;       ///< starts where its time derivative is zero, its neighbours being held
+  bool by_equations = false;  ///< starts where RuntimeEvaluator::start() says
 };
 
 /// How a recorded input runs between samples.

@@ -48,6 +48,20 @@ Result<std::unique_ptr<RuntimeEvaluator>> FmuEquations::evaluator(std::span<cons
                                         differentiated.size(), frame_->signals_see_added());
 }
 
+Result<std::vector<double>> FmuEquations::initial_state(std::span<const double> parameters,
+                                                        const TimeSeries& recorded) const {
+  Result<std::vector<double>> states = frame_->initial_state(parameters, recorded);
+  if (!states || std::ranges::count(counts_.starts_by_fmu, true) == 0) return states;
+  const auto at_start = evaluator(parameters, {});
+  if (!at_start) return fail(at_start.error());
+  std::vector<double> starts = *states;
+  RuntimeMatrix unused;
+  if (!(*at_start)->start(starts, unused)) return fail((*at_start)->trouble());
+  for (std::size_t k = 0; k < starts.size(); ++k)
+    if (counts_.starts_by_fmu[k]) (*states)[k] = starts[k];
+  return states;
+}
+
 namespace {
 
 constexpr const char* kDerivativeRule = "gives directional derivatives that are not the derivatives of its own values";

@@ -41,7 +41,9 @@ FmuProcess::FmuProcess(std::string file, Setup setup, std::size_t most_slots, co
                                                          setup_.event_indicators + 4 * (states_ + inputs_) +
                                                          most_slots_ * elements(setup_.parameters);
   std::size_t texts = setup_.library.size() + setup_.folder.size() + setup_.resources.size() + setup_.token.size();
-  for (const auto* handles : {&setup_.states, &setup_.derivatives, &setup_.parameters, &setup_.inputs, &setup_.outputs})
+  texts += setup_.constant_texts.size();
+  for (const auto* handles :
+       {&setup_.states, &setup_.derivatives, &setup_.parameters, &setup_.constants, &setup_.inputs, &setup_.outputs})
     texts += handles->size() * sizeof(Handle);
   memory_bytes_ = sizeof(SharedHeader) + (numbers + 64) * sizeof(double) + texts + 1024;
 }
@@ -121,11 +123,16 @@ Status FmuProcess::request(Operation operation, const char* what, double seconds
   if (header_->status == AnswerStatus::ok) return {};
   std::array<char, kTextBytes> text{};
   std::copy_n(header_->text, kTextBytes - 1, text.begin());
-  return fail(
-      failure(place_of(what, time_s), text.data(),
-              (operation == Operation::begin ? "a licence may be missing, or a parameter outside what the model allows"
-                                             : "try the model in the tool that made it") +
-                  printed()));
+  return fail(failure(place_of(what, time_s), text.data(), advice_of(operation) + printed()));
+}
+
+std::string FmuProcess::advice_of(Operation operation) const {
+  const bool starts = operation == Operation::begin || operation == Operation::load;
+  if (starts && !setup_.needed_tool.empty())
+    return "it needs " + setup_.needed_tool +
+           " on this machine to run (needsExecutionTool): install it, or export the model without that need";
+  return operation == Operation::begin ? "a licence may be missing, or a parameter outside what the model allows"
+                                       : "try the model in the tool that made it";
 }
 
 Error FmuProcess::failure(const std::string& what, std::string rule, std::string advice) const {
@@ -178,11 +185,14 @@ Result<Beginning> FmuProcess::begin(const Run& run) {
   if (!status) return fail(status.error());
   slots_ = run.slots;
   Unpacker answer = unpacker();
-  Beginning beginning{.outcome = outcome_of(answer), .states = {}, .nominals = {}};
-  for (std::vector<double>* list : {&beginning.states, &beginning.nominals}) {
-    const std::span<double> numbers = answer.numbers(states_);
-    list->assign(numbers.begin(), numbers.end());
-  }
+  Beginning beginning{.outcome = outcome_of(answer), .states = {}, .nominals = {}, .slot_states = {}};
+  const auto take = [&](std::size_t count, std::vector<double>& list) {
+    const std::span<double> numbers = answer.numbers(count);
+    list.assign(numbers.begin(), numbers.end());
+  };
+  take(states_, beginning.states);
+  take(states_, beginning.nominals);
+  if (setup_.co_simulation == 0) take(states_ * (slots_ - 1), beginning.slot_states);
   return beginning;
 }
 
@@ -242,7 +252,7 @@ Result<StepEnd> FmuProcess::completed_step(double time_s, std::span<const double
   return end;
 }
 
-Result<std::span<const double>> FmuProcess::do_step(double time_s, double step_s, std::span<const double> inputs) {
+Result<CoStepEnd> FmuProcess::do_step(double time_s, double step_s, std::span<const double> inputs) {
   Packer packer = this->packer();
   packer.put(time_s);
   packer.put(step_s);
@@ -250,7 +260,8 @@ Result<std::span<const double>> FmuProcess::do_step(double time_s, double step_s
   const Status status = request(Operation::do_step, "a step", limits_.call_s, time_s);
   if (!status) return fail(status.error());
   Unpacker answer = unpacker();
-  return std::span<const double>(answer.numbers(outputs_ * slots_));
+  const std::span<const double> end = answer.numbers(2);
+  return CoStepEnd{.outputs = answer.numbers(outputs_ * slots_), .terminate = end[0] != 0.0, .reached_s = end[1]};
 }
 
 }  // namespace sealwatch::fmi

@@ -35,6 +35,7 @@ struct Outcome {
 struct Beginning {
   Outcome outcome;
   std::vector<double> states, nominals;
+  std::vector<double> slot_states;  ///< of each further slot in turn
 };
 
 /// Values; derivatives where they were asked for, row by row. `parameter` has f and y of each further slot in turn.
@@ -48,6 +49,13 @@ struct Evaluation {
 struct StepEnd {
   bool event = false;
   bool terminate = false;
+};
+
+/// A step of a Co-Simulation unit: the outputs of all slots in turn. It may end the simulation by itself.
+struct CoStepEnd {
+  std::span<const double> outputs;
+  bool terminate = false;
+  double reached_s = 0.0;
 };
 
 class FmuProcess {
@@ -75,8 +83,8 @@ class FmuProcess {
   [[nodiscard]] Result<Outcome> event(double time_s, std::span<double> states, std::span<const double> inputs);
   [[nodiscard]] Result<StepEnd> completed_step(double time_s, std::span<const double> states,
                                                std::span<const double> inputs);
-  /// A Co-Simulation unit does a step of all slots; their outputs in turn. A step of 0 reads the outputs.
-  [[nodiscard]] Result<std::span<const double>> do_step(double time_s, double step_s, std::span<const double> inputs);
+  /// A Co-Simulation unit does a step of all slots. A step of 0 reads the outputs.
+  [[nodiscard]] Result<CoStepEnd> do_step(double time_s, double step_s, std::span<const double> inputs);
 
   [[nodiscard]] bool alive() const { return alive_; }
   [[nodiscard]] const Setup& setup() const { return setup_; }
@@ -88,6 +96,7 @@ class FmuProcess {
   [[nodiscard]] Status launch();
   /// `what` it is asked, at `time_s` unless that is NaN.
   [[nodiscard]] Status request(Operation operation, const char* what, double seconds, double time_s = kNoTime);
+  [[nodiscard]] std::string advice_of(Operation operation) const;
   [[nodiscard]] Error failure(const std::string& what, std::string rule, std::string advice) const;
   [[nodiscard]] Error ended(const std::string& what, int status) const;
   [[nodiscard]] std::string printed() const;

@@ -57,8 +57,12 @@ struct Setup {
   std::uint32_t event_indicators = 0;
   std::vector<Handle> states, derivatives;  ///< whole variables
   std::vector<Handle> parameters;           ///< that are set before a run, in the order of their values
+  std::vector<Handle> constants;            ///< that are set before those: structural parameters first
+  std::uint32_t structural = 0;             ///< how many of the constants are structural parameters
+  std::string constant_texts;               ///< the value of each, ended by a zero byte
   std::vector<Handle> inputs, outputs;
   std::uint32_t continuous_inputs = 0;  ///< how many of the inputs, the first, may change outside of events
+  std::string needed_tool;              ///< that must be on this machine for the binary to start; not of its business
 };
 
 /// Which numbers an evaluation answers with, in this order; f, y, z always.

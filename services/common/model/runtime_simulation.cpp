@@ -44,9 +44,13 @@ double mean_distance_s(const std::vector<double>& times) {
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
 
-tl::unexpected<Error> without_derivatives(const PlantDescription& plant) {
-  return fail("plant " + plant.name + " gave a derivative or an output that is not a finite number",
-              "check its equations where something is divided by zero or a root is taken of what may be negative");
+tl::unexpected<Error> without_derivatives(const PlantDescription& plant, std::string trouble) {
+  return fail(Error{.file = {},
+                    .place = {},
+                    .value = std::move(trouble),
+                    .rule = "plant " + plant.name + " gave a derivative or an output that is not a finite number",
+                    .advice = "check its equations where something is divided by zero or a root is taken of what may "
+                              "be negative"});
 }
 
 }  // namespace
@@ -101,7 +105,7 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
                 "fit and validate work; a model without such events (friction and stops rounded) can be explained");
   }
   if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
-    return without_derivatives(plant());
+    return without_derivatives(plant(), recording.trouble());
   return outputs;
 }
 

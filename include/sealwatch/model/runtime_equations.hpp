@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@
 #include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {
+
+struct RuntimeRun;
+struct SimulatedOutputs;
 
 enum class RuntimeFunction { derivatives, signals, outputs };
 
@@ -111,6 +115,9 @@ class RuntimeEquations {
   [[nodiscard]] virtual bool signals_see_added() const { return false; }
   /// Whether outputs depend on what is added otherwise than through the states.
   [[nodiscard]] virtual bool outputs_see_added() const { return true; }
+  /// Whether runs are made elsewhere, by run(): where the equations are, so that not every value has to come from there.
+  [[nodiscard]] virtual bool runs_elsewhere() const { return false; }
+  [[nodiscard]] virtual Result<SimulatedOutputs> run(const RuntimeRun& run) const;
 };
 
 struct RuntimeState {

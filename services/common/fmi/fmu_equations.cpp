@@ -9,7 +9,16 @@ namespace sealwatch::fmi {
 
 FmuEquations::FmuEquations(FmuBlock block, std::shared_ptr<const RuntimeEquations> frame, Counts counts,
                            bool outputs_see_added)
-    : block_(std::move(block)), frame_(std::move(frame)), counts_(counts), outputs_see_added_(outputs_see_added) {}
+    : block_(std::move(block)),
+      frame_(std::move(frame)),
+      counts_(std::move(counts)),
+      outputs_see_added_(outputs_see_added),
+      runs_(std::make_unique<HostedRuns>(block_.file->name(), block_.plant)) {}
+
+// Instances of a run stand side by side in one process, which not every binary allows.
+bool FmuEquations::runs_elsewhere() const {
+  return !block_.plant.file.empty() && block_.setup.once_per_process == 0 && !local_hosts();
+}
 
 Result<std::unique_ptr<RuntimeEvaluator>> FmuEquations::evaluator(std::span<const double> parameters,
                                                                   std::span<const std::size_t> differentiated) const {

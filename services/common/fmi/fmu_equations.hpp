@@ -20,6 +20,7 @@
 
 #include "sealwatch/model/runtime_equations.hpp"
 #include "services/common/fmi/fmu_file.hpp"
+#include "services/common/fmi/hosted_runs.hpp"
 
 namespace sealwatch::fmi {
 
@@ -38,6 +39,7 @@ struct FmuBlock {
   std::vector<bool> held_inputs;                     ///< of each input: it does not change between samples
   std::vector<double> input_start, parameter_start;  ///< of all elements of the groups, in the FMU's units
   double start_time_s = 0.0;
+  HostedPlant plant;  ///< for runs in the process that has the binary
 };
 
 /// Processes that run the FMU, kept for the next run.
@@ -65,6 +67,8 @@ class FmuEquations final : public RuntimeEquations {
                                                           const TimeSeries& recorded) const override;
   [[nodiscard]] bool signals_see_added() const override { return frame_->signals_see_added(); }
   [[nodiscard]] bool outputs_see_added() const override { return outputs_see_added_; }
+  [[nodiscard]] bool runs_elsewhere() const override;
+  [[nodiscard]] Result<SimulatedOutputs> run(const RuntimeRun& run) const override { return runs_->run(run); }
   [[nodiscard]] const FmuBlock& block() const { return block_; }
 
  private:
@@ -73,6 +77,7 @@ class FmuEquations final : public RuntimeEquations {
   Counts counts_;
   bool outputs_see_added_;
   std::shared_ptr<ProcessPool> pool_ = std::make_shared<ProcessPool>();
+  std::unique_ptr<HostedRuns> runs_;
 };
 
 /// Compares the directional derivatives that the FMU gives with differences, at its start and near it; an Error that

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 
 #include "sealwatch/core/text.hpp"
@@ -19,6 +22,11 @@ Error fault(std::string value, std::string rule, std::string advice = {}) {
   return {.file = {}, .place = {}, .value = std::move(value), .rule = std::move(rule), .advice = std::move(advice)};
 }
 
+std::string content_of(const std::string& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 class Builder {
  public:
   Builder(const TextPlant& text, const FmuSection& section, const equations::Faults& faults)
@@ -28,6 +36,10 @@ class Builder {
     auto file = FmuFile::open(section_.file, section_.settings, section_.interface);
     if (!file) return complain("fmu.file", file.error()), std::nullopt;
     block_.file = *file;
+    if (!text_.file.empty())
+      block_.plant = {.file = std::filesystem::absolute(text_.file).string(),
+                      .hash = content_hash(content_of(text_.file)),
+                      .fmu_folder = block_.file->unpacked().folder.path().string()};
     description_ = &block_.file->description();
     order_states();
     choose_variables();

@@ -1,11 +1,13 @@
 #include "services/common/model/runtime_simulation.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
 #include "services/common/model/measured_input.hpp"
 #include "services/common/model/recording_run.hpp"
+#include "services/common/model/runtime_run.hpp"
 #include "services/common/model/runtime_system.hpp"
 #include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
@@ -82,13 +84,31 @@ Result<std::unique_ptr<PlantSimulation>> RuntimePlantSimulation::create(std::sha
     if (plant->states[k].slow) slow.push_back(description.states[k].name);
   }
   simulation->set_states(std::move(names), std::move(slow), std::move(start));
+  static std::atomic<std::uint64_t> count = 0;
+  if (plant->equations->runs_elsewhere())
+    simulation->told_ = std::make_unique<const Told>(Told{.asset = asset, .recorded = recorded, .number = ++count});
   return simulation;
+}
+
+Result<SimulatedOutputs> RuntimeEquations::run(const RuntimeRun&) const {
+  return fail("these equations run nothing elsewhere");
 }
 
 Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInput& input, const ModelValues& values,
                                                                std::span<const FreeQuantity> free,
                                                                const SimulationOptions& options,
                                                                InjectedColumns* injected) const {
+  if (told_)
+    return runtime_->equations->run({.simulation = told_->number,
+                                     .asset = told_->asset,
+                                     .recorded = told_->recorded,
+                                     .channels = channels().size(),
+                                     .input = input,
+                                     .values = values,
+                                     .free = free,
+                                     .options = options,
+                                     .injected = injected,
+                                     .sites = plant().sites.size()});
   FreeColumns columns = free_columns(plant(), values, free);
   auto evaluator = runtime_->equations->evaluator(effective_parameters(plant(), values), columns.differentiated);
   if (!evaluator) return fail(evaluator.error());

@@ -182,15 +182,28 @@ class Writer {
     if (const Status read = read_starts(**process, selection.outputs, inputs); !read) return fail(read.error());
     linked_.assign(states_.size(), false);
     for (std::size_t k = 0; k < states_.size(); ++k) linked_[k] = is_linked(states_[k].element.variable);
-    // The description may not say which parameters move a start: each is tried.
-    for (std::size_t k = 0; k < std::min(parameters.size(), kMostParameters) && (*process)->alive(); ++k) {
-      const double before = parameters[k];
-      constexpr double kShare = 1e-3;
-      parameters[k] += kShare * (before == 0.0 ? 1.0 : before);
-      if (const auto moved = begin()) note_moved(moved->states);
-      parameters[k] = before;
-    }
+    try_parameters(parameters, begin, **process);
     return {};
+  }
+
+  // The description may not say which states parameters move at the start: all parameters are changed at once, each by
+  // another share, or one by one where the model does not start with all of them changed.
+  template <class Begin>
+  void try_parameters(std::vector<double>& parameters, const Begin& begin, const FmuProcess& process) {
+    const std::vector<double> before = parameters;
+    const auto change = [&](std::size_t k) {
+      constexpr double kShare = 1e-3;
+      parameters[k] += kShare * (1.0 + 0.01 * static_cast<double>(k % 50)) * (before[k] == 0.0 ? 1.0 : before[k]);
+    };
+    for (std::size_t k = 0; k < parameters.size(); ++k) change(k);
+    const auto all_moved = begin();
+    if (all_moved) note_moved(all_moved->states);
+    parameters = before;
+    for (std::size_t k = 0; !all_moved && k < std::min(parameters.size(), kMostParameters) && process.alive(); ++k) {
+      change(k);
+      if (const auto moved = begin()) note_moved(moved->states);
+      parameters[k] = before[k];
+    }
   }
 
   Status read_starts(FmuProcess& process, const std::vector<std::size_t>& variables, std::span<const double> inputs) {

@@ -20,11 +20,15 @@ struct SimulateOptions {
   std::uint64_t seed = 1;
   int months = 1;
   double sample_rate_Hz = 200.0;
-  double condition = 1.0;      ///< theta at the first test
-  bool ageing = false;         ///< a whole life: the seal ages from month to month
-  double missing_share = 0.0;  ///< of the months: no test
-  double cut_share = 0.0;      ///< of the tests: cut short
+  double condition = 1.0;           ///< theta at the first test
+  bool ageing = false;              ///< a whole life: the seal ages from month to month
+  double missing_share = 0.0;       ///< of the months: no test
+  double cut_share = 0.0;           ///< of the tests: cut short
+  std::vector<std::string> inputs;  ///< recordings whose inputs drive the asset's plant, in place of the virtual bench
+  std::string map_file;             ///< how they are written; "": as the asset file says
+  bool noise = false;               ///< of the sensors, on what is simulated from them
 };
+int run_simulate_input(const SimulateOptions& options);
 int run_simulate(const SimulateOptions& options);
 
 struct FitOptions {
@@ -51,7 +55,9 @@ int run_explain(const ExplainOptions& options);
 
 struct PlantImportOptions {
   std::string fmu;
-  std::string file;  ///< plant file to write
+  std::string file;                   ///< plant file to write
+  std::string interface;              ///< "me", "cs"; "": whichever there is
+  std::vector<std::string> settings;  ///< NAME=VALUE
 };
 int run_plant_import(const PlantImportOptions& options);
 

@@ -126,8 +126,9 @@ class CommandLine {
 
   void add_recordings() {
     CLI::App* simulate =
-        command("simulate", "simulate partial stroke tests on the virtual bench",
-                "sealwatch simulate --asset config/assets/xt03-mv2.yaml --ageing --months 108 --out recordings",
+        command("simulate", "simulate partial stroke tests on the virtual bench, or any plant with given inputs",
+                "sealwatch simulate --asset config/assets/xt03-mv2.yaml --ageing --months 108 --out recordings\n"
+                "  sealwatch simulate --asset valve-7.yaml --input inputs.csv --out simulated",
                 [this] { return run_simulate(simulate_); });
     simulate->add_option("--asset", simulate_.asset_file, "asset file")->required()->check(an_asset_file, "FILE");
     simulate->add_option("--out", simulate_.directory, "directory for the recordings (created if absent)")->required();
@@ -157,6 +158,12 @@ class CommandLine {
         ->check(CLI::Range(0.0, 1.0))
         ->check(a_number)
         ->capture_default_str();
+    CLI::Option* input = simulate->add_option(
+        "--input", simulate_.inputs,
+        "files with the inputs of the asset's plant (text, FMU or built in): writes what it gives at their samples, "
+        "in place of the bench's tests; outputs that they have tell where states start");
+    simulate->add_flag("--noise", simulate_.noise, "with --input: add the sensors' noise")->needs(input);
+    add_map(simulate, simulate_.map_file);
   }
 
   void add_estimation() {
@@ -519,6 +526,10 @@ class CommandLine {
     unit->callback([this] { chosen_ = [this] { return run_plant_import(plant_import_); }; });
     unit->add_option("fmu", plant_import_.fmu, "FMU of FMI 2.0 or 3.0, for Linux on x86-64")->required();
     unit->add_option("--out", plant_import_.file, "plant file to write (YAML)")->required();
+    unit->add_option("--interface", plant_import_.interface, "me or cs, of a unit that has both; without it me")
+        ->check(CLI::IsMember({"me", "cs"}));
+    unit->add_option("--set", plant_import_.settings, "NAME=VALUE: a parameter that is set once, as a size or a text")
+        ->allow_extra_args(false);
     CLI::App* back = plant->add_subcommand("export", "write an asset's plant with its laws as an FMU");
     back->footer(
         std::string("Example:\n  sealwatch plant export --asset report/asset.explained.yaml --fmu explained.fmu\n") +

@@ -40,7 +40,22 @@ Status write_new(const std::string& file, const std::string& text) {
 }  // namespace
 
 int run_plant_import(const PlantImportOptions& options) {
-  const auto fmu = fmi::FmuFile::open(options.fmu);
+  fmi::Settings settings;
+  for (const std::string& setting : options.settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0)
+      return complain(Error{.file = {},
+                            .place = "--set",
+                            .value = setting,
+                            .rule = "must be NAME=VALUE",
+                            .advice = "NAME is a parameter of the FMU"}),
+             kBadInput;
+    settings[setting.substr(0, equals)] = setting.substr(equals + 1);
+  }
+  fmi::Choice choice = fmi::Choice::model_exchange_first;
+  if (!options.interface.empty())
+    choice = options.interface == "cs" ? fmi::Choice::co_simulation : fmi::Choice::model_exchange;
+  const auto fmu = fmi::FmuFile::open(options.fmu, settings, choice);
   if (!fmu) return complain(fmu.error()), kBadInput;
   const auto text = fmi::plant_file_of(**fmu, path_from(options.file, options.fmu));
   if (!text) return complain(text.error()), kBadInput;

@@ -98,9 +98,18 @@ Status write_life(const AssetConfig& asset, const bench::LifeSetting& life, cons
 }  // namespace
 
 int run_simulate(const SimulateOptions& options) {
+  if (!options.inputs.empty()) return run_simulate_input(options);
   const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file);
   const std::optional<bench::LifeSetting> life = life_of(options);
   if (!asset || !life) return kBadInput;
+  if (const auto plant = find_plant(asset->model); plant && !(*plant)->file.empty()) {
+    complain(Error{.file = options.asset_file,
+                   .place = "model",
+                   .value = asset->model,
+                   .rule = "is a plant of your own, for which there is no virtual bench",
+                   .advice = "give recordings or files of its inputs alone with --input"});
+    return kBadInput;
+  }
   const Result<std::vector<bench::PlannedTest>> plan = bench::plan_life(*asset, *life);
   if (!plan) {
     complain(plan.error());

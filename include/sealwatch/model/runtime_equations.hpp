@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@
 #include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {
+
+struct RuntimeRun;
+struct SimulatedOutputs;
 
 enum class RuntimeFunction { derivatives, signals, outputs };
 
@@ -79,6 +83,10 @@ class RuntimeEvaluator {
   /// What went wrong last, in words for the user; "": nothing that is known.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
 
+  /// Where states start by the equations' own account (RuntimeState::by_equations), and the derivatives by the parameters
+  /// that the evaluator was asked to differentiate by; other states are left as they are.
+  [[nodiscard]] virtual bool start(std::span<double>, RuntimeMatrix&) { return true; }
+
   // Events, where equations or states change at once. Points come in the order of time; what happens at an event is
   // remembered by the evaluator.
   [[nodiscard]] virtual bool has_events() const { return false; }
@@ -107,12 +115,16 @@ class RuntimeEquations {
   [[nodiscard]] virtual bool signals_see_added() const { return false; }
   /// Whether outputs depend on what is added otherwise than through the states.
   [[nodiscard]] virtual bool outputs_see_added() const { return true; }
+  /// Whether runs are made elsewhere, by run(): where the equations are, so that not every value has to come from there.
+  [[nodiscard]] virtual bool runs_elsewhere() const { return false; }
+  [[nodiscard]] virtual Result<SimulatedOutputs> run(const RuntimeRun& run) const;
 };
 
 struct RuntimeState {
-  double scale = 1.0;    ///< allowed local error of one step at the relative tolerance 1e-6
-  bool slow = true;      ///< its initial value is each recording's own and is estimated
-  bool settles = false;  ///< starts where its time derivative is zero, its neighbours being held
+  double scale = 1.0;         ///< allowed local error of one step at the relative tolerance 1e-6
+  bool slow = true;           ///< its initial value is each recording's own and is estimated
+  bool settles = false;       ///< starts where its time derivative is zero, its neighbours being held
+  bool by_equations = false;  ///< starts where RuntimeEvaluator::start() says
 };
 
 /// How a recorded input runs between samples.

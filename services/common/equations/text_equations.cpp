@@ -160,7 +160,10 @@ Result<std::vector<double>> TextEquations::initial_state(std::span<const double>
   std::vector<double> state;
   for (const StartOfState& of : start.states) {
     const auto recorded_all = [&](const StartOfState::Choice& choice) {
-      return std::ranges::all_of(choice.channels, [&](const std::string& name) { return recorded.has(name); });
+      return std::ranges::all_of(choice.channels, [&](const std::string& name) {
+        const Series* series = recorded.find(name);
+        return series != nullptr && !series->values.empty();
+      });
     };
     const auto choice = std::ranges::find_if(of.choices, recorded_all);
     if (choice == of.choices.end())
@@ -174,7 +177,7 @@ Result<std::vector<double>> TextEquations::initial_state(std::span<const double>
     std::vector<double> registers = tape.registers();
     std::ranges::copy(parameters, registers.begin());
     for (std::size_t c = 0; c < start.channels.size(); ++c)
-      if (const Series* series = recorded.find(start.channels[c]))
+      if (const Series* series = recorded.find(start.channels[c]); series != nullptr && !series->values.empty())
         std::ranges::copy(statistics(recorded, series->values),
                           registers.begin() + static_cast<std::ptrdiff_t>(start.parameters + 3 * c));
     tape.run(registers);

@@ -57,11 +57,18 @@ void read_fmi2(const DescriptionReader& reader, const pugi::xml_node& root, Mode
   for (const pugi::xml_node& node : variables.children("ScalarVariable")) count += node.empty() ? 0U : 1U;
   for (const pugi::xml_node& node : variables.children("ScalarVariable"))
     description.variables.push_back(read_variable(reader, node, types, count));
-  for (const pugi::xml_node& node : root.child("ModelStructure").child("Derivatives").children("Unknown")) {
+  const pugi::xml_node structure = root.child("ModelStructure");
+  const auto place = [&](const pugi::xml_node& node) {
     const std::uint64_t index = reader.whole(node, "index", count);
     if (index == 0) reader.refuse(node, "0", "index counts variables from 1");
-    add_states(reader, node, index - 1, description);
-  }
+    return static_cast<std::size_t>(index - 1);
+  };
+  // A unit for Co-Simulation keeps its states to itself, whatever it tells of them.
+  for (const pugi::xml_node& node : structure.child("Derivatives").children("Unknown"))
+    if (description.model_exchange) add_states(reader, node, place(node), description);
+  for (const pugi::xml_node& node : structure.child("InitialUnknowns").children("Unknown"))
+    for (const std::uint64_t index : reader.wholes(node, "dependencies"))
+      if (index >= 1 && index <= count) description.start_links[place(node)].push_back(index - 1);
   if (root.attribute("numberOfEventIndicators"))
     description.event_indicators = reader.whole(root, "numberOfEventIndicators", 1000000);
 }

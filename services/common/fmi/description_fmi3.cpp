@@ -1,6 +1,7 @@
 // FMI 3.0: one XML element a type; variables are named by their value references and may be arrays, whose sizes are
 // numbers or the values of structural parameters.
 #include <algorithm>
+#include <charconv>
 #include <unordered_map>
 
 #include "services/common/fmi/description_reader.hpp"
@@ -86,12 +87,13 @@ DeclaredTypes read_types(const DescriptionReader& reader, const pugi::xml_node& 
 
 /// Sizes and derivatives refer to variables that may come later.
 void resolve(const DescriptionReader& reader, const std::vector<pugi::xml_node>& nodes, const Places& places,
-             ModelDescription& description) {
+             bool settings_change_sizes, ModelDescription& description) {
   std::uint64_t total = 0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     Variable& variable = description.variables[k];
     variable.size = size_of(reader, nodes[k], places, description);
     if ((total += variable.size) > kMostElements) reader.refuse(nodes[k], variable.name, "is one array too many");
+    if (settings_change_sizes && nodes[k].child("Dimension")) variable.start.clear();
     if (variable.start.size() > 1 && variable.start.size() != variable.size)
       reader.refuse(nodes[k], std::to_string(variable.start.size()) + " values",
                     "start must have a value for each of the " + std::to_string(variable.size) + " elements");
@@ -102,9 +104,26 @@ void resolve(const DescriptionReader& reader, const std::vector<pugi::xml_node>&
   }
 }
 
+/// Structural parameters take the values that they are set to; whether any did.
+bool set_structure(const Settings& settings, ModelDescription& description) {
+  bool changed = false;
+  for (Variable& variable : description.variables) {
+    const auto setting = settings.find(variable.name);
+    if (variable.causality != FmiCausality::structuralParameter || setting == settings.end()) continue;
+    double value = 0.0;
+    const std::string& text = setting->second;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) continue;  // refused where settings are checked
+    variable.start = {value};
+    changed = true;
+  }
+  return changed;
+}
+
 }  // namespace
 
-void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description) {
+void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description,
+               const Settings& settings) {
   const DeclaredTypes types = read_types(reader, root);
   Places places;
   std::vector<pugi::xml_node> nodes;
@@ -117,10 +136,15 @@ void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, Mode
       reader.refuse(node, std::to_string(description.variables.back().reference),
                     "is another variable's value reference");
   }
-  resolve(reader, nodes, places, description);
+  resolve(reader, nodes, places, set_structure(settings, description), description);
   const pugi::xml_node structure = root.child("ModelStructure");
   for (const pugi::xml_node& node : structure.children("ContinuousStateDerivative"))
-    add_states(reader, node, place_of(reader, node, "valueReference", places), description);
+    if (description.model_exchange)
+      add_states(reader, node, place_of(reader, node, "valueReference", places), description);
+  for (const pugi::xml_node& node : structure.children("InitialUnknown"))
+    for (const std::uint64_t reference : reader.wholes(node, "dependencies"))
+      if (const auto place = places.find(static_cast<std::uint32_t>(reference)); place != places.end())
+        description.start_links[place_of(reader, node, "valueReference", places)].push_back(place->second);
   for (const pugi::xml_node& node : structure.children("EventIndicator"))
     description.event_indicators += description.variables[place_of(reader, node, "valueReference", places)].size;
 }

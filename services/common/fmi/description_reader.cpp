@@ -1,6 +1,7 @@
 #include "services/common/fmi/description_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -16,6 +17,12 @@ std::optional<double> to_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+/// xs:double has words for what is not finite.
+bool is_not_finite(std::string_view text) {
+  constexpr std::array kWords = {"INF", "+INF", "-INF", "NaN"};
+  return std::ranges::find(kWords, text) != kWords.end();
 }
 
 }  // namespace
@@ -66,6 +73,17 @@ std::uint64_t DescriptionReader::whole(const pugi::xml_node& node, const char* n
   return result;
 }
 
+std::vector<std::uint64_t> DescriptionReader::wholes(const pugi::xml_node& node, const char* name) const {
+  std::vector<std::uint64_t> values;
+  std::istringstream parts(text(node, name));
+  for (std::string part; parts >> part;) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error == std::errc() && end == part.data() + part.size()) values.push_back(value);
+  }
+  return values;
+}
+
 std::vector<double> DescriptionReader::numbers(const pugi::xml_node& node, const char* name) const {
   std::vector<double> values;
   std::istringstream parts(text(node, name));
@@ -77,24 +95,27 @@ std::vector<double> DescriptionReader::numbers(const pugi::xml_node& node, const
   return values;
 }
 
+std::optional<double> DescriptionReader::bound(const pugi::xml_node& node, const char* name) const {
+  return is_not_finite(node.attribute(name).value()) ? std::nullopt : number(node, name);
+}
+
 DeclaredType read_type(const DescriptionReader& reader, const pugi::xml_node& node) {
   return {.unit = reader.text(node, "unit"),
-          .min = reader.number(node, "min"),
-          .max = reader.number(node, "max"),
-          .nominal = reader.number(node, "nominal")};
+          .min = reader.bound(node, "min"),
+          .max = reader.bound(node, "max"),
+          .nominal = reader.bound(node, "nominal")};
 }
 
 void read_number_attributes(const DescriptionReader& reader, const pugi::xml_node& node, const DeclaredTypes& types,
                             Variable& variable) {
   if (variable.type == FmiType::string || variable.type == FmiType::binary || variable.type == FmiType::clock) return;
   DeclaredType own = read_type(reader, node);
-  if (const std::string name = reader.text(node, "declaredType"); !name.empty()) {
-    const auto type = types.find(name);
-    if (type == types.end()) reader.refuse(node, name, "declaredType names no type of the description");
+  // A type that is not there tells nothing; some tools leave theirs out.
+  if (const auto type = types.find(reader.text(node, "declaredType")); type != types.end()) {
     if (own.unit.empty()) own.unit = type->second.unit;
-    if (!own.min) own.min = type->second.min;
-    if (!own.max) own.max = type->second.max;
-    if (!own.nominal) own.nominal = type->second.nominal;
+    if (!node.attribute("min")) own.min = type->second.min;
+    if (!node.attribute("max")) own.max = type->second.max;
+    if (!node.attribute("nominal")) own.nominal = type->second.nominal;
   }
   variable.unit = std::move(own.unit);
   variable.min = own.min, variable.max = own.max, variable.nominal = own.nominal;

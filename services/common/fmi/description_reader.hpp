@@ -25,7 +25,11 @@ class DescriptionReader {
   [[nodiscard]] std::string required(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] bool flag(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] std::optional<double> number(const pugi::xml_node& node, const char* name) const;
+  /// A number that bounds or scales: INF and NaN, which xs:double has too, bound nothing.
+  [[nodiscard]] std::optional<double> bound(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] std::uint64_t whole(const pugi::xml_node& node, const char* name, std::uint64_t most) const;
+  /// Whole numbers with spaces between them; what is none is left out.
+  [[nodiscard]] std::vector<std::uint64_t> wholes(const pugi::xml_node& node, const char* name) const;
   /// Numbers with spaces between them; true and false are 1 and 0.
   [[nodiscard]] std::vector<double> numbers(const pugi::xml_node& node, const char* name) const;
   template <class Enum>
@@ -51,7 +55,8 @@ using DeclaredTypes = std::map<std::string, DeclaredType>;
 
 /// Variables and structure of each version; the rest is common (model_description.cpp).
 void read_fmi2(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description);
-void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description);
+void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, ModelDescription& description,
+               const Settings& settings);
 
 /// Unit, bounds and nominal value of a variable from `node`, or else from its declared type.
 void read_number_attributes(const DescriptionReader& reader, const pugi::xml_node& node, const DeclaredTypes& types,

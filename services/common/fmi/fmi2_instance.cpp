@@ -32,6 +32,7 @@ struct Functions {
   fmi2::Set<double>* set_real;
   fmi2::Get<int>*get_integer, *get_boolean;
   fmi2::Set<int>*set_integer, *set_boolean;
+  fmi2::Set<const char*>* set_string;
   fmi2::NewDiscreteStates* new_discrete_states;
   SetTime* set_time;
   SetVector* set_states;
@@ -39,6 +40,8 @@ struct Functions {
   fmi2::CompletedStep* completed_step;
   fmi2::Directional* directional;
   fmi2::DoStep* do_step;
+  fmi2::GetStatus<double>* real_status;
+  fmi2::GetStatus<fmi2::Boolean>* boolean_status;
 
   Functions(const Library& library, bool co_simulation)
       : instantiate(library.find<fmi2::Instantiate>("fmi2Instantiate")),
@@ -55,6 +58,7 @@ struct Functions {
         get_boolean(library.find<fmi2::Get<int>>("fmi2GetBoolean")),
         set_integer(library.find<fmi2::Set<int>>("fmi2SetInteger")),
         set_boolean(library.find<fmi2::Set<int>>("fmi2SetBoolean")),
+        set_string(library.find<fmi2::Set<const char*>>("fmi2SetString", false)),
         new_discrete_states(library.find<fmi2::NewDiscreteStates>("fmi2NewDiscreteStates", !co_simulation)),
         set_time(library.find<SetTime>("fmi2SetTime", !co_simulation)),
         set_states(library.find<SetVector>("fmi2SetContinuousStates", !co_simulation)),
@@ -64,7 +68,9 @@ struct Functions {
         get_indicators(library.find<GetVector>("fmi2GetEventIndicators", !co_simulation)),
         completed_step(library.find<fmi2::CompletedStep>("fmi2CompletedIntegratorStep", !co_simulation)),
         directional(library.find<fmi2::Directional>("fmi2GetDirectionalDerivative", false)),
-        do_step(library.find<fmi2::DoStep>("fmi2DoStep", co_simulation)) {}
+        do_step(library.find<fmi2::DoStep>("fmi2DoStep", co_simulation)),
+        real_status(library.find<fmi2::GetStatus<double>>("fmi2GetRealStatus", false)),
+        boolean_status(library.find<fmi2::GetStatus<fmi2::Boolean>>("fmi2GetBooleanStatus", false)) {}
 };
 
 class Fmi2Instance final : public FmiInstance {
@@ -76,6 +82,17 @@ class Fmi2Instance final : public FmiInstance {
   }
   ~Fmi2Instance() override { f_.free(instance_); }
 
+  void set_constants(std::span<const Constant> constants) override {
+    for (const Constant& constant : constants) {
+      if (constant.handle.type != FmiType::string) {
+        set(Group({constant.handle}), numbers_of(constant));
+        continue;
+      }
+      if (f_.set_string == nullptr) throw Failure{"the binary has no function fmi2SetString"};
+      const char* text = constant.text.c_str();
+      check(f_.set_string(instance_, &constant.handle.reference, 1, &text), "fmi2SetString");
+    }
+  }
   EventOutcome initialise(double start_time, const Group& parameters, std::span<const double> parameter_values,
                           const Group& inputs, std::span<const double> input_values) override {
     set(parameters, parameter_values);
@@ -170,7 +187,22 @@ class Fmi2Instance final : public FmiInstance {
     check(f_.completed_step(instance_, 1, &event, &terminate), "fmi2CompletedIntegratorStep");
     return {event != 0, terminate != 0};
   }
-  void do_step(double time, double step) override { check(f_.do_step(instance_, time, step, 1), "fmi2DoStep"); }
+  CoStep do_step(double time, double step) override {
+    const int status = f_.do_step(instance_, time, step, 1);
+    CoStep done{.terminate = false, .reached_s = time + step};
+    fmi2::Boolean terminated = 0;
+    // A unit that ends the simulation by itself discards the rest of the step.
+    if (status == kDiscard && f_.boolean_status != nullptr &&
+        f_.boolean_status(instance_, fmi2::kTerminated, &terminated) == kOkStatus && terminated != 0) {
+      done.terminate = true;
+      if (f_.real_status == nullptr ||
+          f_.real_status(instance_, fmi2::kLastSuccessfulTime, &done.reached_s) != kOkStatus)
+        done.reached_s = time + step;
+      return done;
+    }
+    check(status, "fmi2DoStep");
+    return done;
+  }
 
  private:
   const Functions& f_;

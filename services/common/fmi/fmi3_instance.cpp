@@ -16,7 +16,7 @@ struct Functions {
   fmi3::InstantiateCoSimulation* instantiate_co_simulation;
   FreeInstance* free;
   fmi3::EnterInitialization* enter_initialization;
-  Plain *exit_initialization, *enter_event, *enter_continuous;
+  Plain *exit_initialization, *enter_event, *enter_continuous, *enter_configuration, *exit_configuration;
   fmi3::Get<double>* get_float64;
   fmi3::Set<double>* set_float64;
   fmi3::UpdateDiscreteStates* update;
@@ -37,6 +37,8 @@ struct Functions {
         exit_initialization(library.find<Plain>("fmi3ExitInitializationMode")),
         enter_event(library.find<Plain>("fmi3EnterEventMode", !co_simulation)),
         enter_continuous(library.find<Plain>("fmi3EnterContinuousTimeMode", !co_simulation)),
+        enter_configuration(library.find<Plain>("fmi3EnterConfigurationMode", false)),
+        exit_configuration(library.find<Plain>("fmi3ExitConfigurationMode", false)),
         get_float64(library.find<fmi3::Get<double>>("fmi3GetFloat64")),
         set_float64(library.find<fmi3::Set<double>>("fmi3SetFloat64")),
         update(library.find<fmi3::UpdateDiscreteStates>("fmi3UpdateDiscreteStates", !co_simulation)),
@@ -86,6 +88,21 @@ class Fmi3Instance final : public FmiInstance {
   }
   ~Fmi3Instance() override { f_.free(instance_); }
 
+  void set_constants(std::span<const Constant> constants) override {
+    const bool structural = !constants.empty() && constants.front().structural;
+    if (structural && (f_.enter_configuration == nullptr || f_.exit_configuration == nullptr))
+      throw Failure{"the binary has no configuration mode, in which structural parameters are set"};
+    if (structural) check(f_.enter_configuration(instance_), "fmi3EnterConfigurationMode");
+    bool configuring = structural;
+    for (const Constant& constant : constants) {
+      if (configuring && !constant.structural) {
+        check(f_.exit_configuration(instance_), "fmi3ExitConfigurationMode");
+        configuring = false;
+      }
+      set_constant(constant);
+    }
+    if (configuring) check(f_.exit_configuration(instance_), "fmi3ExitConfigurationMode");
+  }
   EventOutcome initialise(double start_time, const Group& parameters, std::span<const double> parameter_values,
                           const Group& inputs, std::span<const double> input_values) override {
     set(parameters, parameter_values);
@@ -168,13 +185,25 @@ class Fmi3Instance final : public FmiInstance {
     check(f_.completed_step(instance_, true, &event, &terminate), "fmi3CompletedIntegratorStep");
     return {event, terminate};
   }
-  void do_step(double time, double step) override {
+  CoStep do_step(double time, double step) override {
     bool event = false, terminate = false, early = false;
-    double last = time;
+    double last = time + step;
     check(f_.do_step(instance_, time, step, true, &event, &terminate, &early, &last), "fmi3DoStep");
+    return {.terminate = terminate, .reached_s = early ? last : time + step};
   }
 
  private:
+  void set_constant(const Constant& constant) const {
+    if (constant.handle.type != FmiType::string) {
+      const std::vector<double> values = numbers_of(constant);
+      if (values.size() != constant.handle.size)
+        throw Failure{"another number of values than its size: " + constant.text};
+      return set_one(constant.handle, values.data());
+    }
+    const char* text = constant.text.c_str();
+    check(library_.find<fmi3::Set<const char*>>("fmi3SetString")(instance_, &constant.handle.reference, 1, &text, 1),
+          "fmi3SetString");
+  }
   void get_one(const Handle& handle, double* values) const {
     switch (handle.type) {
       case FmiType::float64:

@@ -42,6 +42,10 @@ using CompletedStep = int(Instance, Boolean no_return, Boolean* event, Boolean* 
 using Directional = int(Instance, const Reference* unknowns, std::size_t, const Reference* knowns, std::size_t,
                         const double* seed, double* sensitivity);
 using DoStep = int(Instance, double time, double step, Boolean no_return);
+/// Of the last step: kLastSuccessfulTime is a number, kTerminated a Boolean.
+enum StatusKind : int { kLastSuccessfulTime = 2, kTerminated = 3 };
+template <class T>
+using GetStatus = int(Instance, int kind, T*);
 
 }  // namespace fmi2
 

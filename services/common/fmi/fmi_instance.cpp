@@ -1,5 +1,8 @@
 #include "services/common/fmi/fmi_instance.hpp"
 
+#include <cstdlib>
+#include <sstream>
+
 namespace sealwatch::fmi {
 
 Group::Group(std::vector<Handle> variables) : handles(std::move(variables)), size(elements(handles)) {
@@ -26,6 +29,25 @@ void Messages::add(int status, const std::string& category, const std::string& m
   if (status == kOkStatus) return;  // a chatty binary's news would push out its complaints
   text_ += (text_.empty() ? "" : "; ") + (category.empty() ? "" : category + ": ") + message;
   if (text_.size() > kMost) text_.erase(0, text_.size() - kMost);
+}
+
+std::vector<Constant> constants_of(const Setup& setup) {
+  std::vector<Constant> constants;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < setup.constants.size(); ++k) {
+    const std::size_t end = setup.constant_texts.find('\0', at);
+    constants.push_back({setup.constants[k], setup.constant_texts.substr(at, end - at), k < setup.structural});
+    at = end + 1;
+  }
+  return constants;
+}
+
+std::vector<double> numbers_of(const Constant& constant) {
+  std::vector<double> values;
+  std::istringstream parts(constant.text);
+  for (std::string part; parts >> part;)
+    values.push_back(part == "true" ? 1.0 : part == "false" ? 0.0 : std::strtod(part.c_str(), nullptr));
+  return values;
 }
 
 Messages& messages() {

@@ -30,6 +30,21 @@ struct StepOutcome {
   bool terminate = false;
 };
 
+/// A step of Co-Simulation.
+struct CoStep {
+  bool terminate = false;
+  double reached_s = 0.0;
+};
+
+/// A variable that is set once, to numbers with spaces between them or to a text.
+struct Constant {
+  Handle handle;
+  std::string text;
+  bool structural = false;
+};
+[[nodiscard]] std::vector<Constant> constants_of(const Setup& setup);
+[[nodiscard]] std::vector<double> numbers_of(const Constant& constant);
+
 /// Variables that are set or read together.
 struct Group {
   explicit Group(std::vector<Handle> variables);
@@ -57,6 +72,8 @@ class Library {
 class FmiInstance {
  public:
   virtual ~FmiInstance() = default;
+  /// Of a new instance.
+  virtual void set_constants(std::span<const Constant> constants) = 0;
   /// Initialises with these values, and settles the first event; then it is in continuous-time mode (or ready to step).
   virtual EventOutcome initialise(double start_time, const Group& parameters, std::span<const double> parameter_values,
                                   const Group& inputs, std::span<const double> input_values) = 0;
@@ -74,7 +91,7 @@ class FmiInstance {
   /// Settles an event that was entered and goes back to continuous-time mode.
   virtual EventOutcome settle_event() = 0;
   virtual StepOutcome completed_step() = 0;
-  virtual void do_step(double time, double step) = 0;
+  virtual CoStep do_step(double time, double step) = 0;
 };
 
 /// What the binary said, newest last; shortened to what fits an error.

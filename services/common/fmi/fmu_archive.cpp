@@ -122,11 +122,27 @@ Result<std::uint64_t> unpack(zip_t* archive, const std::string& file, const Entr
   }
 }
 
+std::string& unpacked_folder() {
+  static std::string folder;
+  return folder;
+}
+
+UnpackedFmu in_folder(const std::string& file, const std::string& folder) {
+  UnpackedFmu fmu{.file = file, .folder = TemporaryFolder::borrow(folder), .members = {}};
+  std::error_code problem;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, problem))
+    fmu.members.push_back(std::filesystem::relative(entry.path(), folder, problem).generic_string());
+  return fmu;
+}
+
 }  // namespace
+
+void use_unpacked(const std::string& folder) { unpacked_folder() = folder; }
 
 bool UnpackedFmu::has(const std::string& member) const { return std::ranges::find(members, member) != members.end(); }
 
 Result<UnpackedFmu> unpack_fmu(const std::string& file, const ArchiveLimits& limits) {
+  if (!unpacked_folder().empty()) return in_folder(file, unpacked_folder());
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown))
     return refuse(file, {}, "is no file that can be read", "give the path of an FMU");

@@ -32,6 +32,8 @@ struct UnpackedFmu {
   [[nodiscard]] bool has(const std::string& member) const;
 };
 
+/// From now on the one FMU that is opened is the one that lies unpacked in this folder, which is somebody else's.
+void use_unpacked(const std::string& folder);
 [[nodiscard]] Result<UnpackedFmu> unpack_fmu(const std::string& file, const ArchiveLimits& limits = {});
 
 }  // namespace sealwatch::fmi

@@ -9,7 +9,16 @@ namespace sealwatch::fmi {
 
 FmuEquations::FmuEquations(FmuBlock block, std::shared_ptr<const RuntimeEquations> frame, Counts counts,
                            bool outputs_see_added)
-    : block_(std::move(block)), frame_(std::move(frame)), counts_(counts), outputs_see_added_(outputs_see_added) {}
+    : block_(std::move(block)),
+      frame_(std::move(frame)),
+      counts_(std::move(counts)),
+      outputs_see_added_(outputs_see_added),
+      runs_(std::make_unique<HostedRuns>(block_.file->name(), block_.plant)) {}
+
+// Instances of a run stand side by side in one process, which not every binary allows.
+bool FmuEquations::runs_elsewhere() const {
+  return !block_.plant.file.empty() && block_.setup.once_per_process == 0 && !local_hosts();
+}
 
 Result<std::unique_ptr<RuntimeEvaluator>> FmuEquations::evaluator(std::span<const double> parameters,
                                                                   std::span<const std::size_t> differentiated) const {
@@ -46,6 +55,20 @@ Result<std::unique_ptr<RuntimeEvaluator>> FmuEquations::evaluator(std::span<cons
   if (!running) return fail(running.error());
   return std::make_unique<FmuEvaluator>(block_, std::move(*frame), std::move(*running), counts_.outputs, counts_.sites,
                                         differentiated.size(), frame_->signals_see_added());
+}
+
+Result<std::vector<double>> FmuEquations::initial_state(std::span<const double> parameters,
+                                                        const TimeSeries& recorded) const {
+  Result<std::vector<double>> states = frame_->initial_state(parameters, recorded);
+  if (!states || std::ranges::count(counts_.starts_by_fmu, true) == 0) return states;
+  const auto at_start = evaluator(parameters, {});
+  if (!at_start) return fail(at_start.error());
+  std::vector<double> starts = *states;
+  RuntimeMatrix unused;
+  if (!(*at_start)->start(starts, unused)) return fail((*at_start)->trouble());
+  for (std::size_t k = 0; k < starts.size(); ++k)
+    if (counts_.starts_by_fmu[k]) (*states)[k] = starts[k];
+  return states;
 }
 
 namespace {

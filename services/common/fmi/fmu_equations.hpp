@@ -20,6 +20,7 @@
 
 #include "sealwatch/model/runtime_equations.hpp"
 #include "services/common/fmi/fmu_file.hpp"
+#include "services/common/fmi/hosted_runs.hpp"
 
 namespace sealwatch::fmi {
 
@@ -35,8 +36,10 @@ struct FmuBlock {
   std::vector<Conversion> states;
   std::vector<double> state_sizes;  ///< SI
   std::vector<Port> variables, inputs, parameters;
+  std::vector<bool> held_inputs;                     ///< of each input: it does not change between samples
   std::vector<double> input_start, parameter_start;  ///< of all elements of the groups, in the FMU's units
   double start_time_s = 0.0;
+  HostedPlant plant;  ///< for runs in the process that has the binary
 };
 
 /// Processes that run the FMU, kept for the next run.
@@ -55,16 +58,17 @@ class FmuEquations final : public RuntimeEquations {
   /// How many of each the plant has; its outputs are the frame's first ones.
   struct Counts {
     std::size_t inputs = 0, outputs = 0, sites = 0;
+    std::vector<bool> starts_by_fmu = {};  ///< of each state
   };
   FmuEquations(FmuBlock block, std::shared_ptr<const RuntimeEquations> frame, Counts counts, bool outputs_see_added);
   [[nodiscard]] Result<std::unique_ptr<RuntimeEvaluator>> evaluator(
       std::span<const double> parameters, std::span<const std::size_t> differentiated) const override;
   [[nodiscard]] Result<std::vector<double>> initial_state(std::span<const double> parameters,
-                                                          const TimeSeries& recorded) const override {
-    return frame_->initial_state(parameters, recorded);
-  }
+                                                          const TimeSeries& recorded) const override;
   [[nodiscard]] bool signals_see_added() const override { return frame_->signals_see_added(); }
   [[nodiscard]] bool outputs_see_added() const override { return outputs_see_added_; }
+  [[nodiscard]] bool runs_elsewhere() const override;
+  [[nodiscard]] Result<SimulatedOutputs> run(const RuntimeRun& run) const override { return runs_->run(run); }
   [[nodiscard]] const FmuBlock& block() const { return block_; }
 
  private:
@@ -73,6 +77,7 @@ class FmuEquations final : public RuntimeEquations {
   Counts counts_;
   bool outputs_see_added_;
   std::shared_ptr<ProcessPool> pool_ = std::make_shared<ProcessPool>();
+  std::unique_ptr<HostedRuns> runs_;
 };
 
 /// Compares the directional derivatives that the FMU gives with differences, at its start and near it; an Error that

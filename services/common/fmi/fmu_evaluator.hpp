@@ -32,19 +32,27 @@ class RunningBlock {
                                       EvaluationRequest wanted);
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   [[nodiscard]] bool has_events() const;
-  [[nodiscard]] double next_event_s() const { return beginning_.outcome.next_time_s; }
+  [[nodiscard]] double next_event_s() const {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    return ended_s_ < kNever ? kNever : beginning_.outcome.next_time_s;
+  }
   /// Whether an indicator has another sign than when accept() or pass_event() was called last.
   [[nodiscard]] bool event_before(double time_s, std::span<const double> states, std::span<const double> inputs);
   [[nodiscard]] bool accept(double time_s, std::span<const double> states, std::span<const double> inputs);
   [[nodiscard]] bool pass_event(double time_s, std::span<double> states, std::span<const double> inputs);
-  [[nodiscard]] const Beginning& beginning() const { return beginning_; }
+  /// States at the start, in SI, and their derivatives by the parameters.
+  void start(std::span<double> states, RuntimeMatrix& by_parameter) const;
 
  private:
   RunningBlock(const FmuBlock& block, std::shared_ptr<ProcessPool> pool, std::vector<double> steps)
       : block_(block), pool_(std::move(pool)), steps_(std::move(steps)) {}
   void set_point(std::span<const double> states, std::span<const double> inputs);
-  /// A Co-Simulation unit goes on to this time, with inputs that are linear from the last one.
+  /// A Co-Simulation unit goes on to this time, with inputs that are linear from the last one or held since.
   [[nodiscard]] const BlockValues* step_to(double time_s);
+  /// What forbids a step of this length; "": nothing.
+  [[nodiscard]] std::string fault_of_step(double step_s);
+  [[nodiscard]] const BlockValues* in_trouble(std::string words) { return trouble_ = std::move(words), nullptr; }
+  void end_at(double time_s);
   [[nodiscard]] bool is_known(double time_s, const EvaluationRequest& wanted) const;
   void convert(const Evaluation& values, const EvaluationRequest& wanted);
   void convert_jacobian(std::span<const double> derivatives, std::span<const double> outputs, std::size_t columns,
@@ -61,6 +69,8 @@ class RunningBlock {
   std::vector<bool> signs_;
   double known_time_s_ = std::numeric_limits<double>::quiet_NaN();
   EvaluationRequest known_;
+  double ended_s_ = std::numeric_limits<double>::infinity();  ///< when it asked to end: it has no values after that
+  double step_s_ = 0.0;                                       ///< of a Co-Simulation unit with equal steps
   double first_time_s_ = std::numeric_limits<double>::quiet_NaN();  ///< of the recording, of a Co-Simulation unit
   BlockValues values_;
   std::string trouble_;
@@ -74,6 +84,10 @@ class FmuEvaluator final : public RuntimeEvaluator {
   [[nodiscard]] const RuntimeLinearisation* linearise(RuntimeFunction function, const RuntimePoint& point,
                                                       RuntimeDirections directions) override;
   [[nodiscard]] std::string trouble() const override;
+  [[nodiscard]] bool start(std::span<double> states, RuntimeMatrix& by_parameter) override {
+    running_->start(states, by_parameter);
+    return true;
+  }
   [[nodiscard]] bool has_events() const override { return running_->has_events(); }
   [[nodiscard]] double next_event_s() const override { return running_->next_event_s(); }
   [[nodiscard]] bool event_before(const RuntimePoint& point) override;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -45,21 +47,48 @@ std::vector<Handle> handles_of(const ModelDescription& description, std::span<co
   return handles;
 }
 
+std::vector<std::string> parts_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+bool is_value(const std::string& text) {
+  char* end = nullptr;
+  static_cast<void>(std::strtod(text.c_str(), &end));
+  return text == "true" || text == "false" || *end == '\0';
+}
+
+bool can_be_set(const Variable& variable) {
+  return (variable.causality == FmiCausality::parameter || variable.causality == FmiCausality::structuralParameter) &&
+         variable.variability != FmiVariability::constant && variable.type != FmiType::binary &&
+         variable.type != FmiType::clock;
+}
+
+}  // namespace
+
 bool changes_between_events(const Variable& variable) {
   return variable.variability == FmiVariability::continuous &&
          (variable.type == FmiType::float64 || variable.type == FmiType::float32);
 }
 
-}  // namespace
-
-Result<std::shared_ptr<const FmuFile>> FmuFile::open(const std::string& file) {
+Result<std::shared_ptr<const FmuFile>> FmuFile::open(const std::string& file, const Settings& settings, Choice choice) {
   Result<UnpackedFmu> unpacked = unpack_fmu(file);
   if (!unpacked) return fail(unpacked.error());
   std::ostringstream text;
   text << std::ifstream(unpacked->path_of(kDescriptionName), std::ios::binary).rdbuf();
-  Result<ModelDescription> description = read_model_description(file, text.str());
+  Result<ModelDescription> description = read_model_description(file, text.str(), settings);
   if (!description) return fail(description.error());
-  std::shared_ptr<FmuFile> fmu(new FmuFile(std::move(*unpacked), std::move(*description)));
+  const bool wants_exchange = choice == Choice::model_exchange, wants_steps = choice == Choice::co_simulation;
+  if ((wants_exchange && !description->model_exchange) || (wants_steps && !description->co_simulation))
+    return fail(
+        Error{.file = file,
+              .place = {},
+              .value = wants_exchange ? "me" : "cs",
+              .rule = std::string("it has no interface for ") + (wants_exchange ? "Model Exchange" : "Co-Simulation"),
+              .advice = "leave `interface` out, and the one that it has is taken"});
+  if (wants_steps) description->model_exchange.reset();
+  std::shared_ptr<FmuFile> fmu(new FmuFile(std::move(*unpacked), std::move(*description), settings));
+  if (const Status sound = fmu->check_settings(); !sound) return fail(sound.error());
   if (const Status found = fmu->find_binary(); !found) return fail(found.error());
   return fmu;
 }
@@ -98,6 +127,35 @@ Status FmuFile::find_binary() {
               "export the FMU for Linux on x86-64 (linux64)"));
 }
 
+Status FmuFile::check_settings() const {
+  for (const auto& [name, text] : settings_) {
+    const Variable* variable = description_.find(name);
+    if (variable == nullptr) return fail(description_.find_element(name).error());
+    if (!can_be_set(*variable))
+      return fail(refusal("is no parameter that can be set", "settings are for parameters", name));
+    if (text.find('\0') != std::string::npos)
+      return fail(refusal("has a zero byte in its value", "a text ends at one", name));
+    if (variable->type == FmiType::string) continue;
+    const std::vector<std::string> parts = parts_of(text);
+    if (parts.size() != variable->size || !std::ranges::all_of(parts, is_value))
+      return fail(refusal("must have as many numbers as " + name + " has elements, " + std::to_string(variable->size),
+                          "true and false count as numbers", text));
+  }
+  return {};
+}
+
+// Structural parameters come first: they are set in a mode of their own.
+void FmuFile::put_settings(Setup& setup) const {
+  for (const bool structural : {true, false})
+    for (const auto& [name, text] : settings_) {
+      const Variable& variable = *description_.find(name);
+      if ((variable.causality == FmiCausality::structuralParameter) != structural) continue;
+      setup.constants.push_back(handle_of(variable));
+      setup.constant_texts += text + '\0';
+      setup.structural += structural ? 1U : 0U;
+    }
+}
+
 Result<Setup> FmuFile::setup(Selection& selection) const {
   const auto& variables = description_.variables;
   for (const auto* list : {&selection.parameters, &selection.inputs, &selection.outputs})
@@ -116,7 +174,7 @@ Result<Setup> FmuFile::setup(Selection& selection) const {
                                                [&](std::size_t k) { return variables[k].type == FmiType::float64; });
   const bool directional = !co_simulation() && interface().directional_derivatives && real_inputs;
   const std::string resources = unpacked_.path_of("resources").string();
-  return Setup{
+  Setup setup{
       .library = unpacked_.path_of(binary_).string(),
       .folder = unpacked_.folder.path().string(),
       .resources = description_.version == Version::fmi2 ? "file://" + resources : resources + "/",
@@ -130,9 +188,16 @@ Result<Setup> FmuFile::setup(Selection& selection) const {
       .states = co_simulation() ? std::vector<Handle>() : handles_of(description_, description_.states),
       .derivatives = co_simulation() ? std::vector<Handle>() : handles_of(description_, description_.derivatives),
       .parameters = handles_of(description_, selection.parameters),
+      .constants = {},
+      .constant_texts = {},
       .inputs = handles_of(description_, selection.inputs),
       .outputs = handles_of(description_, selection.outputs),
-      .continuous_inputs = continuous};
+      .continuous_inputs = continuous,
+      .needed_tool = {}};
+  if (interface().needs_execution_tool)
+    setup.needed_tool = description_.tool.empty() ? "the tool that made it" : description_.tool;
+  put_settings(setup);
+  return setup;
 }
 
 }  // namespace sealwatch::fmi

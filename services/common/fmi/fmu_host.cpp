@@ -24,6 +24,7 @@ void copy(std::span<const double> from, std::vector<double>& to) { to.assign(fro
 
 FmuHost::FmuHost(Setup setup)
     : setup_(std::move(setup)),
+      constants_(constants_of(setup_)),
       parameters_(setup_.parameters),
       inputs_(setup_.inputs),
       outputs_(setup_.outputs),
@@ -66,6 +67,7 @@ void FmuHost::begin(Unpacker request, Packer answer) {
   EventOutcome outcome;
   for (std::uint64_t slot = 0; slot < slots; ++slot) {
     slots_.push_back(make_());
+    slots_.back()->set_constants(constants_);
     const EventOutcome its = slots_.back()->initialise(
         start_time, parameters_, std::span(values).subspan(slot * parameters_.size, parameters_.size), inputs_, input_);
     if (slot == 0) outcome = its;
@@ -75,6 +77,7 @@ void FmuHost::begin(Unpacker request, Packer answer) {
   if (setup_.co_simulation != 0 || states_ == 0) return;
   slots_[0]->get_states(states);
   slots_[0]->get_nominals(nominals);
+  for (std::size_t slot = 1; slot < slots_.size(); ++slot) slots_[slot]->get_states(answer.room(states_));
 }
 
 void FmuHost::place(FmiInstance& instance, double time, std::span<const double> states,
@@ -112,10 +115,21 @@ void FmuHost::evaluate(Unpacker request, Packer answer) {
   }
 }
 
+// A binary may have directional derivatives of some of its variables alone (not of an output that is a state): where it
+// refuses, differences take their place from then on.
 void FmuHost::differentiate(Known known, double time, std::span<double> by_derivative, std::span<double> by_output) {
-  const bool derivatives = setup_.state_directional != 0, outputs = setup_.output_directional != 0;
-  if (derivatives) by_directions(known, derivative_references_, states_, by_derivative);
-  if (outputs) by_directions(known, outputs_.references, outputs_.size, by_output);
+  const auto given = [&](std::uint32_t& directional, const std::vector<Reference>& unknowns, std::size_t rows,
+                         std::span<double> part) {
+    if (directional == 0) return false;
+    try {
+      by_directions(known, unknowns, rows, part);
+    } catch (const Failure&) {
+      directional = 0;
+    }
+    return directional != 0;
+  };
+  const bool derivatives = given(setup_.state_directional, derivative_references_, states_, by_derivative);
+  const bool outputs = given(setup_.output_directional, outputs_.references, outputs_.size, by_output);
   if (!derivatives || (!outputs && outputs_.size > 0))
     by_differences(known, time, derivatives ? std::span<double>() : by_derivative,
                    outputs ? std::span<double>() : by_output);
@@ -199,10 +213,12 @@ void FmuHost::completed_step(Unpacker request, Packer answer) {
 void FmuHost::do_step(Unpacker request, Packer answer) {
   const auto time = request.get<double>(), step = request.get<double>();
   copy(request.numbers(inputs_.size), input_);
-  const std::uint64_t slots = slots_.size();
-  for (std::uint64_t slot = 0; slot < slots; ++slot) {
+  std::span<double> end = answer.room(2);  // whether it ended, and when
+  end[0] = 0.0, end[1] = time + step;
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
     slots_[slot]->set(inputs_, input_);
-    if (step > 0.0) slots_[slot]->do_step(time, step);
+    const CoStep done = step > 0.0 ? slots_[slot]->do_step(time, step) : CoStep{.terminate = false, .reached_s = time};
+    if (slot == 0) end[0] = done.terminate ? 1.0 : 0.0, end[1] = done.reached_s;
     slots_[slot]->get(outputs_, answer.room(outputs_.size));
   }
 }

@@ -33,6 +33,7 @@ class FmuHost {
   void by_directions(Known known, const std::vector<Reference>& unknowns, std::size_t rows, std::span<double> part);
 
   Setup setup_;
+  std::vector<Constant> constants_;
   Group parameters_, inputs_, outputs_, continuous_inputs_;
   std::size_t states_, indicators_;
   std::vector<Reference> state_references_, derivative_references_;

@@ -1,5 +1,6 @@
-// sealwatch-fmu-host: the process in which the binary of an FMU runs, started by sealwatch alone (fmu_process.cpp).
-// Whatever the binary does, it does here: a crash ends this process and becomes an error there.
+// sealwatch-fmu-host: the process in which the binary of an FMU runs, started by sealwatch alone (host_process.cpp).
+// Whatever the binary does, it does here: a crash ends this process and becomes an error there. It answers for the binary
+// value by value (fmu_host.hpp), or runs whole simulations with it (plant_host.hpp).
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,9 +10,12 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "services/common/fmi/fmu_host.hpp"
+#include "services/common/fmi/host_process.hpp"
+#include "services/common/fmi/plant_host.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -27,32 +31,152 @@ void end_with_sealwatch(const std::string& folder) {
   _exit(0);
 }
 
-void answer_with(SharedHeader& header, AnswerStatus status, const std::string& text) {
-  header.status = status;
-  const std::string shortened = text.substr(0, kTextBytes - 1);
-  std::copy(shortened.begin(), shortened.end(), header.text);
-  header.text[shortened.size()] = '\0';
-  store_and_wake(header.answers, header.requests.load());
+std::string words_of(const Failure& failure) {
+  const std::string said = messages().last();
+  return failure.text + (said.empty() ? "" : "; it said: " + said);
 }
 
-void serve_one(SharedHeader& header, std::span<std::byte> heap, std::unique_ptr<FmuHost>& host) {
-  messages().clear();
-  try {
-    if (header.operation == Operation::load) {
-      Unpacker request(heap);
-      Setup setup = get_setup(request);
-      std::thread(end_with_sealwatch, setup.folder).detach();
-      host = std::make_unique<FmuHost>(std::move(setup));
-    } else if (host) {
-      host->serve(header.operation, heap);
-    }
-    answer_with(header, AnswerStatus::ok, messages().last());
-  } catch (const Failure& failure) {
-    const std::string said = messages().last();
-    answer_with(header, AnswerStatus::failed, failure.text + (said.empty() ? "" : "; it said: " + said));
-  } catch (const std::exception& error) {
-    answer_with(header, AnswerStatus::failed, std::string("the process has no memory left: ") + error.what());
+std::string words_of(const std::exception& error) {
+  return std::string("the process has no memory left: ") + error.what();
+}
+
+class Server;
+
+/// The binary within a simulation that runs here.
+class HostHere final : public LocalHost {
+ public:
+  HostHere(Server& server, const Setup& setup);
+  ~HostHere() override;
+  [[nodiscard]] std::optional<std::string> serve(Operation operation, double time_s,
+                                                 std::span<std::byte> heap) override;
+  void end() {
+    if (host_) host_->serve(Operation::end, {});
   }
+
+ private:
+  Server& server_;
+  std::unique_ptr<FmuHost> host_;
+  std::string fault_;  ///< why there is none
+};
+
+class Server final : public Conversation {
+ public:
+  Server(SharedHeader& header, std::span<std::byte> heap) : header_(header), heap_(heap), plant_(*this) {
+    local_hosts() = [this](const Setup& setup) { return std::make_unique<HostHere>(*this, setup); };
+  }
+
+  [[noreturn]] void serve() {
+    for (;;) {
+      await_request();
+      const bool last = header_.operation == Operation::end;
+      serve_one();
+      if (last) _exit(0);  // without the binary's own ideas of how a program ends
+    }
+  }
+
+  void ask() override {
+    answer(AnswerStatus::asks, "");
+    await_request();
+    if (header_.stop.load() != 0) plant_.stop();
+  }
+  [[nodiscard]] std::span<std::byte> heap() override { return heap_; }
+
+  /// Written down before and after each call of the binary, for the process that watches.
+  void note_call(Operation operation, double time_s) {
+    header_.inside = operation;
+    header_.at_s = time_s;
+    header_.calls.fetch_add(1, std::memory_order_relaxed);
+    if (header_.stop.load(std::memory_order_relaxed) != 0) plant_.stop();
+  }
+
+  std::set<HostHere*> here;
+
+ private:
+  void await_request() {
+    constexpr double kLong_s = 3600.0;
+    while (!wait_while(header_.requests, served_, kLong_s)) {
+    }
+    served_ = header_.requests.load();
+  }
+
+  void answer(AnswerStatus status, const std::string& text) {
+    header_.status = status;
+    const std::string shortened = text.substr(0, kTextBytes - 1);
+    std::copy(shortened.begin(), shortened.end(), header_.text);
+    header_.text[shortened.size()] = '\0';
+    store_and_wake(header_.answers, header_.requests.load());
+  }
+
+  void serve_one() {
+    messages().clear();
+    try {
+      serve(header_.operation);
+      answer(AnswerStatus::ok, messages().last());
+    } catch (const Failure& failure) {
+      answer(AnswerStatus::failed, words_of(failure));
+    } catch (const std::exception& error) {
+      answer(AnswerStatus::failed, words_of(error));
+    }
+  }
+
+  void serve(Operation operation) {
+    Unpacker request(heap_);
+    switch (operation) {
+      case Operation::load: {
+        Setup setup = get_setup(request);
+        std::thread(end_with_sealwatch, setup.folder).detach();
+        host_ = std::make_unique<FmuHost>(std::move(setup));
+        return;
+      }
+      case Operation::load_plant: {
+        Unpacker look = request;
+        std::thread(end_with_sealwatch, get_plant(look).fmu_folder).detach();
+        return plant_.load(request);
+      }
+      case Operation::simulation:
+        return plant_.make_simulation(request);
+      case Operation::run:
+        return plant_.run(request);
+      case Operation::end:
+        for (HostHere* one : here) one->end();
+        [[fallthrough]];
+      default:
+        if (host_) host_->serve(operation, heap_);
+    }
+  }
+
+  SharedHeader& header_;
+  std::span<std::byte> heap_;
+  std::uint32_t served_ = 0;
+  std::unique_ptr<FmuHost> host_;
+  PlantHost plant_;
+};
+
+HostHere::HostHere(Server& server, const Setup& setup) : server_(server) {
+  server_.here.insert(this);
+  try {
+    host_ = std::make_unique<FmuHost>(setup);
+  } catch (const Failure& failure) {
+    fault_ = words_of(failure);
+  }
+}
+
+HostHere::~HostHere() { server_.here.erase(this); }
+
+std::optional<std::string> HostHere::serve(Operation operation, double time_s, std::span<std::byte> heap) {
+  if (!host_) return fault_;
+  messages().clear();
+  server_.note_call(operation, time_s);
+  std::optional<std::string> failed;
+  try {
+    host_->serve(operation, heap);
+  } catch (const Failure& failure) {
+    failed = words_of(failure);
+  } catch (const std::exception& error) {
+    failed = words_of(error);
+  }
+  server_.note_call(Operation::run, time_s);
+  return failed;
 }
 
 int run() {
@@ -66,16 +190,8 @@ int run() {
   if (memory == MAP_FAILED) return 3;
   auto& header = *static_cast<SharedHeader*>(memory);
   const std::span<std::byte> heap(static_cast<std::byte*>(memory) + sizeof(SharedHeader), size - sizeof(SharedHeader));
-  std::unique_ptr<FmuHost> host;
-  for (std::uint32_t served = 0;;) {
-    constexpr double kLong_s = 3600.0;
-    while (!wait_while(header.requests, served, kLong_s)) {
-    }
-    served = header.requests.load();
-    const bool last = header.operation == Operation::end;
-    serve_one(header, heap, host);
-    if (last) _exit(0);  // without the binary's own ideas of how a program ends
-  }
+  static Server server(header, heap);
+  server.serve();
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 
 #include "sealwatch/core/text.hpp"
@@ -19,20 +22,30 @@ Error fault(std::string value, std::string rule, std::string advice = {}) {
   return {.file = {}, .place = {}, .value = std::move(value), .rule = std::move(rule), .advice = std::move(advice)};
 }
 
+std::string content_of(const std::string& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 class Builder {
  public:
   Builder(const TextPlant& text, const FmuSection& section, const equations::Faults& faults)
       : text_(text), section_(section), faults_(faults) {}
 
   std::optional<equations::BuiltPlant> build() {
-    auto file = FmuFile::open(section_.file);
+    auto file = FmuFile::open(section_.file, section_.settings, section_.interface);
     if (!file) return complain("fmu.file", file.error()), std::nullopt;
     block_.file = *file;
+    if (!text_.file.empty())
+      block_.plant = {.file = std::filesystem::absolute(text_.file).string(),
+                      .hash = content_hash(content_of(text_.file)),
+                      .fmu_folder = block_.file->unpacked().folder.path().string()};
     description_ = &block_.file->description();
     order_states();
     choose_variables();
     if (!sound_) return std::nullopt;
     write_frame();
+    check_inputs();
     auto built = equations::build_plant(frame_, [&](const std::string& key, const Error& error) {
       const auto of = keys_.find(key.substr(0, key.rfind('.')));
       complain(of == keys_.end() ? key : of->second, error);
@@ -71,8 +84,9 @@ class Builder {
         continue;
       }
       frame_.states.push_back(text_.states[static_cast<std::size_t>(row - section_.states.begin())]);
-      const equations::TextState& of = frame_.states.back();
+      equations::TextState& of = frame_.states.back();
       const std::string key = "states." + of.description.name;
+      take_start(key + ".start", of);
       block_.states.push_back(conversion(key, description_->variables[state.variable], of.description.unit));
       block_.state_sizes.push_back(of.size.value_or(1.0));
       if (!of.size) complain(key, fault(of.description.name, "has no size", "give size: how large it usually is"));
@@ -86,6 +100,17 @@ class Builder {
         complain("states." + text_.states[k].description.name,
                  fault(section_.states[k], "is no state of the FMU", suggest(section_.states[k], names)));
       }
+  }
+
+  // Where the FMU itself says the start, the frame has nothing to understand.
+  void take_start(const std::string& key, equations::TextState& state) {
+    const bool by_fmu = std::ranges::find(state.start, kStartOfFmu) != state.start.end();
+    starts_by_fmu_.push_back(by_fmu);
+    if (!by_fmu) return;
+    if (state.start.size() > 1)
+      complain(key, fault(kStartOfFmu, "stands beside other starts", "the FMU always has a start: give it alone"));
+    state.start = {"0[" + state.description.unit + "]"};
+    state.own = false;
   }
 
   // From the unit that the FMU declares to SI; where it declares none it counts in the plant file's.
@@ -118,9 +143,13 @@ class Builder {
     for (const auto& [name, value] : section_.inputs)
       choose("fmu.inputs." + name, name, inputs, selection.inputs),
           check("fmu.inputs." + name, name, FmiCausality::input);
-    for (const auto& [name, value] : section_.parameters)
-      choose("fmu.parameters." + name, name, parameters, selection.parameters),
-          check("fmu.parameters." + name, name, FmiCausality::parameter);
+    for (const auto& [name, value] : section_.parameters) {
+      const std::string key = "fmu.parameters." + name;
+      choose(key, name, parameters, selection.parameters), check(key, name, FmiCausality::parameter);
+      if (section_.settings.contains(name.substr(0, name.find('['))))
+        complain(key, fault(name, "is among the settings too", "leave one of both out"));
+    }
+    check_arrays(parameters);
     for (const FmuVariable& variable : section_.variables)
       choose("fmu.variables." + variable.name, variable.variable, outputs, selection.outputs);
     if (!sound_) return;
@@ -139,6 +168,49 @@ class Builder {
     units_of(parameters, parameter_units_, block_.parameters);
   }
 
+  // An array is set whole: what is not given must have a start.
+  void check_arrays(const std::vector<Element>& parameters) {
+    for (const Element& element : parameters) {
+      const Variable& of = description_->variables[element.variable];
+      const auto given = std::ranges::count(parameters, element.variable, &Element::variable);
+      if (of.start.empty() && given < static_cast<std::ptrdiff_t>(of.size))
+        complain("fmu.parameters." + description_->name_of(element),
+                 fault(of.name, "has no start value in the description, and not all of its elements are given",
+                       "give all " + std::to_string(of.size)));
+    }
+  }
+
+  // An input that is discrete in the FMU changes at events, which are where held inputs jump.
+  void check_inputs() {
+    equations::Expressions expressions;
+    const equations::Faults quiet = [](const std::string&, const Error&) {};
+    equations::PlantNames names(frame_, expressions, quiet);
+    const equations::VariablePlaces places = names.places();
+    block_.held_inputs.assign(section_.inputs.size(), false);
+    for (std::size_t k = 0; k < section_.inputs.size(); ++k) {
+      const auto& [name, value] = section_.inputs[k];
+      const auto formula = equations::understand(value, expressions, names);
+      if (!formula) continue;  // told by the frame
+      const std::vector<bool> used = expressions.variables_of(std::array{formula->node}, places.count);
+      std::string moving;
+      for (std::size_t input = 0; input < frame_.inputs.size(); ++input)
+        if (used[places.inputs + input] && frame_.inputs[input].course != InputCourse::held)
+          moving = frame_.inputs[input].channel.name;
+      for (std::size_t other = 0; other < used.size(); ++other)
+        if (used[other] &&
+            (other < places.inputs || (other >= places.rates && other < places.parameters) || other >= places.added))
+          moving = value;
+      block_.held_inputs[k] = moving.empty();
+      if (!moving.empty() && block_.inputs[k].place >= elements(continuous_inputs()))
+        complain("fmu.inputs." + name,
+                 fault(moving, "changes between samples, and drives " + name + ", which may change at events alone",
+                       "give the input `course: held`"));
+    }
+  }
+  [[nodiscard]] std::span<const Handle> continuous_inputs() const {
+    return std::span(block_.setup.inputs).first(block_.setup.continuous_inputs);
+  }
+
   // Places among the elements of the whole variables, in the order of the setup, and the start values of all.
   [[nodiscard]] std::vector<Port> ports(const std::vector<Element>& elements, const std::vector<std::size_t>& whole,
                                         std::vector<double>& start) const {
@@ -150,7 +222,8 @@ class Builder {
     }
     std::vector<Port> result;
     result.reserve(elements.size());
-    for (const Element& element : elements) result.push_back({first[element.variable] + element.element, {}});
+    for (const Element& element : elements)
+      result.push_back({.place = first[element.variable] + element.element, .unit = {}});
     return result;
   }
 
@@ -232,10 +305,13 @@ class Builder {
     });
     plant.description.sites.erase(plant.description.sites.begin(),
                                   plant.description.sites.begin() + static_cast<std::ptrdiff_t>(sites));
-    plant.equations = std::make_shared<FmuEquations>(
-        std::move(block_), plant.equations,
-        FmuEquations::Counts{.inputs = plant.inputs.size(), .outputs = outputs, .sites = text_.sites.size()},
-        outputs_see_added());
+    for (std::size_t k = 0; k < starts_by_fmu_.size(); ++k) plant.states[k].by_equations = starts_by_fmu_[k];
+    plant.equations = std::make_shared<FmuEquations>(std::move(block_), plant.equations,
+                                                     FmuEquations::Counts{.inputs = plant.inputs.size(),
+                                                                          .outputs = outputs,
+                                                                          .sites = text_.sites.size(),
+                                                                          .starts_by_fmu = starts_by_fmu_},
+                                                     outputs_see_added());
   }
 
   const TextPlant& text_;
@@ -246,6 +322,7 @@ class Builder {
   FmuBlock block_;
   TextPlant frame_;
   std::vector<std::string> input_units_, parameter_units_;
+  std::vector<bool> starts_by_fmu_;
   std::map<std::string, std::string> keys_;  ///< of the frame's rows, to those of the file
 };
 

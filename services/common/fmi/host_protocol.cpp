@@ -25,10 +25,10 @@ long futex(const std::atomic<std::uint32_t>& word, int operation, std::uint32_t 
 
 template <class Visitor, class SetupType>
 void visit(Visitor&& visitor, SetupType& setup) {
-  visitor.texts(setup.library, setup.folder, setup.resources, setup.token);
+  visitor.texts(setup.library, setup.folder, setup.resources, setup.token, setup.constant_texts);
   visitor.numbers(setup.fmi3, setup.co_simulation, setup.once_per_process, setup.state_directional,
-                  setup.output_directional, setup.event_indicators, setup.continuous_inputs);
-  visitor.lists(setup.states, setup.derivatives, setup.parameters, setup.inputs, setup.outputs);
+                  setup.output_directional, setup.event_indicators, setup.continuous_inputs, setup.structural);
+  visitor.lists(setup.states, setup.derivatives, setup.parameters, setup.constants, setup.inputs, setup.outputs);
 }
 
 struct Putter {

@@ -19,8 +19,20 @@
 
 namespace sealwatch::fmi {
 
-enum class Operation : std::uint32_t { load, begin, evaluate, event, completed_step, do_step, end };
-enum class AnswerStatus : std::uint32_t { ok, failed };
+enum class Operation : std::uint32_t {
+  load,
+  begin,
+  evaluate,
+  event,
+  completed_step,
+  do_step,
+  load_plant,  ///< and from then on simulations of it, with the binary in this process
+  simulation,
+  run,
+  weights,  ///< that a run asked for
+  end
+};
+enum class AnswerStatus : std::uint32_t { ok, failed, asks };
 
 inline constexpr std::size_t kTextBytes = 4096;
 inline constexpr int kSharedMemoryDescriptor = 3;
@@ -32,6 +44,11 @@ struct SharedHeader {
   Operation operation = Operation::load;
   AnswerStatus status = AnswerStatus::ok;
   std::uint64_t heap_bytes = 0;
+  // Of a run, which takes long: how many calls of the binary it has made, the one that it is in, whether it shall end.
+  std::atomic<std::uint32_t> calls{0};
+  std::atomic<std::uint32_t> stop{0};
+  Operation inside = Operation::end;
+  double at_s = 0.0;
   char text[kTextBytes] = {};  ///< of an error: what failed, and then the binary's own last words
 };
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
@@ -57,8 +74,12 @@ struct Setup {
   std::uint32_t event_indicators = 0;
   std::vector<Handle> states, derivatives;  ///< whole variables
   std::vector<Handle> parameters;           ///< that are set before a run, in the order of their values
+  std::vector<Handle> constants;            ///< that are set before those: structural parameters first
+  std::uint32_t structural = 0;             ///< how many of the constants are structural parameters
+  std::string constant_texts;               ///< the value of each, ended by a zero byte
   std::vector<Handle> inputs, outputs;
   std::uint32_t continuous_inputs = 0;  ///< how many of the inputs, the first, may change outside of events
+  std::string needed_tool;              ///< that must be on this machine for the binary to start; not of its business
 };
 
 /// Which numbers an evaluation answers with, in this order; f, y, z always.
@@ -66,10 +87,12 @@ struct EvaluationRequest {
   std::uint32_t by_state = 0, by_input = 0, by_parameter = 0;
 };
 
-/// Puts numbers, texts and lists one behind the other; each begins at a multiple of eight bytes.
+/// Puts numbers, texts and lists one behind the other; each begins at a multiple of eight bytes. Without a heap it counts
+/// how much that takes.
 class Packer {
  public:
-  explicit Packer(std::span<std::byte> heap) : heap_(heap) {}
+  explicit Packer(std::span<std::byte> heap = {}) : heap_(heap) {}
+  [[nodiscard]] std::size_t used() const { return at_; }
   template <class T>
   void put(const T& value) {
     bytes(&value, sizeof value);
@@ -90,13 +113,13 @@ class Packer {
 
  private:
   void bytes(const void* from, std::size_t size) {
-    std::byte* to = heap_.data() + at_;
+    const std::size_t begin = at_;
     advance(size);
-    if (size > 0) std::memcpy(to, from, size);
+    if (size > 0 && heap_.data() != nullptr) std::memcpy(heap_.data() + begin, from, size);
   }
   void advance(std::size_t size) {
     at_ += (size + 7U) / 8U * 8U;
-    assert(at_ <= heap_.size());
+    assert(heap_.data() == nullptr || at_ <= heap_.size());
   }
   std::span<std::byte> heap_;
   std::size_t at_ = 0;

@@ -4,9 +4,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
+#include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 
+#include "services/common/fmi/fmu_plant.hpp"
 #include "services/common/fmi/fmu_process.hpp"
 
 namespace sealwatch::fmi {
@@ -43,7 +47,8 @@ std::string in_comment(std::string text) {
 /// One row of the file: an element of the FMU and the name that stands for it.
 struct Row {
   Element element;
-  std::string name;
+  std::string name;     ///< in expressions
+  std::string channel;  ///< of an output
   std::string unit;
   Conversion scale;
   std::string meaning;
@@ -56,6 +61,7 @@ class Writer {
   Result<std::string> write() {
     collect();
     if (const Status started = start(); !started) return fail(started.error());
+    name_rows();
     head();
     fmu_section();
     channels();
@@ -74,8 +80,8 @@ class Writer {
   }
 
  private:
-  // Names of expressions: letters, digits and _; each once.
-  std::string name_for(const std::string& name) {
+  // Names of expressions: letters, digits and _; each once among the names of `taken`.
+  static std::string name_for(const std::string& name, std::initializer_list<std::set<std::string>*> taken) {
     static const std::set<std::string> kTaken = {"t",    "pi",   "sqrt",  "exp",  "log",  "sin", "cos", "tan",
                                                  "asin", "acos", "atan",  "tanh", "abs",  "min", "max", "sign",
                                                  "step", "root", "hypot", "rate", "mean", "time"};
@@ -88,17 +94,27 @@ class Writer {
     while (result.size() > 1 && result.back() == '_') result.pop_back();
     if (result.empty() || std::isdigit(static_cast<unsigned char>(result[0])) != 0 || result.starts_with("fmu_"))
       result = "v_" + result;
-    while (kTaken.contains(result) || !names_.insert(result).second) result += "_";
+    const auto is_taken = [&](const std::set<std::string>* names) { return names->contains(result); };
+    while (kTaken.contains(result) || std::ranges::any_of(taken, is_taken)) result += "_";
+    for (std::set<std::string>* names : taken) names->insert(result);
     return result;
   }
 
-  Row row_of(const Element& element) {
+  // Quantities of expressions and recorded channels are two sets of names, to both of which inputs belong: a state and
+  // the channel that shows it may have one name. States come first.
+  void name_rows() {
+    for (Row& row : states_) row.name = name_for(fmu_.name_of(row.element), {&quantities_});
+    for (Row& row : inputs_) row.name = name_for(fmu_.name_of(row.element), {&quantities_, &channels_});
+    for (Row& row : outputs_) {
+      row.channel = name_for(fmu_.name_of(row.element), {&channels_});
+      row.name = state_shown_by(row) != nullptr ? "" : name_for(fmu_.name_of(row.element), {&quantities_});
+    }
+    for (Row& row : parameters_) row.name = name_for(fmu_.name_of(row.element), {&quantities_});
+  }
+
+  [[nodiscard]] Row row_of(const Element& element) const {
     const Variable& variable = fmu_.variables[element.variable];
-    Row row{.element = element,
-            .name = name_for(fmu_.name_of(element)),
-            .unit = "1",
-            .scale = {},
-            .meaning = variable.description};
+    Row row{.element = element, .name = {}, .channel = {}, .unit = "1", .scale = {}, .meaning = variable.description};
     if (const Unit* unit = fmu_.find_unit(variable.unit); unit != nullptr && unit->has_base) {
       row.unit = si_name(*unit);
       row.scale = {unit->factor, unit->offset};
@@ -123,19 +139,23 @@ class Writer {
       std::vector<Row>* rows = nullptr;
       if (variable.causality == FmiCausality::input) rows = &inputs_;
       if (variable.causality == FmiCausality::output) rows = &outputs_;
-      if (variable.causality == FmiCausality::parameter && real && !variable.start.empty() &&
-          variable.variability != FmiVariability::constant)
+      if (variable.causality == FmiCausality::parameter && real && variable.variability != FmiVariability::constant &&
+          !file_.settings().contains(variable.name))
         rows = &parameters_;
       for (std::size_t element = 0; rows != nullptr && element < variable.size; ++element)
         rows->push_back(row_of({k, element}));
     }
   }
 
-  // The states' values and sizes are known to the running model alone.
+  // The states' values and sizes are known to the running model alone, and so are starts that the description lacks.
   Status start() {
     Selection selection;
     for (const Row& row : inputs_)
       if (row.element.element == 0) selection.inputs.push_back(row.element.variable);
+    for (const Row& row : parameters_)
+      if (row.element.element == 0)
+        (fmu_.variables[row.element.variable].start.empty() ? selection.outputs : selection.parameters)
+            .push_back(row.element.variable);
     const auto setup = file_.setup(selection);
     if (!setup) return fail(setup.error());
     std::vector<double> inputs;
@@ -143,17 +163,88 @@ class Writer {
       const Variable& of = fmu_.variables[variable];
       for (std::size_t k = 0; k < of.size; ++k) inputs.push_back(of.start.empty() ? 0.0 : of.start[k]);
     }
+    std::vector<double> parameters;
+    for (const std::size_t variable : selection.parameters)
+      std::ranges::copy(fmu_.variables[variable].start, std::back_inserter(parameters));
     auto process = FmuProcess::start(file_.name(), *setup, 1);
     if (!process) return fail(process.error());
     const std::vector<double> steps(states_.size(), 1e-7), input_steps(inputs.size(), 1e-7);
-    auto beginning = (*process)->begin({.start_time_s = fmu_.start_time_s.value_or(0.0),
-                                        .state_steps = steps,
-                                        .input_steps = input_steps,
-                                        .inputs = inputs,
-                                        .parameters = {}});
+    const auto begin = [&] {
+      return (*process)->begin({.start_time_s = fmu_.start_time_s.value_or(0.0),
+                                .state_steps = steps,
+                                .input_steps = input_steps,
+                                .inputs = inputs,
+                                .parameters = parameters});
+    };
+    auto beginning = begin();
     if (!beginning) return fail(beginning.error());
     beginning_ = std::move(*beginning);
+    if (const Status read = read_starts(**process, selection.outputs, inputs); !read) return fail(read.error());
+    linked_.assign(states_.size(), false);
+    for (std::size_t k = 0; k < states_.size(); ++k) linked_[k] = is_linked(states_[k].element.variable);
+    try_parameters(parameters, begin, **process);
     return {};
+  }
+
+  // The description may not say which states parameters move at the start: all parameters are changed at once, each by
+  // another share, or one by one where the model does not start with all of them changed.
+  template <class Begin>
+  void try_parameters(std::vector<double>& parameters, const Begin& begin, const FmuProcess& process) {
+    const std::vector<double> before = parameters;
+    const auto change = [&](std::size_t k) {
+      constexpr double kShare = 1e-3;
+      parameters[k] += kShare * (1.0 + 0.01 * static_cast<double>(k % 50)) * (before[k] == 0.0 ? 1.0 : before[k]);
+    };
+    for (std::size_t k = 0; k < parameters.size(); ++k) change(k);
+    const auto all_moved = begin();
+    if (all_moved) note_moved(all_moved->states);
+    parameters = before;
+    for (std::size_t k = 0; !all_moved && k < std::min(parameters.size(), kMostParameters) && process.alive(); ++k) {
+      change(k);
+      if (const auto moved = begin()) note_moved(moved->states);
+      parameters[k] = before[k];
+    }
+  }
+
+  Status read_starts(FmuProcess& process, const std::vector<std::size_t>& variables, std::span<const double> inputs) {
+    if (variables.empty()) return {};
+    std::span<const double> values;
+    if (file_.co_simulation()) {
+      const auto step = process.do_step(fmu_.start_time_s.value_or(0.0), 0.0, inputs);
+      if (!step) return fail(step.error());
+      values = step->outputs;
+    } else {
+      const auto evaluation = process.evaluate(fmu_.start_time_s.value_or(0.0), beginning_.states, inputs, {});
+      if (!evaluation) return fail(evaluation.error());
+      values = evaluation->outputs;
+    }
+    for (const std::size_t variable : variables) {
+      const std::size_t size = fmu_.variables[variable].size;
+      starts_[variable].assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size));
+      values = values.subspan(size);
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool is_linked(std::size_t state) const {
+    const auto links = fmu_.start_links.find(state);
+    return links != fmu_.start_links.end() && std::ranges::any_of(links->second, [&](std::size_t variable) {
+             const FmiCausality causality = fmu_.variables[variable].causality;
+             return causality == FmiCausality::parameter || causality == FmiCausality::structuralParameter;
+           });
+  }
+
+  void note_moved(std::span<const double> states) {
+    constexpr double kRounding = 1e-9;
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const double size = std::max(std::abs(beginning_.states[k]), std::abs(states[k]));
+      if (std::abs(states[k] - beginning_.states[k]) > kRounding * size) linked_[k] = true;
+    }
+  }
+
+  [[nodiscard]] double start_of_parameter(const Element& element) const {
+    const auto read = starts_.find(element.variable);
+    return (read == starts_.end() ? fmu_.variables[element.variable].start : read->second)[element.element];
   }
 
   void head() {
@@ -163,13 +254,37 @@ class Writer {
          << (fmu_.tool.empty() ? "" : ", made by " + in_comment(fmu_.tool)) << ").\n"
          << "# Written by `sealwatch plant import`; complete what the comments ask for, then `sealwatch plant check` "
             "it.\n"
-         << "# All units are SI: the FMU's own are converted.\n\n"
-         << "name: " << name_for(fmu_.model_name) << "\n"
+         << "# All units are SI: the FMU's own are converted.\n";
+    if (file_.interface().needs_execution_tool)
+      out_ << "# It runs only where " << (fmu_.tool.empty() ? "the tool that made it" : in_comment(fmu_.tool))
+           << " is installed (needsExecutionTool).\n";
+    out_ << "\nname: " << name_for(fmu_.model_name, {}) << "\n"
          << "meaning: " << quoted(fmu_.description.empty() ? "the FMU " + fmu_.model_name : fmu_.description) << "\n";
   }
 
+  // What is no quantity that a fit could move: as it was set, and as a comment what else could be.
+  void settings() {
+    if (!file_.settings().empty()) out_ << "  settings:      # of the FMU, set once before a run\n";
+    for (const auto& [name, text] : file_.settings()) out_ << "    " << quoted(name) << ": " << quoted(text) << "\n";
+    bool first = true;
+    for (const Variable& variable : fmu_.variables) {
+      const bool real = variable.type == FmiType::float64 || variable.type == FmiType::float32;
+      const bool structural = variable.causality == FmiCausality::structuralParameter;
+      if (!(structural || (variable.causality == FmiCausality::parameter && !real)) ||
+          variable.variability == FmiVariability::constant || file_.settings().contains(variable.name))
+        continue;
+      if (first)
+        out_ << "  # Parameters that can be set once, under `settings` (sizes of arrays: import with --set):\n";
+      first = false;
+      out_ << "  #   " << in_comment(quoted(variable.name)) << ":";
+      for (const double value : variable.start) out_ << " " << number(value);
+      out_ << "\n";
+    }
+  }
+
   void fmu_section() {
-    out_ << "\nfmu:\n  file: " << quoted(path_) << "\n";
+    out_ << "\nfmu:\n  file: " << quoted(path_) << "\n  interface: " << (file_.co_simulation() ? "cs" : "me") << "\n";
+    settings();
     if (!inputs_.empty()) out_ << "  inputs:        # of the FMU, each an expression of the recorded inputs below\n";
     for (const Row& row : inputs_) out_ << "    " << quoted(fmu_.name_of(row.element)) << ": " << row.name << "\n";
     if (!parameters_.empty()) out_ << "  parameters:    # of the FMU, each an expression of the parameters below\n";
@@ -178,8 +293,9 @@ class Writer {
            << parameters_[k].name << "\n";
     out_ << "  variables:     # of the FMU, by the names that expressions use; any of its variables may be added\n";
     for (const Row& row : outputs_)
-      out_ << "    " << row.name << ": {variable: " << quoted(fmu_.name_of(row.element))
-           << ", unit: " << quoted(row.unit) << "}\n";
+      if (!row.name.empty())
+        out_ << "    " << row.name << ": {variable: " << quoted(fmu_.name_of(row.element))
+             << ", unit: " << quoted(row.unit) << "}\n";
   }
 
   void channels() {
@@ -189,25 +305,31 @@ class Writer {
               "# recorded: the FMU then keeps its own start value.\n"
               "inputs:\n";
     for (const Row& row : inputs_)
-      out_ << "  " << row.name << ": {unit: " << quoted(row.unit) << ", meaning: " << quoted(row.meaning) << "}\n";
+      out_ << "  " << row.name << ": {unit: " << quoted(row.unit)
+           << (changes_between_events(fmu_.variables[row.element.variable]) ? "" : ", course: held")
+           << ", meaning: " << quoted(row.meaning) << "}\n";
     out_ << "\n# Recorded outputs. Rename them to the recording's columns, delete those that are not recorded.\n"
             "# noise_std: what the sensor's noise is; without it the recordings tell.\n"
             "outputs:\n";
     for (const Row& row : outputs_)
-      out_ << "  " << row.name << ": {unit: " << quoted(row.unit) << ", value: " << shown(row)
+      out_ << "  " << row.channel << ": {unit: " << quoted(row.unit) << ", value: " << shown(row)
            << ", meaning: " << quoted(row.meaning) << "}\n";
     if (outputs_.empty())
       out_ << "  {}  # the FMU declares none: name variables of it in fmu.variables and use them here\n";
   }
 
-  // An output that is a state under another name is taken as the state, which costs nothing.
-  [[nodiscard]] std::string shown(const Row& output) const {
+  // An output that is a state, under its own or another name, is taken as the state, which costs nothing.
+  [[nodiscard]] const Row* state_shown_by(const Row& output) const {
     const Variable& variable = fmu_.variables[output.element.variable];
     for (const Row& state : states_)
-      if (fmu_.variables[state.element.variable].reference == variable.reference && variable.size == 1 &&
-          variable.type == FmiType::float64)
-        return state.name;
-    return output.name;
+      if (fmu_.variables[state.element.variable].reference == variable.reference &&
+          state.element.element == output.element.element && variable.type == FmiType::float64)
+        return &state;
+    return nullptr;
+  }
+  [[nodiscard]] std::string shown(const Row& output) const {
+    const Row* state = state_shown_by(output);
+    return state != nullptr ? state->name : output.name;
   }
 
   void parameter_rows() {
@@ -217,7 +339,7 @@ class Writer {
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
       const Row& row = parameters_[k];
       const Variable& variable = fmu_.variables[row.element.variable];
-      const double value = row.scale.to_si(variable.start[row.element.element]);
+      const double value = row.scale.to_si(start_of_parameter(row.element));
       const double reach = value == 0.0 ? 1.0 : 9.0 * std::abs(value);
       double min = value > 0.0 ? 0.1 * value : value - reach, max = value < 0.0 ? 0.1 * value : value + reach;
       if (variable.min) min = std::max(min, row.scale.to_si(*variable.min));
@@ -234,6 +356,7 @@ class Writer {
     if (states_.empty()) return;
     out_ << "\n# States. `start` may be a channel, whose first value is taken, or rate(channel); a list is tried in "
             "turn.\n"
+            "# start: fmu is the FMU's own, which its parameters move.\n"
             "# size: how large it usually is (the integration keeps to a share of it).\n"
             "# own: false where every recording starts at the same value.\n"
             "states:\n";
@@ -243,19 +366,22 @@ class Writer {
       const double nominal = std::abs(row.scale.factor * beginning_.nominals[k]);
       const bool usual = std::isfinite(nominal) && nominal > 0.0;
       out_ << "  " << row.name << ": {variable: " << quoted(fmu_.name_of(row.element)) << ", unit: " << quoted(row.unit)
-           << ", start: " << quoted(start_of(row, start)) << ", size: " << number(usual ? nominal : 1.0)
-           << ", own: " << (shown_by_output(row) ? "true" : "false") << ", meaning: " << quoted(row.meaning) << "}\n";
+           << ", start: " << (linked_[k] ? kStartOfFmu : start_of(row, start))
+           << ", size: " << number(usual ? nominal : 1.0)
+           << ", own: " << (!linked_[k] && shown_by_output(row) ? "true" : "false")
+           << ", meaning: " << quoted(row.meaning) << "}\n";
     }
   }
 
   [[nodiscard]] bool shown_by_output(const Row& state) const {
-    return std::ranges::any_of(outputs_, [&](const Row& output) { return shown(output) == state.name; });
+    return std::ranges::any_of(outputs_, [&](const Row& output) { return state_shown_by(output) == &state; });
   }
 
   [[nodiscard]] std::string start_of(const Row& state, double value) const {
+    const std::string here = quoted(number(value) + "[" + state.unit + "]");
     for (const Row& output : outputs_)
-      if (shown(output) == state.name) return output.name;
-    return number(value) + "[" + state.unit + "]";
+      if (state_shown_by(output) == &state) return "[" + output.channel + ", " + here + "]";
+    return here;
   }
 
   void site_rows() {
@@ -282,7 +408,9 @@ class Writer {
   const FmuFile& file_;
   const ModelDescription& fmu_;
   const std::string& path_;
-  std::set<std::string> names_;
+  std::set<std::string> quantities_, channels_;
+  std::map<std::size_t, std::vector<double>> starts_;  ///< of parameters that the description gives none
+  std::vector<bool> linked_;                           ///< of each state, whether a parameter moves its start
   std::vector<Row> inputs_, outputs_, parameters_, states_;
   Beginning beginning_;
   std::ostringstream out_;

@@ -20,7 +20,9 @@ std::optional<Interface> read_interface(const DescriptionReader& reader, const p
                    .directional_derivatives = reader.flag(node, "providesDirectionalDerivative") ||
                                               reader.flag(node, "providesDirectionalDerivatives"),
                    .needs_completed_step = fmi2 ? !reader.flag(node, "completedIntegratorStepNotNeeded")
-                                                : reader.flag(node, "needsCompletedIntegratorStep")};
+                                                : reader.flag(node, "needsCompletedIntegratorStep"),
+                   .variable_steps = reader.flag(node, "canHandleVariableCommunicationStepSize"),
+                   .fixed_step_s = reader.bound(node, "fixedInternalStepSize").value_or(0.0)};
   const std::string& name = result.model_identifier;
   const bool plain = !name.empty() &&
                      std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; }) &&
@@ -52,9 +54,9 @@ std::vector<Unit> read_units(const DescriptionReader& reader, const pugi::xml_no
 }
 
 void read_experiment(const DescriptionReader& reader, const pugi::xml_node& node, ModelDescription& description) {
-  description.start_time_s = reader.number(node, "startTime");
-  description.stop_time_s = reader.number(node, "stopTime");
-  description.step_s = reader.number(node, "stepSize");
+  description.start_time_s = reader.bound(node, "startTime");
+  description.stop_time_s = reader.bound(node, "stopTime");
+  description.step_s = reader.bound(node, "stepSize");
 }
 
 void check(const DescriptionReader& reader, const pugi::xml_node& root, const ModelDescription& description) {
@@ -72,7 +74,7 @@ void check(const DescriptionReader& reader, const pugi::xml_node& root, const Mo
                     "export the model without clocks from outside");
 }
 
-ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node& root) {
+ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node& root, const Settings& settings) {
   if (!root) reader.refuse(root, {}, "has no element fmiModelDescription");
   ModelDescription description;
   description.file = reader.file();
@@ -80,6 +82,9 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
   const bool fmi2 = description.version_text.starts_with("2.");
   if (!fmi2 && !description.version_text.starts_with("3."))
     reader.refuse(root, description.version_text, "is no version of FMI that sealwatch runs: 2.0 and 3.0",
+                  "export the model as FMI 2.0 or 3.0");
+  if (description.version_text.find('-') != std::string::npos)
+    reader.refuse(root, description.version_text, "is a draft of FMI, whose functions are not those of the standard",
                   "export the model as FMI 2.0 or 3.0");
   description.version = fmi2 ? Version::fmi2 : Version::fmi3;
   description.model_name = reader.required(root, "modelName");
@@ -91,14 +96,15 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
   description.scheduled_execution = !root.child("ScheduledExecution").empty();
   description.units = read_units(reader, root);
   read_experiment(reader, root.child("DefaultExperiment"), description);
-  fmi2 ? read_fmi2(reader, root, description) : read_fmi3(reader, root, description);
+  fmi2 ? read_fmi2(reader, root, description) : read_fmi3(reader, root, description, settings);
   check(reader, root, description);
   return description;
 }
 
 }  // namespace
 
-Result<ModelDescription> read_model_description(const std::string& file, std::string_view text) {
+Result<ModelDescription> read_model_description(const std::string& file, std::string_view text,
+                                                const Settings& settings) {
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
   const DescriptionReader reader(file, text);
@@ -112,7 +118,7 @@ Result<ModelDescription> read_model_description(const std::string& file, std::st
           .rule = std::string("is no XML: ") + parsed.description(),
           .advice = "export the FMU again with the tool that made it"});
     }
-    return read_root(reader, document.child("fmiModelDescription"));
+    return read_root(reader, document.child("fmiModelDescription"), settings);
   } catch (const Fault& fault) {
     return fail(fault.error);
   }

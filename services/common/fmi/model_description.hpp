@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -65,6 +66,8 @@ struct Interface {
   bool once_per_process = false;
   bool directional_derivatives = false;
   bool needs_completed_step = false;  ///< wants to be told of every step of the integration
+  bool variable_steps = false;        ///< of Co-Simulation: the steps from sample to sample may differ
+  double fixed_step_s = 0.0;          ///< of which a Co-Simulation unit does whole numbers alone; 0: of any
 };
 
 /// An element of a variable.
@@ -90,6 +93,8 @@ struct ModelDescription {
   std::vector<Element> derivatives;  ///< of the states
   std::size_t event_indicators = 0;
   std::optional<double> start_time_s, stop_time_s, step_s;
+  /// States and the parameters of which their starts depend, by the description (InitialUnknowns); indices of variables.
+  std::map<std::size_t, std::vector<std::size_t>> start_links;
 
   [[nodiscard]] const Variable* find(std::string_view variable) const;
   [[nodiscard]] const Unit* find_unit(std::string_view unit) const;
@@ -99,8 +104,13 @@ struct ModelDescription {
   [[nodiscard]] Result<Element> find_element(std::string_view name) const;
 };
 
-/// From the text of a modelDescription.xml; `file` names it in messages.
-[[nodiscard]] Result<ModelDescription> read_model_description(const std::string& file, std::string_view text);
+/// Values for variables that are set once before a run, by name: structural parameters, texts, switches.
+using Settings = std::map<std::string, std::string>;
+
+/// From the text of a modelDescription.xml; `file` names it in messages. Settings of structural parameters give arrays
+/// other sizes than the description's; what was their start is then unknown.
+[[nodiscard]] Result<ModelDescription> read_model_description(const std::string& file, std::string_view text,
+                                                              const Settings& settings = {});
 
 /// SI unit by its usual name ("N m"), or put together ("kg m2/s3"); "1" where the unit says nothing.
 [[nodiscard]] std::string si_name(const Unit& unit);

@@ -64,8 +64,12 @@ Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block,
                                                         .slots = in_one,
                                                         .parameters = values});
     if (!beginning) return fail(beginning.error());
-    if (first == 0) running->beginning_ = std::move(*beginning);
+    if (first == 0)
+      running->beginning_ = std::move(*beginning);
+    else
+      std::ranges::copy(beginning->states, std::back_inserter(running->beginning_.slot_states));
   }
+  if (running->beginning_.outcome.terminate) running->end_at(block.start_time_s);
   running->inputs_ = block.input_start;
   running->states_.resize(block.states.size());
   return running;
@@ -87,6 +91,8 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
   if (steps_.empty()) wanted.by_parameter = 0;
   if (is_known(time_s, wanted)) return &values_;
   if (!processes_[0]->alive()) return nullptr;  // trouble_ says why
+  if (time_s > ended_s_)
+    return in_trouble("the FMU ends the simulation by itself at " + std::to_string(ended_s_) + " s");
   if (block_.setup.co_simulation != 0) return step_to(time_s);
   const bool in_one = processes_.size() == 1;
   EvaluationRequest asked = wanted;
@@ -103,9 +109,12 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
 const BlockValues* RunningBlock::step_to(double time_s) {
   const bool first = std::isnan(first_time_s_);
   if (first) first_time_s_ = known_time_s_ = time_s;
-  std::vector<double> mean = inputs_;
-  for (std::size_t k = 0; !first && k < block_.setup.continuous_inputs; ++k)
-    mean[k] = 0.5 * (inputs_[k] + known_inputs_[k]);
+  if (const std::string fault = fault_of_step(time_s - known_time_s_); !fault.empty()) return in_trouble(fault);
+  std::vector<double> during = inputs_;
+  for (std::size_t k = 0; !first && k < block_.inputs.size(); ++k) {
+    const std::size_t place = block_.inputs[k].place;
+    during[place] = block_.held_inputs[k] ? known_inputs_[place] : 0.5 * (inputs_[place] + known_inputs_[place]);
+  }
   const std::size_t variables = block_.variables.size(), outputs = elements(block_.setup.outputs);
   values_.z.assign(variables, 0.0);
   values_.by_state.resize(variables, 0);
@@ -113,13 +122,15 @@ const BlockValues* RunningBlock::step_to(double time_s) {
   values_.by_parameter.resize(variables, steps_.size());
   std::size_t slot = 0;
   for (auto& process : processes_) {
-    const auto values = process->do_step(block_.start_time_s + known_time_s_ - first_time_s_,
-                                         std::max(0.0, time_s - known_time_s_), mean);
-    if (!values) return trouble_ = values.error().describe(), nullptr;
-    for (std::size_t row = 0; row < values->size() / std::max<std::size_t>(1, outputs); ++row, ++slot)
+    const auto end = process->do_step(block_.start_time_s + known_time_s_ - first_time_s_,
+                                      std::max(0.0, time_s - known_time_s_), during);
+    if (!end) return in_trouble(end.error().describe());
+    if (slot == 0 && end->terminate) end_at(first_time_s_ + end->reached_s - block_.start_time_s);
+    const std::span<const double> values = end->outputs;
+    for (std::size_t row = 0; row < values.size() / std::max<std::size_t>(1, outputs); ++row, ++slot)
       for (std::size_t k = 0; k < variables; ++k) {
         const auto& [place, unit] = block_.variables[k];
-        const double value = unit.to_si((*values)[row * outputs + place]);
+        const double value = unit.to_si(values[row * outputs + place]);
         if (slot == 0)
           values_.z[k] = value;
         else
@@ -128,6 +139,38 @@ const BlockValues* RunningBlock::step_to(double time_s) {
   }
   known_time_s_ = time_s, known_inputs_ = inputs_, known_states_ = states_, known_ = {1, 1, 1};
   return &values_;
+}
+
+void RunningBlock::end_at(double time_s) {
+  constexpr double kRounding = 1e-9;  // of a step's end that was computed twice
+  ended_s_ = std::min(ended_s_, time_s + kRounding * std::max(1.0, std::abs(time_s)));
+}
+
+std::string RunningBlock::fault_of_step(double step_s) {
+  constexpr double kRounding = 1e-6;
+  const Interface& interface = block_.file->interface();
+  if (!(step_s > 0.0)) return "";
+  if (step_s_ == 0.0) step_s_ = step_s;
+  if (!interface.variable_steps && std::abs(step_s - step_s_) > kRounding * step_s_)
+    return "the FMU does equal steps alone (canHandleVariableCommunicationStepSize), and the samples are " +
+           std::to_string(step_s_) + " and " + std::to_string(step_s) + " s apart: bring them to equal distances";
+  const double whole = interface.fixed_step_s > 0.0 ? step_s / interface.fixed_step_s : 1.0;
+  if (std::abs(whole - std::round(whole)) > kRounding * whole || whole < 0.5)
+    return "the FMU does steps of " + std::to_string(interface.fixed_step_s) +
+           " s (fixedInternalStepSize), of which the distance of the samples, " + std::to_string(step_s) +
+           " s, is no whole number";
+  return "";
+}
+
+void RunningBlock::start(std::span<double> states, RuntimeMatrix& by_parameter) const {
+  by_parameter.resize(states.size(), steps_.size());
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    states[k] = block_.states[k].to_si(beginning_.states[k]);
+    for (std::size_t slot = 0; slot < steps_.size(); ++slot) {
+      const double other = beginning_.slot_states[slot * states.size() + k];
+      by_parameter.row(k)[slot] = (block_.states[k].to_si(other) - states[k]) / steps_[slot];
+    }
+  }
 }
 
 bool RunningBlock::has_events() const {
@@ -148,6 +191,7 @@ bool RunningBlock::accept(double time_s, std::span<const double> states, std::sp
   set_point(states, inputs);
   const auto end = processes_[0]->completed_step(time_s, states_, inputs_);
   if (!end) trouble_ = end.error().describe();
+  if (end && end->terminate) end_at(time_s);
   return end && end->event;
 }
 
@@ -157,9 +201,8 @@ bool RunningBlock::pass_event(double time_s, std::span<double> states, std::span
     std::vector<double> after = states_;
     const auto outcome = processes_[k]->event(time_s, after, inputs_);
     if (!outcome) return trouble_ = outcome.error().describe(), false;
-    if (outcome->terminate)
-      return trouble_ = "the FMU ends the simulation by itself at " + std::to_string(time_s) + " s", false;
     if (k > 0) continue;
+    if (outcome->terminate) end_at(time_s);
     beginning_.outcome = *outcome;
     for (std::size_t row = 0; row < after.size(); ++row) states[row] = block_.states[row].to_si(after[row]);
   }

@@ -22,12 +22,20 @@ Result<TemporaryFolder> TemporaryFolder::create() {
   return TemporaryFolder(name);
 }
 
-TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+TemporaryFolder TemporaryFolder::borrow(std::filesystem::path path) {
+  TemporaryFolder folder(std::move(path));
+  folder.borrowed_ = true;
+  return folder;
+}
+
+TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept
+    : path_(std::exchange(other.path_, {})), borrowed_(other.borrowed_) {}
 
 TemporaryFolder& TemporaryFolder::operator=(TemporaryFolder&& other) noexcept {
   if (this != &other) {
     remove();
     path_ = std::exchange(other.path_, {});
+    borrowed_ = other.borrowed_;
   }
   return *this;
 }
@@ -36,7 +44,7 @@ TemporaryFolder::~TemporaryFolder() { remove(); }
 
 void TemporaryFolder::remove() noexcept {
   std::error_code ignored;
-  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  if (!path_.empty() && !borrowed_) std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace sealwatch::fmi

@@ -11,6 +11,8 @@ namespace sealwatch::fmi {
 class TemporaryFolder {
  public:
   [[nodiscard]] static Result<TemporaryFolder> create();
+  /// One that belongs to somebody else, who removes it.
+  [[nodiscard]] static TemporaryFolder borrow(std::filesystem::path path);
   TemporaryFolder(TemporaryFolder&& other) noexcept;
   TemporaryFolder& operator=(TemporaryFolder&& other) noexcept;
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -22,6 +24,7 @@ class TemporaryFolder {
   explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
   void remove() noexcept;
   std::filesystem::path path_;
+  bool borrowed_ = false;
 };
 
 }  // namespace sealwatch::fmi

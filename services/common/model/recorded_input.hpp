@@ -106,7 +106,7 @@ class RecordedInput {
   void add_jumps(const InputChannel& input) {
     for (std::size_t row = 1; input.hold && row < times_.size(); ++row) {
       const double at = times_[row] + input.delay_s;
-      if (input.values[row] != input.values[row - 1] && at > times_.front() && at < times_.back())
+      if (input.values[row] != input.values[row - 1] && at > times_.front() && at <= times_.back())
         segments_.push_back(at);
     }
   }

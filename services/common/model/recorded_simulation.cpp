@@ -175,8 +175,10 @@ void RecordedSimulation::select_channels(std::span<const OutputName> outputs, co
   const auto rows = static_cast<Eigen::Index>(recorded.time_s.size());
   recorded_.resize(rows, static_cast<Eigen::Index>(channels_.size()));
   for (std::size_t c = 0; c < channels_.size(); ++c)
-    recorded_.col(static_cast<Eigen::Index>(c)) =
-        Eigen::Map<const Eigen::VectorXd>(recorded.find(channel_names_[c])->values.data(), rows);
+    if (const std::vector<double>& values = recorded.find(channel_names_[c])->values; values.empty())
+      recorded_.col(static_cast<Eigen::Index>(c)).setZero();  // to be simulated alone
+    else
+      recorded_.col(static_cast<Eigen::Index>(c)) = Eigen::Map<const Eigen::VectorXd>(values.data(), rows);
 }
 
 void RecordedSimulation::set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start) {

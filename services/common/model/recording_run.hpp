@@ -9,7 +9,8 @@
 //   void output(int which, double t, const double* point, std::size_t stride, double* signal);
 //       value of an output that is no state, and its derivatives by all columns; point: [y | S], row by row
 //   std::string trouble() const;                     why it could not be evaluated; "": nothing that is known
-// and, where it has events (RuntimeSystem), has_events() and what comes with it.
+// and, where it has events (RuntimeSystem), has_events() and what comes with it, and where some states start by its own
+// account, start().
 #pragma once
 
 #include <algorithm>
@@ -67,14 +68,18 @@ class RecordingRun {
     outputs_.sensitivities.resize(rows * channels, static_cast<Eigen::Index>(columns_) - 1);
   }
 
+  /// Why the system could not be evaluated; "": nothing that is known.
+  [[nodiscard]] std::string trouble() const { return system_.trouble(); }
   /// Whether an event ended the run that sensitivities do not cross; without columns it goes on.
   [[nodiscard]] bool stopped_by_event() const { return stopped_by_event_; }
 
   [[nodiscard]] Result<SimulatedOutputs> simulate(const ModelValues& values) {
     if (!initial_point(values)) return no_start();
     filtered_until_ = input_.times().front();
-    pass_sensors(filtered_until_, point_.data());
-    sample(0);
+    if (!has_events()) {
+      pass_sensors(filtered_until_, point_.data());
+      sample(next_++);
+    }
     for (std::size_t segment = 0; segment < input_.segment_count(); ++segment)
       if (!run_segment(segment)) return failure(integrator_.time());
     outputs_.steps = integrator_.statistics().steps;
@@ -119,6 +124,8 @@ class RecordingRun {
     }
     Vector state = Integrator::Sizes::vector(integrator_.states());
     std::copy(values.initial_state.begin(), values.initial_state.end(), state.begin());
+    if constexpr (requires { system_.start(free_, state.data(), point_.data(), stride); })
+      if (!system_.start(free_, state.data(), point_.data(), stride)) return false;
     QuasiSteadyState<System> rest(system_, input_.times().front(), fast, scale_);
     if (!rest.solve(state) || !rest.differentiate(state, point_.data(), stride)) return false;
     for (int k = 0; k < integrator_.states(); ++k) point_[k * stride] = state[k];
@@ -129,17 +136,29 @@ class RecordingRun {
   [[nodiscard]] bool run_segment(std::size_t segment) {
     system_.set_segment(segment);
     event_s_ = kNoEvent;
-    if constexpr (requires { system_.has_events(); })  // the input may have jumped
-      if (system_.has_events()) return pass_event(input_.segment_begin(segment)) && run_samples(segment);
-    return integrator_.start(input_.segment_begin(segment), point_.data()) && run_samples(segment);
+    const double begin = input_.segment_begin(segment);
+    if (!has_events()) return integrator_.start(begin, point_.data()) && run_samples(segment);
+    if (!pass_event(begin)) return false;  // the input may have jumped: a sample here shows what comes after
+    if (next_ < input_.times().size() && input_.times()[next_] == begin) {
+      pass_sensors(begin, point_.data());
+      sample(next_++);
+    }
+    return run_samples(segment);
+  }
+
+  [[nodiscard]] bool has_events() const {
+    if constexpr (requires { system_.has_events(); }) return system_.has_events();
+    return false;
   }
 
   [[nodiscard]] bool run_samples(std::size_t segment) {
     const std::vector<double>& times = input_.times();
     const double end = input_.segment_end(segment);
+    const bool jumps = has_events() && segment + 1 < input_.segment_count();
     double last = input_.segment_begin(segment);
     for (; next_ < times.size() && times[next_] <= end; last = times[next_++]) {
       if (!pass_points(last, times[next_])) return false;
+      if (jumps && times[next_] == end) return true;
       sample(next_);
     }
     return last == end || pass_points(last, end);  // a held input that acts late jumps between samples
@@ -158,7 +177,7 @@ class RecordingRun {
   [[nodiscard]] bool advance_to(double time, double distance) {
     if (time_is_up()) return false;
     if (integrator_.states() == 0) return pass_known_events(time) && (pass_sensors(time, point_.data()), true);
-    while (integrator_.time() < time || event_s_ < time) {
+    while (integrator_.time() < time || event_s_ <= time) {
       if (event_s_ <= integrator_.time()) {
         integrator_.interpolate(event_s_, point_.data());
         if (!pass_event(event_s_)) return false;
@@ -276,7 +295,7 @@ class RecordingRun {
   std::vector<SensorFilter> filters_;
   std::vector<SensorLaws> sensors_;  ///< empty where no sensor has a law
   SimulatedOutputs outputs_;
-  std::size_t next_ = 1;
+  std::size_t next_ = 0;         ///< sample that has not been taken yet
   double filtered_until_ = 0.0;  ///< time of the sensors' last point
   bool filtered_ = false;        ///< some channel has a low-pass or a lag
   static constexpr double kNoEvent = std::numeric_limits<double>::infinity();

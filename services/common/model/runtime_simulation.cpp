@@ -1,11 +1,13 @@
 #include "services/common/model/runtime_simulation.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
 #include "services/common/model/measured_input.hpp"
 #include "services/common/model/recording_run.hpp"
+#include "services/common/model/runtime_run.hpp"
 #include "services/common/model/runtime_system.hpp"
 #include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
@@ -44,9 +46,13 @@ double mean_distance_s(const std::vector<double>& times) {
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
 
-tl::unexpected<Error> without_derivatives(const PlantDescription& plant) {
-  return fail("plant " + plant.name + " gave a derivative or an output that is not a finite number",
-              "check its equations where something is divided by zero or a root is taken of what may be negative");
+tl::unexpected<Error> without_derivatives(const PlantDescription& plant, std::string trouble) {
+  return fail(Error{.file = {},
+                    .place = {},
+                    .value = std::move(trouble),
+                    .rule = "plant " + plant.name + " gave a derivative or an output that is not a finite number",
+                    .advice = "check its equations where something is divided by zero or a root is taken of what may "
+                              "be negative"});
 }
 
 }  // namespace
@@ -78,13 +84,31 @@ Result<std::unique_ptr<PlantSimulation>> RuntimePlantSimulation::create(std::sha
     if (plant->states[k].slow) slow.push_back(description.states[k].name);
   }
   simulation->set_states(std::move(names), std::move(slow), std::move(start));
+  static std::atomic<std::uint64_t> count = 0;
+  if (plant->equations->runs_elsewhere())
+    simulation->told_ = std::make_unique<const Told>(Told{.asset = asset, .recorded = recorded, .number = ++count});
   return simulation;
+}
+
+Result<SimulatedOutputs> RuntimeEquations::run(const RuntimeRun&) const {
+  return fail("these equations run nothing elsewhere");
 }
 
 Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInput& input, const ModelValues& values,
                                                                std::span<const FreeQuantity> free,
                                                                const SimulationOptions& options,
                                                                InjectedColumns* injected) const {
+  if (told_)
+    return runtime_->equations->run({.simulation = told_->number,
+                                     .asset = told_->asset,
+                                     .recorded = told_->recorded,
+                                     .channels = channels().size(),
+                                     .input = input,
+                                     .values = values,
+                                     .free = free,
+                                     .options = options,
+                                     .injected = injected,
+                                     .sites = plant().sites.size()});
   FreeColumns columns = free_columns(plant(), values, free);
   auto evaluator = runtime_->equations->evaluator(effective_parameters(plant(), values), columns.differentiated);
   if (!evaluator) return fail(evaluator.error());
@@ -101,7 +125,7 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
                 "fit and validate work; a model without such events (friction and stops rounded) can be explained");
   }
   if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
-    return without_derivatives(plant());
+    return without_derivatives(plant(), recording.trouble());
   return outputs;
 }
 

@@ -18,11 +18,12 @@ class RuntimePlantSimulation final : public RecordedSimulation {
 
   [[nodiscard]] std::span<const Site> sites() const override { return plant().sites; }
 
- private:
   [[nodiscard]] Result<SimulatedOutputs> run_driven_by(const RecordedInput& input, const ModelValues& values,
                                                        std::span<const FreeQuantity> free,
                                                        const SimulationOptions& options,
                                                        InjectedColumns* injected) const override;
+
+ private:
   /// Sensitivities that events interrupt, by simulations with changed values.
   [[nodiscard]] Result<SimulatedOutputs> run_by_differences(const RecordedInput& input, const ModelValues& values,
                                                             std::span<const FreeQuantity> free,
@@ -30,7 +31,14 @@ class RuntimePlantSimulation final : public RecordedSimulation {
   RuntimePlantSimulation(std::shared_ptr<const RuntimePlant> plant, const PlantDescription& description,
                          const TimeSeries& recorded, PhysicsTerms terms);
 
+  /// What equations that run elsewhere are told once.
+  struct Told {
+    AssetConfig asset;
+    TimeSeries recorded;
+    std::uint64_t number = 0;
+  };
   std::shared_ptr<const RuntimePlant> runtime_;
+  std::unique_ptr<const Told> told_;  ///< of those alone
 };
 
 }  // namespace sealwatch

@@ -126,6 +126,23 @@ RuntimeSystem::Mask RuntimeSystem::settled() const {
   return settles;
 }
 
+bool RuntimeSystem::start(std::span<const FreeQuantity> free, double* y, double* point, std::size_t stride) const {
+  if (std::ranges::none_of(plant_.states, &RuntimeState::by_equations)) return true;
+  RuntimeMatrix by_parameter;
+  std::vector<double> states(y, y + plant_states_);
+  if (!evaluator_->start(states, by_parameter)) return false;
+  for (std::size_t row = 0; row < plant_states_; ++row) {
+    const bool is_free = std::ranges::any_of(free, [&](const FreeQuantity& one) {
+      return one.kind == FreeQuantity::Kind::initial_state && one.index == row;
+    });
+    if (!plant_.states[row].by_equations || is_free) continue;
+    y[row] = states[row];
+    for (const FreeColumns::OfPlant& of : free_.of_plant)
+      point[row * stride + 1 + of.column] = of.factor * by_parameter.row(row)[of.differentiated];
+  }
+  return true;
+}
+
 std::string RuntimeSystem::trouble() const {
   if (std::string words = evaluator_->trouble(); !words.empty()) return words;
   const Vector sizes = scale(1e-6);
@@ -337,8 +354,9 @@ std::span<const double> RuntimeSystem::weights_at(double t) const {
 }
 
 // An output that a held input drives directly belongs to the input of its own sample, not to that of the sample before.
+// Where there are events the sample comes after that of the jump, in the segment which begins there.
 bool RuntimeSystem::linearise_outputs(double t, const double* point, std::size_t stride) const {
-  const bool next = segment_ + 1 < input_.segment_count() && t >= input_.segment_end(segment_);
+  const bool next = !has_events() && segment_ + 1 < input_.segment_count() && t >= input_.segment_end(segment_);
   locate(t, output_state_.data(), next ? segment_ + 1 : segment_);
   const bool differentiate = columns_ > 1;
   if (!add_laws(differentiate)) return false;

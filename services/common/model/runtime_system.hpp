@@ -56,6 +56,9 @@ class RuntimeSystem {
   [[nodiscard]] std::string trouble() const;
   void set_segment(std::size_t segment);
 
+  /// States that start where the equations say, with their sensitivities; not those that are free. point: [y | S].
+  [[nodiscard]] bool start(std::span<const FreeQuantity> free, double* y, double* point, std::size_t stride) const;
+
   [[nodiscard]] bool has_events() const { return evaluator_->has_events(); }
   [[nodiscard]] double next_event_s() const { return evaluator_->next_event_s(); }
   [[nodiscard]] bool event_before(double t, const double* y) const;

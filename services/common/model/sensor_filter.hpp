@@ -23,7 +23,7 @@ class SensorFilter {
     if (!started_ || time_constant_s_ <= 0.0) {
       std::copy(signal, signal + output_.size(), output_.begin());
       started_ = true;
-    } else {
+    } else if (step_s > 0.0) {  // a signal that jumps moves the output later
       set_step(step_s);
       for (std::size_t j = 0; j < output_.size(); ++j)
         output_[j] = decay_ * output_[j] + (mean_ - decay_) * signal_[j] + (1.0 - mean_) * signal[j];

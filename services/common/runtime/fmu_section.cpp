@@ -26,6 +26,12 @@ std::optional<fmi::FmuSection> read_fmu_section(YamlMap& root) {
   fmi::FmuSection section;
   need(*fmu, "file", section.file);
   section.file = (std::filesystem::path(root.file()).parent_path() / section.file).string();
+  std::string interface;
+  if (fmu->read("interface", interface, {"me", "cs"}))
+    section.interface = interface == "cs" ? fmi::Choice::co_simulation : fmi::Choice::model_exchange;
+  std::vector<std::pair<std::string, std::string>> settings;
+  read_expressions(*fmu, "settings", settings);
+  section.settings = fmi::Settings(settings.begin(), settings.end());
   read_expressions(*fmu, "inputs", section.inputs);
   read_expressions(*fmu, "parameters", section.parameters);
   for_each(*fmu, "variables", [&](const std::string& name, YamlMap& map) {

@@ -48,7 +48,8 @@ void write_archive(const std::filesystem::path& file, const std::vector<TestMemb
 std::string description_of(const TestUnit& unit) {
   const std::string directional = unit.directional ? "true" : "false";
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription ";
-  text += is_fmi3(unit) ? "fmiVersion=\"3.0\" instantiationToken=\"" : "fmiVersion=\"2.0\" guid=\"";
+  const std::string version = !unit.version.empty() ? unit.version : is_fmi3(unit) ? "3.0" : "2.0";
+  text += "fmiVersion=\"" + version + (is_fmi3(unit) ? "\" instantiationToken=\"" : "\" guid=\"");
   text += unit.token + "\" modelName=\"test\" generationTool=\"the tests\"";
   if (!is_fmi3(unit)) text += " numberOfEventIndicators=\"" + std::to_string(unit.indicators) + "\"";
   text += ">\n";
@@ -66,7 +67,7 @@ std::string description_of(const TestUnit& unit) {
 }
 
 TestUnit spring_return(const std::string& binary) {
-  TestUnit unit{.binary = binary, .variables = {}, .structure = {}, .interfaces = {}};
+  TestUnit unit{.binary = binary, .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
   const std::string parameter = "causality=\"parameter\" variability=\"fixed\"";
   const auto names = {"M", "F_v", "k_s", "k_F"};
   const auto values = {"20", "2e3", "1e4", "100"};
@@ -100,8 +101,12 @@ TestUnit spring_return(const std::string& binary) {
 }
 
 TestUnit emps() {
-  TestUnit unit{
-      .binary = "fmu_emps2", .token = "{sealwatch-test-emps}", .variables = {}, .structure = {}, .interfaces = {}};
+  TestUnit unit{.binary = "fmu_emps2",
+                .token = "{sealwatch-test-emps}",
+                .variables = {},
+                .structure = {},
+                .interfaces = {},
+                .version = {}};
   const std::string parameter = "causality=\"parameter\" variability=\"tunable\"";
   unit.variables =
       real2("x", 1000, "", "unit=\"m\"") + real2("v", 1001, "", "") + real2("der(x)", 2000, "", "derivative=\"1\"") +
@@ -115,7 +120,7 @@ TestUnit emps() {
 }
 
 TestUnit gain() {
-  TestUnit unit{.binary = "fmu_gain_cs2", .variables = {}, .structure = {}, .interfaces = {}};
+  TestUnit unit{.binary = "fmu_gain_cs2", .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
   unit.interfaces = "<CoSimulation modelIdentifier=\"model\" canHandleVariableCommunicationStepSize=\"true\"/>\n";
   unit.variables = real2("x", 0, "causality=\"output\"", "") + real2("u", 1, "causality=\"input\"", "start=\"0\"") +
                    real2("k", 2, "causality=\"parameter\" variability=\"fixed\"", "start=\"2\"");
@@ -129,7 +134,8 @@ TestUnit bouncing(const std::string& binary) {
                 .indicators = 1,
                 .variables = {},
                 .structure = {},
-                .interfaces = {}};
+                .interfaces = {},
+                .version = {}};
   const std::string parameter = "causality=\"parameter\" variability=\"fixed\"";
   if (is_fmi3(unit)) {
     unit.variables = real3("h", 1000, "causality=\"local\"") + real3("v", 1001, "causality=\"local\"") +
@@ -148,6 +154,77 @@ TestUnit bouncing(const std::string& binary) {
   unit.structure =
       "<Outputs><Unknown index=\"8\"/></Outputs>"
       "<Derivatives><Unknown index=\"3\"/><Unknown index=\"4\"/></Derivatives>\n";
+  return unit;
+}
+
+namespace {
+
+/// A row of a unit of several types, in the words of both versions.
+struct MixedRow {
+  std::string name, type, causality, attributes;  ///< of FMI 3
+  int reference = 0;
+  bool discrete = false;
+};
+const std::vector<MixedRow> kMixed = {{"u_real", "Float64", "input", "start=\"0\"", 1},
+                                      {"u_discrete", "Float64", "input", "start=\"0\"", 2, true},
+                                      {"u_integer", "Int32", "input", "start=\"0\"", 3, true},
+                                      {"u_boolean", "Boolean", "input", "start=\"false\"", 4, true},
+                                      {"y_real", "Float64", "output", "", 11},
+                                      {"y_discrete", "Float64", "output", "", 12, true},
+                                      {"y_integer", "Int32", "output", "", 13, true},
+                                      {"y_boolean", "Boolean", "output", "", 14, true},
+                                      {"steps", "Int32", "output", "", 20, true},
+                                      {"last", "Int32", "parameter", "start=\"1000\"", 21},
+                                      {"text", "String", "parameter", "", 22},
+                                      {"length", "Int32", "output", "", 23, true},
+                                      {"x0", "Float64", "parameter", "start=\"2\"", 30},
+                                      {"x", "Float64", "output", "", 31},
+                                      {"der(x)", "Float64", "local", "derivative=\"31\"", 32},
+                                      {"k", "Float64", "parameter", "start=\"1\"", 33}};
+
+std::string row2(const MixedRow& row) {
+  const std::string type = row.type == "Float64" ? "Real" : row.type == "Int32" ? "Integer" : row.type;
+  const std::string variability = row.causality == "parameter" ? "fixed" : row.discrete ? "discrete" : "continuous";
+  const std::string inside = row.name == "der(x)"   ? "derivative=\"14\""
+                             : row.type == "String" ? "start=\"four\""
+                                                    : row.attributes;
+  return "<ScalarVariable name=\"" + row.name + "\" valueReference=\"" + std::to_string(row.reference) +
+         "\" causality=\"" + row.causality + "\" variability=\"" + variability + "\"><" + type + " " + inside +
+         "/></ScalarVariable>\n";
+}
+
+std::string row3(const MixedRow& row) {
+  const std::string variability = row.causality == "parameter" ? "fixed" : row.discrete ? "discrete" : "continuous";
+  const std::string head = "<" + row.type + " name=\"" + row.name + "\" valueReference=\"" +
+                           std::to_string(row.reference) + "\" causality=\"" + row.causality + "\" variability=\"" +
+                           variability + "\" " + row.attributes;
+  return row.type == "String" ? head + "><Start value=\"four\"/></String>\n" : head + "/>\n";
+}
+
+}  // namespace
+
+TestUnit mixed(const std::string& binary) {
+  TestUnit unit{.binary = binary, .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
+  unit.interfaces =
+      "<ModelExchange modelIdentifier=\"model\"/><CoSimulation modelIdentifier=\"model\" "
+      "canHandleVariableCommunicationStepSize=\"true\"/>\n";
+  for (const MixedRow& row : kMixed) unit.variables += is_fmi3(unit) ? row3(row) : row2(row);
+  unit.structure = is_fmi3(unit) ? "<ContinuousStateDerivative valueReference=\"32\"/>"
+                                   "<InitialUnknown valueReference=\"31\" dependencies=\"30\"/>\n"
+                                 : "<Derivatives><Unknown index=\"15\"/></Derivatives>\n";
+  return unit;
+}
+
+TestUnit arrays() {
+  TestUnit unit{.binary = "fmu_arrays3", .variables = {}, .structure = {}, .interfaces = {}, .version = {}};
+  const std::string dimension = "><Dimension valueReference=\"1\"/></Float64>\n";
+  unit.variables =
+      "<UInt64 name=\"n\" valueReference=\"1\" causality=\"structuralParameter\" variability=\"fixed\" start=\"2\"/>\n"
+      "<Float64 name=\"x0\" valueReference=\"2\" causality=\"parameter\" variability=\"fixed\" start=\"1 2\"" +
+      dimension + "<Float64 name=\"x\" valueReference=\"3\"" + dimension +
+      "<Float64 name=\"der(x)\" valueReference=\"4\" derivative=\"3\"" + dimension +
+      "<Float64 name=\"y\" valueReference=\"5\" causality=\"output\"/>\n";
+  unit.structure = "<Output valueReference=\"5\"/><ContinuousStateDerivative valueReference=\"4\"/>\n";
   return unit;
 }
 

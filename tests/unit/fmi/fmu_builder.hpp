@@ -27,6 +27,7 @@ struct TestUnit {
   std::string variables;   ///< XML between <ModelVariables> and its end; "": those of spring_return
   std::string structure;   ///< XML between <ModelStructure> and its end
   std::string interfaces;  ///< XML of the interfaces; "": Model Exchange
+  std::string version;     ///< "": 2.0 or 3.0
 };
 [[nodiscard]] std::string description_of(const TestUnit& unit);
 [[nodiscard]] TestUnit spring_return(const std::string& binary);
@@ -34,6 +35,10 @@ struct TestUnit {
 /// For Co-Simulation.
 [[nodiscard]] TestUnit gain();
 [[nodiscard]] TestUnit bouncing(const std::string& binary);
+/// Inputs of all types, time events, a state that a parameter starts, a text: for Model Exchange and Co-Simulation.
+[[nodiscard]] TestUnit mixed(const std::string& binary);
+/// Arrays whose size is a structural parameter.
+[[nodiscard]] TestUnit arrays();
 
 /// A folder of one test, removed at its end; also tells where sealwatch-fmu-host is.
 class TestFolder {

@@ -48,7 +48,7 @@ TEST(ImportFmu, AnOutputThatIsAStateIsTakenAsTheState) {
   TestUnit unit = spring_return("fmu_spring_return2");
   unit.variables.replace(unit.variables.find("5000"), 4, "1000");
   EXPECT_THAT(imported(folder, unit),
-              AllOf(HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("start: \"position\"")));
+              AllOf(HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("start: [position, \"0.0[m]\"]")));
 }
 
 TEST(ImportFmu, OneThatDoesNotStartIsRefusedByName) {

@@ -1,0 +1,179 @@
+#include "services/common/fmi/host_process.hpp"
+
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <new>
+
+#include "services/common/fmi/host_launch.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+std::string place_of(const char* what, double time_s) {
+  if (std::isnan(time_s)) return what;
+  std::string text = std::to_string(time_s);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return std::string(what) + " at t = " + text + " s";
+}
+
+}  // namespace
+
+MakeLocalHost& local_hosts() {
+  static MakeLocalHost make;
+  return make;
+}
+
+HostProcess::HostProcess(std::string file, std::size_t heap_bytes, const ProcessLimits& limits)
+    : file_(std::move(file)), limits_(limits), memory_bytes_(sizeof(SharedHeader) + heap_bytes) {}
+
+Status HostProcess::launch() {
+  Result<LaunchedHost> host = launch_host(memory_bytes_, limits_.memory_bytes);
+  if (!host) {
+    Error error = host.error();
+    error.file = file_;
+    return fail(std::move(error));
+  }
+  header_ = new (host->memory) SharedHeader;
+  header_->heap_bytes = memory_bytes_ - sizeof(SharedHeader);
+  child_ = host->process, life_ = host->life, output_ = host->output;
+  alive_ = true;
+  return {};
+}
+
+HostProcess::~HostProcess() {
+  if (alive_) {
+    constexpr double kPatience_s = 2.0;  // a licence is given back, and the like
+    static_cast<void>(request(Operation::end, "ending", kPatience_s));
+    for (int look = 0; alive_ && look < 200 && waitpid(child_, nullptr, WNOHANG) == 0; ++look) usleep(1000);
+  }
+  int status = 0;
+  if (child_ > 0) kill_and_reap(&status);
+  if (header_ != nullptr) munmap(header_, memory_bytes_);
+  for (const int descriptor : {life_, output_})
+    if (descriptor >= 0) close(descriptor);
+}
+
+void HostProcess::kill_and_reap(int* status) {
+  alive_ = false;
+  kill(child_, SIGKILL);
+  while (waitpid(child_, status, 0) < 0 && errno == EINTR) {
+  }
+  child_ = -1;
+}
+
+std::span<std::byte> HostProcess::heap() const {
+  if (local_) return {const_cast<std::byte*>(local_heap_.data()), local_heap_.size()};
+  return {reinterpret_cast<std::byte*>(header_) + sizeof(SharedHeader), memory_bytes_ - sizeof(SharedHeader)};
+}
+
+Status HostProcess::request(Operation operation, const char* what, double seconds, double time_s,
+                            const std::function<void()>& look) {
+  using Clock = std::chrono::steady_clock;
+  if (!alive_) return fail(failure(place_of(what, time_s), "the process that ran the FMU has ended", "start anew"));
+  if (local_) return request_here(operation, what, time_s);
+  const std::uint32_t number = header_->requests.load() + 1;
+  header_->operation = operation;
+  store_and_wake(header_->requests, number);
+  constexpr double kLook_s = 0.02;  // how soon an end of the process is seen
+  auto begin = Clock::now();
+  std::uint32_t calls = header_->calls.load();
+  for (std::uint32_t last = number - 1; !wait_while(header_->answers, last, kLook_s);) {
+    if (look) look();
+    int status = 0;
+    const pid_t gone = waitpid(child_, &status, WNOHANG);
+    if (gone == child_) {
+      alive_ = false, child_ = -1;
+      if (header_->answers.load() == number) break;
+      return fail(ended(place(what, time_s), status));
+    }
+    if (const std::uint32_t now = header_->calls.load(); now != calls) calls = now, begin = Clock::now();
+    const double most = header_->inside == Operation::begin ? limits_.start_s : seconds;
+    if (std::chrono::duration<double>(Clock::now() - begin).count() < most) continue;
+    const std::string where = place(what, time_s);
+    kill_and_reap(&status);
+    return fail(failure(where,
+                        "the FMU did not answer within " + std::to_string(std::lround(most)) + " s and was ended",
+                        "its binary hangs: try it in the tool that made it" + printed()));
+  }
+  if (header_->status != AnswerStatus::failed) return {};
+  std::array<char, kTextBytes> text{};
+  std::copy_n(header_->text, kTextBytes - 1, text.begin());
+  return fail(failure(place_of(what, time_s), text.data(), advice_of(operation) + printed()));
+}
+
+void HostProcess::serve_here(const Setup& setup) {
+  local_ = local_hosts()(setup);
+  local_heap_.resize(memory_bytes_ - sizeof(SharedHeader));
+  alive_ = true;
+}
+
+Status HostProcess::request_here(Operation operation, const char* what, double time_s) {
+  const auto failed = local_->serve(operation, time_s, local_heap_);
+  if (!failed) return {};
+  return fail(failure(place_of(what, time_s), *failed, advice_of(operation)));
+}
+
+std::string HostProcess::place(const char* what, double time_s) const {
+  switch (header_->inside) {
+    case Operation::begin:
+      return "the start of the model";
+    case Operation::evaluate:
+      return place_of("the derivatives", header_->at_s);
+    case Operation::event:
+      return place_of("an event", header_->at_s);
+    case Operation::completed_step:
+      return place_of("the end of a step", header_->at_s);
+    case Operation::do_step:
+      return place_of("a step", header_->at_s);
+    default:
+      return place_of(what, time_s);
+  }
+}
+
+std::string HostProcess::advice_of(Operation operation) const {
+  const bool starts = operation == Operation::begin || operation == Operation::load;
+  if (starts && !needed_tool_.empty())
+    return "it needs " + needed_tool_ +
+           " on this machine to run (needsExecutionTool): install it, or export the model without that need";
+  return operation == Operation::begin ? "a licence may be missing, or a parameter outside what the model allows"
+                                       : "try the model in the tool that made it";
+}
+
+Error HostProcess::failure(const std::string& what, std::string rule, std::string advice) const {
+  return {.file = file_, .place = what, .value = {}, .rule = std::move(rule), .advice = std::move(advice)};
+}
+
+Error HostProcess::ended(const std::string& what, int status) const {
+  if (WIFSIGNALED(status))
+    return failure(what, std::string("the FMU's binary crashed: ") + strsignal(WTERMSIG(status)),
+                   "try it in the tool that made it" + printed());
+  return failure(what, "the FMU's binary ended its process with status " + std::to_string(WEXITSTATUS(status)),
+                 "try it in the tool that made it" + printed());
+}
+
+/// The end of what the binary printed.
+std::string HostProcess::printed() const {
+  if (output_ < 0) return "";
+  std::array<char, 400> text{};
+  const off_t size = lseek(output_, 0, SEEK_END);
+  const off_t from = std::max<off_t>(0, size - static_cast<off_t>(text.size()));
+  const ssize_t got = size > 0 ? pread(output_, text.data(), text.size(), from) : 0;
+  std::string last(text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+  std::ranges::replace_if(
+      last, [](unsigned char c) { return c < 0x20; }, ' ');
+  last.erase(last.find_last_not_of(' ') + 1);
+  return last.empty() ? "" : "; it printed: " + last;
+}
+
+}  // namespace sealwatch::fmi

@@ -31,7 +31,8 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       journal_(journal),
       clock_(clock),
       options_(std::move(options)),
-      admission_(options_.commissioned),
+      admission_(options_.commissioned, {.names = {options_.assets.begin(), options_.assets.end()},
+                                         .refuses_others = options_.refuses_unknown_assets}),
       strangers_(options_.strangers),
       lanes_(
           make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
@@ -211,14 +212,19 @@ Result<std::optional<std::string>> LayerRunner::identify_input(const Message& me
 }
 
 Status LayerRunner::take(Message message) {
-  const auto id = identify_input(message);
-  if (!id) return fail(id.error());
   const Header& header = header_of(message);
   StreamPosition stream;
   if (is_numbered(message)) {
     stream = {std::string(name_of(topic_of(message))), header.writer_id, header.stream_sequence};
     uncommitted_[{stream.topic, stream.writer_id}] = stream.sequence;
   }
+  // Read, and not kept: its stream goes on, and the journal does not grow by what strangers invent.
+  if (const auto refused = admission_.refusal_of_asset(message)) {
+    note_unknown_asset(*refused);
+    return {};
+  }
+  const auto id = identify_input(message);
+  if (!id) return fail(id.error());
   if (!*id) {
     if (is_numbered(message)) renumbered_.push_back(std::move(message));
     return {};
@@ -232,6 +238,7 @@ Status LayerRunner::take(Message message) {
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
     if (topic_of(message) == Topic::raw_samples) return {};
   }
+  if (!refused) admission_.note_asset(message);
   const bool for_desk = is_for_desk(message);
   if (for_desk && !refused) refused = tell_desk(message);
   InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;

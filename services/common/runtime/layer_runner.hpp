@@ -65,6 +65,7 @@ struct RunnerOptions {
   bool watches_clock = false;                        ///< that of this machine, by which tests are dated
   /// Whether that clock follows a time source; nothing where it cannot be asked. Asked about once a second.
   std::function<std::optional<bool>()> clock_is_synchronised = {};
+  bool refuses_unknown_assets = false;    ///< takes `assets` alone
   bool acts_confirmed_by_second = false;  ///< see message/confirmation.hpp
   StrangerWatch::Options strangers = {};
   std::chrono::milliseconds strangers_stand{3'600'000};  ///< how long an alarm of who is heard no more stands
@@ -132,6 +133,7 @@ class LayerRunner {
   void note_rival(const ServiceStatus& rival);
   void hear_name(const ServiceStatus& status);
   void note_strangers(const std::vector<StrangerWatch::Stranger>& strangers);
+  void note_unknown_asset(const std::string& refused);
   void watch_clock();
   void watch_synchronisation();
   void note_alarms_of(const Message& output);

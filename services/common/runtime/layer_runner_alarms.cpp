@@ -14,6 +14,7 @@ using std::chrono::steady_clock;
 
 constexpr const char* kRival = "rival";
 constexpr const char* kUnknownWriter = "unknown_writer";
+constexpr const char* kUnknownAsset = "unknown_asset";
 constexpr const char* kRefusedRight = "refused_right";
 constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
@@ -61,6 +62,20 @@ void LayerRunner::note_strangers(const std::vector<StrangerWatch::Stranger>& str
                                       steady_now() + options_.strangers_stand);
     if (is_new) log_event(LogLevel::error, "unknown writer", {{"writer", one.name}, {"error", one.text}});
   }
+}
+
+/// One for all of them: whoever invents assets invents many.
+void LayerRunner::note_unknown_asset(const std::string& refused) {
+  const bool is_new = alarms_.raise({.kind = kUnknownAsset,
+                                     .asset_id = {},
+                                     .subject = {},
+                                     .pst_id = {},
+                                     .text = refused,
+                                     .since_ns = clock_.now().nanoseconds},
+                                    steady_now() + options_.strangers_stand);
+  if (!is_new) return;
+  note_error(refused);
+  log_event(LogLevel::error, "unknown asset", {{"error", refused}});
 }
 
 void LayerRunner::watch_clock() {

@@ -216,7 +216,7 @@ ShownConnection shown(const std::string& connection) {
   const bool has_kind = colon != std::string_view::npos && is_plain(all.substr(0, colon), "");
   const std::string_view kind = all.substr(0, has_kind ? colon + 3 : 0);
   std::string_view rest = all.substr(kind.size());
-  if (kind == "sqlite3://") return {.text = connection};
+  if (kind == "sqlite3://" || is_plain(all, "_.-/")) return {.text = connection};  // a file
   std::string before(kind);
   for (const std::string_view again : {"postgresql://", "postgres://"})
     if (rest.starts_with(again)) {

@@ -16,7 +16,7 @@ TEST(ConnectionString, ShowsWhatIsHarmless) {
   for (const std::string harmless :
        {"sqlite3:///var/lib/sealwatch/a.db", "sqlite3://dbname=/var/j.db timeout=5", "postgresql://dbname=x",
         "postgresql://host=db dbname=sealwatch user=sealwatch options='-c search_path=state_detection'",
-        "postgresql://postgresql://user@h:5432/db?sslmode=require", "postgresql://"})
+        "postgresql://postgresql://user@h:5432/db?sslmode=require", "postgresql://", "x.db"})
     EXPECT_EQ(without_password(harmless), harmless);
 }
 

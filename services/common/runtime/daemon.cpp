@@ -139,6 +139,7 @@ RunnerOptions runner_options(const DaemonParts& parts, const Configuration& conf
   options.watches_clock = parts.service == "data_acquisition";  // where tests get their time; six would say the same
   if (options.watches_clock) options.clock_is_synchronised = clock_is_synchronised;
   options.strangers = {.services = service_names(), .senders = configuration.senders};
+  options.strangers.refuses_unknown = configuration.refuses_unknown_writers;
   options.refuses_unknown_assets = configuration.refuses_unknown_assets;
   options.acts_confirmed_by_second = configuration.acts_confirmed_by_second;
   options.refused_by_bus = parts.refused_by_bus;

@@ -44,7 +44,10 @@ Status LayerRunner::start() {
   if (Status status = bus_.subscribe(kind_->inputs()); !status) return status;
   const auto positions = journal_.positions();
   if (!positions) return fail(positions.error());
-  for (const StreamPosition& known : *positions) committed_[{known.topic, known.writer_id}] = known.sequence;
+  for (const StreamPosition& known : *positions) {
+    committed_[{known.topic, known.writer_id}] = known.sequence;
+    strangers_.expect(known.writer_id);
+  }
   reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
   // Nothing is missing yet; from now on it knows the time, by which it forgets whom it does not hear.
   (void)reader_->requests(std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count());
@@ -218,6 +221,8 @@ Status LayerRunner::take(Message message) {
     stream = {std::string(name_of(topic_of(message))), header.writer_id, header.stream_sequence};
     uncommitted_[{stream.topic, stream.writer_id}] = stream.sequence;
   }
+  const bool from_bus = topic_of(message) == Topic::raw_samples && is_numbered(message);
+  if (from_bus && !strangers_.admits(message)) return {};
   // Read, and not kept: its stream goes on, and the journal does not grow by what strangers invent.
   if (const auto refused = admission_.refusal_of_asset(message)) {
     note_unknown_asset(*refused);

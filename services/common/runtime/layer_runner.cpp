@@ -313,6 +313,8 @@ Status LayerRunner::keep(Conclusion conclusion) {
     admission_.note(**kept);  // data acquisition knows a test by its name only from its own blocks on
     outbox_.add(std::move(**kept));
   }
+  for (const Refusal& refused : conclusion.refused)
+    if (Status told = tell(refused); !told) return told;
   for (const std::string& id : conclusion.consumed) {
     if (taken_ids_.contains(id)) continue;
     if (Status status = journal_.consume(id); !status) return status;

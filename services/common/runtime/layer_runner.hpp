@@ -160,6 +160,9 @@ class LayerRunner {
   /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
+  [[nodiscard]] Status record(const OperatorAct& act);
+  /// What a layer does not act upon.
+  [[nodiscard]] Status tell(const Refusal& refused);
   struct PastAct {
     UtcTime at;  ///< when it came to count
     std::string asset_id;

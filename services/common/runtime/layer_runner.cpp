@@ -184,7 +184,7 @@ Status LayerRunner::take_ready() {
   for (; !ready_.empty(); ready_.pop_front())
     if (Status status = take(std::move(ready_.front())); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
-  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty())
+  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty())
     if (Status status = in_batch([this] { return store_batch(); }, batch_survives()); !status) return status;
   took_local_ = false;
   lanes_.save_memory();
@@ -225,7 +225,7 @@ Status LayerRunner::take(Message message) {
   if (from_bus && !strangers_.admits(message)) return {};
   // Read, and not kept: its stream goes on, and the journal does not grow by what strangers invent.
   if (const auto refused = admission_.refusal_of_asset(message)) {
-    note_unknown_asset(*refused);
+    note_unknown_asset(message, *refused);
     return {};
   }
   const auto id = identify_input(message);

@@ -133,7 +133,7 @@ class LayerRunner {
   void note_rival(const ServiceStatus& rival);
   void hear_name(const ServiceStatus& status);
   void note_strangers(const std::vector<StrangerWatch::Stranger>& strangers);
-  void note_unknown_asset(const std::string& refused);
+  void note_unknown_asset(const Message& message, const std::string& refused);
   void watch_clock();
   void watch_synchronisation();
   void note_alarms_of(const Message& output);
@@ -199,6 +199,7 @@ class LayerRunner {
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
   std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
+  std::size_t acts_on_unknown_assets_ = 0;                ///< recorded while the alarm of them stands
   std::vector<OperatorAct> acts_;                         ///< of the running batch
   std::vector<LaneResult> results_;                       ///< not yet in the journal
   Outbox outbox_;

@@ -110,6 +110,25 @@ TEST_F(ActsTest, WhatIsRefusedIsRecordedWithTheReason) {
   EXPECT_TRUE(process->outputs().empty());
 }
 
+TEST_F(ActsTest, OnUnknownAssetsAreRecordedAsRefusedAndDoNotFillTheRecord) {
+  RunnerOptions options = fast_options();
+  options.assets = {"A"};
+  options.refuses_unknown_assets = true;
+  const auto process = start(options);
+  for (int k = 0; k < 200; ++k) {
+    Acknowledgement invented = seen("stranger");
+    invented.asset_id = "invented-" + std::to_string(k);
+    invented.header.message_id += std::to_string(k);
+    EXPECT_TRUE(operator_.publish(invented));
+  }
+  say(*process, seen("J. Silva"));
+  ASSERT_THAT(acts(), SizeIs(65));
+  EXPECT_EQ(acts()[0].act.who, "stranger");
+  EXPECT_THAT(acts()[0].act.outcome, HasSubstr("asset 'invented-0' is not configured"));
+  EXPECT_EQ(acts()[64].act.outcome, "taken");
+  EXPECT_THAT(process->outputs(), SizeIs(1));
+}
+
 TEST_F(ActsTest, WhatALayerRefusesIsRecordedWithTheReasonAndTold) {
   InMemoryBus listener(network_);
   ASSERT_TRUE(listener.subscribe_service_topics());

@@ -52,11 +52,11 @@ topics_of() {  # NAME RIGHTS
   case $1 in
     data-acquisition) writes='sample_block' reads+=' raw_samples maintenance_event' ;;
     data-manipulation) writes='test_window test_features' reads+=' sample_block' ;;
-    state-detection) writes='state_report' reads+=' test_window test_features maintenance_event model_acceptance' ;;
+    state-detection) writes='state_report' reads+=' test_window test_features maintenance_event model_acceptance model_discrepancy' ;;
     health-assessment) writes='health_report model_discrepancy' reads+=' test_window test_features state_report' ;;
     prognostic-assessment)
       writes='leakage_estimate remaining_life pst_request'
-      reads+=' test_window health_report maintenance_event model_acceptance' ;;
+      reads+=' test_window health_report maintenance_event model_acceptance model_discrepancy' ;;
     advisory-generation)
       writes='advisory'
       reads+=' state_report health_report leakage_estimate remaining_life acknowledgement maintenance_event' ;;

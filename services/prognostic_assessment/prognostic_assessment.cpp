@@ -16,7 +16,7 @@ namespace sealwatch::prognostic_assessment {
 namespace {
 
 constexpr std::array kInputs{Topic::health_report, Topic::test_window, Topic::maintenance_event,
-                             Topic::model_acceptance};
+                             Topic::model_discrepancy, Topic::model_acceptance};
 constexpr std::array kOutputs{Topic::leakage_estimate, Topic::remaining_life, Topic::pst_request};
 constexpr std::size_t kMostSources = 240;  // twenty years of monthly estimates: the longest window of a forecaster
 
@@ -101,8 +101,11 @@ Conclusion PrognosticAssessment::receive(const Message& input) {
   if (const auto* window = std::get_if<TestWindow>(&input)) return join(*window, &Pending::window);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input))
     return is_replacement(*event) ? replaced(*event) : retracted(*event);
+  Conclusion conclusion;
+  if (const auto* found = std::get_if<ModelDiscrepancy>(&input))
+    return accepted_[found->asset_id].take(*found, conclusion), conclusion;
   if (const auto* acceptance = std::get_if<ModelAcceptance>(&input))
-    return {.outputs = {}, .consumed = accepted_[acceptance->asset_id].take(*acceptance)};
+    return accepted_[acceptance->asset_id].take(*acceptance, conclusion), conclusion;
   return {.outputs = {}, .consumed = {header_of(input).message_id}};
 }
 
@@ -213,8 +216,15 @@ const AcceptedModel& PrognosticAssessment::accepted(const std::string& asset_id)
 }
 
 std::size_t PrognosticAssessment::held() const {
-  return static_cast<std::size_t>(
-      std::count_if(accepted_.begin(), accepted_.end(), [](const auto& one) { return one.second.in_force(); }));
+  std::size_t held = 0;
+  for (const auto& [asset_id, model] : accepted_) held += model.held();
+  return held;
+}
+
+Conclusion PrognosticAssessment::tick(UtcTime now) {
+  Conclusion conclusion;
+  for (auto& [asset_id, model] : accepted_) model.tick(now, conclusion);
+  return conclusion;
 }
 
 std::vector<forecast::FailureHorizon> PrognosticAssessment::campaigns(const AssetConfig& asset) const {

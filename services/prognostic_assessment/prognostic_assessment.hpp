@@ -46,6 +46,7 @@ class PrognosticAssessment final : public Layer {
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
   [[nodiscard]] std::size_t held() const override;
+  [[nodiscard]] Conclusion tick(UtcTime now) override;
 
  private:
   /// Inputs of one test until both are there.

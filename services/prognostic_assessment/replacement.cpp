@@ -18,7 +18,8 @@ void PrognosticAssessment::learn_replacements(const std::string& asset_id, const
 
 /// Of several replacements the latest counts, whichever was reported last.
 Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
-  Conclusion conclusion{.outputs = {}, .consumed = accepted_[event.asset_id].take(event)};
+  Conclusion conclusion;
+  accepted_[event.asset_id].take(event, conclusion);
   conclusion.consumed.push_back(event.header.message_id);
   if (!event.header.event_time_known) return conclusion;  // without its time it cannot part the history
   const UtcTime time{event.header.event_time_ns};

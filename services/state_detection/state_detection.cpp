@@ -77,7 +77,7 @@ StateDetection::StateDetection(std::span<const AssetConfig> assets, std::shared_
 
 std::span<const Topic> StateDetection::inputs() const {
   static constexpr std::array kInputs = {Topic::test_features, Topic::test_window, Topic::maintenance_event,
-                                         Topic::model_acceptance};
+                                         Topic::model_discrepancy, Topic::model_acceptance};
   return kInputs;
 }
 
@@ -119,9 +119,9 @@ Conclusion StateDetection::receive(const Message& input) {
   if (const auto* event = std::get_if<MaintenanceEvent>(&input); event && !is_replacement(*event))
     return retracted(*event, state);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.events.push_back(*event);
-  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) conclusion.consumed = state.accepted.take(*event);
-  if (const auto* acceptance = std::get_if<ModelAcceptance>(&input))
-    conclusion.consumed = state.accepted.take(*acceptance);
+  if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.accepted.take(*event, conclusion);
+  if (const auto* found = std::get_if<ModelDiscrepancy>(&input)) state.accepted.take(*found, conclusion);
+  if (const auto* acceptance = std::get_if<ModelAcceptance>(&input)) state.accepted.take(*acceptance, conclusion);
   conclude_ready_tests(state, conclusion);
   return conclusion;
 }
@@ -256,10 +256,10 @@ void StateDetection::add_residuals(const AssetState& state, const AssetConfig& a
         residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_));
 }
 
-// An accepted model, and a replacement until a test of the new actuator is judged.
+// An accepted model with what it was accepted from, and a replacement until a test of the new actuator is judged.
 std::size_t StateDetection::held() const {
   std::size_t held = 0;
-  for (const auto& [asset_id, state] : states_) held += state.events.size() + (state.accepted.in_force() ? 1 : 0);
+  for (const auto& [asset_id, state] : states_) held += state.events.size() + state.accepted.held();
   return held;
 }
 
@@ -277,6 +277,7 @@ void StateDetection::note_lateness(const AssetState& state, const AssetConfig& a
 Conclusion StateDetection::tick(UtcTime now) {
   Conclusion conclusion;
   for (auto& [asset_id, state] : states_) {
+    state.accepted.tick(now, conclusion);
     if (state.history.last_was_replay || assets_.count(asset_id) == 0) continue;
     std::optional<StateReport> report = overdue_report(asset_id, state, now);
     if (!report || report->header.message_id == state.history.last_overdue_id) continue;

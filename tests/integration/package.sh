@@ -58,6 +58,22 @@ check_control() {
   done
 }
 
+# An overflow of a buffer ends a program; nothing in it is written to and executed, nor bound while it runs.
+check_hardening() {
+  have readelf "how the programs are hardened" || return 0
+  local program
+  for program in "$root"/usr/bin/sealwatch*; do
+    head -c 4 "$program" | grep -q ELF || continue  # a script
+    readelf -hldW "$program" >"$scratch/elf"
+    grep -q 'Type: *DYN' "$scratch/elf" || fail "$program is not position-independent" "$scratch/elf"
+    grep -q 'GNU_RELRO' "$scratch/elf" && grep -qE '\(FLAGS_1\).*NOW|BIND_NOW' "$scratch/elf" ||
+      fail "$program is not bound at its start" "$scratch/elf"
+    grep -qE 'GNU_STACK.* RW ' "$scratch/elf" || fail "the stack of $program can be executed" "$scratch/elf"
+    readelf --dyn-syms -W "$program" >"$scratch/symbols"
+    grep -q '__stack_chk_fail' "$scratch/symbols" || fail "$program does not protect its stack" "$scratch/symbols"
+  done
+}
+
 check_units() {
   have systemd-analyze "the units" || return 0
   cp -n /lib/systemd/system/{sysinit,basic,shutdown,multi-user}.target "$root/usr/lib/systemd/system/" 2>/dev/null ||
@@ -249,6 +265,7 @@ have dpkg-shlibdeps "the packages" || exit 0
 make_packages
 check_contents
 check_control
+check_hardening
 check_units
 check_identities
 check_exposure

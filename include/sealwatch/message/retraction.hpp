@@ -54,7 +54,7 @@ struct Retraction {
   const std::string kind = rest.substr(0, first);
   if (kind == "withdrawn") {
     const std::size_t second = rest.find('/', first + 1);
-    if (second == std::string::npos) return std::nullopt;
+    if (second == std::string::npos || second + 1 == rest.size()) return std::nullopt;
     retraction.withdrawn_id = rest.substr(second + 1);
     return retraction;
   }

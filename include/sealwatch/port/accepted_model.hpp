@@ -1,42 +1,70 @@
-// The explained model that an operator has accepted for one asset, as layers keep it. The acceptance itself is the
-// memory: an input that stays unconsumed for as long as it is in force. The next acceptance, a revocation or a
-// replacement of what was analysed ends it.
+// The explained model that an operator has accepted for one asset, as layers keep it. Only what the services published
+// comes into force: an acceptance names a model_discrepancy and carries its model, unaltered. One that comes before the
+// discrepancy waits for it. The next acceptance, a revocation or a replacement of what was analysed ends it.
+//
+// The inputs themselves are the memory: the acceptance in force, the last few discrepancies, and acceptances that wait
+// stay unconsumed.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/time.hpp"
 #include "sealwatch/message/advisory_generation.hpp"
 #include "sealwatch/message/health_assessment.hpp"
+#include "sealwatch/port/layer.hpp"
 
 namespace sealwatch {
 
 class AcceptedModel {
  public:
-  /// Ids of the messages that are no longer needed.
-  [[nodiscard]] std::vector<std::string> take(const ModelAcceptance& acceptance) {
-    std::vector<std::string> over;
-    if (acceptance.revoked) {
-      over.push_back(acceptance.header.message_id);
-      if (in_force_ && in_force_->discrepancy_id == acceptance.discrepancy_id) end(over);
-      return over;
-    }
-    end(over);
-    in_force_ = acceptance;
-    return over;
+  static constexpr std::size_t kMostKnown = 8;    ///< discrepancies
+  static constexpr std::size_t kMostWaiting = 8;  ///< acceptances
+  static constexpr std::int64_t kPatience_ns = 3'600'000'000'000;
+
+  void take(const ModelDiscrepancy& published, Conclusion& conclusion) {
+    known_.push_back(published);
+    forget_all_but(kMostKnown, conclusion);
+    const auto its = std::ranges::find(waiting_, published.header.message_id, &ModelAcceptance::discrepancy_id);
+    if (its == waiting_.end()) return;
+    const ModelAcceptance acceptance = *its;
+    const auto before = static_cast<std::size_t>(its - waiting_.begin());
+    waiting_.erase(its);
+    decide(acceptance, published, before, conclusion);
   }
-  [[nodiscard]] std::vector<std::string> take(const MaintenanceEvent& event) {
-    std::vector<std::string> over;
-    const bool of_what_was_there =
-        in_force_ && (!event.header.event_time_known || event.header.event_time_ns >= in_force_->discrepancy_time_ns);
-    if (of_what_was_there) end(over);
-    return over;
+  void take(const ModelAcceptance& acceptance, Conclusion& conclusion) {
+    if (acceptance.revoked) return revoke(acceptance, conclusion);
+    const auto named = std::ranges::find(known_, acceptance.discrepancy_id,
+                                         [](const ModelDiscrepancy& one) { return one.header.message_id; });
+    if (named != known_.end()) return decide(acceptance, *named, waiting_.size(), conclusion);
+    if (waiting_.size() == kMostWaiting) refuse_first("others were accepted after it", conclusion);
+    waiting_.push_back(acceptance);
+  }
+  void take(const MaintenanceEvent& event, Conclusion& conclusion) {
+    const auto of_what_was_there = [&event](std::int64_t time_ns) {
+      return !event.header.event_time_known || event.header.event_time_ns >= time_ns;
+    };
+    if (in_force_ && of_what_was_there(in_force_->discrepancy_time_ns)) end(conclusion);
+    for (const ModelDiscrepancy& one : known_)
+      if (of_what_was_there(one.header.event_time_ns)) conclusion.consumed.push_back(one.header.message_id);
+    std::erase_if(known_, [&](const auto& one) { return of_what_was_there(one.header.event_time_ns); });
+  }
+  /// Lets time pass: what names a discrepancy that nobody published does not wait for ever.
+  void tick(UtcTime now, Conclusion& conclusion) {
+    while (!waiting_.empty() && now.nanoseconds - waiting_.front().header.event_time_ns > kPatience_ns)
+      refuse_first("no service has published it", conclusion);
   }
 
   [[nodiscard]] bool in_force() const { return in_force_.has_value(); }
+  /// Inputs that are kept as memory (Layer::held).
+  [[nodiscard]] std::size_t held() const { return known_.size() + waiting_.size() + (in_force_ ? 1 : 0); }
   /// "" when none is.
   [[nodiscard]] std::string discrepancy_id() const { return in_force_ ? in_force_->discrepancy_id : std::string(); }
 
@@ -60,12 +88,49 @@ class AcceptedModel {
   static ParameterSetting setting_of(const ModelParameter& parameter) {
     return {.value = parameter.value, .min = parameter.min, .max = parameter.max, .estimate = parameter.estimate};
   }
-  void end(std::vector<std::string>& over) {
-    if (in_force_) over.push_back(in_force_->header.message_id);
+  void revoke(const ModelAcceptance& revocation, Conclusion& conclusion) {
+    conclusion.consumed.push_back(revocation.header.message_id);
+    if (in_force_ && in_force_->discrepancy_id == revocation.discrepancy_id) end(conclusion);
+    for (const ModelAcceptance& one : waiting_)
+      if (one.discrepancy_id == revocation.discrepancy_id) conclusion.consumed.push_back(one.header.message_id);
+    std::erase_if(waiting_, [&](const auto& one) { return one.discrepancy_id == revocation.discrepancy_id; });
+  }
+  /// `earlier`: of those that wait, the first so many came before it.
+  void decide(const ModelAcceptance& acceptance, const ModelDiscrepancy& named, std::size_t earlier,
+              Conclusion& conclusion) {
+    const bool explains = named.analysed && named.verdict == DiscrepancyVerdict::mismatch && !named.physics.empty();
+    const bool unaltered = acceptance.explained == named.explained && acceptance.version == named.version &&
+                           acceptance.discrepancy_time_ns == named.header.event_time_ns;
+    if (!explains) return refuse(acceptance, "that explains nothing which could be accepted", conclusion);
+    if (!unaltered) return refuse(acceptance, "its model is not the one that was published there", conclusion);
+    for (; earlier > 0; --earlier) refuse_first("another was accepted after it", conclusion);
+    end(conclusion);
+    in_force_ = acceptance;
+  }
+  static void refuse(const ModelAcceptance& acceptance, const std::string& why, Conclusion& conclusion) {
+    conclusion.consumed.push_back(acceptance.header.message_id);
+    conclusion.refused.push_back({acceptance, "accepts '" + acceptance.discrepancy_id + "', and " + why});
+  }
+  void refuse_first(const std::string& why, Conclusion& conclusion) {
+    refuse(waiting_.front(), why, conclusion);
+    waiting_.pop_front();
+  }
+  /// The oldest go, but for the one in force.
+  void forget_all_but(std::size_t most, Conclusion& conclusion) {
+    if (known_.size() <= most) return;
+    const auto oldest = std::ranges::find_if(
+        known_, [this](const ModelDiscrepancy& one) { return one.header.message_id != discrepancy_id(); });
+    conclusion.consumed.push_back(oldest->header.message_id);
+    known_.erase(oldest);
+  }
+  void end(Conclusion& conclusion) {
+    if (in_force_) conclusion.consumed.push_back(in_force_->header.message_id);
     in_force_.reset();
   }
 
   std::optional<ModelAcceptance> in_force_;
+  std::deque<ModelDiscrepancy> known_;
+  std::deque<ModelAcceptance> waiting_;
 };
 
 }  // namespace sealwatch

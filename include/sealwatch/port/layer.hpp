@@ -35,12 +35,20 @@
 
 namespace sealwatch {
 
+/// An input that a layer does not act upon, and why: it is told to people, and stands in the audit trail where a person
+/// said it. It is consumed as well.
+struct Refusal {
+  Message input;
+  std::string reason;
+};
+
 struct Conclusion {
   std::vector<Message> outputs;       ///< headers complete but for writer_id, stream_sequence, publishing_time_ns
   std::vector<std::string> consumed;  ///< message ids of inputs that are not needed again
   /// What takes long to conclude: owns all that it needs and shares nothing of the layer that changes. Asked to stop, it
   /// ends soon, whatever it then returns or raises.
   std::function<Conclusion(const std::stop_token&)> later = {};
+  std::vector<Refusal> refused = {};
 };
 
 /// The conclusion with what it left for later, done here and now.
@@ -49,6 +57,7 @@ struct Conclusion {
     Conclusion rest = later(stop);
     std::ranges::move(rest.outputs, std::back_inserter(conclusion.outputs));
     std::ranges::move(rest.consumed, std::back_inserter(conclusion.consumed));
+    std::ranges::move(rest.refused, std::back_inserter(conclusion.refused));
     conclusion.later = std::move(rest.later);
   }
   return conclusion;

@@ -189,6 +189,21 @@ void decode_number(const Json& json, const std::string& place, double& value) {
   }
 }
 
+/// One that its type can hold; 3.0 is whole, too.
+template <class Whole>
+void decode_whole(const Json& json, const std::string& place, Whole& value) {
+  constexpr double kExact = 9007199254740992.0;  // 2^53: up to there doubles hold all whole numbers
+  if (!json.is_number()) throw LayoutError{place, "has the wrong type"};
+  const double number = json.get<double>();
+  const bool whole = !json.is_number_float() || (std::abs(number) <= kExact && number == std::floor(number));
+  if (whole && json.is_number_unsigned() && std::in_range<Whole>(json.get<std::uint64_t>()))
+    value = static_cast<Whole>(json.get<std::uint64_t>());
+  else if (whole && !json.is_number_unsigned() && std::in_range<Whole>(json.get<std::int64_t>()))
+    value = static_cast<Whole>(json.get<std::int64_t>());
+  else
+    throw LayoutError{place, "must be a whole number that fits"};
+}
+
 template <class T>
 void decode(const Json& json, const std::string& place, T& value) {
   if constexpr (Described<T>) {
@@ -200,6 +215,8 @@ void decode(const Json& json, const std::string& place, T& value) {
     value = *known;
   } else if constexpr (std::is_same_v<T, double>) {
     decode_number(json, place, value);
+  } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    decode_whole(json, place, value);
   } else if constexpr (requires { typename T::value_type; } && !std::is_same_v<T, std::string>) {
     if constexpr (std::is_same_v<T, std::vector<double>>) {
       if (json.is_string()) {

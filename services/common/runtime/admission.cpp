@@ -101,12 +101,18 @@ std::string name_of_test(const RawSamples& raw) {
 void Admission::note(const Message& message) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
+  note_asset(message);
   const std::string asset_id = asset_of(message);
   if (const std::optional<std::int64_t> time_ns = time_of_test(message)) note_test(message, {*time_ns});
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
   acts.push_back(header_of(message).message_id);
   for (const std::string& id : acts) note_act(asset_id, id);
+}
+
+void Admission::note_asset(const Message& message) {
+  const std::string asset_id = asset_of(message);
+  if (!asset_id.empty() && !assets_.names.contains(asset_id)) unknown_.insert(asset_id);
 }
 
 /// Before data acquisition a test has no name by which it could be retracted: until then it is one of its date.
@@ -130,6 +136,17 @@ void Admission::note_act(const std::string& asset_id, const std::string& act_id)
 std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {
   const auto tests = tests_.find(asset_id);
   return tests == tests_.end() ? std::nullopt : tests->second.newest();
+}
+
+/// What is about no asset (an act upon a service's alarm) is refused for none.
+std::optional<std::string> Admission::refusal_of_asset(const Message& message) const {
+  const std::string asset_id = asset_of(message);
+  if (asset_id.empty() || assets_.names.contains(asset_id)) return std::nullopt;
+  const std::string what = "asset '" + visible(asset_id.substr(0, kLongestId)) + "' is not configured";
+  if (assets_.refuses_others) return what + ", and unknown_assets are refused; give it an asset file, if it is yours";
+  if (unknown_.contains(asset_id) || unknown_.size() < kMostUnknownAssets) return std::nullopt;
+  return what + ", and " + std::to_string(unknown_.size()) +
+         " such assets are there already; give it an asset file, if it is yours, or find out who sends it";
 }
 
 std::optional<std::string> Admission::refusal(const Message& message, UtcTime now) const {

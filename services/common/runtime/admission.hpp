@@ -11,6 +11,10 @@
 // newest test. What is played back, and what the virtual bench makes up, may be of another time: month by month into
 // the future, or as a whole, but not more than a year after the asset's newest test. No test is older than its asset.
 //
+// Assets. Each takes a layer, a lane and a place in every history, for ever, and a stranger may invent as many as it
+// likes: of those that the configuration does not name, kMostUnknownAssets are taken, the first that come and those of
+// which the journal tells; or none.
+//
 // Makings. A test that the virtual bench made up is not taken into the history of an asset with recorded tests.
 #pragma once
 
@@ -27,16 +31,28 @@
 namespace sealwatch {
 
 inline constexpr std::size_t kLongestId = 500;  ///< bytes
+inline constexpr std::size_t kMostUnknownAssets = 64;
+
+/// Which assets the configuration names, and whether it wants no others.
+struct ConfiguredAssets {
+  std::set<std::string> names = {};
+  bool refuses_others = false;
+};
 
 class Admission {
  public:
   /// When assets were commissioned, where it is known.
-  explicit Admission(std::map<std::string, UtcTime> commissioned = {}) : commissioned_(std::move(commissioned)) {}
-  /// Takes note of when a test was made, and of retractions.
+  explicit Admission(std::map<std::string, UtcTime> commissioned = {}, ConfiguredAssets assets = {})
+      : commissioned_(std::move(commissioned)), assets_(std::move(assets)) {}
+  /// Takes note of its asset, of when a test was made, and of retractions.
   void note(const Message& message);
+  /// Takes note of its asset alone.
+  void note_asset(const Message& message);
   /// Takes note of an act of that id, if it is a retraction.
   void note_act(const std::string& asset_id, const std::string& act_id);
-  /// Why the message is not to be taken in; none for nearly all.
+  /// Why nothing of its asset is taken in; none where it is.
+  [[nodiscard]] std::optional<std::string> refusal_of_asset(const Message& message) const;
+  /// Why the message of such an asset is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
 
  private:
@@ -48,6 +64,8 @@ class Admission {
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
 
   std::map<std::string, UtcTime> commissioned_;
+  ConfiguredAssets assets_;
+  std::set<std::string> unknown_;                   ///< assets that it does not name, and that were taken
   std::map<std::string, RetractedTests> tests_;     ///< by asset
   std::map<std::string, std::set<UtcTime>> named_;  ///< dates of those that have a PST id, by asset
   std::set<std::string> recorded_;                  ///< assets with tests that no bench made up

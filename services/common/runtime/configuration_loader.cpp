@@ -111,6 +111,13 @@ void read_retention(YamlMap& root, Configuration& configuration) {
   map->finish();
 }
 
+/// What is done with whom the configuration does not name.
+void read_unknown(YamlMap& root, const std::string& key, bool& refuses) {
+  std::string said = refuses ? "refuse" : "take";
+  root.read(key, said, {"take", "refuse"});
+  refuses = said == "refuse";
+}
+
 void read_operator_acts(YamlMap& root, Configuration& configuration) {
   auto map = root.map("operator_acts");
   if (!map) return;
@@ -292,6 +299,8 @@ Checked<Configuration> load_configuration(const std::string& path, const Configu
   read_topics(map, configuration);
   read_senders(map, configuration);
   read_retention(map, configuration);
+  read_unknown(map, "unknown_assets", configuration.refuses_unknown_assets);
+  read_unknown(map, "unknown_writers", configuration.refuses_unknown_writers);
   read_operator_acts(map, configuration);
   read_sites(map, overrides.now, configuration);
   const std::vector<std::string> files = asset_files(map, file.parent_path());

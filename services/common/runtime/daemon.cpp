@@ -140,6 +140,8 @@ RunnerOptions runner_options(const DaemonParts& parts, const Configuration& conf
   options.read_clock = read_clock;
   options.retention = configuration.retention;
   options.strangers = {.services = service_names(), .senders = configuration.senders};
+  options.strangers.refuses_unknown = configuration.refuses_unknown_writers;
+  options.refuses_unknown_assets = configuration.refuses_unknown_assets;
   options.acts_confirmed_by_second = configuration.acts_confirmed_by_second;
   options.refused_by_bus = parts.refused_by_bus;
   if (parts.make_alarms_of_output) options.alarms_of_output = parts.make_alarms_of_output();

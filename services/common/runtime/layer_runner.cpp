@@ -32,7 +32,8 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       clock_(clock),
       options_(std::move(options)),
       resends_(options_.resent_at_once),
-      admission_(options_.commissioned),
+      admission_(options_.commissioned, {.names = {options_.assets.begin(), options_.assets.end()},
+                                         .refuses_others = options_.refuses_unknown_assets}),
       strangers_(options_.strangers),
       retention_(options_.retention),
       lanes_(
@@ -45,7 +46,10 @@ Status LayerRunner::start() {
   if (Status status = bus_.subscribe(kind_->inputs()); !status) return status;
   const auto positions = journal_.positions();
   if (!positions) return fail(positions.error());
-  for (const StreamPosition& known : *positions) committed_[{known.topic, known.writer_id}] = known.sequence;
+  for (const StreamPosition& known : *positions) {
+    committed_[{known.topic, known.writer_id}] = known.sequence;
+    strangers_.expect(known.writer_id);
+  }
   reader_ = std::make_unique<StreamReader>(journal_.writer_id(), *positions, options_.streams);
   // Nothing is missing yet; from now on it knows the time, by which it forgets whom it does not hear.
   (void)reader_->requests(std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count());
@@ -188,7 +192,7 @@ Status LayerRunner::take_ready() {
   for (; !ready_.empty(); ready_.pop_front())
     if (Status status = take(std::move(ready_.front())); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
-  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty())
+  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty())
     if (Status status = in_batch([this] { return store_batch(); }, batch_survives()); !status) return status;
   took_local_ = false;
   lanes_.save_memory();
@@ -219,14 +223,21 @@ Result<std::optional<std::string>> LayerRunner::identify_input(const Message& me
 }
 
 Status LayerRunner::take(Message message) {
-  const auto id = identify_input(message);
-  if (!id) return fail(id.error());
   const Header& header = header_of(message);
   StreamPosition stream;
   if (is_numbered(message)) {
     stream = {std::string(name_of(topic_of(message))), header.writer_id, header.stream_sequence};
     uncommitted_[{stream.topic, stream.writer_id}] = stream.sequence;
   }
+  const bool from_bus = topic_of(message) == Topic::raw_samples && is_numbered(message);
+  if (from_bus && !strangers_.admits(message)) return {};
+  // Read, and not kept: its stream goes on, and the journal does not grow by what strangers invent.
+  if (const auto refused = admission_.refusal_of_asset(message)) {
+    note_unknown_asset(message, *refused);
+    return {};
+  }
+  const auto id = identify_input(message);
+  if (!id) return fail(id.error());
   if (!*id) {
     if (is_numbered(message)) renumbered_.push_back(std::move(message));
     return {};
@@ -240,6 +251,7 @@ Status LayerRunner::take(Message message) {
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
     if (topic_of(message) == Topic::raw_samples) return {};
   }
+  if (!refused) admission_.note_asset(message);
   const bool for_desk = is_for_desk(message);
   if (for_desk && !refused) refused = tell_desk(message);
   InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;
@@ -310,6 +322,8 @@ Status LayerRunner::keep(Conclusion conclusion) {
     admission_.note(**kept);  // data acquisition knows a test by its name only from its own blocks on
     outbox_.add(std::move(**kept));
   }
+  for (const Refusal& refused : conclusion.refused)
+    if (Status told = tell(refused); !told) return told;
   for (const std::string& id : conclusion.consumed) {
     if (taken_ids_.contains(id)) continue;
     if (Status status = journal_.consume(id); !status) return status;

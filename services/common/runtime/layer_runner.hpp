@@ -71,6 +71,7 @@ struct RunnerOptions {
   bool watches_clock = false;
   /// How well that clock is kept, which stands in every message. Asked about once a second.
   std::function<ClockReading()> read_clock = {};
+  bool refuses_unknown_assets = false;    ///< takes `assets` alone
   bool acts_confirmed_by_second = false;  ///< see message/confirmation.hpp
   StrangerWatch::Options strangers = {};
   std::chrono::milliseconds strangers_stand{3'600'000};  ///< how long an alarm of who is heard no more stands
@@ -146,6 +147,7 @@ class LayerRunner {
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);
   void tell_of_floods();
+  void note_unknown_asset(const Message& message, const std::string& refused);
   void note_alarms_of(const Message& output);
   void look_for_trouble();
 
@@ -170,6 +172,9 @@ class LayerRunner {
   /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
+  [[nodiscard]] Status record(const OperatorAct& act);
+  /// What a layer does not act upon.
+  [[nodiscard]] Status tell(const Refusal& refused);
   struct PastAct {
     UtcTime at;  ///< when it came to count
     std::string asset_id;
@@ -214,6 +219,7 @@ class LayerRunner {
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered_;  ///< of the running batch, by topic and asset
   std::map<std::string, std::shared_ptr<const Message>> awaiting_;        ///< acts that wait for a second person, by id
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
+  std::size_t acts_on_unknown_assets_ = 0;                ///< recorded while the alarm of them stands
   std::vector<OperatorAct> acts_;                         ///< of the running batch
   std::vector<LaneResult> results_;                       ///< not yet in the journal
   Outbox outbox_;

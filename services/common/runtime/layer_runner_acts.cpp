@@ -119,20 +119,31 @@ Result<std::deque<LayerRunner::PastAct>> LayerRunner::past_retractions() {
   return past;
 }
 
+Status LayerRunner::record(const OperatorAct& act) {
+  const auto entry = journal_.record(act);
+  if (!entry) return fail(entry.error());
+  log_event(LogLevel::info, "act recorded",
+            {{"kind", act.kind},
+             {"asset", act.asset_id},
+             {"by", act.who},
+             {"subject", act.subject},
+             {"outcome", act.outcome},
+             {"entry", std::to_string(entry->sequence)},
+             {"hash", entry->hash}});
+  return {};
+}
+
+Status LayerRunner::tell(const Refusal& refused) {
+  note_error(std::string(name_of(topic_of(refused.input))) + " refused: " + refused.reason);
+  log_message(LogLevel::warn, "refused", refused.input, {{"reason", refused.reason}});
+  const auto act = act_of(refused.input, clock_.now(), refused.reason);
+  return act ? record(*act) : Status();
+}
+
 /// Their last hash stands in the log as well: whoever changes the journal must change that too.
 Status LayerRunner::record_acts() {
-  for (const OperatorAct& act : std::exchange(acts_, {})) {
-    const auto entry = journal_.record(act);
-    if (!entry) return fail(entry.error());
-    log_event(LogLevel::info, "act recorded",
-              {{"kind", act.kind},
-               {"asset", act.asset_id},
-               {"by", act.who},
-               {"subject", act.subject},
-               {"outcome", act.outcome},
-               {"entry", std::to_string(entry->sequence)},
-               {"hash", entry->hash}});
-  }
+  for (const OperatorAct& act : std::exchange(acts_, {}))
+    if (Status recorded = record(act); !recorded) return recorded;
   for (const auto& [act_id, state] : std::exchange(no_longer_awaiting_, {}))
     if (Status ended = journal_.end_awaiting(act_id, state); !ended) return ended;
   return {};

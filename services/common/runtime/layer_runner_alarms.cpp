@@ -6,6 +6,7 @@
 
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/common/runtime/operator_acts.hpp"
 
 namespace sealwatch {
 namespace {
@@ -14,11 +15,13 @@ using std::chrono::steady_clock;
 
 constexpr const char* kRival = "rival";
 constexpr const char* kUnknownWriter = "unknown_writer";
+constexpr const char* kUnknownAsset = "unknown_asset";
 constexpr const char* kRefusedRight = "refused_right";
 constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
 constexpr const char* kFlood = "flood";
 constexpr std::chrono::seconds kFloodIsOver{60};
+constexpr std::size_t kMostActsOnUnknownAssets = 64;
 /// A service beats once a second.
 constexpr std::chrono::seconds kRivalIsSilent{10};
 
@@ -63,6 +66,27 @@ void LayerRunner::note_strangers(const std::vector<StrangerWatch::Stranger>& str
                                       steady_now() + options_.strangers_stand);
     if (is_new) log_event(LogLevel::error, "unknown writer", {{"writer", one.name}, {"error", one.text}});
   }
+}
+
+/// One for all of them: whoever invents assets invents many. What people said of them stands in the audit trail, the
+/// first so often.
+void LayerRunner::note_unknown_asset(const Message& message, const std::string& refused) {
+  const bool is_new = alarms_.raise({.kind = kUnknownAsset,
+                                     .asset_id = {},
+                                     .subject = {},
+                                     .pst_id = {},
+                                     .text = refused,
+                                     .since_ns = clock_.now().nanoseconds},
+                                    steady_now() + options_.strangers_stand);
+  if (is_new) acts_on_unknown_assets_ = 0;
+  if (acts_on_unknown_assets_ < kMostActsOnUnknownAssets)
+    if (auto act = act_of(message, clock_.now(), refused)) {
+      ++acts_on_unknown_assets_;
+      acts_.push_back(std::move(*act));
+    }
+  if (!is_new) return;
+  note_error(refused);
+  log_event(LogLevel::error, "unknown asset", {{"error", refused}});
 }
 
 void LayerRunner::look_at_clock() {

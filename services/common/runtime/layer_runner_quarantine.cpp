@@ -105,6 +105,8 @@ Status LayerRunner::try_again_what_was_asked() {
 }
 
 void LayerRunner::note_set_aside_elsewhere(const ServiceStatus& other) {
+  const auto& services = options_.strangers.services;
+  if (!services.empty() && std::ranges::find(services, other.service) == services.end()) return;
   std::set<std::string> tests;
   for (const ServiceAlarm& alarm : other.alarms)
     if (alarm.kind == kSetAside && !alarm.pst_id.empty()) tests.insert(alarm.pst_id);

@@ -38,6 +38,9 @@ void LayerRunner::sort_in(BusItem item) {
 void LayerRunner::sort_in(Message message) {
   if (!contains(kind_->inputs(), topic_of(message))) return;
   note_strangers(strangers_.hear(message, std::chrono::steady_clock::now().time_since_epoch()));
+  // Raw samples that are numbered are refused in their turn: their stream goes on.
+  const bool in_its_turn = topic_of(message) == Topic::raw_samples && is_numbered(message);
+  if (!in_its_turn && !strangers_.admits(message)) return;
   if (!is_numbered(message)) {
     ready_.push_back(std::move(message));
     return;

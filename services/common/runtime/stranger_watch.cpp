@@ -26,7 +26,7 @@ StrangerWatch::Stranger nameless(const Message& message) {
 bool StrangerWatch::remember(const std::string& writer_id, Steady now) {
   if (!known_.contains(writer_id) && known_.size() >= kMostKnown)
     std::erase_if(known_, [&](const auto& entry) { return now - entry.second > kForgotten; });
-  if (!known_.contains(writer_id) && known_.size() >= kMostKnown) return false;
+  if (!known_.contains(writer_id) && known_.size() >= kMostKnown && !expected_.contains(writer_id)) return false;
   known_[writer_id] = now;
   return true;
 }
@@ -39,13 +39,21 @@ std::vector<StrangerWatch::Stranger> StrangerWatch::hear(const ServiceStatus& st
   return {};
 }
 
+bool StrangerWatch::expects(const RawSamples& raw) const {
+  return options_.senders.empty() || std::ranges::find(options_.senders, raw.source_id) != options_.senders.end();
+}
+
+bool StrangerWatch::admits(const Message& message) const {
+  if (const auto* raw = std::get_if<RawSamples>(&message)) return expects(*raw);
+  return !options_.refuses_unknown || options_.services.empty() || is_from_outside(topic_of(message)) ||
+         knows(header_of(message).writer_id);
+}
+
 std::vector<StrangerWatch::Stranger> StrangerWatch::hear(const Message& message, Steady now) {
   if (const auto* raw = std::get_if<RawSamples>(&message)) {
-    const bool expected =
-        options_.senders.empty() || std::ranges::find(options_.senders, raw->source_id) != options_.senders.end();
-    if (expected) return {};
+    if (expects(*raw)) return {};
     return {{"sender " + raw->source_id,
-             "it sends raw samples of " + raw->asset_id + " and is none of the configured senders"}};
+             "it sends raw samples of " + raw->asset_id + " and is none of the configured senders: they are refused"}};
   }
   if (options_.services.empty() || is_from_outside(topic_of(message))) return {};
   const std::string& writer_id = header_of(message).writer_id;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "services/common/store/audit_rows.hpp"
+#include "services/common/store/connection_string.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/store/journal_reader.hpp"
 
@@ -126,7 +127,8 @@ Result<std::vector<AuditEntry>> read_audit_trail(const std::string& connection, 
   // It says what is wrong with a journal that is none, or another's, or of a newer program.
   if (const auto readable = JournalReader::open(connection, service); !readable) return fail(readable.error());
   try {
-    soci::session sql(connection);
+    soci::session sql;
+    open_session(sql, connection);
     std::string answer;
     if (is_file(sql)) sql << "PRAGMA busy_timeout = 5000", into(answer);
     return acts_in(sql);

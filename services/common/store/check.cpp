@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "services/common/store/connection_string.hpp"
 #include "services/common/store/database.hpp"
 
 namespace sealwatch {
@@ -64,7 +65,7 @@ Status Journal::check(const std::string& connection) {
   if (connection.starts_with(kFile)) return check_file(connection, file_of(connection));
   Database database;
   database.name = without_password(connection);
-  return database.guard("connecting", [&] { database.sql.open(connection); });
+  return database.guard("connecting", [&] { open_session(database.sql, connection); });
 }
 
 }  // namespace sealwatch

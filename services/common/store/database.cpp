@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "services/common/store/connection_string.hpp"
 #include "services/common/store/damaged_file.hpp"
 
 namespace sealwatch {
@@ -30,13 +31,6 @@ std::string advice_for(std::string_view what, bool is_server) {
 
 }  // namespace
 
-std::string without_password(std::string connection) {
-  const std::size_t begin = connection.find("password=");
-  if (begin == std::string::npos) return connection;
-  const std::size_t end = connection.find_first_of(" '\"", begin + 9);
-  return connection.replace(begin + 9, end == std::string::npos ? end : end - begin - 9, "***");
-}
-
 Error Journal::Database::describe(const char* doing, const std::string& what) const {
   if (!file.empty() && is_damage(file, what)) note_damage(file);
   return {.file = name,
@@ -54,7 +48,7 @@ void Journal::Database::take_file(const std::string& path) {
 }
 
 void Journal::Database::connect(const std::string& connection) {
-  sql.open(connection);
+  open_session(sql, connection);
   if (!is_file()) {
     if (const auto taken = lock_schema(sql, name)) throw *taken;
     return;

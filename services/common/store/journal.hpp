@@ -24,8 +24,8 @@
 
 namespace sealwatch {
 
-/// A connection string as it may be shown.
-[[nodiscard]] std::string without_password(std::string connection);
+/// A connection string as it may be shown (connection_string.hpp).
+[[nodiscard]] std::string without_password(const std::string& connection);
 
 /// How a numbered message stands to what was received.
 enum class KnownInput {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "services/common/message/json.hpp"
+#include "services/common/store/connection_string.hpp"
 #include "services/common/store/database.hpp"
 #include "services/common/store/journal.hpp"
 
@@ -108,7 +109,7 @@ Result<JournalReader> JournalReader::open(const std::string& connection, const s
     to_open = std::string(kFile).append("dbname=\"").append(file).append("\" readonly=true timeout=5");
   }
   const auto opened = session->guard([&] {
-    session->sql.open(to_open);
+    open_session(session->sql, to_open);
     session->check(service);
     return true;
   });

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "services/common/store/audit_rows.hpp"
+#include "services/common/store/connection_string.hpp"
 #include "services/common/store/journal_reader.hpp"
 
 namespace sealwatch {
@@ -87,7 +88,7 @@ Result<QuarantineDesk> QuarantineDesk::open(const std::string& connection, const
   session->place = without_password(connection);
   session->service = service;
   const auto opened = session->guard([&] {
-    session->sql.open(connection);
+    open_session(session->sql, connection);
     std::string answer;
     if (session->sql.get_backend_name() == "sqlite3") session->sql << "PRAGMA busy_timeout = 5000", into(answer);
     session->look_for_table();

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <memory>
 
+#include "dds/ddsi/ddsi_serdata.h"
 #include "services/common/transport/participant.hpp"
 
 namespace sealwatch::transport {
@@ -76,7 +77,6 @@ Status Channel::subscribe(Inbox& inbox) {
   if (subscribed()) return {};
   if (Status opened = open_topic(); !opened) return opened;
   assert(type_->batch <= kLargestBatch);
-  buffer_ = std::make_unique<SampleBuffer>(*type_->descriptor, type_->batch);
   inbox_ = &inbox;
   const std::unique_ptr<dds_listener_t, decltype(&dds_delete_listener)> listener(dds_create_listener(this),
                                                                                  &dds_delete_listener);
@@ -102,16 +102,29 @@ void Channel::arrived(dds_entity_t reader) {
 }
 
 bool Channel::take_batch(std::vector<Stamped>& taken) const {
+  std::array<ddsi_serdata*, kLargestBatch> samples{};
   std::array<dds_sample_info_t, kLargestBatch> infos;
-  const dds_return_t count =
-      dds_take(reader_, buffer_->data(), infos.data(), buffer_->size(), static_cast<std::uint32_t>(buffer_->size()));
+  const auto most = static_cast<std::uint32_t>(type_->batch);
+  const dds_return_t count = dds_takecdr(reader_, samples.data(), most, infos.data(), DDS_ANY_STATE);
   if (count <= 0) return false;  // below 0: called by the listener before dds_create_reader is through
-  for (std::size_t k = 0; static_cast<dds_return_t>(k) < count; ++k)
-    if (infos[k].valid_data)
+  for (std::size_t k = 0; static_cast<dds_return_t>(k) < count; ++k) {
+    const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> sample(samples[k], &ddsi_serdata_unref);
+    if (!infos[k].valid_data) continue;
+    if (auto item = decode(*sample))
       taken.push_back({.published = infos[k].source_timestamp,
                        .writer = infos[k].publication_handle,
-                       .item = type_->decode((*buffer_)[k])});
-  return static_cast<std::size_t>(count) == buffer_->size();
+                       .item = std::move(*item)});
+  }
+  return count == static_cast<dds_return_t>(most);
+}
+
+/// What is no message is passed over, as DDS does with what it cannot read.
+std::optional<BusItem> Channel::decode(const ddsi_serdata& sample) const {
+  ddsrt_iovec_t bytes;
+  ddsi_serdata* const held = ddsi_serdata_to_ser_ref(&sample, 0, ddsi_serdata_size(&sample), &bytes);
+  auto item = type_->decode({static_cast<const std::byte*>(bytes.iov_base), bytes.iov_len});
+  ddsi_serdata_to_ser_unref(held, &bytes);
+  return item;
 }
 
 void Channel::take() {

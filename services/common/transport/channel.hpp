@@ -12,6 +12,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -19,8 +20,9 @@
 #include "sealwatch/port/bus.hpp"
 #include "services/common/transport/dds_bus.hpp"
 #include "services/common/transport/inbox.hpp"
-#include "services/common/transport/sample_buffer.hpp"
 #include "services/common/transport/topic_types.hpp"
+
+struct ddsi_serdata;
 
 namespace sealwatch::transport {
 
@@ -62,6 +64,7 @@ class Channel {
   };
   /// Takes one batch; whether there may be more.
   bool take_batch(std::vector<Stamped>& taken) const;
+  [[nodiscard]] std::optional<BusItem> decode(const ddsi_serdata& sample) const;
 
   dds_entity_t participant_;
   const TopicType* type_;
@@ -73,7 +76,6 @@ class Channel {
   dds_entity_t writer_ = 0;
   dds_time_t last_written_ = 0;
   Inbox* inbox_ = nullptr;
-  std::unique_ptr<SampleBuffer> buffer_;  ///< one batch
 };
 
 }  // namespace sealwatch::transport

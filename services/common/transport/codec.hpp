@@ -1,11 +1,11 @@
-// Between sealwatch's message structs and the C structs that idlc generates from idl/, driven by the field lists of
+// From sealwatch's message structs to the C structs that idlc generates from idl/, driven by the field lists of
 // SEALWATCH_FIELDS: every field of a struct is visited together with the C member of the same name, so a field that the
-// IDL lacks, or has with another type, does not compile; nor does a C member that the C++ struct lacks.
+// IDL lacks, or has with another type, does not compile; nor does a C member that the C++ struct lacks. The way back does
+// without C structs (from_cdr.hpp).
 //
-//   LendToDds    C++ -> C without copying: strings and numbers are lent to the C struct; only the arrays of pointers
-//                and of structs that C needs are made, in a memory resource that must outlive the C struct, like the
-//                message itself. Nothing is to be freed. For dds_write, which copies into its own serialised form.
-//   CopyFromDds  C -> C++, into a message that owns its content.
+// LendToDds copies nothing: strings and numbers are lent to the C struct; only the arrays of pointers and of structs that
+// C needs are made, in a memory resource that must outlive the C struct, like the message itself. Nothing is to be freed.
+// For dds_write, which copies into its own serialised form.
 //
 // A string ends at its first NUL on the wire, as strings in IDL do.
 #pragma once
@@ -105,40 +105,6 @@ class LendToDds {
   }
 
   std::pmr::memory_resource& memory_;
-};
-
-class CopyFromDds {
- public:
-  template <class To, class From>
-  void operator()(std::string_view /*field*/, To& to, const From& from) const {
-    copy(from, to);
-  }
-
-  template <class From, Described To>
-  void copy(const From& from, To& to) const {
-    static_assert(To::kFieldCount == member_count<From>(), "the IDL struct has a member that SEALWATCH_FIELDS lacks");
-    To::visit_pair(*this, to, from);
-  }
-
- private:
-  template <class Number>
-  requires std::is_arithmetic_v<Number>
-  void copy(const Number& from, Number& to) const { to = from; }
-  /// DDS drops a message with an enumerator that this version's IDL does not have.
-  template <class From, DescribedEnum To>
-  requires std::is_enum_v<From>
-  void copy(const From& from, To& to) const { to = static_cast<To>(from); }
-  void copy(const char* from, std::string& to) const { to = from == nullptr ? "" : from; }
-
-  template <DdsSequence From, class To>
-  void copy(const From& from, std::vector<To>& to) const {
-    if constexpr (std::is_same_v<To, ElementOf<From>>) {
-      to.assign(from._buffer, from._buffer + from._length);
-    } else {
-      to.resize(from._length);
-      for (std::uint32_t k = 0; k < from._length; ++k) copy(from._buffer[k], to[k]);
-    }
-  }
 };
 
 }  // namespace sealwatch::transport

@@ -1,6 +1,7 @@
 #include "services/common/transport/topic_types.hpp"
 
 #include <array>
+#include <bit>
 
 #include "idl/advisory_generation.h"
 #include "idl/data_acquisition.h"
@@ -10,9 +11,12 @@
 #include "idl/service.h"
 #include "idl/state_detection.h"
 #include "services/common/transport/codec.hpp"
+#include "services/common/transport/from_cdr.hpp"
 
 namespace sealwatch::transport {
 namespace {
+
+constexpr std::size_t kEncodingSize = 4;
 
 /// The C struct and the descriptor that idlc generated for a message type.
 template <class T>
@@ -42,10 +46,16 @@ SEALWATCH_GENERATED(ServiceStatus)
 SEALWATCH_GENERATED(ResendRequest)
 #undef SEALWATCH_GENERATED
 
+/// What Cyclone calls D_CDR2, in this machine's byte order: the encoding of appendable structs, and no other comes.
+bool is_delimited_cdr2(std::span<const std::byte> bytes) {
+  constexpr bool kLittle = std::endian::native == std::endian::little;
+  return bytes.size() >= kEncodingSize && bytes[0] == std::byte{0} && bytes[1] == std::byte{kLittle ? 9 : 8};
+}
+
 template <class T>
-BusItem decode(const void* sample) {
+std::optional<BusItem> decode(std::span<const std::byte> bytes) {
   T message;
-  CopyFromDds().copy(*static_cast<const typename Generated<T>::Sample*>(sample), message);
+  if (!is_delimited_cdr2(bytes) || !FromCdr(bytes.subspan(kEncodingSize)).read(message)) return std::nullopt;
   if constexpr (std::is_constructible_v<Message, T&&>)
     return Message(std::move(message));
   else

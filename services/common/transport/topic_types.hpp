@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,8 @@ namespace sealwatch::transport {
 struct TopicType {
   std::string name;  ///< without the prefix: "advisory"
   const dds_topic_descriptor_t* descriptor = nullptr;
-  BusItem (*decode)(const void* sample) = nullptr;
+  /// None where the bytes are no such message; they are Cyclone's, with the four that name their encoding.
+  std::optional<BusItem> (*decode)(std::span<const std::byte> bytes) = nullptr;
   TopicQos qos;  ///< default; a Configuration may override it
   /// Messages that wait for a reader's owner (inbox.hpp), and how many are taken from DDS at once. Of bulky topics
   /// (windows of samples, up to about 1 MB each) few wait.

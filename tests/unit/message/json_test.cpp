@@ -80,6 +80,21 @@ TEST(Json, PassesOverUnknownFieldsAndKeepsDefaultsOfAbsentOnes) {
   EXPECT_EQ(std::get<HealthReport>(message).no_fault_likelihood, HealthReport{}.no_fault_likelihood);
 }
 
+TEST(Json, AWholeNumberThatDoesNotFitIsNamedAndNotCutDown) {
+  const auto read = [](const std::string& number) {
+    return message_from_json(Topic::raw_samples, R"({"start_time_ns": )" + number + "}");
+  };
+  for (const char* wild : {"1.9e19", "-1e300", "9223372036854775808", "1.5", "1e400", "9007199254740993.0e1"}) {
+    const auto message = read(wild);
+    EXPECT_FALSE(message.has_value()) << wild;
+  }
+  EXPECT_FALSE(message_from_json(Topic::raw_samples, R"({"block_number": -1})").has_value());
+  EXPECT_FALSE(message_from_json(Topic::model_acceptance, R"({"version": 2147483648})").has_value());
+  EXPECT_EQ(std::get<RawSamples>(read("-9223372036854775808").value()).start_time_ns,
+            std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(std::get<RawSamples>(read("3.0").value()).start_time_ns, 3);
+}
+
 TEST(Json, NamesTheFieldThatIsWrong) {
   const auto refusal = [](std::string_view text) {
     return message_from_json(Topic::state_report, text).error().describe();

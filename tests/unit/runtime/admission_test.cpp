@@ -66,6 +66,35 @@ TEST(AdmissionOfDates, ATimeThatCannotBeCountedWithIsNone) {
   }
 }
 
+RawSamples test_of(const std::string& asset_id) {
+  RawSamples raw = live_test("2031-04-10T00:00:00Z");
+  raw.asset_id = asset_id;
+  return raw;
+}
+
+TEST(AdmissionOfAssets, OfThoseNotConfiguredSoManyAreTakenAndThoseStay) {
+  Admission admission({}, {.names = {"XT03-MV2"}});
+  for (int k = 0; k < 100'000; ++k) {
+    const RawSamples raw = test_of("invented-" + std::to_string(k));
+    const auto refused = admission.refusal_of_asset(raw);
+    ASSERT_EQ(refused.has_value(), k >= 64) << k;
+    if (!refused) admission.note(raw);
+  }
+  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT03-MV2"))) << "a configured one always";
+  EXPECT_FALSE(admission.refusal_of_asset(test_of("invented-63")));
+  EXPECT_FALSE(admission.refusal_of_asset(test_of("")));
+  EXPECT_EQ(admission.refusal_of_asset(test_of("new\x1B[2J")),
+            "asset 'new\\x1B[2J' is not configured, and 64 such assets are there already; give it an asset file, if it "
+            "is yours, or find out who sends it");
+}
+
+TEST(AdmissionOfAssets, OrNoneAtAll) {
+  Admission admission({}, {.names = {"XT03-MV2"}, .refuses_others = true});
+  admission.note(test_of("old"));
+  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT03-MV2")));
+  EXPECT_THAT(admission.refusal_of_asset(test_of("old")).value_or(""), HasSubstr("unknown_assets are refused"));
+}
+
 TEST(AdmissionOfTexts, AnIdIsOneVisibleLineAndAllTextIsUtf8) {
   RawSamples raw = live_test("2031-04-10T00:00:00Z");
   raw.asset_id = "XT03\x1B[2J";

@@ -90,6 +90,30 @@ TEST(StrangerWatch, TellsASenderThatIsNotConfiguredWhereSendersAre) {
   EXPECT_THAT(names(watch.hear(block, seconds(0))), ElementsAre("sender laptop"));
 }
 
+TEST(StrangerWatch, AdmitsWhomAHeartbeatNamedAndConfiguredSenders) {
+  StrangerWatch watch({.services = {"data_manipulation"}, .senders = {"MCS-1"}, .refuses_unknown = true});
+  EXPECT_FALSE(watch.admits(from<TestFeatures>("late")));
+  EXPECT_FALSE(watch.admits(from<TestFeatures>("")));
+  EXPECT_TRUE(watch.admits(from<Acknowledgement>("operator-1")));
+  EXPECT_THAT(watch.hear(heartbeat("data_manipulation", "late"), seconds(6)), IsEmpty());
+  EXPECT_TRUE(watch.admits(from<TestFeatures>("late")));
+  RawSamples block;
+  EXPECT_FALSE(watch.admits(block));
+  block.source_id = "MCS-1";
+  EXPECT_TRUE(watch.admits(block));
+  EXPECT_TRUE(StrangerWatch({.services = {"data_manipulation"}}).admits(from<TestFeatures>("any")));
+}
+
+TEST(StrangerWatch, InventedNamesKeepNoRoomFromAWriterOfThePast) {
+  StrangerWatch watch({.services = {"data_manipulation"}});
+  watch.expect("true");
+  for (int k = 0; k < 2000; ++k)
+    (void)watch.hear(heartbeat("data_manipulation", "rival-" + std::to_string(k)), seconds(1));
+  EXPECT_FALSE(watch.knows("true")) << "it has not been heard yet";
+  EXPECT_THAT(watch.hear(heartbeat("data_manipulation", "true"), seconds(1)), IsEmpty());
+  EXPECT_TRUE(watch.knows("true"));
+}
+
 TEST(StrangerWatch, ManyNamesTakeNoMoreThanTheirRoom) {
   StrangerWatch watch({.services = {"data_manipulation"}});
   for (int k = 0; k < 100'000; ++k) {
@@ -196,6 +220,69 @@ TEST_F(TroubleTest, AWriterThatSaysItsNameLateIsAnAlarmNoMore) {
   ASSERT_TRUE(says(*process, 1));
   ASSERT_TRUE(stranger_.publish(heartbeat("data_manipulation", "data_manipulation-1")));
   EXPECT_TRUE(says(*process, 0));
+}
+
+TEST_F(TroubleTest, WhatAnUnknownWriterSendsIsRefusedAndOfALateOneNothingIsLost) {
+  options_.strangers.refuses_unknown = true;
+  const auto process = joiner();
+  const auto features = [](const std::string& writer_id, std::uint64_t sequence) {
+    TestFeatures made;
+    made.asset_id = "A";
+    made.header = header("test_features/" + writer_id + std::to_string(sequence), writer_id + std::to_string(sequence));
+    made.header.writer_id = writer_id;
+    made.header.stream_sequence = sequence;
+    return Message(made);
+  };
+  const auto open = [&] { return process->journal().open_inputs(); };
+  for (const std::uint64_t sequence : {1, 2, 3})
+    ASSERT_TRUE(stranger_.publish(features("data_manipulation-1", sequence)));
+  ASSERT_TRUE(stranger_.publish(features("forger", 1)));
+  ASSERT_TRUE(says(*process, 2));
+  EXPECT_EQ(open(), 0U);
+  ServiceStatus named = heartbeat("data_manipulation", "data_manipulation-1");
+  named.written = {{"test_features", "data_manipulation-1", 3}};
+  ASSERT_TRUE(stranger_.publish(named));
+  std::vector<ResendRequest> requests;
+  ASSERT_TRUE(step_until(
+      [&] {
+        for (const BusItem& item : listener_.receive(milliseconds(5), 1000))
+          if (const auto* request = std::get_if<ResendRequest>(&item)) requests.push_back(*request);
+        return !requests.empty();
+      },
+      [&] { process->step(); }));
+  EXPECT_EQ(requests[0].writer_id, "data_manipulation-1");
+  EXPECT_EQ(requests[0].first_sequence, 1U);
+  for (const std::uint64_t sequence : {1, 2, 3})
+    ASSERT_TRUE(stranger_.publish(features("data_manipulation-1", sequence)));
+  EXPECT_TRUE(step_until([&] { return open() == 3; }, [&] { process->step(); }));
+}
+
+TEST_F(TroubleTest, WhatASourceSendsThatIsNoSenderIsRefusedAndItsStreamGoesOn) {
+  options_.strangers = {.services = {"data_acquisition"}, .senders = {"MCS-1"}};
+  Process process(
+      network_, [] { return std::make_unique<CuttingLayer>(); }, place_.connection(), Fate(), options_);
+  process.start();
+  const auto block = [](const std::string& source_id, std::uint64_t sequence) {
+    RawSamples made;
+    made.asset_id = "A";
+    made.source_id = source_id;
+    made.recording_id = source_id + std::to_string(sequence);
+    made.boundary = BlockBoundary::end;
+    made.header.writer_id = sequence == 0 ? "" : "plc";
+    made.header.stream_sequence = sequence;
+    return Message(made);
+  };
+  ASSERT_TRUE(stranger_.publish(block("MCS-1", 1)));
+  ASSERT_TRUE(stranger_.publish(block("laptop", 2)));
+  ASSERT_TRUE(stranger_.publish(block("laptop", 0)));
+  ASSERT_TRUE(stranger_.publish(block("MCS-1", 3)));
+  ASSERT_TRUE(says(process, 1));
+  EXPECT_EQ(last_[0].subject, "sender laptop");
+  EXPECT_THAT(process.outputs(), SizeIs(4)) << "two of each test that MCS-1 sent";
+  const auto positions = process.journal().positions();
+  ASSERT_TRUE(positions);
+  ASSERT_THAT(*positions, SizeIs(1));
+  EXPECT_EQ((*positions)[0].sequence, 3U);
 }
 
 TEST_F(TroubleTest, AnUnsynchronisedClockIsAnAlarmUntilItIsSynchronised) {

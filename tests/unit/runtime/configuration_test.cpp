@@ -160,6 +160,20 @@ TEST(Configuration, KeepsSamplesForEverUnlessItSaysOtherwise) {
   EXPECT_EQ(bounded->retention.megabytes, 20'000.0);
 }
 
+TEST(Configuration, SaysWhatIsDoneWithWhomItDoesNotName) {
+  const YamlPlace place;
+  const auto plain = load_configuration(place.write("sealwatch.yaml", "domain: 1\n"), {});
+  ASSERT_TRUE(plain);
+  EXPECT_FALSE(plain->refuses_unknown_assets);
+  EXPECT_TRUE(plain->refuses_unknown_writers);
+  const auto other =
+      load_configuration(place.write("sealwatch.yaml", "unknown_assets: refuse\nunknown_writers: take\n"), {});
+  ASSERT_TRUE(other);
+  EXPECT_TRUE(other->refuses_unknown_assets);
+  EXPECT_FALSE(other->refuses_unknown_writers);
+  EXPECT_FALSE(load_configuration(place.write("sealwatch.yaml", "unknown_assets: maybe\n"), {}));
+}
+
 INSTANTIATE_TEST_SUITE_P(All, BadConfiguration, ::testing::ValuesIn(kBadCases),
                          [](const auto& bad) { return std::string(bad.param.name); });
 

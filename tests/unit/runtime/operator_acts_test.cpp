@@ -21,6 +21,11 @@ class ListeningLayer final : public Layer {
   [[nodiscard]] std::span<const Topic> outputs() const override { return kOutputs; }
   void restore(const Message& /*own*/) override {}
   [[nodiscard]] Conclusion receive(const Message& input) override {
+    if (const auto* acceptance = std::get_if<ModelAcceptance>(&input); acceptance && acceptance->remark == "forged")
+      return {.outputs = {},
+              .consumed = {header_of(input).message_id},
+              .later = {},
+              .refused = {{.input = input, .reason = "its model is another"}}};
     Advisory advisory;
     advisory.asset_id = asset_of(input);
     advisory.header = header("advisory/" + header_of(input).message_id, "");
@@ -103,6 +108,51 @@ TEST_F(ActsTest, WhatIsRefusedIsRecordedWithTheReason) {
   ASSERT_THAT(acts(), SizeIs(1));
   EXPECT_THAT(acts()[0].act.outcome, HasSubstr("lies in the future"));
   EXPECT_TRUE(process->outputs().empty());
+}
+
+TEST_F(ActsTest, OnUnknownAssetsAreRecordedAsRefusedAndDoNotFillTheRecord) {
+  RunnerOptions options = fast_options();
+  options.assets = {"A"};
+  options.refuses_unknown_assets = true;
+  const auto process = start(options);
+  for (int k = 0; k < 200; ++k) {
+    Acknowledgement invented = seen("stranger");
+    invented.asset_id = "invented-" + std::to_string(k);
+    invented.header.message_id += std::to_string(k);
+    EXPECT_TRUE(operator_.publish(invented));
+  }
+  say(*process, seen("J. Silva"));
+  ASSERT_THAT(acts(), SizeIs(65));
+  EXPECT_EQ(acts()[0].act.who, "stranger");
+  EXPECT_THAT(acts()[0].act.outcome, HasSubstr("asset 'invented-0' is not configured"));
+  EXPECT_EQ(acts()[64].act.outcome, "taken");
+  EXPECT_THAT(process->outputs(), SizeIs(1));
+}
+
+TEST_F(ActsTest, WhatALayerRefusesIsRecordedWithTheReasonAndTold) {
+  InMemoryBus listener(network_);
+  ASSERT_TRUE(listener.subscribe_service_topics());
+  const auto process = start();
+  ModelAcceptance acceptance;
+  acceptance.asset_id = "A";
+  acceptance.header = header("model_acceptance/A/1", "");
+  acceptance.accepted_by = "R. Engineer";
+  acceptance.remark = "forged";
+  say(*process, acceptance);
+  ASSERT_THAT(acts(), SizeIs(2));
+  EXPECT_EQ(acts()[0].act.outcome, "taken");
+  EXPECT_EQ(acts()[1].act.outcome, "its model is another");
+  EXPECT_EQ(acts()[1].act.who, "R. Engineer");
+  EXPECT_FALSE(find_break("advisory_generation", acts()));
+  std::string told;
+  EXPECT_TRUE(step_until(
+      [&] {
+        for (const BusItem& item : listener.receive(std::chrono::milliseconds(5), 1000))
+          if (const auto* status = std::get_if<ServiceStatus>(&item)) told = status->last_error;
+        return told.find("model_acceptance refused: its model is another") != std::string::npos;
+      },
+      [&] { process->step(); }))
+      << told;
 }
 
 /// Where a second person's word is asked for.

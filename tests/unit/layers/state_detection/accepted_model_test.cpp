@@ -1,4 +1,5 @@
-// An accepted model is judged beside the nominal one until it is revoked, superseded or its actuator replaced.
+// An accepted model is judged beside the nominal one until it is revoked, superseded or its actuator replaced; and only
+// what the services published is accepted.
 #include <gmock/gmock.h>
 
 #include "services/state_detection/state_detection.hpp"
@@ -30,6 +31,22 @@ ModelAcceptance acceptance(const std::string& discrepancy, int number, bool revo
   message.explained.model = "eha";
   message.explained.physics = {{.id = "coulomb", .element = "load", .parameters = {{"F_c", 900.0, 0.0, 2e3, false}}}};
   return message;
+}
+
+/// What health assessment published, from which `acceptance` follows.
+ModelDiscrepancy discrepancy(const std::string& id) {
+  const ModelAcceptance accepted = acceptance(id, 0);
+  ModelDiscrepancy found;
+  found.asset_id = "A1";
+  found.header.message_id = id;
+  found.header.event_time_known = true;
+  found.header.event_time_ns = accepted.discrepancy_time_ns;
+  found.version = accepted.version;
+  found.analysed = true;
+  found.verdict = DiscrepancyVerdict::mismatch;
+  found.physics = {{}};
+  found.explained = accepted.explained;
+  return found;
 }
 
 MaintenanceEvent replacement(int month) {
@@ -74,6 +91,7 @@ int count(const StateReport& report, Reference reference) {
 TEST(AcceptedModel, IsJudgedBesideTheNominalOneUntilRevoked) {
   std::vector<Message> messages;
   add_tests(messages, 0, 4);
+  messages.emplace_back(discrepancy("D1"));
   messages.emplace_back(acceptance("D1", 1));
   add_tests(messages, 5, 9);
   messages.emplace_back(acceptance("other", 2, true));  // of one that is not in force
@@ -95,6 +113,7 @@ TEST(AcceptedModel, IsJudgedBesideTheNominalOneUntilRevoked) {
 
 TEST(AcceptedModel, EndsWithTheActuatorThatWasAnalysed) {
   std::vector<Message> messages;
+  messages.emplace_back(discrepancy("D1"));
   messages.emplace_back(acceptance("D1", 1));
   add_tests(messages, 4, 4);
   messages.emplace_back(replacement(2));  // before what was analysed
@@ -109,25 +128,106 @@ TEST(AcceptedModel, EndsWithTheActuatorThatWasAnalysed) {
 TEST(AcceptedModel, KilledAnywhereItEndsTheSame) {
   std::vector<Message> messages;
   add_tests(messages, 0, 3);
+  messages.emplace_back(discrepancy("D1"));
   messages.emplace_back(acceptance("D1", 1));
-  add_tests(messages, 4, 8);
+  add_tests(messages, 4, 6);
+  ModelAcceptance forged = acceptance("D1", 3);
+  forged.explained.physics[0].parameters[0].value = 9e3;
+  messages.emplace_back(forged);
   messages.emplace_back(acceptance("D2", 2));
+  add_tests(messages, 7, 8);
+  messages.emplace_back(discrepancy("D2"));
   add_tests(messages, 9, 12);
   messages.emplace_back(replacement(13));
   add_tests(messages, 13, 14);
   test::expect_restartable(layer, messages);
 }
 
-TEST(AcceptedModel, OfAnotherPlantIsNotApplied) {
+/// A layer's answer to them, one after the other.
+struct Answered {
   AcceptedModel model;
-  ModelAcceptance other = acceptance("D1", 1);
-  other.explained.model = "emps";
-  EXPECT_TRUE(model.take(other).empty());
-  EXPECT_TRUE(model.applied_to(synthetic::asset("A1")).physics.empty());
-  other.explained.model = "eha";
-  other.explained.parameters = {{"R_CL", 1e13, 1e12, 3e13, true}, {"unknown", 1.0, 0.0, 2.0, false}};
-  EXPECT_EQ(model.take(other), std::vector<std::string>{"model_acceptance/A1/1"});
-  const AssetConfig applied = model.applied_to(synthetic::asset("A1"));
+  Conclusion conclusion;
+  void take(const auto& message) { model.take(message, conclusion); }
+  [[nodiscard]] std::string refused() const {
+    return conclusion.refused.empty() ? std::string() : conclusion.refused.back().reason;
+  }
+};
+
+TEST(AcceptedModel, OnlyWhatWasPublishedComesIntoForce) {
+  Answered one;
+  one.take(discrepancy("D1"));
+  ModelAcceptance forged = acceptance("D1", 1);
+  forged.explained.physics[0].parameters[0].value = 9e3;
+  one.take(forged);
+  EXPECT_FALSE(one.model.in_force());
+  EXPECT_EQ(one.refused(), "accepts 'D1', and its model is not the one that was published there");
+  EXPECT_THAT(one.conclusion.consumed, testing::ElementsAre("model_acceptance/A1/1"));
+  ModelAcceptance of_another_time = acceptance("D1", 2);
+  of_another_time.discrepancy_time_ns += 1;
+  one.take(of_another_time);
+  EXPECT_FALSE(one.model.in_force()) << "a replacement would not end it when it should";
+  one.take(acceptance("D1", 3));
+  EXPECT_EQ(one.model.discrepancy_id(), "D1");
+  one.take(forged);
+  EXPECT_EQ(one.model.applied_to(synthetic::asset("A1")).physics.at(0).parameters.at("F_c").value, 900.0);
+  ModelDiscrepancy nothing = discrepancy("D2");
+  nothing.verdict = DiscrepancyVerdict::undetermined;
+  one.take(nothing);
+  one.take(acceptance("D2", 4));
+  EXPECT_EQ(one.model.discrepancy_id(), "D1");
+  EXPECT_THAT(one.refused(), testing::HasSubstr("explains nothing"));
+}
+
+TEST(AcceptedModel, ThatComesBeforeItsDiscrepancyWaitsForItAndNotForEver) {
+  Answered one;
+  one.take(acceptance("D1", 1));
+  EXPECT_FALSE(one.model.in_force());
+  EXPECT_EQ(one.model.held(), 1U);
+  one.take(discrepancy("D1"));
+  EXPECT_EQ(one.model.discrepancy_id(), "D1");
+  ModelAcceptance invented = acceptance("invented", 2);
+  invented.header.event_time_ns = synthetic::month(4).nanoseconds;
+  one.take(invented);
+  one.model.tick(add_seconds(synthetic::month(4), 3600.0), one.conclusion);
+  EXPECT_EQ(one.refused(), "");
+  one.model.tick(add_seconds(synthetic::month(4), 3601.0), one.conclusion);
+  EXPECT_EQ(one.refused(), "accepts 'invented', and no service has published it");
+  EXPECT_EQ(one.model.discrepancy_id(), "D1");
+}
+
+TEST(AcceptedModel, RemembersNoMoreThanItsRoom) {
+  Answered one;
+  one.take(discrepancy("D0"));
+  one.take(acceptance("D0", 0));
+  for (int k = 1; k < 1000; ++k) {
+    one.take(discrepancy("D" + std::to_string(k)));
+    one.take(acceptance("invented-" + std::to_string(k), k));
+  }
+  EXPECT_EQ(one.model.held(), AcceptedModel::kMostKnown + AcceptedModel::kMostWaiting + 1);
+  EXPECT_EQ(one.model.discrepancy_id(), "D0");
+  one.take(acceptance("D999", 1000));
+  EXPECT_EQ(one.model.discrepancy_id(), "D999");
+  EXPECT_EQ(one.model.held(), AcceptedModel::kMostKnown + 1) << "what waited is over: another was accepted after it";
+}
+
+TEST(AcceptedModel, OfAnotherPlantIsNotApplied) {
+  Answered one;
+  const auto accept = [&one](ModelAcceptance accepted, const ExplainedModel& explained) {
+    ModelDiscrepancy published = discrepancy(accepted.discrepancy_id);
+    published.explained = accepted.explained = explained;
+    one.take(published);
+    one.take(accepted);
+  };
+  ExplainedModel other = acceptance("D1", 1).explained;
+  other.model = "emps";
+  accept(acceptance("D1", 1), other);
+  EXPECT_TRUE(one.model.in_force());
+  EXPECT_TRUE(one.model.applied_to(synthetic::asset("A1")).physics.empty());
+  other.model = "eha";
+  other.parameters = {{"R_CL", 1e13, 1e12, 3e13, true}, {"unknown", 1.0, 0.0, 2.0, false}};
+  accept(acceptance("D2", 2), other);
+  EXPECT_EQ(one.conclusion.consumed, std::vector<std::string>{"model_acceptance/A1/1"});
+  const AssetConfig applied = one.model.applied_to(synthetic::asset("A1"));
   EXPECT_EQ(applied.parameter("R_CL"), 1e13);
   EXPECT_FALSE(applied.parameters.contains("unknown"));
   ASSERT_EQ(applied.physics.size(), 1U);

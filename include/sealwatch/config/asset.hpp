@@ -36,6 +36,7 @@ struct SensorSetting {
   double offset_tolerance = 0.0;  ///< channel's SI unit
   double gain_error = 0.0;        ///< as estimated within the tolerance
   double offset_error = 0.0;
+  bool operator==(const SensorSetting&) const = default;
 };
 
 /// Seal condition theta as a line through two leakage resistances (docs/model.md).

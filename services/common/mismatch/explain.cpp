@@ -584,7 +584,11 @@ class Analysis {
       for (const AssetValue& value : entry) {
         ParameterSetting& setting = result_.explained.parameters.at(value.name);
         const ParameterSetting& given = asset_.parameters.at(value.name);
-        setting = {.value = setting.value, .min = given.min, .max = given.max, .estimate = false};
+        setting = {.value = setting.value,
+                   .min = given.min,
+                   .max = given.max,
+                   .estimate = false,
+                   .tolerance = given.tolerance};
       }
     if (!naming_.trials.empty()) result_.trace = trace_of(naming_);
     std::ranges::copy(asked_values_, std::back_inserter(result_.trace));

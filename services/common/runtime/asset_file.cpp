@@ -72,10 +72,15 @@ constexpr SensorKey kSensorKeys[] = {{"noise_std", &SensorSetting::noise_std},
                                      {"time_constant", &SensorSetting::time_constant_s},
                                      {"quantisation", &SensorSetting::quantisation},
                                      {"gain_tolerance", &SensorSetting::gain_tolerance},
-                                     {"offset_tolerance", &SensorSetting::offset_tolerance}};
+                                     {"offset_tolerance", &SensorSetting::offset_tolerance},
+                                     {"gain_error", &SensorSetting::gain_error},
+                                     {"offset_error", &SensorSetting::offset_error}};
+constexpr NumberRule kGain{.min = -1.0, .min_excluded = true, .words = "must be a number above -1"};
 
 /// What is measured has noise, by which its residuals are divided; commands and switch positions may have none.
 NumberRule rule_of(const SensorKey& key, const std::string& channel, const PlantDescription& plant) {
+  if (key.target == &SensorSetting::gain_error) return kGain;
+  if (key.target == &SensorSetting::offset_error) return kAnyNumber;
   const auto row = std::ranges::find(plant.channels, channel, &ChannelDescription::name);
   const bool has_noise = row != plant.channels.end() && row->noise_std > 0.0;
   return key.target == &SensorSetting::noise_std && has_noise ? kPositive : kNotNegative;

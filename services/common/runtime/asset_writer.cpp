@@ -53,6 +53,11 @@ void write_sensors(YAML::Emitter& out, const AssetConfig& asset) {
     out << YAML::Key << "noise_std" << YAML::Value << exact(sensor.noise_std);
     out << YAML::Key << "time_constant" << YAML::Value << exact(sensor.time_constant_s);
     out << YAML::Key << "quantisation" << YAML::Value << exact(sensor.quantisation);
+    for (const auto& [key, value] : {std::pair{"gain_tolerance", sensor.gain_tolerance},
+                                     {"offset_tolerance", sensor.offset_tolerance},
+                                     {"gain_error", sensor.gain_error},
+                                     {"offset_error", sensor.offset_error}})
+      if (value != 0.0) out << YAML::Key << key << YAML::Value << exact(value);
     if (sensor.range_max > sensor.range_min)
       out << YAML::Key << "range" << YAML::Value << YAML::BeginSeq << exact(sensor.range_min) << exact(sensor.range_max)
           << YAML::EndSeq;

@@ -67,6 +67,8 @@ const BadCase kBadCases[] = {
      "a.yaml: line 2, key sensors.flow.noise_std: '-1': must be a number above 0"},
     {"no_noise", "asset_id: A\nsensors:\n  noise_std: {flow: 0}\n",
      "a.yaml: line 3, key sensors.noise_std.flow: '0': must be a number above 0"},
+    {"gain", "asset_id: A\nsensors: {flow: {gain_error: -1}}\n",
+     "a.yaml: line 2, key sensors.flow.gain_error: '-1': must be a number above -1"},
     {"range", "asset_id: A\nsensors: {flow: {range: [2, 1]}}\n",
      "a.yaml: line 2, key sensors.flow.range: must be two numbers, the lower one first: [min, max]"},
     {"seal", "asset_id: A\nseal: {resistance_100: 1.0e12}\n",
@@ -218,7 +220,7 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   AssetConfig asset = load("asset_id: 'yes: \"odd\" id'\nsegment: \"# no comment\"\n");
   double odd = 1.0 / 3.0;
   for (auto& [name, setting] : asset.parameters) setting.value *= 1.0 + 1e-3 * (odd = odd * 0.7 + 0.01);
-  asset.sensors.at("flow") = {1.0 / 3.0, 1e-300, 0.1, -0.1, 1e300};
+  asset.sensors.at("flow") = {1.0 / 3.0, 1e-300, 0.1, -0.1, 1e300, 1.0 / 7.0, 1e-9 / 3.0, -1.0 / 9.0, -1e-8 / 3.0};
   asset.seal->threshold = 0.1 + 0.2;
   asset.pst.hold_s = 1.0 / 7.0;
   asset.physics = {
@@ -229,7 +231,7 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   EXPECT_EQ(back.asset_id, asset.asset_id);
   EXPECT_EQ(back.segment, asset.segment);
   for (const auto& [name, setting] : asset.parameters) EXPECT_EQ(back.parameters.at(name).value, setting.value) << name;
-  EXPECT_EQ(back.sensors.at("flow").time_constant_s, 1e-300);
+  EXPECT_EQ(back.sensors, asset.sensors);
   EXPECT_EQ(back.seal->threshold, asset.seal->threshold);
   EXPECT_EQ(back.pst.hold_s, asset.pst.hold_s);
   EXPECT_EQ(back.physics.at(0).parameters, asset.physics.at(0).parameters);

@@ -107,26 +107,24 @@ void print_law(const Law& law, bool whole) {
                                                                                      : "at 0")});
   print_columns(rows, 4);
   if (!whole) return;
-  if (!law.elements.empty()) print_wrapped("only at: " + joined({law.elements.begin(), law.elements.end()}, ", "), 4);
+  if (law.feeds != Feeds::anything) print_wrapped("only where it feeds a " + std::string(name_of(law.feeds)), 4);
   print_wrapped("physical while: " + std::string(law.energy), 4);
   print_wrapped("source: " + std::string(law.source), 4);
 }
 
 nlohmann::ordered_json law_as_json(const Law& law) {
-  nlohmann::ordered_json json = {
-      {"id", law.id},
-      {"form", law.form},
-      {"site", name_of(law.kind)},
-      {"elements", law.elements.empty() ? elements_of(law.kind)
-                                        : std::vector<std::string>(law.elements.begin(), law.elements.end())},
-      {"unit", mismatch::words_of(law.kind).unit},
-      {"equation", law.equation},
-      {"meaning", law.meaning},
-      {"energy", law.energy},
-      {"source", law.source},
-      {"closed_form", law.closed_form},
-      {"hidden", nullptr},
-      {"parameters", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {{"id", law.id},
+                                 {"form", law.form},
+                                 {"site", name_of(law.kind)},
+                                 {"elements", elements_of(law)},
+                                 {"unit", mismatch::words_of(law.kind).unit},
+                                 {"equation", law.equation},
+                                 {"meaning", law.meaning},
+                                 {"energy", law.energy},
+                                 {"source", law.source},
+                                 {"closed_form", law.closed_form},
+                                 {"hidden", nullptr},
+                                 {"parameters", nlohmann::ordered_json::array()}};
   if (law.hidden) json["hidden"] = {{"name", law.hidden->name}, {"unit", law.hidden->unit}};
   for (const LawParameter& parameter : law.parameters)
     json["parameters"].push_back({{"name", parameter.name},

@@ -10,7 +10,6 @@
 #include "services/common/mismatch/tolerance.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
-#include "tests/unit/runtime/yaml_place.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -118,8 +117,7 @@ TEST(Tolerance, WhatIsFoundOfSensorsIsWrittenWithTheAsset) {
   const auto found = explain(actuator(), tests, {});
   ASSERT_TRUE(found) << found.error().describe();
   ASSERT_NE(found->explained.sensors.at("flow").gain_error, 0.0);
-  const sealwatch::testing::YamlPlace place;
-  const std::string file = place.directory() + "/asset.explained.yaml";
+  const std::string file = ::testing::TempDir() + "sensors.explained.yaml";
   ASSERT_TRUE(save_asset(found->explained, file));
   std::vector<std::string> names;
   for (const Recording& test : tests) names.push_back(test.file);

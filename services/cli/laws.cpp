@@ -26,12 +26,22 @@ std::vector<std::string> elements_of(SiteKind kind) {
   return names;
 }
 
+/// Of those, the elements at which this law is asked.
+std::vector<std::string> elements_of(const Law& law) {
+  if (law.kind >= SiteKind::sensor_bias) return elements_of(law.kind);
+  std::vector<std::string> names;
+  for (const PlantDescription& plant : all_plants())
+    for (const Site& site : plant.sites)
+      if (fits(law, site) && std::ranges::find(names, site.element) == names.end()) names.emplace_back(site.element);
+  return names;
+}
+
 /// Whether somebody who writes `asked` means this law: its id, the kind of its site, or an element that it may act at.
 bool is_meant(const Law& law, const std::string& asked) {
   if (asked.empty() || asked == law.id || asked == name_of(law.kind)) return true;
   const std::string group = asked.substr(0, asked.find(':') + 1);
-  return std::ranges::any_of(elements_of(law.kind), [&](const std::string& element) {
-    return law_fits(law, {asked, law.kind}) && (element == asked || (!group.empty() && element == group + "CHANNEL"));
+  return std::ranges::any_of(elements_of(law), [&](const std::string& element) {
+    return element == asked || (!group.empty() && element == group + "CHANNEL");
   });
 }
 

@@ -96,7 +96,7 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   const Assessment assessment = assess(evidence, site, options_);
   const InForce& in_force = asset.memory.judge(assessment.verdict, now, options_);
   remember({cause.pst_id, now, assessment.verdict}, asset);
-  const Recommendation recommendation = recommend(evidence, assessment, in_force, site);
+  const Recommendation recommendation = recommend(evidence, assessment, in_force, site, part_of(asset_id));
 
   Advisory advisory = revision_of(asset.current, asset_id, recommendation, cause);
   advisory.header.source_ids = source_ids(evidence);
@@ -172,6 +172,12 @@ const SiteConfig* AdvisoryGeneration::site_of(const std::string& asset_id) const
   return asset ? configuration_.find_site(asset->site) : nullptr;
 }
 
+std::string AdvisoryGeneration::part_of(const std::string& asset_id) const {
+  const AssetConfig* asset = configuration_.find_asset(asset_id);
+  const bool told = asset && asset->condition && !asset->condition->part.empty();
+  return told ? asset->condition->part : "piston seal";
+}
+
 RequestForWork AdvisoryGeneration::work_order(const Advisory& advisory, const Recommendation& recommendation) const {
   const AssetConfig* asset = configuration_.find_asset(advisory.asset_id);
   const std::optional<UtcTime>& replaced = assets_.at(advisory.asset_id).replaced;
@@ -179,8 +185,8 @@ RequestForWork AdvisoryGeneration::work_order(const Advisory& advisory, const Re
   work.work_id = "work/" + advisory.asset_id + "/" + (replaced ? "seal of " + format_date(*replaced) : "first seal");
   work.work_type = "replace actuator";
   work.segment = asset ? asset->site + (asset->segment.empty() ? "" : "/" + asset->segment) : "";
-  work.solution_package = "spare actuator" + (asset ? " (model " + asset->model + ")" : std::string()) +
-                          " with new piston seal, vessel with remotely operated vehicle";
+  work.solution_package = "spare actuator" + (asset ? " (model " + asset->model + ")" : std::string()) + " with new " +
+                          part_of(advisory.asset_id) + ", vessel with remotely operated vehicle";
   if (recommendation.work_before) {
     work.start_before_known = true;
     work.start_before_ns = recommendation.work_before->nanoseconds;

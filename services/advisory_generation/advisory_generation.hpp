@@ -76,6 +76,8 @@ class AdvisoryGeneration final : public Layer {
   /// Remembers `advisory` and puts it out, after the one that it supersedes.
   void put_out(Advisory advisory, Conclusion& conclusion);
   [[nodiscard]] const SiteConfig* site_of(const std::string& asset_id) const;
+  /// What wears in that asset: "piston seal".
+  [[nodiscard]] std::string part_of(const std::string& asset_id) const;
   [[nodiscard]] RequestForWork work_order(const Advisory& advisory, const Recommendation& recommendation) const;
 
   Configuration configuration_;

@@ -2,6 +2,7 @@
 
 #include "sealwatch/config/judged_quantities.hpp"
 #include "sealwatch/forecast/words.hpp"
+#include "sealwatch/message/worn_words.hpp"
 #include "services/advisory_generation/assessment.hpp"
 
 namespace sealwatch::advisory_generation {
@@ -76,10 +77,11 @@ void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) 
 
 void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& leakage, const RemainingLife& life) {
   if (leakage.estimated) {
-    std::string text = "leakage resistance R_CL = " + three_digits(leakage.resistance_Pa_s_m3) + " +- " +
-                       three_digits(leakage.resistance_std_Pa_s_m3) + " Pa s/m3 (by sensor noise alone)";
+    std::string text = (is_of_seal(leakage) ? "leakage resistance " : "") + worn_parameter(leakage) + " = " +
+                       three_digits(leakage.resistance_Pa_s_m3) + " +- " +
+                       three_digits(leakage.resistance_std_Pa_s_m3) + worn_unit(leakage) + " (by sensor noise alone)";
     if (leakage.condition_known)
-      text = "seal condition " + condition_in_percent(leakage.condition) + limit_of(life) + ", " + text;
+      text = worn_condition(leakage) + " " + condition_in_percent(leakage.condition) + limit_of(life) + ", " + text;
     reasons.push_back(name_of_test(leakage.header) + ": " + text);
   }
   if (!leakage.used_for_forecast)

@@ -70,6 +70,7 @@ struct Context {
   const InForce& in_force;
   const SiteConfig* site;
   std::optional<UtcTime> book_by;
+  std::string part;  ///< what wears
 };
 
 Recommendation by_wear(const Context& c) {
@@ -89,19 +90,19 @@ Recommendation by_wear(const Context& c) {
       r.priority = AdvisoryPriority::medium;
       r.action = AdvisoryAction::plan_replacement;
       r.text = r.work_before
-                   ? "Plan to replace the piston seal " + when + "; the vessel must be booked by " + booked_by + "."
-                   : "Prepare the replacement of the piston seal; it is too early for a date to book by.";
+                   ? "Plan to replace the " + c.part + " " + when + "; the vessel must be booked by " + booked_by + "."
+                   : "Prepare the replacement of the " + c.part + "; it is too early for a date to book by.";
       r.text += view;
       return r;
     case WearLevel::book:
       r.priority = AdvisoryPriority::high;
       r.action = AdvisoryAction::book_vessel;
-      r.text = "Book a vessel by " + booked_by + " to replace the piston seal " + when + "." + view;
+      r.text = "Book a vessel by " + booked_by + " to replace the " + c.part + " " + when + "." + view;
       return r;
     case WearLevel::book_at_once:
       r.priority = AdvisoryPriority::urgent;
       r.action = AdvisoryAction::book_vessel;
-      r.text = "Book a vessel at once to replace the piston seal " + when +
+      r.text = "Book a vessel at once to replace the " + c.part + " " + when +
                (c.book_by ? "; the regular booking date " + booked_by + " has passed."
                           : "; less time is left than booking usually takes.") +
                view;
@@ -110,7 +111,7 @@ Recommendation by_wear(const Context& c) {
       r.priority = AdvisoryPriority::urgent;
       r.action = AdvisoryAction::replace_now;
       r.latest_by = r.work_before;
-      r.text = "Replace the piston seal now, its function is no longer assured." + view;
+      r.text = "Replace the " + c.part + " now, its function is no longer assured." + view;
       return r;
   }
   return r;
@@ -157,7 +158,7 @@ std::vector<Recommendation> calls(const Context& c) {
 }  // namespace
 
 Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& remembered,
-                         const SiteConfig* site) {
+                         const SiteConfig* site, const std::string& part) {
   InForce in_force = remembered;
   std::optional<UtcTime> book_by;
   if (in_force.replace_by) book_by = start_of_day(add_months(*in_force.replace_by, -booking_lead_time_months(site)));
@@ -167,7 +168,7 @@ Recommendation recommend(const Evidence& evidence, const Assessment& assessment,
     if (in_force.wear == WearLevel::book) in_force.wear = WearLevel::book_at_once;
     if (in_force.wear == WearLevel::plan) in_force.replace_by = book_by = std::nullopt;
   }
-  const Context context{evidence, assessment, in_force, site, book_by};
+  const Context context{evidence, assessment, in_force, site, book_by, part};
   const std::vector<Recommendation> all = calls(context);
   const auto first =
       std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.priority < b.priority; });

@@ -19,8 +19,9 @@ struct Recommendation {
   std::vector<std::string> also;       ///< less urgent calls, as reasons
 };
 
+/// `part`: what wears, and is replaced.
 [[nodiscard]] Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& in_force,
-                                       const SiteConfig* site);
+                                       const SiteConfig* site, const std::string& part = "piston seal");
 
 /// Why the dates are what they are: the time to book a vessel; that the date in force is held where this test by itself
 /// names another. Nothing where the recommendation names no date.

@@ -4,6 +4,8 @@
 
 #include "sealwatch/forecast/safety_margin.hpp"
 #include "sealwatch/forecast/words.hpp"
+#include "sealwatch/message/worn_words.hpp"
+#include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -37,13 +39,18 @@ double time_margin(const StateReport& state, double from_leak) {
 
 void add_margins(SafetyBook& book, const AssetConfig& asset, const Evidence& evidence) {
   const LeakageEstimate& leakage = evidence.leakage;
-  const auto has = [&](const char* name) { return asset.parameters.contains(name); };
-  if (!leakage.estimated || !has("A_C") || !has("x_C") || !has("phi")) return;
+  const PlantDescription& plant = plant_or_default(asset.model);
+  const ParameterDescription *area = plant.find_parameter(ParameterRole::area_up),
+                             *stroke = plant.find_parameter(ParameterRole::stroke);
+  const auto has = [&](const std::string& name) { return asset.parameters.contains(name); };
+  if (!leakage.estimated || !is_of_seal(leakage) || area == nullptr || stroke == nullptr || !has(area->name) ||
+      !has(stroke->name) || !has(plant.load_parameter))
+    return;
   forecast::ClosingConditions conditions;
-  conditions.piston_area_m2 = asset.parameter("A_C");
-  conditions.stroke_m = asset.parameter("x_C");
-  conditions.inlet_flow_m3_s = asset.parameter("A_C") * asset.pst.speed_m_s;
-  conditions.load_N = asset.parameter("phi");
+  conditions.piston_area_m2 = asset.parameter(area->name);
+  conditions.stroke_m = asset.parameter(stroke->name);
+  conditions.inlet_flow_m3_s = asset.parameter(area->name) * asset.pst.speed_m_s;
+  conditions.load_N = asset.parameter(plant.load_parameter);
   const auto margin = forecast::closing_margin(leakage.resistance_Pa_s_m3, conditions);
   if (!margin) return;
   book.margin_known = true;

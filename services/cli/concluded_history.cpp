@@ -38,10 +38,11 @@ std::optional<ForecastQuestion> ConcludedHistory::question(const AssetConfig& as
   const std::optional<UtcTime> replaced = history.last_replacement();
   if (replaced) now = std::max(now, *replaced);
   const std::vector<HistoryEntry> tests = history.until(now);
-  if (!asset.seal || (tests.empty() && !replaced)) return std::nullopt;
+  if (!asset.condition || (tests.empty() && !replaced)) return std::nullopt;
   ForecastQuestion question{
-      .request = {.threshold = asset.seal->threshold, .now = now, .installed = replaced, .horizons = {}},
+      .request = {.threshold = asset.condition->threshold, .now = now, .installed = replaced, .horizons = {}},
       .asset_id = asset.asset_id,
+      .part = asset.condition->part,
       .tests = tests.size(),
       .first = tests.empty() ? now : tests.front().sample.time,
       .last = now,

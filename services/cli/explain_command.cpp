@@ -141,11 +141,14 @@ void print_channels(const char* which, const mismatch::PooledFit& fit, bool chan
 }
 
 void print_prognosis(const Explanation& explanation) {
-  const auto leakage = std::ranges::find(explanation.parameters, "R_CL", &mismatch::ParameterShift::name);
+  const std::optional<ConditionSetting>& scale = explanation.explained.condition;
+  const auto leakage =
+      std::ranges::find(explanation.parameters, scale ? scale->parameter : "", &mismatch::ParameterShift::name);
   if (!explanation.prognosis.known || leakage == explanation.parameters.end()) return;
-  std::printf("\n  R_CL %s +- %s -> %s +- %s Pa s/m3\n  %s\n", number(leakage->before).c_str(),
+  std::printf("\n  %s %s +- %s -> %s +- %s %s\n  %s\n", leakage->name.c_str(), number(leakage->before).c_str(),
               number(leakage->before_std, 2).c_str(), number(leakage->after).c_str(),
-              number(leakage->after_std, 2).c_str(), wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
+              number(leakage->after_std, 2).c_str(), leakage->unit.c_str(),
+              wrapped(explanation.prognosis.sentence, kWidth, 2).c_str());
 }
 
 /// A parameter that wants to go further than its range allows stands in for something: said before all figures.

@@ -47,15 +47,13 @@ FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& reco
   // A seal's leakage means nothing when the model does not come near the recording, and the search is given up. Of a
   // plant without a seal the question may be just how far its naive model is off.
   ActuatorFitOptions search;
-  if (!asset.parameters.contains("R_CL")) search.hopeless_rms = std::numeric_limits<double>::infinity();
+  if (!plant_or_default(asset.model).condition) search.hopeless_rms = std::numeric_limits<double>::infinity();
   JointFit joint = fit_actuator(asset, samples, search);
   FitResult result{.report = std::move(joint.report), .loads = {}};
   for (const RecordingFit& recording : joint.recordings)
     if (!recording.load.name.empty()) result.loads.push_back(recording.load);
   return result;
 }
-
-bool has_cylinder_circuit(const AssetConfig& asset) { return asset.parameters.contains("A_C"); }
 
 /// The cylinder circuit wants the test as the services see it: cut, aligned, with its phases.
 FitReport fit_cylinder(const AssetConfig& asset, const Recording& recording) {

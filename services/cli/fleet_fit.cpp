@@ -29,12 +29,12 @@ Result<std::vector<FleetLife>> read_fleet(const FleetFitOptions& options) {
                       .value = std::to_string(options.installed.size()) + " dates",
                       .rule = "must be one for each of the " + std::to_string(options.histories.size()) + " histories",
                       .advice = {}});
-  std::optional<SealSetting> seal;
+  std::optional<ConditionSetting> seal;
   if (!options.asset_file.empty()) {
     const auto asset = load_asset_or_explain(options.asset_file);
     if (!asset)
       return fail(Error{.file = options.asset_file, .place = {}, .value = {}, .rule = "cannot be used", .advice = {}});
-    seal = asset->seal;
+    seal = asset->condition;
   }
   std::vector<FleetLife> fleet;
   for (std::size_t k = 0; k < options.histories.size(); ++k) {

@@ -1,6 +1,7 @@
 #include "services/cli/forecast_page.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 
@@ -320,12 +321,18 @@ Headline headline_without_advice(const ForecastQuestion& question, const Forecas
   return {"Continue with monthly tests: the history is too short for a forecast.", why};
 }
 
+/// "Piston seal"
+std::string heading_of(std::string part) {
+  if (!part.empty()) part.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(part.front())));
+  return part;
+}
+
 std::string head(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
   const std::string of = question.asset_id.empty() ? "" : " of " + question.asset_id;
   const Forecast& primary = answer.forecasts.front();
   const Headline headline =
       question.advice ? headline_of(*question.advice) : headline_without_advice(question, primary);
-  std::string html = "<h1>Piston seal" + report::escaped(of) + "</h1>";
+  std::string html = "<h1>" + report::escaped(heading_of(question.part)) + report::escaped(of) + "</h1>";
   html.append(report::paragraph(history_words(question), "muted small"));
   html.append("<div class=\"banner ").append(colour_of(question.advice, primary.state));
   html.append("\"><p class=\"verdict\">").append(in_lines(headline.action));
@@ -359,7 +366,7 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
 Status write_forecast_page(const std::string& file, const Result<std::string>& body) {
   if (!body) return fail(body.error());
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << report::html_page("Piston seal: what to do, by when, why", *body);
+  stream << report::html_page("What to do, by when, why", *body);
   stream.close();
   if (stream) return {};
   return fail(Error{.file = file, .place = "--page", .value = {}, .rule = "cannot be written", .advice = {}});

@@ -114,7 +114,7 @@ std::optional<AssetConfig> asset_in_file(const std::string& file) {
 std::optional<ForecastQuestion> question_of_file(const ForecastOptions& options) {
   std::optional<AssetConfig> asset;
   if (!options.asset.empty() && !(asset = asset_in_file(options.asset))) return std::nullopt;
-  const std::optional<SealSetting> seal = asset ? asset->seal : std::nullopt;
+  const std::optional<ConditionSetting> seal = asset ? asset->condition : std::nullopt;
   auto history = forecast::read_history(options.history_file, seal);
   if (!history) {
     complain(history.error());
@@ -124,6 +124,7 @@ std::optional<ForecastQuestion> question_of_file(const ForecastOptions& options)
       .request = {.history = std::move(*history),
                   .threshold = options.threshold_given || !seal ? options.threshold : seal->threshold},
       .asset_id = asset ? asset->asset_id : "",
+      .part = asset && asset->condition ? asset->condition->part : "piston seal",
       .forecasters = forecast::default_forecasters()};
   forecast::ForecastRequest& request = question.request;
   question.tests = request.history.size();
@@ -187,8 +188,8 @@ std::optional<ForecastQuestion> question_of_journals(const ForecastOptions& opti
     complain(Error{.file = journals->place(),
                    .place = {},
                    .value = asset->asset_id,
-                   .rule = asset->seal ? "has no test with a date since its last replacement"
-                                       : "has no seal condition by its asset file: nothing is forecast",
+                   .rule = asset->condition ? "has no test with a date since its last replacement"
+                                            : "has no seal condition by its asset file: nothing is forecast",
                    .advice = {}});
   if (question && options.threshold_given) question->request.threshold = options.threshold;
   return question;

@@ -26,12 +26,22 @@ std::vector<std::string> elements_of(SiteKind kind) {
   return names;
 }
 
+/// Of those, the elements at which this law is asked.
+std::vector<std::string> elements_of(const Law& law) {
+  if (law.kind >= SiteKind::sensor_bias) return elements_of(law.kind);
+  std::vector<std::string> names;
+  for (const PlantDescription& plant : all_plants())
+    for (const Site& site : plant.sites)
+      if (fits(law, site) && std::ranges::find(names, site.element) == names.end()) names.emplace_back(site.element);
+  return names;
+}
+
 /// Whether somebody who writes `asked` means this law: its id, the kind of its site, or an element that it may act at.
 bool is_meant(const Law& law, const std::string& asked) {
   if (asked.empty() || asked == law.id || asked == name_of(law.kind)) return true;
   const std::string group = asked.substr(0, asked.find(':') + 1);
-  return std::ranges::any_of(elements_of(law.kind), [&](const std::string& element) {
-    return law_fits(law, {asked, law.kind}) && (element == asked || (!group.empty() && element == group + "CHANNEL"));
+  return std::ranges::any_of(elements_of(law), [&](const std::string& element) {
+    return element == asked || (!group.empty() && element == group + "CHANNEL");
   });
 }
 
@@ -107,26 +117,24 @@ void print_law(const Law& law, bool whole) {
                                                                                      : "at 0")});
   print_columns(rows, 4);
   if (!whole) return;
-  if (!law.elements.empty()) print_wrapped("only at: " + joined({law.elements.begin(), law.elements.end()}, ", "), 4);
+  if (law.feeds != Feeds::anything) print_wrapped("only where it feeds a " + std::string(name_of(law.feeds)), 4);
   print_wrapped("physical while: " + std::string(law.energy), 4);
   print_wrapped("source: " + std::string(law.source), 4);
 }
 
 nlohmann::ordered_json law_as_json(const Law& law) {
-  nlohmann::ordered_json json = {
-      {"id", law.id},
-      {"form", law.form},
-      {"site", name_of(law.kind)},
-      {"elements", law.elements.empty() ? elements_of(law.kind)
-                                        : std::vector<std::string>(law.elements.begin(), law.elements.end())},
-      {"unit", mismatch::words_of(law.kind).unit},
-      {"equation", law.equation},
-      {"meaning", law.meaning},
-      {"energy", law.energy},
-      {"source", law.source},
-      {"closed_form", law.closed_form},
-      {"hidden", nullptr},
-      {"parameters", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {{"id", law.id},
+                                 {"form", law.form},
+                                 {"site", name_of(law.kind)},
+                                 {"elements", elements_of(law)},
+                                 {"unit", mismatch::words_of(law.kind).unit},
+                                 {"equation", law.equation},
+                                 {"meaning", law.meaning},
+                                 {"energy", law.energy},
+                                 {"source", law.source},
+                                 {"closed_form", law.closed_form},
+                                 {"hidden", nullptr},
+                                 {"parameters", nlohmann::ordered_json::array()}};
   if (law.hidden) json["hidden"] = {{"name", law.hidden->name}, {"unit", law.hidden->unit}};
   for (const LawParameter& parameter : law.parameters)
     json["parameters"].push_back({{"name", parameter.name},

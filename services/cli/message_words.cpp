@@ -4,6 +4,7 @@
 
 #include "sealwatch/forecast/words.hpp"
 #include "sealwatch/message/outside.hpp"
+#include "sealwatch/message/worn_words.hpp"
 #include "services/cli/summary.hpp"
 #include "services/cli/terminal.hpp"
 
@@ -99,9 +100,9 @@ std::string content(const HealthReport& m) {
 }
 std::string content(const LeakageEstimate& m) {
   if (!m.estimated) return "no estimate: " + join(m.reasons);
-  std::string text =
-      "R_CL " + number(m.resistance_Pa_s_m3, 3) + " +- " + number(m.resistance_std_Pa_s_m3, 2) + " Pa s/m3";
-  if (m.condition_known) text += ", seal condition " + percent(m.condition);
+  std::string text = worn_parameter(m) + " " + number(m.resistance_Pa_s_m3, 3) + " +- " +
+                     number(m.resistance_std_Pa_s_m3, 2) + worn_unit(m);
+  if (m.condition_known) text += ", " + worn_condition(m) + " " + percent(m.condition);
   if (!m.used_for_forecast) text += ", left out: " + join(m.reasons);
   return text;
 }

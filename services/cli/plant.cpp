@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/cli/columns.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/plant_laws.hpp"
@@ -70,7 +71,7 @@ void print_plant(const std::string& file, const ReadPlant& read) {
         {size.unit, "x " + short_number(factor),
          std::string(size.law->id) + ": " + std::string(parameter.name) + " usually " + here(parameter.start.front()),
          parameter.strength ? "matters from " + here(parameter.significant) : "",
-         "from " + short_number(parameter.min) + " to " + short_number(parameter.max)});
+         "from " + here(parameter.min) + " to " + here(parameter.max)});
   }
   print_table("Sizes of laws here, each unit by one law that has it (law_sizes)", rows);
 }

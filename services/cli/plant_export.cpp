@@ -1,26 +1,45 @@
 // `sealwatch plant export`: an asset's plant, with the laws that were found, as an FMU for the tool that models come from.
 #include <cstdio>
+#include <fstream>
 
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/common/fmi/export/fmu_writer.hpp"
+#include "services/common/fmi/temporary_folder.hpp"
+#include "services/common/runtime/built_in_texts.hpp"
 #include "services/common/runtime/plant_file.hpp"
 
 namespace sealwatch::cli {
+namespace {
+
+Error without_text(const PlantDescription& plant) {
+  return {.file = {},
+          .place = {},
+          .value = plant.name,
+          .rule = "is a plant that is built in, whose equations are compiled and cannot be written out",
+          .advice = "write it as text (docs/tutorial-plant.md) and name that with model: FILE.yaml"};
+}
+
+/// The plant's equations: those of its file, or of the text that a built-in plant is written as too.
+Checked<ReadPlant> equations_of(const PlantDescription& plant) {
+  if (!plant.file.empty()) return read_plant_file(plant.file);
+  const std::string_view text = text_of_built_in(plant.name);
+  if (text.empty()) return tl::unexpected(std::vector{without_text(plant)});
+  const auto folder = fmi::TemporaryFolder::create();
+  if (!folder) return tl::unexpected(std::vector{folder.error()});
+  const std::string file = (folder->path() / (plant.name + ".yaml")).string();
+  std::ofstream(file) << text;
+  return read_plant_file(file);
+}
+
+}  // namespace
 
 int run_plant_export(const PlantExportOptions& options) {
   const auto asset = load_asset_or_explain(options.asset_file);
   if (!asset) return kBadInput;
   const auto plant = find_plant(asset->model);
   if (!plant) return complain(plant.error()), kBadInput;
-  if ((*plant)->file.empty())
-    return complain(Error{.file = options.asset_file,
-                          .place = {},
-                          .value = asset->model,
-                          .rule = "is a plant that is built in, whose equations are compiled and cannot be written out",
-                          .advice = "config/plants has some of them as text; name one with model: FILE.yaml"}),
-           kBadInput;
-  const auto read = read_plant_file((*plant)->file);
+  const auto read = equations_of(**plant);
   if (!read) return complain(read.error().front()), kBadInput;
   const auto model = fmi::export_model(read->built.plant, *asset);
   if (!model) return complain(model.error()), kBadInput;

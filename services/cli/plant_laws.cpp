@@ -13,23 +13,17 @@ void add_id(std::vector<std::string>& ids, const Law& law) {
 
 }  // namespace
 
-bool law_fits(const Law& law, const Site& site) {
-  return law.kind == site.kind &&
-         (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end());
-}
-
 std::vector<std::string> laws_at(const Site& site) {
   std::vector<std::string> ids;
   for (const Law& law : all_laws())
-    if (law.plant.empty() && !law.closed_form && law_fits(law, site)) add_id(ids, law);
+    if (law.plant.empty() && !law.closed_form && fits(law, site)) add_id(ids, law);
   return ids;
 }
 
 std::vector<std::string> laws_at(const equations::TextSite& site, const std::vector<Law>& own) {
   std::vector<std::string> ids;
   const auto add = [&](const Law& law) {
-    if (!law.closed_form && law_fits(law, {site.element, site.kind}) &&
-        (!law.plant.empty() || !equations::is_inert(law, site)))
+    if (!law.closed_form && fits(law, site.site()) && (!law.plant.empty() || !equations::is_inert(law, site)))
       add_id(ids, law);
   };
   for (const Law& law : all_laws())

@@ -10,9 +10,6 @@
 
 namespace sealwatch::cli {
 
-/// Whether a law of the catalogue fits a site, closed forms included.
-[[nodiscard]] bool law_fits(const Law& law, const Site& site);
-
 /// Ids of the laws that fit a site of a built-in plant, closed forms left out.
 [[nodiscard]] std::vector<std::string> laws_at(const Site& site);
 

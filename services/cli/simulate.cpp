@@ -119,7 +119,7 @@ int run_simulate(const SimulateOptions& options) {
     complain(Error{.file = {},
                    .place = "--condition",
                    .value = number(options.condition, 3),
-                   .rule = "is not above the asset's threshold " + number(asset->seal->threshold, 3) +
+                   .rule = "is not above the asset's threshold " + number(asset->condition->threshold, 3) +
                            ": such a seal has failed before its first test",
                    .advice = {}});
     return kBadInput;

@@ -5,6 +5,7 @@
 
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/retraction.hpp"
+#include "sealwatch/message/worn_words.hpp"
 #include "services/cli/forecast_text.hpp"
 #include "services/cli/message_words.hpp"
 #include "services/cli/terminal.hpp"
@@ -60,9 +61,9 @@ std::string AssetView::seal_lines() const {
     if (estimate->estimated && (latest == nullptr || estimate->header.event_time_ns >= latest->header.event_time_ns))
       latest = estimate;
   if (latest != nullptr)
-    text += "  leakage          R_CL " + number(latest->resistance_Pa_s_m3, 4) + " +- " +
-            number(latest->resistance_std_Pa_s_m3, 2) + " Pa s/m3 by sensor noise alone, from the " +
-            latest->chosen_model + " model\n";
+    text += (is_of_seal(*latest) ? "  leakage          " : "  wear             ") + worn_parameter(*latest) + " " +
+            number(latest->resistance_Pa_s_m3, 4) + " +- " + number(latest->resistance_std_Pa_s_m3, 2) +
+            worn_unit(*latest) + " by sensor noise alone, from the " + latest->chosen_model + " model\n";
   if (health_ && is_of_now(health_->header)) {
     text += "  health           ";
     text += health_->health_grade_known ? "grade " + number(health_->health_grade, 2) + " (1 as new, 0 failed)"

@@ -19,10 +19,10 @@ bool is_kinematic(const ChannelDescription& channel) {
 
 std::array<bool, kWitnesses> witnesses_for(const ChannelDescription& channel) {
   //                                            position  velocity  pump_angle  shaft_speed
-  if (channel.name == "position") return {false, true, false, false};
-  if (channel.name == "velocity") return {true, false, false, false};
-  if (channel.name == "pump_angle") return {true, false, false, true};
-  if (channel.name == "shaft_speed") return {true, false, true, false};
+  if (channel.role == ChannelRole::stroke) return {false, true, false, false};
+  if (channel.role == ChannelRole::speed) return {true, false, false, false};
+  if (channel.role == ChannelRole::shaft_angle) return {true, false, false, true};
+  if (channel.role == ChannelRole::shaft_speed) return {true, false, true, false};
   return {true, true, false, false};
 }
 

@@ -18,12 +18,13 @@ constexpr double kLongestStep_s = 1.0;          // a longer gap says nothing abo
 constexpr double kFallbackStroke_m = 0.05;
 
 double stroke_of(const AssetConfig* asset, const PlantDescription& plant) {
+  const ParameterDescription* stroke = plant.find_parameter(ParameterRole::stroke);
+  if (stroke == nullptr) return kFallbackStroke_m;
   if (asset) {
-    const auto found = asset->parameters.find("x_C");
+    const auto found = asset->parameters.find(stroke->name);
     if (found != asset->parameters.end()) return found->second.value;
   }
-  const ParameterDescription* stroke = plant.find_parameter("x_C");
-  return stroke ? stroke->value : kFallbackStroke_m;
+  return stroke->value;
 }
 
 SensorSetting sensor_of(const AssetConfig* asset, const std::string& channel) {
@@ -37,8 +38,8 @@ double numbers_of(std::size_t rows, std::size_t channels) {
   return static_cast<double>(std::max<std::size_t>(rows, 1)) * static_cast<double>(channels + 1);
 }
 
-double value_at(const TimeSeries& samples, std::string_view channel, std::size_t row) {
-  const Series* series = samples.find(channel);
+double value_at(const TimeSeries& samples, const PlantDescription* plant, ChannelRole channel, std::size_t row) {
+  const Series* series = plant == nullptr ? nullptr : find_series(samples, *plant, channel);
   return series ? series->values[row] : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -190,10 +191,12 @@ void OpenTest::take_rows(const SampleBlock& block) {
   };
   for (std::size_t row = 0; row < samples.time_s.size(); ++row) {
     const double step_s = row > 0 ? samples.time_s[row] - samples.time_s[row - 1] : usual_interval_s_;
-    travel_[static_cast<std::size_t>(Witness::position)] = value_at(samples, "position", row);
-    travel_[static_cast<std::size_t>(Witness::pump_angle)] = value_at(samples, "pump_angle", row);
-    advance(travel_[static_cast<std::size_t>(Witness::velocity)], value_at(samples, "velocity", row), step_s);
-    advance(travel_[static_cast<std::size_t>(Witness::shaft_speed)], value_at(samples, "shaft_speed", row), step_s);
+    travel_[static_cast<std::size_t>(Witness::position)] = value_at(samples, plant_, ChannelRole::stroke, row);
+    travel_[static_cast<std::size_t>(Witness::pump_angle)] = value_at(samples, plant_, ChannelRole::shaft_angle, row);
+    advance(travel_[static_cast<std::size_t>(Witness::velocity)], value_at(samples, plant_, ChannelRole::speed, row),
+            step_s);
+    advance(travel_[static_cast<std::size_t>(Witness::shaft_speed)],
+            value_at(samples, plant_, ChannelRole::shaft_speed, row), step_s);
     for (auto& [name, watch] : watches_)
       if (const Series* series = samples.find(name))
         watch.add(samples.time_s[row], series->values[row], travel_, *options_);

@@ -52,6 +52,10 @@ class AlignmentCheck {
   void note_sign(const std::string& channel, bool correct, const std::string& why);
   void note_offset(const std::string& channel, double offset_s, double std_s, bool correct, const std::string& why);
   AlignmentRemark& remark(const std::string& channel);
+  [[nodiscard]] const Series* recorded(ChannelRole role) const {
+    return find_series(samples_, asset_.described(), role);
+  }
+  [[nodiscard]] std::string name(ChannelRole role) const { return channel_name(asset_.described(), role); }
 
   const TimeSeries& samples_;
   const AssetView& asset_;
@@ -103,9 +107,9 @@ std::optional<signal::OffsetEstimate> AlignmentCheck::compare(const std::vector<
 /// Speed of the piston that the flow would show: dx/dt + V_A / (beta A_A) dp_A/dt. Compression makes the flow lead.
 std::vector<double> AlignmentCheck::speed_by_flow(const std::vector<double>& speed, double mean_position_m) const {
   const signal::Cylinder cylinder = asset_.cylinder();
-  const Series* pressure = samples_.find("pressure_a");
+  const Series* pressure = recorded(ChannelRole::pressure_up);
   const double share = pressure ? 1.0 : 0.5;  // the chambers share a change of their difference
-  if (!pressure) pressure = samples_.find("pressure_differential");
+  if (!pressure) pressure = recorded(ChannelRole::pressure_difference);
   if (!pressure || !cylinder.area_a_m2 || !cylinder.bulk_modulus_Pa) return speed;
   const double volume_m3 = cylinder.dead_volume_m3.value_or(0.0) + *cylinder.area_a_m2 * mean_position_m;
   const double capacity_m_Pa = share * volume_m3 / (*cylinder.bulk_modulus_Pa * *cylinder.area_a_m2);
@@ -116,18 +120,18 @@ std::vector<double> AlignmentCheck::speed_by_flow(const std::vector<double>& spe
 }
 
 void AlignmentCheck::compare_motion() {
-  const Series* position = samples_.find("position");
+  const Series* position = recorded(ChannelRole::stroke);
   if (!position) return;
   const std::vector<double> speed = signal::derivative(filter_.apply_zero_phase(position->values), interval_s_);
   const std::vector<double> by_flow = speed_by_flow(speed, signal::mean(position->values).value);
-  for (const char* name : {"velocity", "flow", "shaft_speed", "motor_voltage", "motor_duty"}) {
-    const Series* channel = samples_.find(name);
+  for (const ChannelRole role : {ChannelRole::speed, ChannelRole::flow, ChannelRole::shaft_speed, ChannelRole::drive}) {
+    const Series* channel = recorded(role);
     if (!channel) continue;
-    const std::vector<double>& reference = channel->name == "flow" ? by_flow : speed;
-    const auto estimate = compare(reference, asset_.time_constant_s("position"), *channel);
+    const std::vector<double>& reference = role == ChannelRole::flow ? by_flow : speed;
+    const auto estimate = compare(reference, asset_.time_constant_s(position->name), *channel);
     if (!estimate || std::abs(estimate->correlation) < options_.least_sign_correlation) continue;
-    const bool timed = channel->name == "velocity" || channel->name == "flow";
-    comparisons_.push_back({name, *estimate, timed});
+    const bool timed = role == ChannelRole::speed || role == ChannelRole::flow;
+    comparisons_.push_back({channel->name, *estimate, timed});
   }
 }
 
@@ -139,7 +143,7 @@ void AlignmentCheck::judge_signs() {
   if (against == 0) return;
   const std::size_t with = comparisons_.size() - against + 1;
   if (against > with) {
-    note_sign("position", true, "all else moves the other way; corrected");
+    note_sign(name(ChannelRole::stroke), true, "all else moves the other way; corrected");
     for (const Comparison& one : comparisons_)
       if (one.estimate.gain > 0.0) note_sign(one.channel, true, "against most other channels; corrected");
     return;
@@ -175,7 +179,8 @@ void AlignmentCheck::judge_offsets() {
   const signal::OffsetEstimate& b = timed[1]->estimate;
   const bool agree = !offset_noticed(a.offset_s - b.offset_s, std::hypot(a.offset_std_s, b.offset_std_s));
   if (late.size() == 2 && agree) {
-    note_offset("position", -0.5 * (a.offset_s + b.offset_s), 0.5 * std::hypot(a.offset_std_s, b.offset_std_s), true,
+    note_offset(name(ChannelRole::stroke), -0.5 * (a.offset_s + b.offset_s),
+                0.5 * std::hypot(a.offset_std_s, b.offset_std_s), true,
                 "velocity and flow agree with each other; corrected");
     return;
   }
@@ -193,8 +198,8 @@ void AlignmentCheck::compare_with_leakage(const Series& differential) {
   constexpr double kStands = 0.02;     // of the largest speed
   constexpr double kLeast_s = 2.0;     // of standstill
   constexpr double kStdErrors = 10.0;  // of the mean; coloured noise and what is left of the motion are in it
-  const Series* position = samples_.find("position");
-  const Series* flow = samples_.find("flow");
+  const Series* position = recorded(ChannelRole::stroke);
+  const Series* flow = recorded(ChannelRole::flow);
   if (!position || !flow) return;
   const std::vector<double> speed = signal::derivative(filter_.apply_zero_phase(position->values), interval_s_);
   double largest = 0.0;
@@ -209,18 +214,18 @@ void AlignmentCheck::compare_with_leakage(const Series& differential) {
   const signal::Estimate leak = signal::mean(flow_at_rest), difference = signal::mean(difference_at_rest);
   const bool clear = std::abs(leak.value) > kStdErrors * leak.std_error &&
                      std::abs(difference.value) > kStdErrors * difference.std_error;
-  const auto correction = alignment_.corrections.find("flow");
+  const auto correction = alignment_.corrections.find(name(ChannelRole::flow));
   const double sign = correction != alignment_.corrections.end() && correction->second.swap_sign ? -1.0 : 1.0;
   if (clear && sign * leak.value * difference.value < 0.0)
-    note_sign("pressure_differential", false,
+    note_sign(name(ChannelRole::pressure_difference), false,
               "against the flow that leaks while the piston stands; it, or the zero of the flow, is wrong");
 }
 
 /// Absolute pressures have no sign to swap, so that pressure_differential is the one that is wrong.
 void AlignmentCheck::compare_pressures() {
-  const Series* pressure_a = samples_.find("pressure_a");
-  const Series* pressure_b = samples_.find("pressure_b");
-  const Series* differential = samples_.find("pressure_differential");
+  const Series* pressure_a = recorded(ChannelRole::pressure_up);
+  const Series* pressure_b = recorded(ChannelRole::pressure_down);
+  const Series* differential = recorded(ChannelRole::pressure_difference);
   if (!differential) return;
   if (!pressure_a || !pressure_b) {
     compare_with_leakage(*differential);
@@ -229,13 +234,13 @@ void AlignmentCheck::compare_pressures() {
   std::vector<double> difference = pressure_a->values;
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= pressure_b->values[i];
   const auto estimate =
-      compare(filter_.apply_zero_phase(difference), asset_.time_constant_s("pressure_a"), *differential);
+      compare(filter_.apply_zero_phase(difference), asset_.time_constant_s(pressure_a->name), *differential);
   if (!estimate) return;
   if (estimate->correlation < -options_.least_sign_correlation)
-    note_sign("pressure_differential", true, "against pressure_a - pressure_b; corrected");
+    note_sign(name(ChannelRole::pressure_difference), true, "against pressure_a - pressure_b; corrected");
   if (std::abs(estimate->correlation) >= options_.least_correlation &&
       offset_noticed(estimate->offset_s, estimate->offset_std_s))
-    note_offset("pressure_differential", estimate->offset_s, estimate->offset_std_s, false,
+    note_offset(name(ChannelRole::pressure_difference), estimate->offset_s, estimate->offset_std_s, false,
                 "against pressure_a - pressure_b, and it is unknown which is wrong");
 }
 

@@ -2,28 +2,27 @@
 
 namespace sealwatch {
 
-std::optional<double> AssetView::parameter(const std::string& name) const {
+std::optional<double> AssetView::parameter(ParameterRole role) const {
+  const ParameterDescription* described = this->described().find_parameter(role);
+  if (described == nullptr) return std::nullopt;
   if (asset) {
-    const auto found = asset->parameters.find(name);
+    const auto found = asset->parameters.find(described->name);
     if (found != asset->parameters.end()) return found->second.value;
   }
-  const ParameterDescription* described = plant ? plant->find_parameter(name) : nullptr;
-  return described ? std::optional(described->value) : std::nullopt;
+  return plant ? std::optional(described->value) : std::nullopt;
 }
 
-/// Plants name the piston's areas A_C and area_ratio (equal areas by default), or A_A and A_B.
+/// Plants give the area on the side that pushes down, or its ratio to the other; equal by default.
 signal::Cylinder AssetView::cylinder() const {
   signal::Cylinder cylinder;
-  cylinder.area_a_m2 = parameter("A_C");
-  cylinder.area_ratio = parameter("area_ratio").value_or(1.0);
-  if (const auto area_a = parameter("A_A")) {
-    cylinder.area_a_m2 = area_a;
-    cylinder.area_ratio = parameter("A_B").value_or(*area_a) / *area_a;
-  }
-  cylinder.dead_volume_m3 = parameter("V_0");
-  cylinder.bulk_modulus_Pa = parameter("beta");
-  cylinder.displacement_m3_rad = parameter("alpha_P");
-  cylinder.stroke_m = parameter("x_C").value_or(0.0);
+  cylinder.area_a_m2 = parameter(ParameterRole::area_up);
+  cylinder.area_ratio = parameter(ParameterRole::area_ratio).value_or(1.0);
+  if (const auto area_down = parameter(ParameterRole::area_down); area_down && cylinder.area_a_m2)
+    cylinder.area_ratio = *area_down / *cylinder.area_a_m2;
+  cylinder.dead_volume_m3 = parameter(ParameterRole::dead_volume);
+  cylinder.bulk_modulus_Pa = parameter(ParameterRole::bulk_modulus);
+  cylinder.displacement_m3_rad = parameter(ParameterRole::displacement);
+  cylinder.stroke_m = parameter(ParameterRole::stroke).value_or(0.0);
   return cylinder;
 }
 

@@ -15,7 +15,9 @@ struct AssetView {
   const AssetConfig* asset = nullptr;
   const PlantDescription* plant = nullptr;
 
-  [[nodiscard]] std::optional<double> parameter(const std::string& name) const;
+  [[nodiscard]] std::optional<double> parameter(ParameterRole role) const;
+  /// The plant, or where it is not known that of assets whose file names none.
+  [[nodiscard]] const PlantDescription& described() const { return plant ? *plant : plant_or_default({}); }
   [[nodiscard]] signal::Cylinder cylinder() const;
   [[nodiscard]] double time_constant_s(const std::string& channel) const;
   [[nodiscard]] double noise_std(const std::string& channel) const;

@@ -128,7 +128,7 @@ TestConclusion conclude_test(const std::vector<SampleBlock>& blocks, const Asset
   const double duration_s = rows < 2 ? 0.0 : recorded.time_s.back() - recorded.time_s.front();
   std::vector<Quantity> quantities;
   if (window.samples.time_s.size() >= options.least_samples) {
-    const signal::TestRecord test(window.samples, asset.cylinder());
+    const signal::TestRecord test(window.samples, asset.cylinder(), asset.described());
     window.phases = to_message(test.phases());
     window.filter = test.filter_description();
     if (has_begin(blocks) && begins_inside_the_stroke(window))

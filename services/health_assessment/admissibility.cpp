@@ -4,32 +4,56 @@
 #include <cstdio>
 #include <initializer_list>
 
+#include "sealwatch/model/plant_description.hpp"
+
 namespace sealwatch {
 namespace {
 
-bool is_ok(const TestFeatures& features, std::string_view channel) {
-  return std::any_of(features.channel_status.begin(), features.channel_status.end(), [&](const ChannelStatus& status) {
-    return status.channel == channel && status.state == ChannelState::OK;
+/// The channels of a test that are in order, by their roles.
+class InOrder {
+ public:
+  InOrder(const TestFeatures& features, const PlantDescription& plant) : features_(features), plant_(plant) {}
+  [[nodiscard]] bool has(ChannelRole role) const {
+    const std::string channel = channel_name(plant_, role);
+    return std::ranges::any_of(features_.channel_status, [&](const ChannelStatus& status) {
+      return status.channel == channel && status.state == ChannelState::OK;
+    });
+  }
+  [[nodiscard]] bool any(std::initializer_list<ChannelRole> roles) const {
+    return std::ranges::any_of(roles, [&](ChannelRole role) { return has(role); });
+  }
+
+ private:
+  const TestFeatures& features_;
+  const PlantDescription& plant_;
+};
+
+bool cylinder_circuit_possible(const InOrder& channels) {
+  const bool pressures = channels.has(ChannelRole::pressure_up) && channels.has(ChannelRole::pressure_down);
+  return channels.has(ChannelRole::flow) && (pressures || channels.has(ChannelRole::pressure_difference)) &&
+         channels.any({ChannelRole::stroke, ChannelRole::speed});
+}
+
+bool whole_actuator_possible(const InOrder& channels) {
+  return channels.has(ChannelRole::drive) && channels.has(ChannelRole::shaft_speed) &&
+         channels.any({ChannelRole::pressure_up, ChannelRole::pressure_down, ChannelRole::pressure_difference}) &&
+         channels.has(ChannelRole::stroke);
+}
+
+/// A plant without a hydraulic cylinder is estimated by what it is simulated with: all that drives it, and any output.
+bool model_possible(const TestFeatures& features, const PlantDescription& plant) {
+  return std::ranges::any_of(features.channel_status, [&](const ChannelStatus& status) {
+    const ChannelDescription* channel = plant.find_channel(status.channel);
+    return channel != nullptr && !channel->input && status.state == ChannelState::OK;
   });
 }
 
-bool any_ok(const TestFeatures& features, std::initializer_list<std::string_view> channels) {
-  return std::any_of(channels.begin(), channels.end(), [&](std::string_view c) { return is_ok(features, c); });
-}
+/// Whether the plant is one whose seal the holds of a test control.
+bool has_cylinder(const PlantDescription& plant) { return plant.find_parameter(ParameterRole::area_up) != nullptr; }
 
-bool cylinder_circuit_possible(const TestFeatures& features) {
-  const bool pressures = is_ok(features, "pressure_a") && is_ok(features, "pressure_b");
-  return is_ok(features, "flow") && (pressures || is_ok(features, "pressure_differential")) &&
-         any_ok(features, {"position", "velocity"});
-}
-
-bool whole_actuator_possible(const TestFeatures& features) {
-  return any_ok(features, {"motor_voltage", "motor_duty"}) && is_ok(features, "shaft_speed") &&
-         any_ok(features, {"pressure_a", "pressure_b", "pressure_differential"}) && is_ok(features, "position");
-}
-
-std::string missing_channels(const TestFeatures& features) {
-  std::string text = "no leakage estimate is possible with the channels that are in order";
+std::string missing_channels(const TestFeatures& features, bool of_seal) {
+  std::string text =
+      std::string("no ") + (of_seal ? "leakage " : "") + "estimate is possible with the channels that are in order";
   for (const ChannelStatus& status : features.channel_status) {
     if (status.state == ChannelState::OK || status.state == ChannelState::NOT_USED) continue;
     text += "; " + status.channel + " is " + std::string(name_of(status.state));
@@ -64,7 +88,8 @@ bool is_poor_recording(const StateReport& report) {
   return std::any_of(report.judgements.begin(), report.judgements.end(), is_poor);
 }
 
-std::vector<std::string> inadmissible_reasons(const StateReport& report, const TestFeatures& features) {
+std::vector<std::string> inadmissible_reasons(const AssetConfig& asset, const StateReport& report,
+                                              const TestFeatures& features) {
   if (report.verdict == PstVerdict::aborted || report.verdict == PstVerdict::not_judged) {
     const std::string why = report.verdict_reasons.empty() ? "no reason given" : report.verdict_reasons.front();
     return {std::string(report.verdict == PstVerdict::aborted ? "aborted: " : "not judged: ") + why};
@@ -72,11 +97,15 @@ std::vector<std::string> inadmissible_reasons(const StateReport& report, const T
   std::vector<std::string> reasons;
   const bool has_hold = std::any_of(features.phases.begin(), features.phases.end(),
                                     [](const Phase& phase) { return phase.kind == PhaseKind::hold; });
-  if (!has_hold) reasons.push_back("no hold was found, and the holds control the leakage resistance");
+  const PlantDescription& plant = plant_or_default(asset.model);
+  const bool cylinder = has_cylinder(plant);
+  if (!has_hold && cylinder) reasons.push_back("no hold was found, and the holds control the leakage resistance");
   for (const RegionJudgement& judgement : report.judgements)
     if (is_poor(judgement)) reasons.push_back(quality_text(judgement));
-  if (!cylinder_circuit_possible(features) && !whole_actuator_possible(features))
-    reasons.push_back(missing_channels(features));
+  const InOrder channels(features, plant);
+  const bool possible = cylinder ? cylinder_circuit_possible(channels) || whole_actuator_possible(channels)
+                                 : model_possible(features, plant);
+  if (!possible) reasons.push_back(missing_channels(features, cylinder));
   return reasons;
 }
 

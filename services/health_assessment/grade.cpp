@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "sealwatch/model/plant_description.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -17,11 +19,12 @@ constexpr double kGradePerRegion = 0.25;
 std::optional<double> seal_grade(const AssetConfig& asset, const std::vector<Deviation>& deviations,
                                  std::optional<double> last_grade) {
   const Deviation* leakage = find_deviation(deviations, "leakage_resistance");
-  if (leakage != nullptr && asset.seal) {
-    const double theta = asset.seal->condition(leakage->judgement.value);
-    return std::clamp((theta - asset.seal->threshold) / (1.0 - asset.seal->threshold), 0.0, 1.0);
+  const std::optional<ConditionSetting>& seal = plant_or_default(asset.model).condition;
+  if (leakage != nullptr && asset.condition && seal && asset.condition->parameter == seal->parameter) {
+    const double theta = asset.condition->condition(leakage->judgement.value);
+    return std::clamp((theta - asset.condition->threshold) / (1.0 - asset.condition->threshold), 0.0, 1.0);
   }
-  if (leakage == nullptr && !asset.seal) leakage = find_deviation(deviations, "hold_decay_rate");
+  if (leakage == nullptr && !asset.condition) leakage = find_deviation(deviations, "hold_decay_rate");
   if (leakage == nullptr) return last_grade;
   const bool is_resistance = leakage->judgement.quantity == "leakage_resistance";
   const double worse = is_resistance ? -leakage->value : leakage->value;

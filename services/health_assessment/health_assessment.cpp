@@ -169,11 +169,13 @@ void HealthAssessment::settle(AssetState& state, const StateReport& report, bool
 HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& state_report,
                                         const TestFeatures& features) const {
   HealthReport report = begin_report(state_report, features);
+  const auto asset = assets_.find(state_report.asset_id);
+  const AssetConfig unknown;
+  report.inadmissible_reasons =
+      inadmissible_reasons(asset == assets_.end() ? unknown : asset->second, state_report, features);
   if (is_first_after_replacement(report.header)) state.past.restart();
   const std::optional<HealthReport> last = state.past.last();
-  report.inadmissible_reasons = inadmissible_reasons(state_report, features);
   report.admissible_for_prognosis = report.inadmissible_reasons.empty();
-  const auto asset = assets_.find(state_report.asset_id);
   if (state_report.judgements.empty() || is_poor_recording(state_report) || asset == assets_.end()) {
     carry_over(last, report);
     if (state_report.verdict == PstVerdict::failed) take_grade(0.0, report);

@@ -3,30 +3,31 @@
 #include <cmath>
 
 #include "sealwatch/forecast/words.hpp"
+#include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch::prognostic_assessment {
 namespace {
 
-const EstimatedParameter* leakage_resistance(const FitReport& fit) {
+const EstimatedParameter* what_wears(const FitReport& fit, std::string_view name) {
   for (const EstimatedParameter& parameter : fit.parameters)
-    if (parameter.name == "R_CL" && parameter.free && std::isfinite(parameter.value) &&
+    if (parameter.name == name && parameter.free && std::isfinite(parameter.value) &&
         std::isfinite(parameter.std_error))
       return &parameter;
   return nullptr;
 }
 
-/// A fit that did not converge, or cannot tell R_CL from twice itself, ends near where it began: that is no estimate.
-bool tells(const FitReport& fit) {
+/// A fit that did not converge, or cannot tell a value from twice itself, ends near where it began: that is no estimate.
+bool tells(const FitReport& fit, std::string_view name) {
   constexpr double kLargestRelativeError = 0.5;
-  const EstimatedParameter* resistance = leakage_resistance(fit);
-  return resistance && fit.converged && resistance->std_error <= kLargestRelativeError * std::abs(resistance->value);
+  const EstimatedParameter* worn = what_wears(fit, name);
+  return worn && fit.converged && worn->std_error <= kLargestRelativeError * std::abs(worn->value);
 }
 
-const FitReport* choose(const std::vector<FitReport>& fits) {
+const FitReport* choose(const std::vector<FitReport>& fits, std::string_view name) {
   for (const FitReport& fit : fits)
-    if (fit.admissible && leakage_resistance(fit)) return &fit;
+    if (fit.admissible && what_wears(fit, name)) return &fit;
   for (const FitReport& fit : fits)
-    if (tells(fit)) return &fit;
+    if (tells(fit, name)) return &fit;
   return nullptr;
 }
 
@@ -35,28 +36,34 @@ void append(std::vector<std::string>& reasons, const std::vector<std::string>& m
   reasons.insert(reasons.end(), more.begin(), more.end());
 }
 
-void take_resistance(LeakageEstimate& estimate, const FitReport& fit, const EstimatedParameter& resistance) {
+void take_value(LeakageEstimate& estimate, const FitReport& fit, const EstimatedParameter& worn, bool positive) {
   estimate.estimated = true;
   estimate.chosen_model = fit.model;
-  estimate.resistance_Pa_s_m3 = resistance.value;
-  estimate.resistance_std_Pa_s_m3 = resistance.std_error;
+  estimate.resistance_Pa_s_m3 = worn.value;
+  estimate.resistance_std_Pa_s_m3 = worn.std_error;
+  estimate.unit = worn.unit;
   if (!fit.admissible) append(estimate.reasons, fit.reasons, "the fit of model " + fit.model + " is not admissible");
-  if (resistance.value <= 0.0)
-    estimate.reasons.push_back("R_CL = " + forecast::three_digits(resistance.value) + " Pa s/m3 is not positive");
+  if (positive && worn.value <= 0.0)
+    estimate.reasons.push_back(worn.name + " = " + forecast::three_digits(worn.value) + " " + worn.unit +
+                               " is not positive");
 }
 
-void take_condition(LeakageEstimate& estimate, const AssetConfig& asset, double largest_condition_std) {
-  if (!asset.seal) {
-    estimate.reasons.push_back("the asset file gives no seal resistances: the seal condition is not defined");
+void take_condition(LeakageEstimate& estimate, const AssetConfig& asset, const PlantDescription& plant,
+                    double largest_condition_std) {
+  if (!asset.condition) {
+    estimate.reasons.emplace_back(plant.condition
+                                      ? "the asset file gives no seal resistances: the seal condition is not defined"
+                                      : "the asset file has no section `condition`: its condition is not defined");
     return;
   }
-  estimate.condition_known = estimate.estimated && estimate.resistance_Pa_s_m3 > 0.0;
+  const ConditionSetting& scale = *asset.condition;
+  estimate.condition_known = estimate.estimated && (!scale.is_positive() || estimate.resistance_Pa_s_m3 > 0.0);
   if (!estimate.condition_known) return;
-  estimate.condition = asset.seal->condition(estimate.resistance_Pa_s_m3);
-  estimate.condition_std = asset.seal->condition_std(estimate.resistance_std_Pa_s_m3);
+  estimate.condition = scale.condition(estimate.resistance_Pa_s_m3);
+  estimate.condition_std = scale.condition_std(estimate.resistance_Pa_s_m3, estimate.resistance_std_Pa_s_m3);
   if (estimate.condition_std > largest_condition_std)
-    estimate.reasons.push_back("the standard error of the seal condition, " +
-                               forecast::condition_in_percent(estimate.condition_std) + ", is above " +
+    estimate.reasons.push_back("the standard error of the " + std::string(plant.condition ? "seal " : "") +
+                               "condition, " + forecast::condition_in_percent(estimate.condition_std) + ", is above " +
                                forecast::condition_in_percent(largest_condition_std));
 }
 
@@ -69,15 +76,21 @@ LeakageEstimate judge_estimate(const AssetConfig& asset, const HealthReport& hea
   if (!health.admissible_for_prognosis)
     append(estimate.reasons, health.inadmissible_reasons,
            "health assessment found the test inadmissible for prognosis");
-  if (const FitReport* fit = choose(fits)) {
-    take_resistance(estimate, *fit, *leakage_resistance(*fit));
+  const auto known = find_plant(asset.model);
+  const PlantDescription plant = known ? **known : PlantDescription{};
+  estimate.parameter = asset.condition ? asset.condition->parameter : plant.wear_parameter;
+  const bool positive = !asset.condition || asset.condition->is_positive();
+  if (const FitReport* fit = choose(fits, estimate.parameter)) {
+    take_value(estimate, *fit, *what_wears(*fit, estimate.parameter), positive);
   } else {
-    estimate.reasons.push_back("no fit gave an estimate of R_CL");
+    estimate.reasons.push_back(estimate.parameter.empty()
+                                   ? "neither the asset file nor its plant says which parameter wears"
+                                   : "no fit gave an estimate of " + estimate.parameter);
     for (const FitReport& fit_without : fits)
       for (const std::string& reason : fit_without.reasons)
         estimate.reasons.push_back(fit_without.model + ": " + reason);
   }
-  take_condition(estimate, asset, largest_condition_std);
+  take_condition(estimate, asset, plant, largest_condition_std);
   if (!health.header.event_time_known)
     estimate.reasons.push_back("the recording has no start time: its place in the history is not known");
   estimate.used_for_forecast = estimate.reasons.empty();

@@ -164,7 +164,7 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   life.asset_id = leakage.asset_id;
   life.header = concluded_from(leakage.header, "remaining_life", kProducer, {leakage.header.message_id});
   const AssetConfig* asset = configuration_.find_asset(leakage.asset_id);
-  if (!asset || !asset->seal || !leakage.header.event_time_known) {
+  if (!asset || !asset->condition || !leakage.header.event_time_known) {
     life.forecasts = no_forecast(leakage.reasons.empty() ? "no estimate" : leakage.reasons.back());
     return life;
   }
@@ -172,7 +172,7 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   AssetHistory history = history_.contains(asset->asset_id) ? history_.at(asset->asset_id) : AssetHistory{};
   if (!history.has_estimate(leakage.header.message_id)) history.add(leakage);
   const std::vector<HistoryEntry> tests = history.until(now);
-  forecast::ForecastRequest request{.threshold = asset->seal->threshold,
+  forecast::ForecastRequest request{.threshold = asset->condition->threshold,
                                     .now = now,
                                     .installed = history.replaced_before(now),
                                     .horizons = campaigns(*asset)};
@@ -185,7 +185,7 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   }
   forecast::ForecastPanel::Answer& answer = *answered;
   mark_unconfirmed(leakage, answer.left_out);
-  life.threshold = asset->seal->threshold;
+  life.threshold = asset->condition->threshold;
   life.tests_since_replacement = static_cast<std::int32_t>(tests.size());
   life.replacement_known = request.installed.has_value();
   life.replaced_ns = request.installed.value_or(UtcTime{}).nanoseconds;

@@ -13,7 +13,7 @@ PstRequest next_test(const AssetConfig& asset, const LeakageEstimate& estimate) 
   request.asset_id = asset.asset_id;
   // A test that a repetition cannot mend (the asset has no seal resistances) gave its estimate: the regular interval
   // will do.
-  const bool repetition_helps = asset.seal || !estimate.estimated;
+  const bool repetition_helps = asset.condition || !estimate.estimated;
   if (!estimate.used_for_forecast && repetition_helps) {
     request.due_time_ns = tested.nanoseconds;
     request.reason = "repeat: the test of " + format_date(tested) + " could not be used: " +

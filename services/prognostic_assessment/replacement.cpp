@@ -40,7 +40,7 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
     as_of = {since.header.event_time_ns};
     for (Forecast& forecast : life.forecasts) forecast.explanation += "; " + what + ", reported after this test";
   } else {
-    if (asset && asset->seal) life.threshold = asset->seal->threshold;
+    if (asset && asset->condition) life.threshold = asset->condition->threshold;
     life.forecasts = no_forecast(time == last ? what + ": the history starts anew"
                                               : "replaced on " + format_date(last) + ": the history starts anew; " +
                                                     what + ", reported after it, changes nothing");

@@ -60,7 +60,7 @@ Conclusion PrognosticAssessment::retracted(const MaintenanceEvent& event) {
     life = remaining_life(last);
     for (Forecast& forecast : life.forecasts) forecast.explanation += "; " + what;
   } else {
-    if (asset && asset->seal) life.threshold = asset->seal->threshold;
+    if (asset && asset->condition) life.threshold = asset->condition->threshold;
     life.forecasts = no_forecast(what + ": no test counts");
   }
   std::vector<std::string> sources = std::move(life.header.source_ids);

@@ -46,26 +46,38 @@ Optional absolute(const Optional& a) {
 class Balances {
  public:
   Balances(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window)
-      : asset_(asset), features_(features), window_(window), means_(window) {}
+      : asset_(asset),
+        features_(features),
+        window_(window),
+        plant_(plant_or_default(asset.model)),
+        means_(window, plant_) {}
 
   [[nodiscard]] std::vector<Quantity> all() {
     hydraulic();
     electric();
     sensors();
-    add("closing_time", parameter("x_C") / absolute(means_.speed(Motion::retracting)));
+    add("closing_time", parameter(ParameterRole::stroke) / absolute(means_.speed(Motion::retracting)));
     quality();
     return std::move(result_);
   }
 
  private:
-  [[nodiscard]] Optional parameter(const char* name) const {
-    const auto found = asset_.parameters.find(name);
+  [[nodiscard]] Optional parameter(ParameterRole role) const {
+    const ParameterDescription* described = plant_.find_parameter(role);
+    if (described == nullptr) return std::nullopt;
+    const auto found = asset_.parameters.find(described->name);
     if (found == asset_.parameters.end()) return std::nullopt;
     return found->second.value;
   }
   [[nodiscard]] Optional feature(const char* name) const { return feature_of(features_, name); }
   [[nodiscard]] Optional dp(Motion motion) const { return means_.pressure_difference(motion); }
-  [[nodiscard]] Optional mean(const char* channel, Motion motion) const { return means_.mean(channel, motion); }
+  [[nodiscard]] Optional mean(ChannelRole channel, Motion motion) const { return means_.mean(channel, motion); }
+
+  /// Of what drives the actuator, where that is a voltage.
+  [[nodiscard]] Optional mean_voltage(Motion motion) const {
+    const ChannelDescription* drive = plant_.find_channel(ChannelRole::drive);
+    return drive != nullptr && drive->unit == "V" ? mean(ChannelRole::drive, motion) : std::nullopt;
+  }
 
   void add(const char* name, const Optional& value) {
     const JudgedIndicator* const known = find_indicator(name);
@@ -82,32 +94,36 @@ class Balances {
     load_pressure_ = (feature("running_pressure_out") + feature("running_pressure_back")) / Optional(2.0);
     add("load_pressure", load_pressure_);
     add("hold_decay_rate", feature("hold_decay") / absolute(feature("hold_pressure")));
-    const Optional delivered = parameter("alpha_P") * mean("shaft_speed", Motion::holding);
-    add("pump_slip", (delivered - mean("flow", Motion::holding)) / dp(Motion::holding));
+    const Optional delivered = parameter(ParameterRole::displacement) * mean(ChannelRole::shaft_speed, Motion::holding);
+    add("pump_slip", (delivered - mean(ChannelRole::flow, Motion::holding)) / dp(Motion::holding));
   }
 
   void electric() {
-    const Optional current = mean("motor_current", Motion::extending);
-    const Optional speed = mean("shaft_speed", Motion::extending);
-    const Optional torque = parameter("T_M") * current;
-    add("shaft_drag", (torque - parameter("alpha_P") * dp(Motion::extending)) / speed);
-    const Optional voltage = mean("motor_voltage", Motion::extending);
-    add("back_emf", (voltage - parameter("R_M") * current) / speed);
-    const Optional load_current = parameter("alpha_P") * load_pressure_ / parameter("T_M");
+    const Optional current = mean(ChannelRole::current, Motion::extending);
+    const Optional speed = mean(ChannelRole::shaft_speed, Motion::extending);
+    const Optional torque = parameter(ParameterRole::torque_constant) * current;
+    add("shaft_drag", (torque - parameter(ParameterRole::displacement) * dp(Motion::extending)) / speed);
+    const Optional voltage = mean_voltage(Motion::extending);
+    add("back_emf", (voltage - parameter(ParameterRole::motor_resistance) * current) / speed);
+    const Optional load_current =
+        parameter(ParameterRole::displacement) * load_pressure_ / parameter(ParameterRole::torque_constant);
     add("load_free_current", feature("peak_current") - absolute(load_current));
   }
 
   void sensors() {
     const Optional up = means_.speed_from_position(Motion::extending);
     const Optional down = means_.speed_from_position(Motion::retracting);
-    const Optional flow_up = mean("flow", Motion::extending);
-    const Optional flow = flow_up - mean("flow", Motion::retracting);
+    const Optional flow_up = mean(ChannelRole::flow, Motion::extending);
+    const Optional flow = flow_up - mean(ChannelRole::flow, Motion::retracting);
     const Optional leakage = (dp(Motion::extending) - dp(Motion::retracting)) / leakage_resistance_;
-    const Optional area = parameter("A_C") ? parameter("A_C") : parameter("A_A");
+    const Optional area = parameter(ParameterRole::area_up);
     add("flow_gain", (flow - leakage) / (area * (up - down)));
-    const Optional speed = mean("shaft_speed", Motion::extending) - mean("shaft_speed", Motion::holding);
-    add("delivery_ratio", (flow_up - mean("flow", Motion::holding)) / (parameter("alpha_P") * speed));
-    const Optional velocity = mean("velocity", Motion::extending) - mean("velocity", Motion::retracting);
+    const Optional speed =
+        mean(ChannelRole::shaft_speed, Motion::extending) - mean(ChannelRole::shaft_speed, Motion::holding);
+    add("delivery_ratio",
+        (flow_up - mean(ChannelRole::flow, Motion::holding)) / (parameter(ParameterRole::displacement) * speed));
+    const Optional velocity =
+        mean(ChannelRole::speed, Motion::extending) - mean(ChannelRole::speed, Motion::retracting);
     add("velocity_gain", velocity / (up - down));
   }
 
@@ -120,6 +136,7 @@ class Balances {
   const AssetConfig& asset_;
   const TestFeatures& features_;
   const TestWindow& window_;
+  const PlantDescription& plant_;
   PhaseMeans means_;
   Optional leakage_resistance_;
   Optional load_pressure_;

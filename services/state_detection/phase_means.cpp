@@ -15,12 +15,14 @@ bool is_motion(const Phase& phase) { return phase.kind == PhaseKind::out || phas
 
 }  // namespace
 
-PhaseMeans::PhaseMeans(const TestWindow& window) : window_(window) {}
+PhaseMeans::PhaseMeans(const TestWindow& window, const PlantDescription& plant) : window_(window), plant_(plant) {}
 
-const Series* PhaseMeans::usable(std::string_view channel) const {
+const Series* PhaseMeans::usable(ChannelRole channel) const {
+  const Series* series = find_series(window_.samples, plant_, channel);
+  if (series == nullptr) return nullptr;
   for (const ChannelStatus& status : window_.channel_status)
-    if (status.channel == channel && status.state != ChannelState::OK) return nullptr;
-  return window_.samples.find(channel);
+    if (status.channel == series->name && status.state != ChannelState::OK) return nullptr;
+  return series;
 }
 
 std::vector<PhaseMeans::Span> PhaseMeans::spans(Motion motion) const {
@@ -41,9 +43,9 @@ std::vector<PhaseMeans::Span> PhaseMeans::spans(Motion motion) const {
 }
 
 std::optional<bool> PhaseMeans::extends(const Span& span) const {
-  if (const Series* position = usable("position"))
+  if (const Series* position = usable(ChannelRole::stroke))
     return position->values[span.last - 1] > position->values[span.first];
-  if (const Series* velocity = usable("velocity")) {
+  if (const Series* velocity = usable(ChannelRole::speed)) {
     const auto begin = velocity->values.begin();
     return std::accumulate(begin + static_cast<std::ptrdiff_t>(span.first),
                            begin + static_cast<std::ptrdiff_t>(span.last), 0.0) > 0.0;
@@ -51,7 +53,7 @@ std::optional<bool> PhaseMeans::extends(const Span& span) const {
   return std::nullopt;
 }
 
-std::optional<double> PhaseMeans::mean(std::string_view channel, Motion motion) const {
+std::optional<double> PhaseMeans::mean(ChannelRole channel, Motion motion) const {
   const Series* series = usable(channel);
   if (series == nullptr) return std::nullopt;
   double sum = 0.0;
@@ -65,7 +67,7 @@ std::optional<double> PhaseMeans::mean(std::string_view channel, Motion motion) 
 }
 
 std::optional<double> PhaseMeans::speed_from_position(Motion motion) const {
-  const Series* position = usable("position");
+  const Series* position = usable(ChannelRole::stroke);
   if (position == nullptr) return std::nullopt;
   double way = 0.0;
   double time = 0.0;
@@ -78,14 +80,14 @@ std::optional<double> PhaseMeans::speed_from_position(Motion motion) const {
 }
 
 std::optional<double> PhaseMeans::speed(Motion motion) const {
-  return usable("position") != nullptr ? speed_from_position(motion) : mean("velocity", motion);
+  return usable(ChannelRole::stroke) != nullptr ? speed_from_position(motion) : mean(ChannelRole::speed, motion);
 }
 
 std::optional<double> PhaseMeans::pressure_difference(Motion motion) const {
-  const auto a = mean("pressure_a", motion);
-  const auto b = mean("pressure_b", motion);
+  const auto a = mean(ChannelRole::pressure_up, motion);
+  const auto b = mean(ChannelRole::pressure_down, motion);
   if (a && b) return *a - *b;
-  return mean("pressure_differential", motion);
+  return mean(ChannelRole::pressure_difference, motion);
 }
 
 }  // namespace sealwatch

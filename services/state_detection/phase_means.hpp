@@ -8,10 +8,10 @@
 
 #include <cstddef>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "sealwatch/message/data_manipulation.hpp"
+#include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {
 
@@ -19,9 +19,9 @@ enum class Motion { extending, retracting, holding };
 
 class PhaseMeans {
  public:
-  explicit PhaseMeans(const TestWindow& window);
+  PhaseMeans(const TestWindow& window, const PlantDescription& plant);
   /// Mean of a channel that is recorded and OK; nothing when there is no such channel or phase.
-  [[nodiscard]] std::optional<double> mean(std::string_view channel, Motion motion) const;
+  [[nodiscard]] std::optional<double> mean(ChannelRole channel, Motion motion) const;
   /// Speed from the position's change over the steady part [m/s].
   [[nodiscard]] std::optional<double> speed_from_position(Motion motion) const;
   /// The same, or the mean of the velocity where the position is not OK [m/s].
@@ -34,12 +34,13 @@ class PhaseMeans {
     std::size_t first;
     std::size_t last;  // one past
   };
-  [[nodiscard]] const Series* usable(std::string_view channel) const;
+  [[nodiscard]] const Series* usable(ChannelRole channel) const;
   /// Whether the piston runs in +x there, by the position, else by the velocity; nothing where neither is OK.
   [[nodiscard]] std::optional<bool> extends(const Span& span) const;
   [[nodiscard]] std::vector<Span> spans(Motion motion) const;
 
   const TestWindow& window_;
+  const PlantDescription& plant_;
 };
 
 }  // namespace sealwatch

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "sealwatch/model/plant_description.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -24,22 +26,23 @@ TimeSeries usable_channels(const TestWindow& window) {
   return samples;
 }
 
-/// The asset with its seal as measured, within psi_min and psi_max.
-AssetConfig with_leakage(AssetConfig asset, double resistance) {
-  if (const auto found = asset.parameters.find("R_CL"); found != asset.parameters.end()) {
+/// The asset with a parameter as measured, within psi_min and psi_max.
+AssetConfig with_value(AssetConfig asset, const std::string& parameter, double value) {
+  if (const auto found = asset.parameters.find(parameter); found != asset.parameters.end()) {
     ParameterSetting& setting = found->second;
-    setting.value = setting.max > setting.min ? std::clamp(resistance, setting.min, setting.max) : resistance;
+    setting.value = setting.max > setting.min ? std::clamp(value, setting.min, setting.max) : value;
   }
   return asset;
 }
 
-/// The seal's resistance with which the simulation comes nearest to the recording; nothing for an asset whose seal is
-/// not described.
-std::optional<double> nearest_leakage(const AssetConfig& asset, const TimeSeries& recorded,
-                                      const Simulator& simulator) {
-  if (!asset.seal || !asset.parameters.contains("R_CL")) return std::nullopt;
-  const auto misfit = [&](double log_resistance) {
-    const AssetConfig aged = with_leakage(asset, std::exp(log_resistance));
+/// The value of what wears with which the simulation comes nearest to the recording; nothing for an asset whose
+/// condition is not described.
+std::optional<double> nearest_wear(const AssetConfig& asset, const TimeSeries& recorded, const Simulator& simulator) {
+  if (!asset.condition || !asset.parameters.contains(asset.condition->parameter)) return std::nullopt;
+  const bool positive = asset.condition->is_positive();
+  const auto value_at = [&](double at) { return positive ? std::exp(at) : at; };
+  const auto misfit = [&](double at) {
+    const AssetConfig aged = with_value(asset, asset.condition->parameter, value_at(at));
     const Result<TimeSeries> simulated = simulator.simulate(aged, recorded);
     if (!simulated) return std::numeric_limits<double>::max();
     double sum = 0.0;
@@ -50,10 +53,22 @@ std::optional<double> nearest_leakage(const AssetConfig& asset, const TimeSeries
   constexpr int kBits = 16;  // of ln R: 0.05 %, less than the position's noise shows
   constexpr double kWorse = 0.5, kBetter = 1.5;
   std::uintmax_t evaluations = 40;
-  const auto [log_resistance, least] =
-      boost::math::tools::brent_find_minima(misfit, std::log(kWorse * asset.seal->resistance_60_Pa_s_m3),
-                                            std::log(kBetter * asset.seal->resistance_100_Pa_s_m3), kBits, evaluations);
-  return std::exp(log_resistance);
+  const auto [low, high] = std::minmax(asset.condition->at_60, asset.condition->at_100);
+  const double least = positive ? std::log(kWorse * low) : low - kWorse * (high - low);
+  const double largest = positive ? std::log(kBetter * high) : high + kWorse * (high - low);
+  const auto [at, sum] = boost::math::tools::brent_find_minima(misfit, least, largest, kBits, evaluations);
+  return value_at(at);
+}
+
+/// The asset as worn as it is: by the seal's leakage where the test measured it, else by what comes nearest; nothing
+/// where neither is known.
+std::optional<AssetConfig> as_worn(const AssetConfig& asset, const TimeSeries& recorded,
+                                   std::optional<double> leakage_resistance, const Simulator& simulator) {
+  const std::optional<ConditionSetting>& seal = plant_or_default(asset.model).condition;
+  if (leakage_resistance && seal) return with_value(asset, seal->parameter, *leakage_resistance);
+  const std::optional<double> nearest = nearest_wear(asset, recorded, simulator);
+  if (!nearest) return std::nullopt;
+  return with_value(asset, asset.condition->parameter, *nearest);
 }
 
 }  // namespace
@@ -87,9 +102,8 @@ Result<std::vector<ResidualSummary>> residuals_of(const AssetConfig& asset, cons
   const Result<TimeSeries> nominal = simulator.simulate(asset, recorded);
   if (!nominal) return tl::unexpected(nominal.error());
   std::vector<ResidualSummary> all = summarise_residuals(asset, recorded, *nominal, Reference::nominal_model);
-  if (!leakage_resistance) leakage_resistance = nearest_leakage(asset, recorded, simulator);
-  const AssetConfig aged = leakage_resistance ? with_leakage(asset, *leakage_resistance) : asset;
-  const Result<TimeSeries> own = leakage_resistance ? simulator.simulate(aged, recorded) : nominal;
+  const std::optional<AssetConfig> worn = as_worn(asset, recorded, leakage_resistance, simulator);
+  const Result<TimeSeries> own = worn ? simulator.simulate(*worn, recorded) : nominal;
   if (!own) return tl::unexpected(own.error());
   for (ResidualSummary& summary : summarise_residuals(asset, recorded, *own, Reference::own_baseline))
     all.push_back(std::move(summary));
@@ -100,9 +114,8 @@ Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& ac
                                                            std::optional<double> leakage_resistance,
                                                            const Simulator& simulator) {
   const TimeSeries recorded = usable_channels(window);
-  if (!leakage_resistance) leakage_resistance = nearest_leakage(accepted, recorded, simulator);
-  const AssetConfig aged = leakage_resistance ? with_leakage(accepted, *leakage_resistance) : accepted;
-  const Result<TimeSeries> simulated = simulator.simulate(aged, recorded);
+  const std::optional<AssetConfig> worn = as_worn(accepted, recorded, leakage_resistance, simulator);
+  const Result<TimeSeries> simulated = simulator.simulate(worn.value_or(accepted), recorded);
   if (!simulated) return tl::unexpected(simulated.error());
   return summarise_residuals(accepted, recorded, *simulated, Reference::accepted_model);
 }

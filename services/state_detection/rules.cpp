@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sealwatch/config/judged_quantities.hpp"
+#include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch {
 namespace {
@@ -57,25 +58,34 @@ constexpr std::array kRules = {
 /// A residual must grow by half before it means anything: it also carries the load's noise.
 constexpr BaselineRule kResidualRule{0.5, 0.5, Side::above};
 
-std::optional<AlertLimits> seal_limits(const SealSetting& seal) {
-  const auto resistance = [&](double left) {
-    return seal.resistance_Pa_s_m3(seal.threshold + left * (1.0 - seal.threshold));
-  };
+/// Whether the asset's condition goes by its seal's leakage.
+bool goes_by_leakage(const AssetConfig& asset) {
+  const std::optional<ConditionSetting>& seal = plant_or_default(asset.model).condition;
+  return asset.condition && seal && asset.condition->parameter == seal->parameter;
+}
+
+std::optional<AlertLimits> seal_limits(const ConditionSetting& seal) {
+  const auto resistance = [&](double left) { return seal.value(seal.threshold + left * (1.0 - seal.threshold)); };
   return AlertLimits{resistance(kLeftAdvisory), resistance(kLeftWarning), resistance(0.0)};
 }
 
 }  // namespace
 
+std::optional<double> whole_stroke_m(const AssetConfig& asset) {
+  const ParameterDescription* described = plant_or_default(asset.model).find_parameter(ParameterRole::stroke);
+  const auto stroke = described == nullptr ? asset.parameters.end() : asset.parameters.find(described->name);
+  return stroke == asset.parameters.end() ? std::nullopt : std::optional(stroke->second.value);
+}
+
 double longest_closing_time_s(const AssetConfig& asset) {
-  const auto stroke = asset.parameters.find("x_C");
-  const bool known = stroke != asset.parameters.end() && asset.pst.speed_m_s > 0.0;
-  const double ramp_s = known ? stroke->second.value / asset.pst.speed_m_s : 0.0;
+  const std::optional<double> stroke_m = whole_stroke_m(asset);
+  const double ramp_s = stroke_m && asset.pst.speed_m_s > 0.0 ? *stroke_m / asset.pst.speed_m_s : 0.0;
   return kClosingTolerance * std::max(kClosingTime_s, ramp_s);
 }
 
 std::optional<AlertLimits> fixed_limits(const AssetConfig& asset, const std::string& quantity) {
   if (const auto own = asset.alert_limits.find(quantity); own != asset.alert_limits.end()) return own->second;
-  if (quantity == "leakage_resistance" && asset.seal) return seal_limits(*asset.seal);
+  if (quantity == "leakage_resistance" && goes_by_leakage(asset)) return seal_limits(*asset.condition);
   if (quantity == "closing_time") {
     const double longest = longest_closing_time_s(asset);
     return AlertLimits{0.98 * longest, longest, 1.1 * longest};
@@ -90,7 +100,7 @@ std::optional<AlertLimits> fixed_limits(const AssetConfig& asset, const std::str
 
 std::optional<BaselineRule> baseline_rule(const AssetConfig& asset, std::string_view quantity) {
   // A seal with known resistances is judged on the way to its threshold; that it ages is no deviation.
-  if (quantity == "leakage_resistance" && asset.seal) return std::nullopt;
+  if (quantity == "leakage_resistance" && goes_by_leakage(asset)) return std::nullopt;
   if (quantity.starts_with(kResidualQuantity)) return kResidualRule;
   for (const NamedRule& named : kRules)
     if (named.quantity == quantity) return named.rule;

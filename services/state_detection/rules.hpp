@@ -26,6 +26,9 @@ struct BaselineRule {
 /// Nothing when the quantity is not judged against the baseline.
 [[nodiscard]] std::optional<BaselineRule> baseline_rule(const AssetConfig& asset, std::string_view quantity);
 
+/// Of the asset, by the parameter of that role; nothing where its plant has none.
+[[nodiscard]] std::optional<double> whole_stroke_m(const AssetConfig& asset);
+
 /// Longest extrapolated closing time that passes [s]: 60 s, or what the test's own ramp takes where that is slower.
 [[nodiscard]] double longest_closing_time_s(const AssetConfig& asset);
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "sealwatch/model/plant_description.hpp"
 #include "services/state_detection/indicators.hpp"
 #include "services/state_detection/rules.hpp"
 
@@ -39,8 +40,7 @@ bool moved_as_a_test_does(const TestFeatures& features) {
 
 /// The stroke that the test must reach.
 double required_stroke_m(const AssetConfig& asset, const TestFeatures& features) {
-  const auto full = asset.parameters.find("x_C");
-  if (is_full_stroke(features) && full != asset.parameters.end()) return full->second.value;
+  if (const auto full = whole_stroke_m(asset); is_full_stroke(features) && full) return *full;
   return std::abs(asset.pst.stroke_m);
 }
 
@@ -49,11 +49,14 @@ double required_stroke_m(const AssetConfig& asset, const TestFeatures& features)
 struct StrokeMeasure {
   const Series* series = nullptr;
   bool is_velocity = false;
+  bool none = false;           ///< the plant has neither: it is judged by its model alone
+  std::string velocity_fault;  ///< the same of the velocity
   std::string position_fault;  ///< "position is FAILED: frozen for 4.0 s", "position was not recorded"; "" in order
 };
 
 /// Why the channel cannot measure, or "".
 std::string fault_of(const TestFeatures& features, const TestWindow& window, const std::string& channel) {
+  if (channel.empty()) return "the plant has none";
   for (const ChannelStatus& status : features.channel_status)
     if (status.channel == channel && status.state == ChannelState::FAILED)
       return channel + " is FAILED" + (status.reason.empty() ? "" : ": " + status.reason);
@@ -61,13 +64,19 @@ std::string fault_of(const TestFeatures& features, const TestWindow& window, con
   return series == nullptr || series->values.empty() ? channel + " was not recorded" : "";
 }
 
-StrokeMeasure measure_of_stroke(const TestFeatures& features, const TestWindow& window) {
-  StrokeMeasure measure{nullptr, false, fault_of(features, window, "position")};
-  measure.is_velocity = !measure.position_fault.empty() && fault_of(features, window, "velocity").empty();
+StrokeMeasure measure_of_stroke(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window) {
+  const PlantDescription& plant = plant_or_default(asset.model);
+  const std::string position = channel_name(plant, ChannelRole::stroke),
+                    velocity = channel_name(plant, ChannelRole::speed);
+  StrokeMeasure measure;
+  measure.none = position.empty() && velocity.empty();
+  measure.position_fault = fault_of(features, window, position);
+  measure.velocity_fault = fault_of(features, window, velocity);
+  measure.is_velocity = !measure.position_fault.empty() && measure.velocity_fault.empty();
   if (measure.is_velocity)
-    measure.series = window.samples.find("velocity");
+    measure.series = window.samples.find(velocity);
   else if (measure.position_fault.empty())
-    measure.series = window.samples.find("position");
+    measure.series = window.samples.find(position);
   return measure;
 }
 
@@ -93,8 +102,7 @@ std::optional<double> travel_m(const TestFeatures& features, const TestWindow& w
 }
 
 /// Why nothing can be said, or "".
-std::string why_not_judged(const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
-                           const StrokeMeasure& measure) {
+std::string why_not_judged(const AssetConfig& asset, const TestFeatures& features, const StrokeMeasure& measure) {
   if (!features.test_kind.empty() && features.test_kind != "pst" && !is_full_stroke(features))
     return "the recording is of kind '" + features.test_kind + "', not a stroke test";
   // Neither the way that the piston went nor where it should come back to is known.
@@ -105,7 +113,7 @@ std::string why_not_judged(const AssetConfig& asset, const TestFeatures& feature
     return text("the recording was cut after %.1f s of about %.0f s", features.duration_s, expected_s);
   if (!features.complete) return text("the end of the test was not recorded (%.1f s were)", features.duration_s);
   if (measure.series == nullptr)
-    return "nothing measured the stroke: " + measure.position_fault + ", " + fault_of(features, window, "velocity");
+    return "nothing measured the stroke: " + measure.position_fault + ", " + measure.velocity_fault;
   return {};
 }
 
@@ -140,9 +148,16 @@ void judge_speed(const AssetConfig& asset, const std::vector<Quantity>& indicato
 std::string judged_by(const StrokeMeasure& measure, const TestFeatures& features) {
   if (measure.is_velocity) return "judged by the velocity, integrated: " + measure.position_fault;
   for (const ChannelStatus& status : features.channel_status)
-    if (status.channel == "position" && status.state == ChannelState::UNKNOWN)
+    if (status.channel == measure.series->name && status.state == ChannelState::UNKNOWN)
       return "judged by the position, which is in doubt" + (status.reason.empty() ? "" : ": " + status.reason);
   return "judged by the position";
+}
+
+/// Of a plant that has no stroke, whether the test was recorded to its end; how it behaves its model says.
+Verdict judge_without_stroke(const TestFeatures& features) {
+  if (!features.complete)
+    return {PstVerdict::not_judged, {text("the end of the test was not recorded (%.1f s were)", features.duration_s)}};
+  return {PstVerdict::passed, {"the plant has no stroke: by its model alone"}};
 }
 
 }  // namespace
@@ -153,9 +168,10 @@ Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const
     const std::string why = features.abort_reason.empty() ? "no reason given" : features.abort_reason;
     return {PstVerdict::aborted, {text("given up after %.1f s: ", features.duration_s) + why}};
   }
-  const StrokeMeasure measure = measure_of_stroke(features, window);
+  const StrokeMeasure measure = measure_of_stroke(asset, features, window);
+  if (measure.none) return judge_without_stroke(features);
   const std::optional<double> travel = travel_m(features, window, measure);
-  if (const std::string why = why_not_judged(asset, features, window, measure); !why.empty())
+  if (const std::string why = why_not_judged(asset, features, measure); !why.empty())
     return {PstVerdict::not_judged, {why}};
 
   Verdict verdict{PstVerdict::passed, {}};

@@ -21,7 +21,8 @@ Result<BenchPhysics> BenchPhysics::create(const AssetConfig& asset, const PlantD
     physics.terms_.push_back({.law = term.law,
                               .sites = term.sites,
                               .parameters = numbers(term.first_parameter, term.law->parameters.size()),
-                              .hidden = term.hidden});
+                              .hidden = term.hidden,
+                              .roundings = term.roundings});
     if (term.hidden >= 0) physics.settled_.push_back(term.law->hidden->settled);
   }
   for (const sealwatch::SensorTerm& term : resolved->sensors)
@@ -42,7 +43,8 @@ LawOutput BenchPhysics::evaluate(const Term& term, std::size_t site, const Eha::
                                  const Eha::Input& input, const EhaParameters<double>& p, const double* hidden,
                                  const Added& added) {
   const auto signals = Eha::signals<double>(site, y, input, p, added);
-  return term.law->evaluate(law_input(signals, term.hidden >= 0 ? hidden[term.hidden] : 0.0, term.parameters));
+  return term.law->evaluate(
+      law_input(signals, term.hidden >= 0 ? hidden[term.hidden] : 0.0, term.parameters, term.roundings));
 }
 
 BenchPhysics::Added BenchPhysics::added(const Eha::State<double>& y, const Eha::Input& input,

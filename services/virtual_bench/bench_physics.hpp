@@ -61,6 +61,7 @@ class BenchPhysics {
     std::vector<std::size_t> sites;
     std::vector<double> parameters;
     int hidden = -1;
+    Roundings roundings{};
   };
   struct SensorTerm {
     std::string channel;

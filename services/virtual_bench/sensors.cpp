@@ -68,6 +68,7 @@ Series measure(const Sensor& sensor, std::vector<double> values, std::uint64_t s
   for (double& value : values) {
     value = (1.0 + sensor.error.gain) * value + sensor.error.bias;
     value -= sensor.error.cut * std::max(value - sensor.error.end, 0.0);
+    value = (1.0 + sensor.setting.gain_error) * value + sensor.setting.offset_error;
     value += sensor.setting.noise_std * normal.next();
     if (step > 0.0) value = step * std::round(value / step);
   }

@@ -3,7 +3,8 @@
 //   tau dy/dt = quantity - y          low-pass, integrated with the actuator (tau = 0: y = quantity)
 //   sample    = q round((y + e) / q)  e ~ N(0, noise_std^2), q the quantisation step (q = 0: none)
 //
-// An asset's `physics` may give a sensor errors besides (SensorError); its lag is integrated, the others come before e.
+// An asset's `physics` may give a sensor errors besides (SensorError); its lag is integrated, the others come before e,
+// and so does what the asset's `sensors` say that it is off by (gain_error, offset_error).
 #pragma once
 
 #include <cstdint>

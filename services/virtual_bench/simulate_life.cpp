@@ -17,7 +17,7 @@ void cut(TimeSeries& samples, double share) {
 }
 
 Result<std::vector<PlannedTest>> plan_life(const AssetConfig& asset, const LifeSetting& setting) {
-  if (!asset.seal)
+  if (!asset.condition)
     return fail(Error{.file = {},
                       .place = "asset " + asset.asset_id + ", key seal",
                       .value = {},
@@ -27,14 +27,14 @@ Result<std::vector<PlannedTest>> plan_life(const AssetConfig& asset, const LifeS
   forecast::UniformRandom dates(sub_seed(setting.seed, "dates")), loads(sub_seed(setting.seed, "loads"));
   forecast::UniformRandom missing(sub_seed(setting.seed, "missing")), cuts(sub_seed(setting.seed, "cuts"));
   std::vector<PlannedTest> tests;
-  while (seal.month() < setting.months && seal.condition() > asset.seal->threshold) {
+  while (seal.month() < setting.months && seal.condition() > asset.condition->threshold) {
     PlannedTest test;
     test.condition = seal.advance();
     test.month = seal.month();
     // Whole seconds, as a control system would start a test.
     const double scatter_s = std::floor(dates.between(0.0, setting.day_scatter * kSecondsPerDay));
     test.start_time = add_seconds(setting.installed, std::floor(test.month * kSecondsPerMonth) + scatter_s);
-    test.resistance_Pa_s_m3 = asset.seal->resistance_Pa_s_m3(test.condition);
+    test.resistance_Pa_s_m3 = asset.condition->value(test.condition);
     test.load_factor = loads.between(-setting.load_range, setting.load_range);
     const bool is_cut = cuts.unit() < setting.cut_share;
     const double share = cuts.between(0.1, 0.9);

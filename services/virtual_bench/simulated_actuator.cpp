@@ -112,10 +112,10 @@ Status SimulatedActuator::start(const Profile& profile, UtcTime time, std::vecto
   while (seal_.month() + 1 <= months_between(installed_, time)) seal_.advance();
   TestConditions conditions;
   conditions.load_factor = chance_.between(-setting_.load_range, setting_.load_range);
-  if (asset_.seal) {
+  if (asset_.condition) {
     // Long after its failure the line of theta would cross zero; a seal that is gone still leaves a gap.
-    const double least = 0.1 * asset_.seal->resistance_60_Pa_s_m3;
-    conditions.parameters["R_CL"] = std::max(asset_.seal->resistance_Pa_s_m3(seal_.condition()), least);
+    const double least = 0.1 * asset_.condition->at_60;
+    conditions.parameters["R_CL"] = std::max(asset_.condition->value(seal_.condition()), least);
   }
   const std::string kind = profile.kind == TestKind::pst ? "PST" : "MCS";
   TestSetting test = setting_.test;

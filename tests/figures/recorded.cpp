@@ -38,7 +38,7 @@ signal::TestRecord record_of(const Recording& recording) {
   signal::Cylinder cylinder;
   cylinder.area_a_m2 = 5.89e-3;  // as config/assets/xt03-mv2.yaml has them
   cylinder.stroke_m = 0.08;
-  return {recording.samples, cylinder};
+  return {recording.samples, cylinder, plant_or_default({})};
 }
 
 Line line_of(const TimeSeries& samples, const std::vector<double>& values, Ink ink, std::string label = {}) {
@@ -76,7 +76,7 @@ std::string partial_stroke(const Recording& recording) {
   };
   add("position", "m", samples.find("position")->values);
   add("load pressure, chamber A minus chamber B (low-passed)", "Pa", test.smooth_load_pressure());
-  add("motor current (low-passed)", "A", *test.smooth("motor_current"));
+  add("motor current (low-passed)", "A", *test.smooth(ChannelRole::current));
   return canvas.svg();
 }
 

@@ -38,7 +38,7 @@ struct SpringReturn {
     double voltage_rate_V_s = 0.0;
   };
 
-  static constexpr std::array kSites = {Site{"driver", SiteKind::voltage_command},
+  static constexpr std::array kSites = {Site{"driver", SiteKind::voltage_command, Feeds::motor},
                                         Site{"piston", SiteKind::piston_force}};
   enum SiteIndex { kDriverVoltage, kPistonForce };
 
@@ -101,7 +101,18 @@ inline PlantDescription describe_spring_return() {
       .states = {{"x", "m", "stem position"}, {"v", "m/s", "stem velocity"}},
       .elements = {{"driver", "force of the drive from its command"}, {"piston", "force on the stem"}},
       .sites = {SpringReturn::kSites.begin(), SpringReturn::kSites.end()},
-      .law_sizes = {{"N", 0.02}, {"m/s", 10.0}, {"N s/m", 0.01}}};  // against `eha`: 1 kN for 60 kN, tens of mm/s
+      // Against `eha`: 1 kN for 60 kN, tens of mm/s. add_plant() names a unit that is forgotten.
+      .law_sizes = {{"N", 0.02},
+                    {"m", 1.0},
+                    {"m/s", 10.0},
+                    {"N/m", 0.02},
+                    {"N/m2", 0.02},
+                    {"N s/m", 0.01},
+                    {"N s2/m2", 1e-3},
+                    {"m2", 0.02},
+                    {"V", 1.0},
+                    {"A", 1.0},
+                    {"s", 1.0}}};
   add_sensor_elements(plant);
   return plant;
 }

@@ -75,6 +75,15 @@ TEST(OwnPlant, IsKnownByNameAndOnlyOnce) {
   EXPECT_FALSE(add_plant<SpringReturnModel>(describe_spring_return())) << "its name is taken";
 }
 
+TEST(OwnPlant, AForgottenSizeIsNamed) {
+  PlantDescription small = describe_spring_return();
+  small.name = "spring_return_without_a_size";
+  std::erase_if(small.law_sizes, [](const LawSize& size) { return size.unit == "N/m"; });
+  const Status added = add_plant<SpringReturnModel>(small);
+  ASSERT_FALSE(added);
+  EXPECT_NE(added.error().describe().find("'N/m': is missing"), std::string::npos) << added.error().describe();
+}
+
 TEST(OwnPlant, IsConsistentWithRecordingsThatLackNothing) {
   const auto found = mismatch::explain(asset(), strokes(0.0), std::vector{stroke("between", 4.0, 0.0, 3)});
   ASSERT_TRUE(found) << found.error().describe();

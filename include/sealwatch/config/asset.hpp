@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sealwatch/config/channel_map.hpp"
+#include "sealwatch/config/condition.hpp"
 #include "sealwatch/core/time.hpp"
 
 namespace sealwatch {
@@ -36,23 +37,7 @@ struct SensorSetting {
   double offset_tolerance = 0.0;  ///< channel's SI unit
   double gain_error = 0.0;        ///< as estimated within the tolerance
   double offset_error = 0.0;
-};
-
-/// Seal condition theta as a line through two leakage resistances (docs/model.md).
-struct SealSetting {
-  double resistance_100_Pa_s_m3 = 2.6e13;  ///< R_CL of a new seal, theta = 1
-  double resistance_60_Pa_s_m3 = 4.64e12;  ///< R_CL at theta = 0.6
-  double threshold = 0.60;                 ///< theta at which the seal has failed
-  [[nodiscard]] double condition(double resistance_Pa_s_m3) const {
-    return 0.6 + 0.4 * (resistance_Pa_s_m3 - resistance_60_Pa_s_m3) / (resistance_100_Pa_s_m3 - resistance_60_Pa_s_m3);
-  }
-  [[nodiscard]] double resistance_Pa_s_m3(double condition) const {
-    return resistance_60_Pa_s_m3 + (condition - 0.6) / 0.4 * (resistance_100_Pa_s_m3 - resistance_60_Pa_s_m3);
-  }
-  /// Standard error of theta for one of R_CL: the line's slope.
-  [[nodiscard]] double condition_std(double resistance_std_Pa_s_m3) const {
-    return 0.4 * resistance_std_Pa_s_m3 / (resistance_100_Pa_s_m3 - resistance_60_Pa_s_m3);
-  }
+  bool operator==(const SensorSetting&) const = default;
 };
 
 /// The partial stroke test as it should run (docs/model.md).
@@ -89,7 +74,7 @@ struct AssetConfig {
   std::string model = "eha";
   std::map<std::string, ParameterSetting> parameters;  ///< all of the model's, defaults filled in
   std::map<std::string, SensorSetting> sensors;        ///< by channel; all of the model's, defaults filled in
-  std::optional<SealSetting> seal;                     ///< none: theta, and so the RUL, is not defined for this asset
+  std::optional<ConditionSetting> condition;           ///< none: theta, and so the RUL, is not defined for this asset
   PstSetting pst;
   std::vector<PhysicsTerm> physics;
   std::map<std::string, AlertLimits> alert_limits;  ///< by quantity (config/judged_quantities.hpp); missing: defaults

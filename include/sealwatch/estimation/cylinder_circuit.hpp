@@ -54,4 +54,7 @@ struct CylinderCircuitOptions {
 [[nodiscard]] FitReport fit_cylinder_circuit(const AssetConfig& asset, const TimeSeries& samples,
                                              std::span<const Phase> phases, const CylinderCircuitOptions& options = {});
 
+/// Whether the asset's plant is one that has that circuit.
+[[nodiscard]] bool has_cylinder_circuit(const AssetConfig& asset);
+
 }  // namespace sealwatch

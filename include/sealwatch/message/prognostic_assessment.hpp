@@ -13,7 +13,7 @@ struct LeakageEstimate {
   std::string asset_id;             // key
   Header header;                    ///< message_id "leakage_estimate/<pst_id>"
   bool estimated = false;           ///< false: no estimate was possible at all, reasons say why
-  double resistance_Pa_s_m3 = 0.0;  ///< R_CL
+  double resistance_Pa_s_m3 = 0.0;  ///< R_CL; of other plants the parameter that wears, in its own unit
   double resistance_std_Pa_s_m3 = 0.0;
   bool condition_known = false;  ///< theta is defined (the asset has seal resistances)
   double condition = 0.0;        ///< theta: leakage-derived condition index
@@ -23,9 +23,11 @@ struct LeakageEstimate {
   std::vector<FitReport> fits;       ///< cylinder circuit, and whole actuator where it could be run
   std::string chosen_model;          ///< which fit R_CL was taken from
   std::string accepted_discrepancy;  ///< model_discrepancy whose model was fitted; "" the asset file's
+  std::string parameter;             ///< whose value it is: "R_CL"
+  std::string unit;                  ///< of it: "Pa s/m3"
   SEALWATCH_FIELDS(LeakageEstimate, asset_id, header, estimated, resistance_Pa_s_m3, resistance_std_Pa_s_m3,
                    condition_known, condition, condition_std, used_for_forecast, reasons, fits, chosen_model,
-                   accepted_discrepancy)
+                   accepted_discrepancy, parameter, unit)
   friend bool operator==(const LeakageEstimate&, const LeakageEstimate&) = default;
 };
 

@@ -42,7 +42,7 @@ struct CascadedTanks {
   /// Where laws of the catalogue may act, in the order of `extra`: voltage that the pump loses; flow that leaves a tank
   /// for good, besides its outlet; flow that passes from the upper tank to the lower one, besides its outlet.
   static constexpr std::array kSites = {
-      Site{"pump", SiteKind::voltage_command}, Site{"upper_tank", SiteKind::tank_flow},
+      Site{"pump", SiteKind::voltage_command, Feeds::pump}, Site{"upper_tank", SiteKind::tank_flow},
       Site{"upper_outlet", SiteKind::tank_flow}, Site{"lower_tank", SiteKind::tank_flow}};
   enum SiteIndex { kPumpVoltage, kUpperFlow, kPassedFlow, kLowerFlow };
 

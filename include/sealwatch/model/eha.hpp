@@ -49,17 +49,25 @@ struct Eha {
   };
 
   /// Where laws of the catalogue may act, in the order of `extra`.
-  static constexpr std::array kSites = {
-      Site{"driver", SiteKind::voltage_command},   Site{"winding", SiteKind::winding_voltage},
-      Site{"shaft", SiteKind::shaft_torque},       Site{"pump", SiteKind::pump_slip},
-      Site{"valve_1", SiteKind::line_drop},        Site{"valve_2", SiteKind::line_drop},
-      Site{"valve_1", SiteKind::valve_crack},      Site{"valve_2", SiteKind::valve_crack},
-      Site{"chamber_a", SiteKind::outflow},        Site{"chamber_b", SiteKind::outflow},
-      Site{"chamber_a", SiteKind::compliance},     Site{"chamber_b", SiteKind::compliance},
-      Site{"piston_seal", SiteKind::seal_leakage}, Site{"piston", SiteKind::piston_force},
-      Site{"fluid", SiteKind::inverse_modulus},    Site{"fluid", SiteKind::inverse_modulus},
-      Site{"fluid", SiteKind::inverse_modulus},    Site{"fluid", SiteKind::inverse_modulus},
-      Site{"fluid", SiteKind::viscosity}};
+  static constexpr std::array kSites = {Site{"driver", SiteKind::voltage_command, Feeds::motor},
+                                        Site{"winding", SiteKind::winding_voltage},
+                                        Site{"shaft", SiteKind::shaft_torque},
+                                        Site{"pump", SiteKind::pump_slip},
+                                        Site{"valve_1", SiteKind::line_drop},
+                                        Site{"valve_2", SiteKind::line_drop},
+                                        Site{"valve_1", SiteKind::valve_crack},
+                                        Site{"valve_2", SiteKind::valve_crack},
+                                        Site{"chamber_a", SiteKind::outflow},
+                                        Site{"chamber_b", SiteKind::outflow},
+                                        Site{"chamber_a", SiteKind::compliance},
+                                        Site{"chamber_b", SiteKind::compliance},
+                                        Site{"piston_seal", SiteKind::seal_leakage},
+                                        Site{"piston", SiteKind::piston_force},
+                                        Site{"fluid", SiteKind::inverse_modulus},
+                                        Site{"fluid", SiteKind::inverse_modulus},
+                                        Site{"fluid", SiteKind::inverse_modulus},
+                                        Site{"fluid", SiteKind::inverse_modulus},
+                                        Site{"fluid", SiteKind::viscosity}};
   enum SiteIndex {
     kDriverVoltage,
     kWindingVoltage,

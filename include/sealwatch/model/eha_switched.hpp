@@ -56,15 +56,21 @@ struct EhaSwitched {
   };
 
   /// Where laws of the catalogue may act, in the order of `extra`. Valve 1 is the line to chamber A, valve 2 to B.
-  static constexpr std::array kSites = {
-      Site{"driver", SiteKind::voltage_command},   Site{"winding", SiteKind::winding_voltage},
-      Site{"shaft", SiteKind::shaft_torque},       Site{"pump", SiteKind::pump_slip},
-      Site{"valve_1", SiteKind::line_drop},        Site{"valve_2", SiteKind::line_drop},
-      Site{"chamber_a", SiteKind::outflow},        Site{"chamber_b", SiteKind::outflow},
-      Site{"chamber_a", SiteKind::compliance},     Site{"chamber_b", SiteKind::compliance},
-      Site{"piston_seal", SiteKind::seal_leakage}, Site{"piston", SiteKind::piston_force},
-      Site{"fluid", SiteKind::inverse_modulus},    Site{"fluid", SiteKind::inverse_modulus},
-      Site{"fluid", SiteKind::inverse_modulus}};
+  static constexpr std::array kSites = {Site{"driver", SiteKind::voltage_command, Feeds::motor},
+                                        Site{"winding", SiteKind::winding_voltage},
+                                        Site{"shaft", SiteKind::shaft_torque},
+                                        Site{"pump", SiteKind::pump_slip},
+                                        Site{"valve_1", SiteKind::line_drop},
+                                        Site{"valve_2", SiteKind::line_drop},
+                                        Site{"chamber_a", SiteKind::outflow},
+                                        Site{"chamber_b", SiteKind::outflow},
+                                        Site{"chamber_a", SiteKind::compliance},
+                                        Site{"chamber_b", SiteKind::compliance},
+                                        Site{"piston_seal", SiteKind::seal_leakage},
+                                        Site{"piston", SiteKind::piston_force},
+                                        Site{"fluid", SiteKind::inverse_modulus},
+                                        Site{"fluid", SiteKind::inverse_modulus},
+                                        Site{"fluid", SiteKind::inverse_modulus}};
   enum SiteIndex {
     kDriverVoltage,
     kWindingVoltage,

@@ -40,7 +40,7 @@ struct Emps {
   };
 
   /// Where laws of the catalogue may act, in the order of `extra`.
-  static constexpr std::array kSites = {Site{"driver", SiteKind::voltage_command},
+  static constexpr std::array kSites = {Site{"driver", SiteKind::voltage_command, Feeds::motor},
                                         Site{"piston", SiteKind::piston_force}};
   enum SiteIndex { kDriverVoltage, kPistonForce };
 

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -58,16 +59,25 @@ SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_sl
 /// Laws of the recorded input and of the recording's clock, which the simulation applies to the recording itself.
 [[nodiscard]] constexpr bool is_of_recording(SiteKind kind) { return kind > SiteKind::sensor_saturation; }
 
+/// What a command's voltage feeds, where that is known: dead times of a bridge are asked at motors, the voltage below
+/// which a pump delivers nothing at pumps. A site or law of `anything` goes with all.
+SEALWATCH_ENUM(Feeds, anything, motor, pump)
+
 inline constexpr std::size_t kSiteSignals = 4;
 inline constexpr std::size_t kLawParameters = 4;
+inline constexpr std::size_t kLawRoundings = 2;
 /// Signals, hidden state, parameters: one direction each.
 inline constexpr int kLawDirections = static_cast<int>(kSiteSignals + 1 + kLawParameters);
 using LawScalar = Dual<kLawDirections>;
+
+/// Widths over which a law rounds its corners, in the sizes of the plant (law_sizes.hpp).
+using Roundings = std::array<double, kLawRoundings>;
 
 struct LawInput {
   std::array<LawScalar, kSiteSignals> signal;
   LawScalar hidden;
   std::array<LawScalar, kLawParameters> parameter;
+  Roundings rounding{};
 };
 
 struct LawOutput {
@@ -86,7 +96,16 @@ struct LawParameter {
   bool strength = false;  ///< the contribution is proportional to it (all strengths 0: the law is absent)
   /// Size of a strength from which an engineer would care: about 1 % of what the element carries.
   double significant = 0.0;
+  bool own_size = false;  ///< of a plant's own law: its numbers are that plant's already
 };
+
+/// A width over which a corner is rounded, as large as `eha` has it.
+struct LawRounding {
+  std::string_view unit;
+  double width = 0.0;
+};
+
+struct LawExpressions;  // services/common/equations/own_law.hpp
 
 struct HiddenState {
   std::string_view name;  ///< "bristle"
@@ -108,11 +127,13 @@ struct Law {
   std::vector<LawParameter> parameters;
   std::optional<HiddenState> hidden = {};
   std::function<LawOutput(const LawInput&)> evaluate = {};  ///< empty where the simulation applies the law itself
-  /// Elements that the law fits beside its kind; empty: all of that kind.
-  std::vector<std::string_view> elements = {};
+  Feeds feeds = Feeds::anything;
+  std::vector<LawRounding> roundings = {};
   /// Id of the plainer law that it comes to where its way is too short or its extra strength too small to be seen.
   std::string_view limit = {};
-  std::string_view plant = {};  ///< that brings the law and alone has it; "": all
+  std::string_view plant = {};                             ///< that brings the law and alone has it; "": all
+  std::string_view element = {};                           ///< of that plant, where the law acts
+  std::shared_ptr<const LawExpressions> expressions = {};  ///< of a law that is written as text
 };
 
 /// All laws, in the order of their files (services/common/model/laws), then those that plants bring.
@@ -133,7 +154,8 @@ void add_law(Law law);
 /// The same text, kept for the program's life: names of laws and sites that are read from files.
 [[nodiscard]] std::string_view kept(std::string_view text);
 
-/// Contribution alone, of plain numbers: for drawings and for the sensitivity pass. `strength` scales all strengths.
-[[nodiscard]] LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters);
+/// Plain numbers, each a direction of differentiation.
+[[nodiscard]] LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters,
+                                 const Roundings& roundings);
 
 }  // namespace sealwatch

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sealwatch/config/condition.hpp"
 #include "sealwatch/core/result.hpp"
+#include "sealwatch/core/time_series.hpp"
+#include "sealwatch/model/roles.hpp"
 #include "sealwatch/model/sites.hpp"
 
 namespace sealwatch {
@@ -23,6 +27,7 @@ struct ChannelDescription {
   double range_max = 0.0;
   bool hold = false;          ///< an input that is held between samples, whatever the recording says
   bool band_limited = false;  ///< an input without anything above half the sampling rate: its samples say all of it
+  ChannelRole role = ChannelRole::none;
 };
 
 /// What drawings and datasheets give, machined and catalogue parts alike, is seldom off by more than twice this.
@@ -39,6 +44,7 @@ struct ParameterDescription {
   bool estimate = false;  ///< estimated by default where the channels allow it
   /// Standard deviation of a datasheet's value about the plant's, as a share of it.
   double tolerance = kUsualTolerance;
+  ParameterRole role = ParameterRole::none;
 };
 
 struct StateDescription {
@@ -75,20 +81,31 @@ struct PlantDescription {
   std::string load_parameter = {};
   /// The parameter by which the plant wears, so that its change from test to test is no missing physics; "": none.
   std::string wear_parameter = {};
-  std::string file = {};  ///< that it was read from; "": it is built in
+  std::optional<ConditionSetting> condition = {};  ///< what `seal:` in an asset's file says the anchors of
+  bool judged = false;                             ///< an asset that says nothing of it has that condition
+  std::string file = {};                           ///< that it was read from; "": it is built in
 
   [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
   [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;
   [[nodiscard]] const StateDescription* find_state(std::string_view state) const;
-  /// By what a law's start values of that unit are multiplied in this plant.
-  [[nodiscard]] double law_size(std::string_view unit) const;
+  /// The first channel of that role; null: the plant has none.
+  [[nodiscard]] const ChannelDescription* find_channel(ChannelRole role) const;
+  [[nodiscard]] const ParameterDescription* find_parameter(ParameterRole role) const;
   [[nodiscard]] bool has_load() const { return !load_parameter.empty(); }
 };
+
+/// The recorded channel of that role; null: the plant has none, or it was not recorded.
+[[nodiscard]] const Series* find_series(const TimeSeries& recorded, const PlantDescription& plant, ChannelRole role);
+/// Its name, whether it was recorded or not; "": the plant has none.
+[[nodiscard]] std::string channel_name(const PlantDescription& plant, ChannelRole role);
 
 /// The plants that sealwatch knows, in a fixed order; one's own come last (docs/tutorial-plant.md).
 [[nodiscard]] const std::deque<PlantDescription>& all_plants();
 
 /// The plant of that name; an Error naming the nearest one otherwise.
 [[nodiscard]] Result<const PlantDescription*> find_plant(std::string_view name);
+
+/// The plant of that name, or where there is none that of assets whose file names none.
+[[nodiscard]] const PlantDescription& plant_or_default(std::string_view name);
 
 }  // namespace sealwatch

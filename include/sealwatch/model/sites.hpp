@@ -37,6 +37,13 @@ struct NoExtra {
 struct Site {
   std::string_view element;  ///< of the plant's description
   SiteKind kind;
+  Feeds feeds = Feeds::anything;  ///< of a command's voltage
 };
+
+/// Whether a law is asked at a site.
+[[nodiscard]] inline bool fits(const Law& law, const Site& site) {
+  return law.kind == site.kind && (law.element.empty() || law.element == site.element) &&
+         (law.feeds == site.feeds || law.feeds == Feeds::anything || site.feeds == Feeds::anything);
+}
 
 }  // namespace sealwatch

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sealwatch/core/time_series.hpp"
+#include "sealwatch/model/plant_description.hpp"
 #include "sealwatch/signal/filters.hpp"
 #include "sealwatch/signal/phases.hpp"
 
@@ -34,9 +35,9 @@ struct Range {
 
 class TestRecord {
  public:
-  /// `samples` uniform with at least 8 rows, each channel's noise_std set; must outlive the record. Smooths every
-  /// channel without phase and finds the phases.
-  TestRecord(const TimeSeries& samples, Cylinder cylinder);
+  /// `samples` uniform with at least 8 rows, each channel's noise_std set; must outlive the record, as must the
+  /// plant, which says what its channels are. Smooths every channel without phase and finds the phases.
+  TestRecord(const TimeSeries& samples, Cylinder cylinder, const PlantDescription& plant);
 
   [[nodiscard]] const TimeSeries& samples() const { return samples_; }
   [[nodiscard]] const Cylinder& cylinder() const { return cylinder_; }
@@ -46,11 +47,14 @@ class TestRecord {
   [[nodiscard]] const std::string& filter_description() const { return filter_description_; }
 
   /// Channel as recorded; nullptr when it is not.
-  [[nodiscard]] const std::vector<double>* raw(std::string_view channel) const;
+  [[nodiscard]] const std::vector<double>* raw(ChannelRole channel) const;
   /// Zero-phase low-passed channel; nullptr when it is not recorded.
-  [[nodiscard]] const std::vector<double>* smooth(std::string_view channel) const;
+  [[nodiscard]] const std::vector<double>* smooth(ChannelRole channel) const;
   /// Standard deviation of the noise left in the smoothed channel.
-  [[nodiscard]] double smooth_noise_std(std::string_view channel) const;
+  [[nodiscard]] double smooth_noise_std(ChannelRole channel) const;
+
+  /// The channel that drives the actuator, where it is recorded.
+  [[nodiscard]] const Series* drive() const { return find_series(samples_, *plant_, ChannelRole::drive); }
 
   /// Position [m], as recorded or, up to its start, as the integral of velocity; empty when neither is there.
   [[nodiscard]] const std::vector<double>& position() const { return position_; }
@@ -75,6 +79,7 @@ class TestRecord {
 
   const TimeSeries& samples_;
   Cylinder cylinder_;
+  const PlantDescription* plant_;
   double interval_s_ = 0.0;
   LowPass filter_;
   std::string filter_description_;

@@ -32,7 +32,8 @@ struct AlteredParameter {
 
 /// What would have to be done to the simulation's course to come nearer to the recording.
 struct Alteration {
-  std::string id;     ///< "sensor_gain", "sensor_bias", "sensor_lag", "sign", "clock_rate", "input_gain", "input_delay"
+  std::string id;     ///< "sensor_gain", "sensor_bias", "sensor_lag", "sign", "clock_rate", "input_gain", "input_bias",
+                      ///< "input_delay", "input_sign"
   std::string where;  ///< "sensor:position", "input:motor_voltage", "input", "clock"
   std::vector<AlteredParameter> parameters;
   double removed_share = 0.0;  ///< of the misfit beyond noise, 0..1

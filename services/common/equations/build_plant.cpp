@@ -260,7 +260,7 @@ class Builder {
     for (const TextState& state : text_.states) plant.states.push_back(state.description);
     for (const TextOutput& output : text_.outputs)
       plant.elements.push_back({"sensor:" + output.channel.name, "measurement of " + output.channel.meaning});
-    for (const TextSite& site : text_.sites) plant.sites.push_back({kept(site.element), site.kind});
+    for (const TextSite& site : text_.sites) plant.sites.push_back(site.site());
     for (const auto& [unit, factor] : text_.law_sizes) plant.law_sizes.push_back({kept(unit), factor});
     plant.window_s = text_.window_s;
     plant.load_parameter = text_.load;

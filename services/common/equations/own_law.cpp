@@ -5,6 +5,7 @@
 #include <map>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/equations/tape.hpp"
 
@@ -100,27 +101,23 @@ bool is_proportional(const Law& law) {
     none.push_back(parameter.strength ? 0.0 : start);
   }
   const auto of = [&](const std::vector<double>& parameters) {
-    return law.evaluate(law_input(signals, 0.5, parameters)).contribution.value;
+    return law.evaluate(law_input(signals, 0.5, parameters, {})).contribution.value;
   };
   const double a = of(once), b = of(twice), c = of(none);
   return std::abs(c) <= 1e-9 * std::abs(a) && std::abs(b - 2.0 * a) <= 1e-9 * std::abs(a);
 }
 
-void add_parameters(const TextLaw& text, const TextPlant& plant, Law& law) {
-  for (const TextLawParameter& row : text.parameters) {
-    const auto size = plant.law_sizes.find(row.unit);
-    const double factor = size == plant.law_sizes.end() ? 1.0 : size->second;  // the plant's sizes are in them already
-    LawParameter parameter{.name = kept(row.name),
-                           .unit = kept(row.unit),
-                           .meaning = kept(row.meaning),
-                           .start = row.start,
-                           .min = row.min,
-                           .max = row.max,
-                           .strength = row.strength,
-                           .significant = row.significant / factor};
-    for (double& start : parameter.start) start /= factor;
-    law.parameters.push_back(std::move(parameter));
-  }
+void add_parameters(const TextLaw& text, Law& law) {
+  for (const TextLawParameter& row : text.parameters)
+    law.parameters.push_back({.name = kept(row.name),
+                              .unit = kept(row.unit),
+                              .meaning = kept(row.meaning),
+                              .start = row.start,
+                              .min = row.min,
+                              .max = row.max,
+                              .strength = row.strength,
+                              .significant = row.significant,
+                              .own_size = true});
 }
 
 }  // namespace
@@ -172,9 +169,9 @@ std::optional<Law> build_law(const TextLaw& text, const TextPlant& plant, const 
           .source = kept("the plant's own"),
           .parameters = {},
           .evaluate = {},
-          .elements = {kept(text.element)},
-          .plant = kept(plant.name)};
-  add_parameters(text, plant, law);
+          .plant = kept(plant.name),
+          .element = kept(text.element)};
+  add_parameters(text, law);
   if (!text.hidden.empty())
     law.hidden = HiddenState{.name = kept(text.hidden),
                              .unit = kept(text.hidden_unit),
@@ -186,6 +183,8 @@ std::optional<Law> build_law(const TextLaw& text, const TextPlant& plant, const 
     tape.evaluate(input, output);
     return output;
   };
+  law.expressions =
+      std::make_shared<const LawExpressions>(LawExpressions{std::move(expressions), contribution->node, rate->node});
   if (std::ranges::none_of(law.parameters, &LawParameter::strength))
     refuse(".parameters", fault(text.id, "has no strength", "say strength: true where the law is proportional to it"));
   else if (!is_proportional(law))
@@ -211,8 +210,8 @@ bool is_inert(const Law& law, const TextSite& site) {
   std::vector<double> parameters;
   for (const LawParameter& parameter : law.parameters) parameters.push_back(parameter.start.front());
   const double hidden = law.hidden ? law.hidden->scale : 0.0;
-  const LawOutput here = law.evaluate(law_input(seen, hidden, parameters));
-  const LawOutput usual = law.evaluate(law_input(all, hidden, parameters));
+  const LawOutput here = law.evaluate(law_input(seen, hidden, parameters, roundings_of(law)));
+  const LawOutput usual = law.evaluate(law_input(all, hidden, parameters, roundings_of(law)));
   const auto less = [](const LawScalar& a, const LawScalar& b) {
     return std::abs(a.value) <= kRounding * std::abs(b.value);
   };
@@ -223,9 +222,7 @@ std::vector<NeededSize> needed_sizes(const TextPlant& plant) {
   std::map<std::string_view, NeededSize> sizes;
   for (const TextSite& site : plant.sites)
     for (const Law& law : all_laws()) {
-      const bool fits = law.kind == site.kind && law.plant.empty() &&
-                        (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end());
-      if (!fits || is_inert(law, site)) continue;
+      if (!law.plant.empty() || !fits(law, site.site()) || is_inert(law, site)) continue;
       for (const LawParameter& parameter : law.parameters) {
         if (parameter.unit == "1") continue;
         NeededSize& size = sizes[parameter.unit];

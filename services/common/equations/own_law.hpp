@@ -10,6 +10,20 @@ namespace sealwatch::equations {
 /// Nothing where something is wrong, which went to `faults`. `plant`: with its sites and sizes.
 [[nodiscard]] std::optional<Law> build_law(const TextLaw& text, const TextPlant& plant, const Faults& faults);
 
+}  // namespace sealwatch::equations
+
+namespace sealwatch {
+
+/// The equations of a law that is written as text, for those who write it in another language. Variables: the site's
+/// signals, the hidden state, the parameters, in the order of LawInput's directions.
+struct LawExpressions {
+  equations::Expressions expressions;
+  equations::Node contribution = 0, rate = 0;
+};
+}  // namespace sealwatch
+
+namespace sealwatch::equations {
+
 /// Whether a law of the catalogue gives nothing at a site with these signals.
 [[nodiscard]] bool is_inert(const Law& law, const TextSite& site);
 

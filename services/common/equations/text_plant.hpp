@@ -43,11 +43,13 @@ struct TextSignal {
 struct TextSite {
   std::string element;
   SiteKind kind = SiteKind::own;
+  Feeds feeds = Feeds::anything;
   std::string symbol;  ///< in the equations; "": none
   std::string unit;    ///< of a site of kind own
   std::vector<TextSignal> signals;
   std::vector<std::pair<std::string, std::string>> adds_to;  ///< state and factor
   std::string key;                                           ///< where it stands: "elements.piston.sites[0]"
+  [[nodiscard]] Site site() const { return {kept(element), kind, feeds}; }
 };
 
 struct TextLawParameter {

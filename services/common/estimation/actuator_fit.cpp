@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "sealwatch/estimation/cylinder_circuit.hpp"
-#include "services/common/estimation/closed_valves.hpp"
 #include "services/common/estimation/fit_report.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/estimation/pem_search.hpp"
 #include "services/common/estimation/words.hpp"
+#include "services/common/model/plants/eha_switched/estimation/closed_valves.hpp"
 
 namespace sealwatch {
 namespace {
@@ -22,7 +22,7 @@ bool better(const PemOptimum& a, const PemOptimum& b) {
 // step from the asset's value, which overshoots where the seal is worn.
 void start_from_cylinder_circuit(PemProblem& problem, const AssetConfig& asset,
                                  std::span<const TimeSeries> recordings) {
-  if (!asset.parameters.contains("A_C")) return;
+  if (!has_cylinder_circuit(asset)) return;
   for (const TimeSeries& recorded : recordings) {
     const FitReport circuit = fit_cylinder_circuit(asset, recorded, {});
     if (!circuit.admissible) continue;
@@ -47,10 +47,11 @@ double cost_at_start(const PemProblem& problem) {
 
 // Seal leakage by trying values from the asset's down to a tenth: without a flow sensor the circuit cannot be fitted,
 // and from a new seal's value the search ends in a wrong minimum where the seal is worn.
-void start_from_best_leakage(PemProblem& problem) {
+void start_from_best_leakage(PemProblem& problem, const PlantDescription& plant) {
   constexpr double kStep = 0.75;
   constexpr int kSteps = 8;
-  const auto leakage = std::ranges::find(problem.shared, "R_CL", &Unknown::name);
+  if (!plant.condition) return;
+  const auto leakage = std::ranges::find(problem.shared, plant.condition->parameter, &Unknown::name);
   if (leakage == problem.shared.end()) return;
   double best = leakage->start;
   double least = cost_at_start(problem);
@@ -100,8 +101,10 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
 Result<PemOptimum> search_from_asset(PemProblem& problem, const AssetConfig& asset,
                                      std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
   start_from_cylinder_circuit(problem, asset, recordings);
-  if (std::ranges::none_of(recordings, [](const TimeSeries& one) { return one.has("flow"); }))
-    start_from_best_leakage(problem);
+  const PlantDescription& plant = plant_or_default(asset.model);
+  if (std::ranges::none_of(recordings,
+                           [&](const TimeSeries& one) { return find_series(one, plant, ChannelRole::flow); }))
+    start_from_best_leakage(problem, plant);
   return search_from_several_starts(problem, options);
 }
 

@@ -44,10 +44,7 @@ bool has_numbers(const FitReport& report) {
 }
 
 // Of plants and models that have a seal its leakage resistance is what the fit is for.
-bool has_seal(const std::string& model) {
-  const Result<const PlantDescription*> plant = find_plant(model);
-  return !plant || (*plant)->find_parameter("R_CL") != nullptr;
-}
+const std::optional<ConditionSetting>& seal_of(const std::string& model) { return plant_or_default(model).condition; }
 
 }  // namespace
 
@@ -77,17 +74,18 @@ void judge_admissibility(FitReport& report, const AdmissibilityOptions& options)
   }
   if (!report.converged) report.reasons.push_back("the fit did not converge: " + report.termination);
   for (const ChannelFit& channel : report.channels) judge_channel(channel, options, report.reasons);
+  const std::optional<ConditionSetting>& seal = seal_of(report.model);
   bool has_resistance = false;
   for (const EstimatedParameter& parameter : report.parameters) {
     if (parameter.at_bound)
       report.reasons.push_back(parameter.name + " ended at its bound " + in_words(parameter.value) + " " +
                                parameter.unit);
-    if (parameter.name != "R_CL" || !parameter.free) continue;
+    if (!seal || parameter.name != seal->parameter || !parameter.free) continue;
     has_resistance = true;
     if (!parameter.at_bound) judge_resistance(parameter, options, report.reasons);
   }
-  if (!has_resistance && report.reasons.empty() && has_seal(report.model))
-    report.reasons.emplace_back("R_CL was not estimated");
+  if (!has_resistance && report.reasons.empty() && seal)
+    report.reasons.push_back(seal->parameter + " was not estimated");
   report.admissible = report.reasons.empty();
 }
 

@@ -7,6 +7,7 @@
 
 #include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
+#include "sealwatch/model/driving_channels.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 #include "services/common/model/model_simulator.hpp"
 
@@ -33,8 +34,8 @@ std::vector<double> driving_input(const AssetConfig& asset, const TimeSeries& re
   if (const auto plant = find_plant(asset.model))
     for (const ChannelDescription& channel : (*plant)->channels)
       if (const Series* series = channel.input ? recorded.find(channel.name) : nullptr) return series->values;
-  const Series* flow = recorded.find("flow");
-  return flow != nullptr ? flow->values : std::vector<double>{};
+  const std::vector<std::string> measured = measured_inputs(asset, recorded);
+  return measured.empty() ? std::vector<double>{} : recorded.find(measured.front())->values;
 }
 
 ChannelValidation compare(const Series& recorded, const Series& simulated, double noise_std, const PastInput& past) {

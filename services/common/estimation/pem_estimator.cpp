@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "sealwatch/estimation/cylinder_circuit.hpp"
+#include "sealwatch/model/driving_channels.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -15,10 +18,10 @@ class PemEstimator final : public Estimator {
                                                 std::span<const Phase> phases) const override {
     std::vector<FitReport> fits;
     fits.push_back(fit_actuator(asset, {&samples, 1}, actuator_).report);
-    if (asset.parameters.contains("A_C")) fits.push_back(fit_cylinder_circuit(asset, samples, phases, cylinder_));
+    if (has_cylinder_circuit(asset)) fits.push_back(fit_cylinder_circuit(asset, samples, phases, cylinder_));
     // Driven by a measured flow the whole-record simulation takes the flow's own noise for the model's error: the
     // circuit's filter knows better.
-    if (fits.size() == 2 && !samples.has("motor_voltage")) std::swap(fits[0], fits[1]);
+    if (fits.size() == 2 && !measured_inputs(asset, samples).empty()) std::swap(fits[0], fits[1]);
     std::stable_partition(fits.begin(), fits.end(), [](const FitReport& fit) { return fit.admissible; });
     return fits;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 
 namespace sealwatch {
@@ -35,10 +36,10 @@ Unknown shared_unknown(const ParameterDescription& parameter, const ParameterSet
 }
 
 // A strength may pass through 0; a shape is a scale where it is positive.
-Unknown law_unknown(const PhysicsParameter& parameter, FreeQuantity quantity) {
+Unknown law_unknown(const PlantDescription& plant, const PhysicsParameter& parameter, FreeQuantity quantity) {
   const ParameterSetting& setting = parameter.setting;
   const bool logarithmic = !parameter.parameter->strength && setting.min > 0.0;
-  const double usual = std::abs(parameter.parameter->start.front());
+  const double usual = std::abs(law_size(plant, *parameter.parameter) * parameter.parameter->start.front());
   return {.name = parameter.name,
           .unit = std::string(parameter.parameter->unit),
           .quantity = quantity,
@@ -93,7 +94,7 @@ Result<std::vector<Unknown>> shared_unknowns(const AssetConfig& asset, const Pla
     if (!parameter.setting.estimate) continue;
     const Result<FreeQuantity> quantity = simulation.find(parameter.name);
     if (!quantity) return fail(quantity.error());
-    unknowns.push_back(law_unknown(parameter, *quantity));
+    unknowns.push_back(law_unknown(simulation.plant(), parameter, *quantity));
   }
   for (const KnownValue& value : known)
     if (const auto quantity = simulation.find(value.name); quantity && quantity->is_of_sensor())

@@ -33,15 +33,18 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-const std::vector<std::string> kColumns{"time[iso8601]", "theta[1]", "theta_std[1]", "R_CL[Pa s/m3]",
-                                        "R_CL_std[Pa s/m3]"};
+/// Without an asset the columns are those of a seal.
+std::string worn_column(const std::optional<ConditionSetting>& condition, const char* suffix = "") {
+  const bool known = condition && !condition->parameter.empty();
+  return (known ? condition->parameter : "R_CL") + suffix + "[" + (known ? condition->unit : "Pa s/m3") + "]";
+}
 constexpr std::size_t kSlip = 2;  // letters: other columns are passed over, a misspelt one must not be
 
 /// The column that `name` nearly is; "" for one that is spelt right or is something else altogether.
-std::string misspelt(const std::string& name) {
+std::string misspelt(const std::string& name, const std::vector<std::string>& columns) {
   std::string meant;
   std::size_t least = kSlip + 1;
-  for (const std::string& column : kColumns)
+  for (const std::string& column : columns)
     if (const std::size_t distance = edit_distance(name, column); distance < least) {
       least = distance;
       meant = column;
@@ -59,7 +62,7 @@ struct Columns {
 
 class HistoryParser {
  public:
-  HistoryParser(const std::string& file, const std::optional<SealSetting>& seal) : file_(file), seal_(seal) {}
+  HistoryParser(const std::string& file, const std::optional<ConditionSetting>& seal) : file_(file), seal_(seal) {}
 
   Result<std::vector<ConditionSample>> parse(const std::string& text) {
     std::istringstream lines(text);
@@ -93,6 +96,8 @@ class HistoryParser {
 
   Status read_header(const std::string& line) {
     columns_.header = split(line);
+    const std::string worn = worn_column(seal_), worn_std = worn_column(seal_, "_std");
+    const std::vector<std::string> known = {"time[iso8601]", "theta[1]", "theta_std[1]", worn, worn_std};
     const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
       for (std::size_t i = 0; i < columns_.header.size(); ++i)
         if (columns_.header[i] == name) return i;
@@ -100,21 +105,20 @@ class HistoryParser {
     };
     for (std::size_t i = 0; i < columns_.header.size(); ++i) {
       if (find(columns_.header[i]) != i) return fail(at(columns_.header[i], {}, "stands twice", {}));
-      if (const std::string meant = misspelt(columns_.header[i]); !meant.empty())
+      if (const std::string meant = misspelt(columns_.header[i], known); !meant.empty())
         return fail(at({}, columns_.header[i], "is not a column of a history", "did you mean '" + meant + "'?"));
     }
     const auto time = find("time[iso8601]");
     if (!time) return fail(at({}, line, "has no column time[iso8601]", suggest("time[iso8601]", columns_.header)));
     const auto theta = find("theta[1]");
-    const auto resistance = find("R_CL[Pa s/m3]");
-    if (!theta && !resistance) return fail(at({}, line, "has neither column theta[1] nor R_CL[Pa s/m3]", {}));
+    const auto resistance = find(worn);
+    if (!theta && !resistance) return fail(at({}, line, "has neither column theta[1] nor " + worn, {}));
     columns_.time = *time;
     columns_.resistance = !theta;
     columns_.value = theta ? *theta : *resistance;
-    columns_.std_error = find(theta ? "theta_std[1]" : "R_CL_std[Pa s/m3]");
+    columns_.std_error = find(theta ? "theta_std[1]" : worn_std);
     if (columns_.resistance && !seal_)
-      return fail(
-          at("R_CL[Pa s/m3]", {}, "needs the seal resistances of the asset", "give --asset with a `seal:` section"));
+      return fail(at(worn, {}, "needs the seal resistances of the asset", "give --asset with a `seal:` section"));
     return {};
   }
 
@@ -139,7 +143,8 @@ class HistoryParser {
       return fail(at(columns_.header[columns_.time], cells[columns_.time], time.error().rule, time.error().advice));
     const auto value = number(cells, columns_.value);
     if (!value) return fail(value.error());
-    if (*value <= 0.0 || (!columns_.resistance && *value > kLargestCondition))
+    const bool positive = !columns_.resistance || !seal_ || seal_->is_positive();
+    if ((positive && *value <= 0.0) || (!columns_.resistance && *value > kLargestCondition))
       return fail(at(columns_.header[columns_.value], cells[columns_.value],
                      columns_.resistance ? "must be positive" : "must be above 0, at most 2",
                      columns_.resistance ? "" : "theta is a share: 0.85 for 85 %"));
@@ -149,15 +154,17 @@ class HistoryParser {
       return fail(at(columns_.header[*columns_.std_error], cells[*columns_.std_error], "must not be negative", {}));
     if (!columns_.resistance) return ConditionSample{*time, *value, *std_error};
     const double condition = seal_->condition(*value);
+    const bool seal = seal_->part.ends_with("seal");
+    const std::string what = seal ? "seal " : "", anchors = seal ? "`seal:` resistances" : "`condition:`";
     if (!(condition <= kLargestCondition))
       return fail(at(columns_.header[columns_.value], cells[columns_.value],
-                     "is a seal condition above 2 by the asset's `seal:` resistances",
-                     "do the file's unit, Pa s/m3, and the asset fit?"));
-    return ConditionSample{*time, condition, seal_->condition_std(*std_error)};
+                     "is a " + what + "condition above 2 by the asset's " + anchors,
+                     "do the file's unit, " + seal_->unit + ", and the asset fit?"));
+    return ConditionSample{*time, condition, seal_->condition_std(*value, *std_error)};
   }
 
   const std::string& file_;
-  const std::optional<SealSetting>& seal_;
+  const std::optional<ConditionSetting>& seal_;
   Columns columns_;
   int row_ = 1;
 };
@@ -165,11 +172,12 @@ class HistoryParser {
 }  // namespace
 
 Result<std::vector<ConditionSample>> parse_history(const std::string& text, const std::string& file,
-                                                   const std::optional<SealSetting>& seal) {
+                                                   const std::optional<ConditionSetting>& seal) {
   return HistoryParser(file, seal).parse(text);
 }
 
-Result<std::vector<ConditionSample>> read_history(const std::string& path, const std::optional<SealSetting>& seal) {
+Result<std::vector<ConditionSample>> read_history(const std::string& path,
+                                                  const std::optional<ConditionSetting>& seal) {
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   if (!stream) return fail(Error{.file = path, .place = {}, .value = {}, .rule = "cannot be read", .advice = {}});
   if (const auto size = stream.tellg(); size < 0 || static_cast<std::size_t>(size) > kLargestFile_bytes)

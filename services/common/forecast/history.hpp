@@ -21,10 +21,10 @@ namespace sealwatch::forecast {
 
 /// Reads the file at `path`. `seal` turns R_CL into theta.
 [[nodiscard]] Result<std::vector<ConditionSample>> read_history(const std::string& path,
-                                                                const std::optional<SealSetting>& seal);
+                                                                const std::optional<ConditionSetting>& seal);
 
 /// The same from text; `file` is what errors call it.
 [[nodiscard]] Result<std::vector<ConditionSample>> parse_history(const std::string& text, const std::string& file,
-                                                                 const std::optional<SealSetting>& seal);
+                                                                 const std::optional<ConditionSetting>& seal);
 
 }  // namespace sealwatch::forecast

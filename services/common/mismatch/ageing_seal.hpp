@@ -48,6 +48,9 @@ struct AgeingSeal {
 /// known.
 [[nodiscard]] double predicted_leakage(const FittedModel& model, const Data& fit, std::optional<UtcTime> time);
 
+/// "The piston seal": what wears in the asset.
+[[nodiscard]] std::string what_aged(const AssetConfig& asset);
+
 /// "From test to test R_CL is ...", value by value.
 [[nodiscard]] std::string ageing_in_words(const FittedModel& model, const Data& fit);
 

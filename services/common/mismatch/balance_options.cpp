@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/candidates.hpp"
 
 namespace sealwatch::mismatch {
@@ -25,26 +26,26 @@ bool tried_with_balances(const Law& law, const PlantDescription& plant) {
 
 PhysicsTerm absent(const Law& law, const std::string& element, const PlantDescription& plant) {
   PhysicsTerm term{.id = std::string(law.id), .element = element, .parameters = {}};
-  for (const LawParameter& parameter : law.parameters)
-    term.parameters[std::string(parameter.name)] = {
-        .value = parameter.strength ? 0.0
-                                    : std::clamp(plant.law_size(parameter.unit) * parameter.start.front(),
-                                                 parameter.min, parameter.max),
-        .min = parameter.min,
-        .max = parameter.max,
-        .estimate = parameter.strength};
+  for (const LawParameter& parameter : law.parameters) {
+    const LawBounds bounds = law_bounds(plant, parameter);
+    term.parameters[std::string(parameter.name)] = {.value = parameter.strength ? 0.0 : law_start(plant, parameter),
+                                                    .min = bounds.min,
+                                                    .max = bounds.max,
+                                                    .estimate = parameter.strength};
+  }
   return term;
 }
 
 BalanceOption law_option(const Law& law, const std::string& element, const PlantDescription& plant, double range) {
   const LawParameter& strength = law.parameters[strengths_of(law).front()];
+  const LawBounds bounds = law_bounds(plant, strength);
   const bool bias = law.kind == SiteKind::sensor_bias;
   return {.unknown = {.name = std::string(strength.name),
                       .element = element,
                       .law = &law,
-                      .unit = bias ? 0.01 * range : plant.law_size(strength.unit) * strength.start.front(),
-                      .min = strength.min,
-                      .max = strength.max},
+                      .unit = bias ? 0.01 * range : law_size(plant, strength) * strength.start.front(),
+                      .min = bounds.min,
+                      .max = bounds.max},
           .term = absent(law, element, plant)};
 }
 
@@ -73,8 +74,7 @@ std::vector<BalanceOption> balance_options(const AssetConfig& asset, const Plant
     std::string last;
     for (const Site& site : plant.sites) {
       const std::string element(site.element);
-      if (law.evaluate == nullptr || site.kind != law.kind || element == last) continue;
-      if (!law.elements.empty() && std::ranges::find(law.elements, site.element) == law.elements.end()) continue;
+      if (law.evaluate == nullptr || !fits(law, site) || element == last) continue;
       options.push_back(law_option(law, last = element, plant, 0.0));
       options.back().places = std::ranges::count_if(
           plant.sites, [&](const Site& other) { return other.element == site.element && other.kind == law.kind; });

@@ -6,7 +6,7 @@
 // Levenberg and Marquardt on the reweighted squares; derivatives by differences.
 #pragma once
 
-#include "services/common/mismatch/switched_balances.hpp"
+#include "services/common/model/plants/eha_switched/mismatch/switched_balances.hpp"
 
 namespace sealwatch::mismatch {
 

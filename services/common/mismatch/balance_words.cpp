@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/telling.hpp"
 
@@ -101,7 +102,7 @@ FoundEffect effect_of(const BalanceFinding& finding, const PlantDescription& pla
   } else {
     for (const LawParameter& parameter : finding.what.law->parameters)
       if (parameter.name == finding.what.name && parameter.significant > 0.0)
-        effect.engineering_share = std::abs(finding.value) / (plant.law_size(parameter.unit) * parameter.significant);
+        effect.engineering_share = std::abs(finding.value) / sealwatch::significant_size(plant, parameter);
   }
   effect.evidence = evidence_of(finding, held_out_gain);
   weigh(effect, finding, plant);
@@ -118,9 +119,10 @@ std::string balance_in_words(std::size_t balance, const BalanceFit& fit) {
 }
 
 std::string leakage_in_words(const BalanceFit& fit) {
-  const auto leakage = std::ranges::find(fit.free, "R_CL", &BalanceParameter::name);
+  const auto leakage =
+      std::ranges::find(fit.free, plant_or_default(SwitchedBalances::kPlant).wear_parameter, &BalanceParameter::name);
   if (leakage == fit.free.end()) return {};
-  std::string text = "Internal leakage: R_CL ";
+  std::string text = "Internal leakage: " + leakage->name + " ";
   if (leakage->after_std < 0.5 * leakage->after)
     text.append(number(leakage->after)).append(" +- ").append(number(leakage->after_std)).append(" Pa s/m3.");
   else

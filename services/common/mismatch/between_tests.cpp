@@ -78,7 +78,8 @@ std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset,
   text.append(number(largest_misfit)).append(" times the noise's), all together do not: from test to test ");
   text.append(changed->first).append(" is ").append(changed->second.in_words());
   text.append(", a change of ").append(number(changed->second.standard_errors())).append(" standard errors. ");
-  const bool seal = changed->first == "R_CL";
+  const PlantDescription& plant = **find_plant(asset.model);
+  const bool seal = plant.condition && changed->first == plant.condition->parameter;
   text.append(seal ? "The piston seal" : "The asset");
   text.append(" changed between these tests; missing physics cannot be seen within one.");
   return ChangeBetweenTests{.sentence = std::move(text), .element = seal ? "piston_seal" : ""};

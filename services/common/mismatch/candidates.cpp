@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sealwatch/model/law_sizes.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -19,17 +21,12 @@ std::vector<std::vector<double>> shape_grid(const Law& law, const PlantDescripti
     for (std::size_t k = 0; k < choices && next.size() < kLargestGrid; ++k)
       for (const std::vector<double>& point : grid) {
         next.push_back(point);
-        next.back().push_back(
-            std::clamp(plant.law_size(parameter.unit) * parameter.start[k], parameter.min, parameter.max));
+        next.back().push_back(law_start(plant, parameter, k));
       }
     grid = std::move(next);
   }
   if (grid.size() > kLargestGrid) grid.resize(kLargestGrid);
   return grid;
-}
-
-bool allowed(const Law& law, std::string_view element) {
-  return law.elements.empty() || std::ranges::find(law.elements, element) != law.elements.end();
 }
 
 // A law or one that contains it: beside each other the two would share one effect between them at will.
@@ -51,7 +48,7 @@ void add_at_sites(const Law& law, const PlantSimulation& simulation, const std::
   std::vector<Candidate> found;
   for (std::size_t k = 0; k < simulation.sites().size(); ++k) {
     const Site& site = simulation.sites()[k];
-    if (site.kind != law.kind || !allowed(law, site.element)) continue;
+    if (!fits(law, site)) continue;
     if (!found.empty() && found.back().element == site.element) {
       found.back().sites.push_back(k);
       continue;
@@ -149,7 +146,7 @@ std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const 
 double significant_size(const Candidate& candidate, const PlantDescription& plant) {
   const LawParameter& strength = candidate.law->parameters[strengths_of(*candidate.law).front()];
   if (is_bias(candidate.law->kind)) return candidate.strength_scale * strength.start.front();
-  return plant.law_size(strength.unit) * strength.significant;
+  return sealwatch::significant_size(plant, strength);
 }
 
 std::vector<std::size_t> strengths_of(const Law& law) {

@@ -50,7 +50,8 @@ void draw_missing_terms(const FittedModel& baseline, const Trial& best, const Da
     const std::vector<double> parameters = parameters_of(effect, best.model->asset);
     if (parameters.empty() || is_of_recording(kind)) continue;  // the equation of a recording's error says all
     const std::vector<TermPath> paths = term_paths(*best.model, effect.element, *effect.law, parameters);
-    const std::size_t signal = deciding_signal(paths, kind, signals_seen(paths, *effect.law, parameters));
+    const std::size_t signal =
+        deciding_signal(paths, kind, signals_seen(paths, *effect.law, parameters, simulation.plant()));
     std::optional<MissingTerm> drawn;
     for (const std::size_t k : windows_of_most(paths, data)) {
       Result<MissingTerm> piece =

@@ -8,6 +8,7 @@
 
 #include "sealwatch/forecast/fleet_population.hpp"
 #include "sealwatch/forecast/words.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/resolution.hpp"
@@ -111,8 +112,7 @@ double engineering_share(const FoundEffect& effect, const Effect& chosen, const 
   const Law& law = *chosen.law;
   for (std::size_t k = 0; k < law.parameters.size(); ++k)
     if (law.parameters[k].strength && law.parameters[k].significant > 0.0)
-      return std::abs(effect.parameters[k].value) /
-             (plant.law_size(law.parameters[k].unit) * law.parameters[k].significant);
+      return std::abs(effect.parameters[k].value) / sealwatch::significant_size(plant, law.parameters[k]);
   for (const Candidate& candidate : candidates) {
     if (candidate.law != chosen.law || candidate.element != chosen.element) continue;
     const double size = significant_size(candidate, plant);
@@ -368,29 +368,32 @@ std::vector<ParameterShift> parameter_shifts(const AssetConfig& datasheet, const
 
 PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<ParameterShift>& parameters) {
   PrognosisShift shift;
-  const auto leakage = std::ranges::find(parameters, "R_CL", &ParameterShift::name);
-  if (!asset.seal || leakage == parameters.end()) return shift;
+  if (!asset.condition) return shift;
+  const auto leakage = std::ranges::find(parameters, asset.condition->parameter, &ParameterShift::name);
+  if (leakage == parameters.end()) return shift;
   if (!std::isfinite(leakage->before_std) || !std::isfinite(leakage->after_std))
     return shift;  // at a bound, or not told
   shift.known = true;
   shift.R_CL_before = leakage->before;
   shift.R_CL_after = leakage->after;
-  shift.theta_before = asset.seal->condition(leakage->before);
-  shift.theta_after = asset.seal->condition(leakage->after);
-  shift.months_before = forecast::mean_remaining_months(shift.theta_before, asset.seal->threshold);
-  shift.months_after = forecast::mean_remaining_months(shift.theta_after, asset.seal->threshold);
+  shift.theta_before = asset.condition->condition(leakage->before);
+  shift.theta_after = asset.condition->condition(leakage->after);
+  shift.months_before = forecast::mean_remaining_months(shift.theta_before, asset.condition->threshold);
+  shift.months_after = forecast::mean_remaining_months(shift.theta_after, asset.condition->threshold);
+  const bool seal = asset.condition->part.ends_with("seal");
+  const std::string of_what = seal ? "The seal's" : "The";
   const std::string condition = number(100.0 * shift.theta_after, 4) + " %";
   const double months = std::round(shift.months_after), months_before = std::round(shift.months_before);
   if (condition == number(100.0 * shift.theta_before, 4) + " %" && months == months_before) {
     const bool nothing_found = leakage->after == leakage->before;
     shift.sentence =
-        "The seal's condition is " + condition + (nothing_found ? "." : " with and without what was found.");
+        of_what + " condition is " + condition + (nothing_found ? "." : " with and without what was found.");
     return shift;
   }
   const std::string not_before = months == months_before ? ", as before" : ", not " + number(months_before);
-  shift.sentence = "The seal's condition is " + condition + " instead of " + number(100.0 * shift.theta_before, 4) +
+  shift.sentence = of_what + " condition is " + condition + " instead of " + number(100.0 * shift.theta_before, 4) +
                    " %: a mean seal then has " + number(months) + " months left until " +
-                   number(100.0 * asset.seal->threshold) + " %" + not_before +
+                   number(100.0 * asset.condition->threshold) + " %" + not_before +
                    ". This actuator's own remaining life comes from its history (sealwatch forecast).";
   return shift;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 
+#include "sealwatch/model/driving_channels.hpp"
 #include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/carry_over.hpp"
@@ -239,7 +240,7 @@ class Analysis {
 
   // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it.
   void ask_the_datasheet() {
-    if (best_.effects.empty() || (windowed() && asset_.model != "eha")) return;
+    if (best_.effects.empty() || (windowed() && !by_measurements())) return;
     tell("asking the values that the asset file fixes", 0.7);
     const Data data = prepared(fit_);
     const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};
@@ -313,8 +314,12 @@ class Analysis {
   // Driven by the flow, the circuit takes chamber B's pressure as the reservoir's where it is not recorded. If that
   // shows, no law is asked for what an unrecorded pressure did.
   [[nodiscard]] bool lacks_a_pressure() const {
-    return windowed() && asset_.model == "eha" && !fit_.samples.front().has("pressure_b") &&
-           excess(*baseline_) > kGross;
+    return windowed() && by_measurements() && !recorded(ChannelRole::pressure_down) && excess(*baseline_) > kGross;
+  }
+
+  [[nodiscard]] bool by_measurements() const { return !measured_inputs(asset_, fit_.samples.front()).empty(); }
+  [[nodiscard]] bool recorded(ChannelRole role) const {
+    return find_series(fit_.samples.front(), plant_or_default(asset_.model), role) != nullptr;
   }
 
   Status fit_baseline() {
@@ -326,9 +331,9 @@ class Analysis {
     static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     window_s_ = window_of(asset_, fit_.samples.front());
-    if (windowed() && asset_.model == "eha") fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
+    if (windowed() && by_measurements()) fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
     Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
-    if (model && windowed() && asset_.model == "eha") {
+    if (model && windowed() && by_measurements()) {
       add_input_noise(holdout_, *model, prepared(fit_), options_.seed);
       add_input_noise(fit_, *model, prepared(fit_), options_.seed);
       model = fit_model(model->asset, prepared(fit_), &*model, options_.threads);
@@ -584,7 +589,11 @@ class Analysis {
       for (const AssetValue& value : entry) {
         ParameterSetting& setting = result_.explained.parameters.at(value.name);
         const ParameterSetting& given = asset_.parameters.at(value.name);
-        setting = {.value = setting.value, .min = given.min, .max = given.max, .estimate = false};
+        setting = {.value = setting.value,
+                   .min = given.min,
+                   .max = given.max,
+                   .estimate = false,
+                   .tolerance = given.tolerance};
       }
     if (!naming_.trials.empty()) result_.trace = trace_of(naming_);
     std::ranges::copy(asked_values_, std::back_inserter(result_.trace));
@@ -686,9 +695,9 @@ class Analysis {
 
   // Beside the verdict and the laws.
   void say_what_else_is_known() {
-    const std::string course = fit_.own_parameter.empty()
-                                   ? ""
-                                   : "The piston seal aged between these tests. " + ageing_in_words(*best_.model, fit_);
+    const std::string course = fit_.own_parameter.empty() ? ""
+                                                          : what_aged(asset_) + " aged between these tests. " +
+                                                                ageing_in_words(*best_.model, fit_);
     remark_leak_in_two_parts(result_);
     if (why_none_) {
       if (with_another_value_ && !course.empty()) why_none_->summary += " " + course;

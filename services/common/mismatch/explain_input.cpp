@@ -188,18 +188,24 @@ Status check(const AssetConfig& asset, std::span<const Recording> fit, std::span
   return {};
 }
 
+// Of a plant that has a stroke that, else everything.
+static bool shows_motion(const PlantSimulation& simulation, const std::string& channel) {
+  const std::string stroke = channel_name(simulation.plant(), ChannelRole::stroke);
+  return stroke.empty() || channel == stroke;
+}
+
 bool at_rest(const FittedModel& model, const Data& data) {
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const PemRecording& part = model.problem.recordings[k];
     for (Eigen::Index c = 0; c < part.noise_std.size(); ++c) {
-      const std::string& name = part.simulation->channels()[static_cast<std::size_t>(c)];
-      if (name != "position" && name != "level_voltage") continue;
+      if (!shows_motion(*part.simulation, part.simulation->channels()[static_cast<std::size_t>(c)])) continue;
       const auto column = part.simulation->recorded().col(c);
       if (column.maxCoeff() - column.minCoeff() > 2.0 * kRest * part.noise_std(c)) return false;
     }
   }
-  return std::ranges::any_of(model.problem.recordings.front().simulation->channels(),
-                             [](const std::string& name) { return name == "position" || name == "level_voltage"; });
+  const PlantSimulation& simulation = *model.problem.recordings.front().simulation;
+  return std::ranges::any_of(simulation.channels(),
+                             [&](const std::string& name) { return shows_motion(simulation, name); });
 }
 
 }  // namespace sealwatch::mismatch

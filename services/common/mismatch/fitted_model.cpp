@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/input_jumps.hpp"
 
 namespace sealwatch::mismatch {
@@ -60,7 +61,7 @@ Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const 
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     PemRecording& recording = problem->recordings[k];
     if (!data.weight.empty()) recording.weight = data.weight[k];
-    leave_out(samples_after_jumps(data.samples[k]), recording);
+    leave_out(samples_after_jumps(data.samples[k], recording.simulation->plant()), recording);
     if (data.start_as_measured)
       std::erase_if(recording.own, [](const Unknown& unknown) { return unknown.name.starts_with("initial:"); });
   }
@@ -138,12 +139,14 @@ AssetConfig with_fixed_parameters(AssetConfig asset) {
 AssetConfig with_law(AssetConfig asset, const Law& law, const std::string& element,
                      std::span<const double> parameters) {
   PhysicsTerm term{.id = std::string(law.id), .element = element, .parameters = {}};
+  const PlantDescription& plant = **find_plant(asset.model);
   for (std::size_t k = 0; k < law.parameters.size(); ++k) {
     const LawParameter& parameter = law.parameters[k];
+    const LawBounds bounds = law_bounds(plant, parameter);
     const bool whole = parameter.unit == "1/rev" || (law.hidden && law.hidden->free_initial && !parameter.strength);
-    term.parameters[std::string(parameter.name)] = {.value = std::clamp(parameters[k], parameter.min, parameter.max),
-                                                    .min = parameter.min,
-                                                    .max = parameter.max,
+    term.parameters[std::string(parameter.name)] = {.value = std::clamp(parameters[k], bounds.min, bounds.max),
+                                                    .min = bounds.min,
+                                                    .max = bounds.max,
                                                     .estimate = !whole};
   }
   asset.physics.push_back(std::move(term));

@@ -72,7 +72,7 @@ class GrossMismatch {
   [[nodiscard]] Data furthest() const {
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t k = 0; k < fit_.samples.size(); ++k) {
-      const auto [low, high] = std::ranges::minmax(fit_.samples[k].find("position")->values);
+      const auto [low, high] = std::ranges::minmax(find_series(fit_.samples[k], plant_, ChannelRole::stroke)->values);
       order.emplace_back(high - low, k);
     }
     std::ranges::stable_sort(order, std::greater<>(), &std::pair<double, std::size_t>::first);
@@ -254,7 +254,7 @@ class GrossMismatch {
                             number(gain_.low) + " to " + number(gain_.high) + ").");
     if (const std::string leakage = leakage_in_words(found_); !leakage.empty()) result_.notes.push_back(leakage);
     for (const BalanceParameter& parameter : found_.free)
-      if (parameter.name != "R_CL" && !std::isfinite(parameter.after_std))
+      if (parameter.name != plant_.wear_parameter && !std::isfinite(parameter.after_std))
         result_.notes.push_back(parameter.name +
                                 " ends at its bound or is not seen: something that its element lacks is "
                                 "still wanted there.");
@@ -282,7 +282,7 @@ class GrossMismatch {
 std::optional<Explanation> explain_gross_mismatch(const AssetConfig& asset, const Data& fit, const Data& holdout,
                                                   const ExplainOptions& options, const Progress& progress) {
   const auto plant = find_plant(asset.model);
-  if (!plant || asset.model != "eha_switched" || !asset.physics.empty()) return std::nullopt;
+  if (!plant || asset.model != SwitchedBalances::kPlant || !asset.physics.empty()) return std::nullopt;
   return GrossMismatch(asset, **plant, fit, holdout, options, progress).run();
 }
 

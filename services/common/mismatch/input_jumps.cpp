@@ -10,7 +10,6 @@ constexpr double kTimesItsNeighbours = 8.0;
 constexpr double kShareOfRange = 0.005;
 constexpr std::size_t kNeighbours = 3;
 constexpr std::size_t kSamplesAfter = 2;
-constexpr std::string_view kInput = "motor_voltage";
 
 bool jumps(const std::vector<double>& change, std::size_t at) {
   const std::size_t begin = at >= kNeighbours ? at - kNeighbours : 0,
@@ -23,10 +22,10 @@ bool jumps(const std::vector<double>& change, std::size_t at) {
 
 }  // namespace
 
-std::vector<Eigen::Index> samples_after_jumps(const TimeSeries& recorded) {
+std::vector<Eigen::Index> samples_after_jumps(const TimeSeries& recorded, const PlantDescription& plant) {
   std::vector<Eigen::Index> samples;
-  const Series* input = recorded.find(kInput);
-  if (input == nullptr || recorded.input_hold || input->values.size() < 2) return samples;
+  const Series* input = find_series(recorded, plant, ChannelRole::drive);
+  if (input == nullptr || input->unit != "V" || recorded.input_hold || input->values.size() < 2) return samples;
   const auto [lowest, highest] = std::ranges::minmax(input->values);
   const double least = kShareOfRange * (highest - lowest);
   std::vector<double> change;

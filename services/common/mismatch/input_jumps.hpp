@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "sealwatch/core/time_series.hpp"
+#include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch::mismatch {
 
 /// Samples, ascending.
-[[nodiscard]] std::vector<Eigen::Index> samples_after_jumps(const TimeSeries& recorded);
+[[nodiscard]] std::vector<Eigen::Index> samples_after_jumps(const TimeSeries& recorded, const PlantDescription& plant);
 
 }  // namespace sealwatch::mismatch

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sealwatch/model/law_sizes.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -20,9 +22,10 @@ std::vector<double> without_strengths(const LawColumn& column) {
 
 }  // namespace
 
-LawColumns::LawColumns(std::vector<LawColumn> laws) : laws_(std::move(laws)) {
+LawColumns::LawColumns(std::vector<LawColumn> laws, const PlantDescription& plant) : laws_(std::move(laws)) {
   for (std::size_t k = 0; k < laws_.size(); ++k) {
     laws_[k].parameters = without_strengths(laws_[k]);
+    roundings_.push_back(roundings_of(plant, *laws_[k].law));
     hidden_.push_back(laws_[k].hidden);
     for (const std::size_t site : laws_[k].sites) entries_.push_back({.column = k, .site = site});
   }
@@ -39,18 +42,18 @@ void LawColumns::advance(std::size_t law, double step_s, Signals signals) {
     const double share = static_cast<double>(k) / steps;
     std::array<double, kSiteSignals> at;
     for (std::size_t s = 0; s < kSiteSignals; ++s) at[s] = last_[site][s] + share * (signals[site][s] - last_[site][s]);
-    const LawScalar slope = column.law->evaluate(law_input(at, hidden, column.parameters)).rate;
+    const LawScalar slope = column.law->evaluate(law_input(at, hidden, column.parameters, roundings_[law])).rate;
     if (slope.derivative[kSiteSignals] == 0.0) {
       std::array<double, kSiteSignals> middle;
       const double half = (k - 0.5) / steps;
       for (std::size_t s = 0; s < kSiteSignals; ++s)
         middle[s] = last_[site][s] + half * (signals[site][s] - last_[site][s]);
-      hidden += h * column.law->evaluate(law_input(middle, hidden, column.parameters)).rate.value;
+      hidden += h * column.law->evaluate(law_input(middle, hidden, column.parameters, roundings_[law])).rate.value;
       continue;
     }
     const double before = hidden;
     for (int iteration = 0; iteration < kNewtonIterations; ++iteration) {
-      const LawScalar rate = column.law->evaluate(law_input(at, hidden, column.parameters)).rate;
+      const LawScalar rate = column.law->evaluate(law_input(at, hidden, column.parameters, roundings_[law])).rate;
       const double change = (before + h * rate.value - hidden) / (1.0 - h * rate.derivative[kSiteSignals]);
       hidden += change;
       if (std::abs(change) <= kNext * (std::abs(hidden) + column.law->hidden->scale)) break;
@@ -69,7 +72,8 @@ void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {
   std::size_t entry = 0;
   for (std::size_t k = 0; k < laws_.size(); ++k)
     for (const std::size_t site : laws_[k].sites) {
-      const LawOutput output = laws_[k].law->evaluate(law_input(signals[site], hidden_[k], laws_[k].parameters));
+      const LawOutput output =
+          laws_[k].law->evaluate(law_input(signals[site], hidden_[k], laws_[k].parameters, roundings_[k]));
       weights[entry++] = laws_[k].unit * output.contribution.derivative[kSiteSignals + 1 + laws_[k].strength];
     }
   last_.assign(signals.begin(), signals.end());

@@ -20,7 +20,7 @@ struct LawColumn {
 
 class LawColumns final : public InjectedColumns {
  public:
-  explicit LawColumns(std::vector<LawColumn> laws);
+  LawColumns(std::vector<LawColumn> laws, const PlantDescription& plant);
   [[nodiscard]] std::size_t columns() const override { return laws_.size(); }
   [[nodiscard]] std::span<const Entry> entries() const override { return entries_; }
   void weigh(double t, Signals signals, std::span<double> weights) override;
@@ -29,6 +29,7 @@ class LawColumns final : public InjectedColumns {
   void advance(std::size_t law, double step_s, Signals signals);
 
   std::vector<LawColumn> laws_;
+  std::vector<Roundings> roundings_;
   std::vector<Entry> entries_;
   std::vector<double> hidden_;
   std::vector<std::array<double, kSiteSignals>> last_;  ///< signals at the last call

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/criterion.hpp"
 
 namespace sealwatch::mismatch {
@@ -34,8 +35,9 @@ double start_value(const LawParameter& parameter, const Law& rich, const Physics
   const double rich_value = term.parameters.at(std::string(strength.name)).value;
   if (parameter.strength && parameter.unit == strength.unit) return rich_value;
   if (parameter.strength && parameter.significant > 0.0 && strength.significant > 0.0)
-    return rich_value * parameter.significant / strength.significant;  // as large to an engineer
-  return plant.law_size(parameter.unit) * std::ranges::min(parameter.start);
+    return rich_value * sealwatch::significant_size(plant, parameter) /
+           sealwatch::significant_size(plant, strength);  // as large to an engineer
+  return law_size(plant, parameter) * std::ranges::min(parameter.start);
 }
 
 // The trial with the plain law in place of the rich one.

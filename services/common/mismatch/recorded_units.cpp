@@ -37,10 +37,10 @@ Course without_drift(Course values, const Course& time) {
 }
 
 // Both courses are one and the same but for a factor of more than ten.
-std::string position_and_velocity(const TimeSeries& samples) {
+std::string position_and_velocity(const PlantDescription& plant, const TimeSeries& samples) {
   constexpr double kFactor = 10.0, kAlike = 0.95;  // of the ways; their correlation
-  const Series* position = samples.find("position");
-  const Series* velocity = samples.find("velocity");
+  const Series* position = find_series(samples, plant, ChannelRole::stroke);
+  const Series* velocity = find_series(samples, plant, ChannelRole::speed);
   const auto rows = static_cast<Eigen::Index>(samples.time_s.size());
   if (position == nullptr || velocity == nullptr || rows < 3) return {};
   Course time = Eigen::Map<const Course>(samples.time_s.data(), rows), way(rows);
@@ -60,14 +60,15 @@ std::string position_and_velocity(const TimeSeries& samples) {
   if (moved <= least_position || summed <= least_way) return {};
   const bool alike = (x * way).mean() > kAlike * moved * summed;
   if (!alike || (moved < kFactor * summed && summed < kFactor * moved)) return {};
-  return "column position moves " + number(moved / summed, 2) + " times as far as column velocity adds up to";
+  return "column " + position->name + " moves " + number(moved / summed, 2) + " times as far as column " +
+         velocity->name + " adds up to";
 }
 
 }  // namespace
 
 std::string another_unit(const PlantDescription& plant, const TimeSeries& samples) {
   const std::string outside = outside_of_its_range(plant, samples);
-  return outside.empty() ? position_and_velocity(samples) : outside;
+  return outside.empty() ? position_and_velocity(plant, samples) : outside;
 }
 
 std::string hardly_moves(const PooledFit& fit) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iterator>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/site_words.hpp"
 
 namespace sealwatch::mismatch {
@@ -286,16 +287,17 @@ std::array<SignalWords, kSiteSignals> signals_of(const PlantSimulation& simulati
 }
 
 std::array<bool, kSiteSignals> signals_seen(std::span<const TermPath> recordings, const Law& law,
-                                            std::span<const double> parameters) {
+                                            std::span<const double> parameters, const PlantDescription& plant) {
   constexpr std::size_t kEvery = 10;    // steps: neighbours see the same
   constexpr double kSomeMemory = 0.3;   // of the hidden state's size: neither at rest nor at its end
   constexpr std::size_t kPosition = 1;  // of the piston's signals
   std::array<bool, kSiteSignals> seen{};
   if (is_sensor(law.kind)) return {true};
+  const Roundings roundings = roundings_of(plant, law);
   const double hidden = law.hidden ? kSomeMemory * law.hidden->scale : 0.0;
   for (const TermPath& path : recordings)
     for (std::size_t step = 0; step < path.signals.size(); step += kEvery) {
-      const LawOutput output = law.evaluate(law_input(path.signals[step], hidden, parameters));
+      const LawOutput output = law.evaluate(law_input(path.signals[step], hidden, parameters, roundings));
       for (std::size_t k = 0; k < kSiteSignals; ++k)
         seen[k] = seen[k] || output.contribution.derivative[k] != 0.0 || output.rate.derivative[k] != 0.0;
     }

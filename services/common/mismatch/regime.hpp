@@ -28,7 +28,8 @@ namespace sealwatch::mismatch {
 /// Which of the site's signals move the law anywhere on these paths, by its derivatives; the position too where it
 /// remembers the piston's way. What else correlates with a force may be what it causes: a chamber's pressure.
 [[nodiscard]] std::array<bool, kSiteSignals> signals_seen(std::span<const TermPath> recordings, const Law& law,
-                                                          std::span<const double> parameters);
+                                                          std::span<const double> parameters,
+                                                          const PlantDescription& plant);
 
 /// Index of the site's signal that the term goes by: of those `seen`, that of the largest eta2 of its value, the first
 /// of nearly equal.

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "sealwatch/model/law_sizes.hpp"
+
 namespace sealwatch::mismatch {
 
 double Resolution::of(const LawParameter& strength) const {
   if (strength.unit == "channel") return 0.0;
-  const double least = share * plant->law_size(strength.unit) * strength.significant;
+  const double least = share * sealwatch::significant_size(*plant, strength);
   return strength.unit == "s" ? std::max(least, timing_s) : least;
 }
 

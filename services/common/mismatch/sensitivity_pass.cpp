@@ -85,7 +85,7 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
   const PemRecording& part = model.problem.recordings[recording];
   const std::vector<double>&shared = model.optimum.point.shared, &own = model.optimum.point.own[recording];
   const FreeOfRecording free = free_of(model.problem, recording, shared, own);
-  LawColumns injected(law_columns(candidates, columns));
+  LawColumns injected(law_columns(candidates, columns), part.simulation->plant());
   SimulationOptions options = model.problem.simulation_options;
   if (std::ranges::any_of(candidates, [](const Candidate& candidate) { return candidate.law->hidden.has_value(); }))
     options.maximum_step_s = std::min(options.maximum_step_s, kHiddenStep_s);

@@ -13,8 +13,11 @@ constexpr std::string_view kSensor = "sensor:";
 // Watches a simulation: a column that adds nothing.
 class PathRecorder final : public InjectedColumns {
  public:
-  PathRecorder(std::size_t site, std::vector<LawColumn> strengths)
-      : site_(site), entry_{Entry{.column = 0, .site = site}}, laws_(std::move(strengths)), parts_(laws_.columns()) {}
+  PathRecorder(std::size_t site, std::vector<LawColumn> strengths, const PlantDescription& plant)
+      : site_(site),
+        entry_{Entry{.column = 0, .site = site}},
+        laws_(std::move(strengths), plant),
+        parts_(laws_.columns()) {}
   [[nodiscard]] std::size_t columns() const override { return 1; }
   [[nodiscard]] std::span<const Entry> entries() const override { return entry_; }
   void weigh(double t, Signals signals, std::span<double> weights) override {
@@ -96,7 +99,7 @@ Result<TermPath> term_path(const SimulatedPoint& at, const std::string& element,
                            .strength = k,
                            .unit = parameters[k],
                            .hidden = hidden_start(at, *law, element)});
-  PathRecorder recorder(sites.front(), std::move(strengths));
+  PathRecorder recorder(sites.front(), std::move(strengths), simulation.plant());
   SimulationOptions options = at.problem->simulation_options;
   options.maximum_step_s = std::min(options.maximum_step_s, longest_step_s);
   const std::vector<double> shared(at.shared.begin(), at.shared.end()), own(at.own.begin(), at.own.end());

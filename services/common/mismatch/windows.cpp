@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "sealwatch/model/driving_channels.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 
 namespace sealwatch::mismatch {
@@ -13,11 +14,12 @@ namespace {
 
 constexpr double kShortest = 0.5;  // of a window: a shorter rest goes to the window before
 
-// The flow and the other chamber's pressure drive the cylinder circuit.
+// What is measured and drives the simulation has noise.
 TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
+  const std::vector<std::string> measured = measured_inputs(asset, samples);
   for (Series& channel : samples.channels) {
-    if (channel.name != "flow" && channel.name != "pressure_b") continue;
+    if (std::ranges::find(measured, channel.name) == measured.end()) continue;
     const double noise_std = noise_std_of(asset, channel);
     for (double& value : channel.values) value += noise_std * normal(random);
   }
@@ -38,7 +40,7 @@ TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end
 }
 
 double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
-  if (asset.model == "eha" && !recorded.has("motor_voltage")) return kFlowWindow_s;
+  if (!measured_inputs(asset, recorded).empty()) return kFlowWindow_s;
   const auto plant = find_plant(asset.model);
   return plant ? (*plant)->window_s : 0.0;
 }

@@ -63,8 +63,10 @@ Result<const Law*> find_law(std::string_view id, const std::vector<std::string>&
   return fail(Error{.file = {}, .place = "physics", .value = std::string(id), .rule = std::move(rule), .advice = {}});
 }
 
-LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters) {
+LawInput law_input(std::span<const double> signals, double hidden, std::span<const double> parameters,
+                   const Roundings& roundings) {
   LawInput input;
+  input.rounding = roundings;
   auto set = [direction = std::size_t{0}](LawScalar& variable, double value) mutable {
     variable.value = value;  // in place: this runs in every evaluation of every law
     variable.derivative[direction++] = 1.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 
 namespace sealwatch {
 namespace {
@@ -61,7 +62,7 @@ Result<PhysicsTerms> resolve_physics(const PlantDescription& plant, std::span<co
                          clock ? "give the element as clock" : "give the element as input:<channel>");
       terms.recording.push_back({(*law)->kind, input, first});
     } else {
-      ActiveTerm active{.law = *law, .sites = {}, .first_parameter = first};
+      ActiveTerm active{.law = *law, .sites = {}, .first_parameter = first, .roundings = roundings_of(plant, **law)};
       for (std::size_t k = 0; k < sites.size(); ++k)
         if (sites[k].element == term.element && sites[k].kind == (*law)->kind) active.sites.push_back(k);
       if (active.sites.empty())

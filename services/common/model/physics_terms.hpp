@@ -22,6 +22,7 @@ struct ActiveTerm {
   std::vector<std::size_t> sites;   ///< of the plant
   std::size_t first_parameter = 0;  ///< in ModelValues::parameters
   int hidden = -1;                  ///< its place among the hidden states; -1: none
+  Roundings roundings{};            ///< of the law in this plant
 };
 
 /// A law of a sensor.

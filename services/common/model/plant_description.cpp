@@ -4,6 +4,7 @@
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/model/plant_tables.hpp"
+#include "services/common/model/simulation_plants.hpp"
 
 namespace sealwatch {
 namespace {
@@ -24,16 +25,39 @@ const ParameterDescription* PlantDescription::find_parameter(std::string_view pa
   return find_row(parameters, parameter);
 }
 
+const ParameterDescription* PlantDescription::find_parameter(ParameterRole role) const {
+  const auto parameter = std::ranges::find(parameters, role, &ParameterDescription::role);
+  return parameter == parameters.end() ? nullptr : &*parameter;
+}
+
 const StateDescription* PlantDescription::find_state(std::string_view state) const { return find_row(states, state); }
 
-double PlantDescription::law_size(std::string_view unit) const {
-  const auto size = std::ranges::find(law_sizes, unit, &LawSize::unit);
-  return size == law_sizes.end() ? 1.0 : size->factor;
+const ChannelDescription* PlantDescription::find_channel(ChannelRole role) const {
+  const auto channel = std::ranges::find(channels, role, &ChannelDescription::role);
+  return channel == channels.end() ? nullptr : &*channel;
+}
+
+std::string channel_name(const PlantDescription& plant, ChannelRole role) {
+  const ChannelDescription* channel = plant.find_channel(role);
+  return channel == nullptr ? std::string() : channel->name;
+}
+
+const Series* find_series(const TimeSeries& recorded, const PlantDescription& plant, ChannelRole role) {
+  const ChannelDescription* channel = plant.find_channel(role);
+  return channel == nullptr ? nullptr : recorded.find(channel->name);
+}
+
+const PlantDescription& plant_or_default(std::string_view name) {
+  const auto plant = find_plant(name);
+  return plant ? **plant : **find_plant(AssetConfig().model);
 }
 
 std::deque<PlantDescription>& known_plants() {
-  static std::deque<PlantDescription> plants = {describe_eha(), describe_eha_switched(), describe_emps(),
-                                                describe_cascaded_tanks()};
+  static std::deque<PlantDescription> plants = [] {
+    std::deque<PlantDescription> native;
+    for (const NativePlant& plant : native_plants()) native.push_back(plant.description);
+    return native;
+  }();
   return plants;
 }
 

@@ -160,7 +160,8 @@ class PlantSystem {
     for (std::size_t k = 0; k < kSiteSignals; ++k) signal[k] = value_of(signals[k]);
     for (std::size_t k = 0; k < count; ++k) number[k] = value_of(parameter[k]);
     const S hidden = term.hidden >= 0 ? y[kPlantStates + term.hidden] : S(0.0);
-    const LawOutput output = term.law->evaluate(law_input(signal, value_of(hidden), std::span(number).first(count)));
+    const LawOutput output =
+        term.law->evaluate(law_input(signal, value_of(hidden), std::span(number).first(count), term.roundings));
     return chain(output.*what, signals, hidden, parameter, count);
   }
 

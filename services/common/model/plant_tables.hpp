@@ -8,13 +8,11 @@
 
 namespace sealwatch {
 
-[[nodiscard]] PlantDescription describe_eha();
-[[nodiscard]] PlantDescription describe_eha_switched();
-[[nodiscard]] PlantDescription describe_emps();
-[[nodiscard]] PlantDescription describe_cascaded_tanks();
-
 /// The tables of all plants, to which one's own are added.
 [[nodiscard]] std::deque<PlantDescription>& known_plants();
+
+/// Of a plant that is as large as `eha`, for which laws are written.
+[[nodiscard]] std::vector<LawSize> reference_sizes();
 
 /// A positive parameter without published bounds: a tenth to ten times its default.
 [[nodiscard]] inline ParameterDescription scale_parameter(std::string name, std::string unit, double value,
@@ -41,6 +39,11 @@ namespace sealwatch {
           .meaning = std::move(meaning),
           .positive = min > 0.0,
           .estimate = estimate};
+}
+
+inline void set_role(PlantDescription& plant, std::string_view parameter, ParameterRole role) {
+  for (ParameterDescription& row : plant.parameters)
+    if (row.name == parameter) row.role = role;
 }
 
 /// Adds "sensor:<channel>" for each measured channel.

@@ -204,7 +204,8 @@ bool RuntimeSystem::add_laws(bool differentiate) const {
       const int hidden = term.active->hidden;
       const double memory = hidden < 0 ? 0.0 : hidden_[static_cast<std::size_t>(hidden)];
       const std::span at(seen + site * kSiteSignals, kSiteSignals);
-      const LawOutput output = term.active->law->evaluate(law_input(at, memory, term.parameters));
+      const LawOutput output =
+          term.active->law->evaluate(law_input(at, memory, term.parameters, term.active->roundings));
       added_.values[site] += output.contribution.value;
       if (differentiate) add_law(output.contribution, term, site, added_, site);
       if (hidden < 0 || site != term.active->sites.back()) continue;

@@ -5,7 +5,8 @@
 #include <numeric>
 
 #include "sealwatch/core/text.hpp"
-#include "sealwatch/model/eha_circuit.hpp"
+#include "sealwatch/model/driving_channels.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/model/plant_tables.hpp"
 #include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
@@ -26,32 +27,37 @@ Status check_recording(const PlantDescription& plant, const TimeSeries& recorded
 }
 
 std::deque<PlantSimulator>& plant_simulators() {
-  static std::deque<PlantSimulator> simulators = {
-      {"eha", {"motor_voltage"}, &simulate_eha},
-      {"eha_switched", {"motor_duty", "valve_state"}, &simulate_eha_switched},
-      {"emps", {"motor_voltage"}, &simulate_emps},
-      {"cascaded_tanks", {"pump_voltage"}, &simulate_cascaded_tanks}};
+  static std::deque<PlantSimulator> simulators = [] {
+    std::deque<PlantSimulator> native;
+    for (const NativePlant& plant : native_plants()) native.push_back(plant.simulator);
+    return native;
+  }();
   return simulators;
 }
 
-/// The cylinder circuit knows nothing of the motor and the pump, and of their laws.
-AssetConfig of_circuit(AssetConfig asset) {
-  std::erase_if(asset.physics, [](const PhysicsTerm& term) {
+bool has_all(const TimeSeries& recorded, const std::vector<std::string>& channels) {
+  return std::ranges::all_of(channels, [&](const std::string& name) { return recorded.has(name); });
+}
+
+/// A part of the plant knows nothing of the rest and of its laws.
+AssetConfig of_part(AssetConfig asset, const PlantDescription& plant, const std::vector<Site>& sites) {
+  std::erase_if(asset.physics, [&](const PhysicsTerm& term) {
     const auto at_element = [&term](const Site& site) { return site.element == term.element; };
-    return std::ranges::any_of(Eha::kSites, at_element) && std::ranges::none_of(EhaCircuit::kSites, at_element);
+    return std::ranges::any_of(plant.sites, at_element) && std::ranges::none_of(sites, at_element);
   });
   return asset;
 }
 
-Status check_input(const PlantDescription& plant, const TimeSeries& recorded, const std::vector<std::string>& needed) {
-  for (const std::string& name : needed)
-    if (!recorded.has(name))
-      return fail(Error{.file = {},
-                        .place = {},
-                        .value = name,
-                        .rule = "drives the simulation and is not recorded",
-                        .advice = plant.name == "eha" ? "record it, or the flow into chamber A" : "record it"});
-  return {};
+Error without_input(const PlantDescription& plant, const PlantSimulator& simulator, const TimeSeries& recorded) {
+  const auto missing = std::ranges::find_if(simulator.inputs, [&](const auto& name) { return !recorded.has(name); });
+  std::string advice = "record it";
+  for (const AlternativeSimulator& other : simulator.alternatives)
+    advice.append(", or the ").append(plant.find_channel(other.inputs.front())->meaning);
+  return {.file = {},
+          .place = {},
+          .value = *missing,
+          .rule = "drives the simulation and is not recorded",
+          .advice = advice};
 }
 
 double mean_of(const std::vector<double>& values, std::size_t count) {
@@ -116,6 +122,13 @@ Status add_plant(PlantDescription description, PlantSimulator simulator) {
                       .value = description.name,
                       .rule = "is the name of a plant that is known already",
                       .advice = "give it another"});
+  if (description.file.empty())  // what is read from a file names its line
+    if (const std::string missing = missing_law_sizes(description); !missing.empty())
+      return fail(Error{.file = {},
+                        .place = "add_plant, law_sizes of " + description.name,
+                        .value = missing,
+                        .rule = "is missing: units of laws that fit the plant's sites",
+                        .advice = "say how many times larger each is here than in eha"});
   known_plants().push_back(std::move(description));
   plant_simulators().push_back(std::move(simulator));
   return {};
@@ -125,17 +138,33 @@ Result<std::unique_ptr<PlantSimulation>> PlantSimulation::create(const AssetConf
   const auto plant = find_plant(asset.model);
   if (!plant) return fail(plant.error());
   if (const Status status = check_recording(**plant, recorded); !status) return fail(status.error());
-  const bool circuit = asset.model == "eha" && !recorded.has("motor_voltage") && recorded.has("flow");
-  Result<PhysicsTerms> terms = circuit ? resolve_physics(**plant, EhaCircuit::kSites, of_circuit(asset))
-                                       : resolve_physics(**plant, (*plant)->sites, asset);
-  if (!terms) return fail(terms.error());
-  if (circuit) return simulate_eha_circuit(**plant, asset, recorded, std::move(*terms));
-  for (const auto& [model, inputs, simulate] : plant_simulators()) {
-    if (asset.model != model) continue;
-    if (const Status status = check_input(**plant, recorded, inputs); !status) return fail(status.error());
-    return simulate(**plant, asset, recorded, std::move(*terms));
+  const auto simulator = std::ranges::find(plant_simulators(), asset.model, &PlantSimulator::model);
+  if (simulator == plant_simulators().end()) return fail("model " + asset.model + " cannot be simulated");
+  if (has_all(recorded, simulator->inputs)) {
+    Result<PhysicsTerms> terms = resolve_physics(**plant, (*plant)->sites, asset);
+    if (!terms) return fail(terms.error());
+    return simulator->simulate(**plant, asset, recorded, std::move(*terms));
   }
-  return fail("model " + asset.model + " cannot be simulated");
+  for (const AlternativeSimulator& part : simulator->alternatives) {
+    if (!has_all(recorded, part.inputs)) continue;
+    Result<PhysicsTerms> terms = resolve_physics(**plant, part.sites, of_part(asset, **plant, part.sites));
+    if (!terms) return fail(terms.error());
+    return part.simulate(**plant, asset, recorded, std::move(*terms));
+  }
+  return fail(without_input(**plant, *simulator, recorded));
+}
+
+std::vector<std::string> measured_inputs(const AssetConfig& asset, const TimeSeries& recorded) {
+  const auto simulator = std::ranges::find(plant_simulators(), asset.model, &PlantSimulator::model);
+  if (simulator == plant_simulators().end() || has_all(recorded, simulator->inputs)) return {};
+  for (const AlternativeSimulator& part : simulator->alternatives)
+    if (has_all(recorded, part.inputs)) {
+      std::vector<std::string> measured = part.inputs;
+      std::ranges::copy_if(part.also, std::back_inserter(measured),
+                           [&](const auto& name) { return recorded.has(name); });
+      return measured;
+    }
+  return {};
 }
 
 Result<FreeQuantity> PlantSimulation::find(std::string_view quantity) const {

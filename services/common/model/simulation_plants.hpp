@@ -1,4 +1,4 @@
-// Makes the simulation of a recording, one function per plant, each with its heavy templates in a file of its own.
+// What makes the simulation of a recording, by plant. Each has its heavy templates in a file of its own.
 #pragma once
 
 #include <functional>
@@ -9,29 +9,30 @@
 
 namespace sealwatch {
 
-[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha(const PlantDescription& plant, const AssetConfig& asset,
-                                                            const TimeSeries& recorded, PhysicsTerms terms);
-/// The cylinder circuit of `eha`, driven by the recorded flow.
-[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha_circuit(const PlantDescription& plant,
-                                                                    const AssetConfig& asset,
-                                                                    const TimeSeries& recorded, PhysicsTerms terms);
-[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_eha_switched(const PlantDescription& plant,
-                                                                     const AssetConfig& asset,
-                                                                     const TimeSeries& recorded, PhysicsTerms terms);
-[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_emps(const PlantDescription& plant, const AssetConfig& asset,
-                                                             const TimeSeries& recorded, PhysicsTerms terms);
-[[nodiscard]] std::unique_ptr<PlantSimulation> simulate_cascaded_tanks(const PlantDescription& plant,
-                                                                       const AssetConfig& asset,
-                                                                       const TimeSeries& recorded, PhysicsTerms terms);
-
 using SimulatePlant = std::function<Result<std::unique_ptr<PlantSimulation>>(
     const PlantDescription&, const AssetConfig&, const TimeSeries&, PhysicsTerms)>;
+
+/// A part of the plant that other recorded channels can drive; it has no sites but these.
+struct AlternativeSimulator {
+  std::vector<std::string> inputs;
+  std::vector<std::string> also = {};  ///< that drive it too where they are recorded
+  std::vector<Site> sites;
+  SimulatePlant simulate = nullptr;
+};
 
 struct PlantSimulator {
   std::string model;                ///< name of the plant
   std::vector<std::string> inputs;  ///< that must be recorded
   SimulatePlant simulate = nullptr;
+  std::vector<AlternativeSimulator> alternatives = {};  ///< of a part of the plant, where `inputs` are not recorded
 };
+
+/// A plant that comes with sealwatch: a folder of services/common/model/plants.
+struct NativePlant {
+  PlantDescription description;
+  PlantSimulator simulator;
+};
+[[nodiscard]] const std::vector<NativePlant>& native_plants();  // made by the build
 
 /// An Error when a plant of that name is known already.
 Status add_plant(PlantDescription description, PlantSimulator simulator);

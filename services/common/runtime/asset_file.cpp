@@ -72,10 +72,15 @@ constexpr SensorKey kSensorKeys[] = {{"noise_std", &SensorSetting::noise_std},
                                      {"time_constant", &SensorSetting::time_constant_s},
                                      {"quantisation", &SensorSetting::quantisation},
                                      {"gain_tolerance", &SensorSetting::gain_tolerance},
-                                     {"offset_tolerance", &SensorSetting::offset_tolerance}};
+                                     {"offset_tolerance", &SensorSetting::offset_tolerance},
+                                     {"gain_error", &SensorSetting::gain_error},
+                                     {"offset_error", &SensorSetting::offset_error}};
+constexpr NumberRule kGain{.min = -1.0, .min_excluded = true, .words = "must be a number above -1"};
 
 /// What is measured has noise, by which its residuals are divided; commands and switch positions may have none.
 NumberRule rule_of(const SensorKey& key, const std::string& channel, const PlantDescription& plant) {
+  if (key.target == &SensorSetting::gain_error) return kGain;
+  if (key.target == &SensorSetting::offset_error) return kAnyNumber;
   const auto row = std::ranges::find(plant.channels, channel, &ChannelDescription::name);
   const bool has_noise = row != plant.channels.end() && row->noise_std > 0.0;
   return key.target == &SensorSetting::noise_std && has_noise ? kPositive : kNotNegative;
@@ -105,20 +110,64 @@ void read_sensors(YamlMap& asset, const PlantDescription& plant, AssetConfig& co
   sensors->finish();
 }
 
-void read_seal(YamlMap& asset, AssetConfig& config) {
-  if (config.model == "eha" && !asset.has("seal")) config.seal = SealSetting();
+constexpr NumberRule kThreshold{
+    .min = 0.0, .max = 1.0, .min_excluded = true, .words = "must be a number between 0 and 1"};
+
+/// The condition as a line of the leakage resistance, of plants whose seal wears (INTERFACES section 2).
+void read_seal(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
   auto map = asset.map("seal");
   if (!map) return;
-  SealSetting seal;
-  map->read("resistance_100", seal.resistance_100_Pa_s_m3, kPositive);
-  map->read("resistance_60", seal.resistance_60_Pa_s_m3, kPositive);
-  map->read("threshold", seal.threshold,
-            {.min = 0.0, .max = 1.0, .min_excluded = true, .words = "must be a number between 0 and 1"});
+  if (!plant.condition) {
+    asset.fault("seal", {}, "is of plants with a piston seal, and " + plant.name + " is none",
+                "say what wears with condition: {parameter: ..., at_100: ..., at_60: ...}");
+    return;
+  }
+  ConditionSetting seal = *plant.condition;
+  map->read("resistance_100", seal.at_100, kPositive);
+  map->read("resistance_60", seal.at_60, kPositive);
+  map->read("threshold", seal.threshold, kThreshold);
   map->finish();
-  if (seal.resistance_60_Pa_s_m3 >= seal.resistance_100_Pa_s_m3)
-    map->fault("resistance_60", text_of(seal.resistance_60_Pa_s_m3),
-               "must be below resistance_100, " + text_of(seal.resistance_100_Pa_s_m3) + ": a worn seal leaks more");
-  config.seal = seal;
+  if (seal.at_60 >= seal.at_100)
+    map->fault("resistance_60", text_of(seal.at_60),
+               "must be below resistance_100, " + text_of(seal.at_100) + ": a worn seal leaks more");
+  config.condition = seal;
+}
+
+/// Which parameter wears, between which values and by which law.
+void read_condition(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
+  if (plant.judged && !asset.has("seal") && !asset.has("condition")) config.condition = plant.condition;
+  if (asset.has("seal") && asset.has("condition"))
+    asset.fault("condition", {}, "says what `seal` says too", "keep one of them");
+  read_seal(asset, plant, config);
+  auto map = asset.map("condition");
+  if (!map) return;
+  ConditionSetting condition{.parameter = plant.wear_parameter};
+  std::vector<std::string> names = names_of_rows(plant.parameters);
+  if (!map->read("parameter", condition.parameter, names) && !map->has("parameter") && condition.parameter.empty())
+    map->fault("parameter", {}, "must be given: what wears, as " + plant.name + " does not say it");
+  std::string scale = "linear";
+  map->read("scale", scale, {"linear", "logarithmic"});
+  condition.logarithmic = scale == "logarithmic";
+  bool known = !condition.parameter.empty();
+  for (auto [key, target] : {std::pair{"at_100", &condition.at_100}, {"at_60", &condition.at_60}}) {
+    if (map->read(key, *target, condition.logarithmic ? kPositive : kAnyNumber)) continue;
+    if (!map->has(key)) map->fault(key, {}, "must be given: the parameter's value at that condition");
+    known = false;
+  }
+  map->read("threshold", condition.threshold, kThreshold);
+  map->read("part", condition.part);
+  map->finish();
+  if (!known) return;
+  condition.unit = plant.find_parameter(condition.parameter)->unit;
+  if (condition.part.empty())
+    condition.part = plant.condition && plant.condition->parameter == condition.parameter
+                         ? plant.condition->part
+                         : "part whose " + condition.parameter + " wears";
+  if (condition.at_100 == condition.at_60) map->fault("at_60", text_of(condition.at_60), "must differ from at_100");
+  if (!config.parameters.at(condition.parameter).estimate)
+    map->fault("parameter", condition.parameter, "is not estimated, so that no test says what it has become",
+               "set estimate: true under parameters");
+  config.condition = condition;
 }
 
 // What no valve actuator exceeds: the largest subsea valves travel about a metre, the fastest fail-safe ones in a
@@ -129,7 +178,7 @@ constexpr NumberRule kSpeed{.min = 1e-6, .max = 2.0, .words = "must be a speed f
 constexpr NumberRule kHold{.min = 0.0, .max = 3600.0, .words = "must be a time from 0 to 3600 s"};
 constexpr NumberRule kInterval{.min = 0.1, .max = 120.0, .words = "must be a number of months from 0.1 to 120"};
 
-void read_pst(YamlMap& asset, AssetConfig& config) {
+void read_pst(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
   auto map = asset.map("pst");
   if (!map) return;
   PstSetting& pst = config.pst;
@@ -140,8 +189,9 @@ void read_pst(YamlMap& asset, AssetConfig& config) {
   map->read("interval_months", pst.interval_months, kInterval);
   map->finish();
   if (pst.stroke_m == 0.0) map->fault("stroke", "0", "must not be 0: a test has to move the stem");
-  const auto stroke = config.parameters.find("x_C");
-  if (stroke == config.parameters.end()) return;
+  const ParameterDescription* described = plant.find_parameter(ParameterRole::stroke);
+  if (described == nullptr) return;
+  const auto stroke = config.parameters.find(described->name);
   const std::string rule = "must stay within the actuator's stroke, 0 to " + text_of(stroke->second.value) + " m";
   const double end_m = pst.start_m + pst.stroke_m;
   if (pst.start_m > stroke->second.value)
@@ -178,8 +228,8 @@ Checked<AssetConfig> check_asset(const std::string& file, const std::vector<std:
   const PlantDescription& plant = *known;
   read_parameters(map, plant, config);
   read_sensors(map, plant, config);
-  read_seal(map, config);
-  read_pst(map, config);
+  read_condition(map, plant, config);
+  read_pst(map, plant, config);
   read_physics(map, plant, config);
   read_alert_limits(map, plant, config);
   read_channel_map(map, &plant, config.channel_map);

@@ -6,6 +6,7 @@
 
 #include "sealwatch/config/judged_quantities.hpp"
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/physics.hpp"
 
 namespace sealwatch {
@@ -26,12 +27,15 @@ void widen(ParameterSetting& setting, const ParameterDescription& description) {
 }
 
 /// A law's parameter: a plain number is fixed; {value, min, max, estimate} may be estimated. Bounds are the law's.
-ParameterDescription describe(const Law* law, const std::string& name) {
+ParameterDescription describe(const Law* law, const std::string& name, const PlantDescription& plant) {
   ParameterDescription row{.name = name, .unit = {}, .meaning = {}, .positive = false};
   row.min = -kNoBound, row.max = kNoBound;
   if (law == nullptr) return row;
   for (const LawParameter& parameter : law->parameters)
-    if (parameter.name == name) row.min = parameter.min, row.max = parameter.max, row.unit = parameter.unit;
+    if (parameter.name == name) {
+      const LawBounds bounds = law_bounds(plant, parameter);
+      row.min = bounds.min, row.max = bounds.max, row.unit = parameter.unit;
+    }
   return row;
 }
 
@@ -62,7 +66,7 @@ void read_law_parameters(YamlMap& map, const PlantDescription& plant, PhysicsTer
   const Result<const Law*> law = find_law(term.id, names, plant.name);
   if (!law && !term.id.empty()) map.fault("id", term.id, law.error().rule, law.error().advice);
   for (const std::string& name : names) {
-    const ParameterDescription row = describe(law ? *law : nullptr, name);
+    const ParameterDescription row = describe(law ? *law : nullptr, name, plant);
     ParameterSetting& setting = term.parameters[name] = {std::clamp(0.0, row.min, row.max), row.min, row.max, false};
     read_law_parameter(*parameters, row, setting);
   }

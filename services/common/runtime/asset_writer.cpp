@@ -53,6 +53,11 @@ void write_sensors(YAML::Emitter& out, const AssetConfig& asset) {
     out << YAML::Key << "noise_std" << YAML::Value << exact(sensor.noise_std);
     out << YAML::Key << "time_constant" << YAML::Value << exact(sensor.time_constant_s);
     out << YAML::Key << "quantisation" << YAML::Value << exact(sensor.quantisation);
+    for (const auto& [key, value] : {std::pair{"gain_tolerance", sensor.gain_tolerance},
+                                     {"offset_tolerance", sensor.offset_tolerance},
+                                     {"gain_error", sensor.gain_error},
+                                     {"offset_error", sensor.offset_error}})
+      if (value != 0.0) out << YAML::Key << key << YAML::Value << exact(value);
     if (sensor.range_max > sensor.range_min)
       out << YAML::Key << "range" << YAML::Value << YAML::BeginSeq << exact(sensor.range_min) << exact(sensor.range_max)
           << YAML::EndSeq;
@@ -61,15 +66,27 @@ void write_sensors(YAML::Emitter& out, const AssetConfig& asset) {
   out << YAML::EndMap;
 }
 
-void write_seal(YAML::Emitter& out, const AssetConfig& asset) {
-  if (!asset.seal) {
-    out << YAML::Key << "seal" << YAML::Value << YAML::Null;
+/// As `seal:` where that says it.
+void write_condition(YAML::Emitter& out, const AssetConfig& asset) {
+  const auto plant = find_plant(asset.model);
+  const std::optional<ConditionSetting> of_plant = plant ? (*plant)->condition : std::nullopt;
+  if (!asset.condition) {
+    if (of_plant) out << YAML::Key << "seal" << YAML::Value << YAML::Null;
     return;
   }
-  write_flow(out, "seal",
-             {{"resistance_100", exact(asset.seal->resistance_100_Pa_s_m3)},
-              {"resistance_60", exact(asset.seal->resistance_60_Pa_s_m3)},
-              {"threshold", exact(asset.seal->threshold)}});
+  const ConditionSetting& condition = *asset.condition;
+  if (of_plant && condition.parameter == of_plant->parameter && condition.logarithmic == of_plant->logarithmic)
+    return write_flow(out, "seal",
+                      {{"resistance_100", exact(condition.at_100)},
+                       {"resistance_60", exact(condition.at_60)},
+                       {"threshold", exact(condition.threshold)}});
+  write_flow(out, "condition",
+             {{"parameter", condition.parameter},
+              {"at_100", exact(condition.at_100)},
+              {"at_60", exact(condition.at_60)},
+              {"threshold", exact(condition.threshold)},
+              {"scale", condition.logarithmic ? "logarithmic" : "linear"},
+              {"part", condition.part}});
 }
 
 void write_limits(YAML::Emitter& out, const AssetConfig& asset) {
@@ -108,7 +125,7 @@ std::string asset_to_yaml(const AssetConfig& asset) {
     if (!value.empty()) out << YAML::Key << key << YAML::Value << value;
   write_parameters(out, asset);
   write_sensors(out, asset);
-  write_seal(out, asset);
+  write_condition(out, asset);
   write_flow(out, "pst",
              {{"start", exact(asset.pst.start_m)},
               {"stroke", exact(asset.pst.stroke_m)},

@@ -29,6 +29,15 @@ void read_range(YamlMap& map, ChannelDescription& channel) {
   channel.range_max = *max;
 }
 
+/// What the row is to whoever watches the actuator; `none` where it is not given.
+template <class Role>
+Role read_role(YamlMap& map) {
+  const auto& names = EnumNames<Role>::kNames;
+  std::string role(names.front());
+  map.read("role", role, {names.begin(), names.end()});
+  return static_cast<Role>(std::ranges::find(names, role) - names.begin());
+}
+
 ChannelDescription read_channel(const std::string& name, YamlMap& map) {
   ChannelDescription channel{.name = name, .unit = {}, .meaning = name};
   need(map, "unit", channel.unit);
@@ -36,6 +45,7 @@ ChannelDescription read_channel(const std::string& name, YamlMap& map) {
   map.read("noise_std", channel.noise_std, kNotNegative);
   map.read("time_constant", channel.time_constant_s, kNotNegative);
   read_range(map, channel);
+  channel.role = read_role<ChannelRole>(map);
   return channel;
 }
 
@@ -73,6 +83,7 @@ void read_parameters(YamlMap& root, TextPlant& plant) {
     map.read("max", parameter.max);
     map.read("tolerance", parameter.tolerance, kPositive);
     map.read("estimate", parameter.estimate);
+    parameter.role = read_role<ParameterRole>(map);
     if (map.has("value") && size == 0.0 && !(map.has("min") && map.has("max")))
       map.fault("value", "0", "has no range that follows from it", "give min and max");
     else if (!(parameter.min <= parameter.value && parameter.value <= parameter.max) || parameter.min == parameter.max)

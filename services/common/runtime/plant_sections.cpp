@@ -48,6 +48,14 @@ void read_signals(YamlMap& map, equations::TextSite& site) {
   signals->finish();
 }
 
+// Files from before the key name a motor's element driver, and a pump's pump.
+Feeds read_feeds(YamlMap& map, const std::string& element) {
+  std::string feeds = element == "driver" ? "motor" : element == "pump" ? "pump" : "anything";
+  const auto& names = EnumNames<Feeds>::kNames;
+  map.read("feeds", feeds, {names.begin(), names.end()});
+  return static_cast<Feeds>(std::ranges::find(names, feeds) - names.begin());
+}
+
 equations::TextSite read_site(YamlMap& map, const std::string& element, const std::string& key) {
   equations::TextSite site;
   site.element = element;
@@ -57,6 +65,7 @@ equations::TextSite read_site(YamlMap& map, const std::string& element, const st
   if (!map.read("kind", kind, kinds_of_site())) return site;  // what the rest means depends on it
   site.kind = kind_named(kind);
   map.read("symbol", site.symbol);
+  site.feeds = read_feeds(map, element);
   site.unit = equations::names_of_site(site.kind).unit;
   if (site.kind == SiteKind::own) need(map, "unit", site.unit);
   if (auto adds = map.map("adds_to")) {

@@ -23,7 +23,7 @@ class FeatureList {
     add_pressures();
     add_leakage();
     add_electrics();
-    if (const auto* temperature = test_.raw("fluid_temperature")) add("fluid_temperature", mean(*temperature));
+    if (const auto* temperature = test_.raw(ChannelRole::temperature)) add("fluid_temperature", mean(*temperature));
     return std::move(features_);
   }
 
@@ -119,7 +119,7 @@ std::optional<Estimate> FeatureList::stroke_time(MotionKind kind) const {
   const auto begin = crossing_s(test_, range, from + kStrokeShare * (to - from), direction);
   const auto end = crossing_s(test_, range, to - kStrokeShare * (to - from), direction);
   if (!begin || !end) return std::nullopt;
-  return Estimate{*end - *begin, std::sqrt(2.0) * test_.smooth_noise_std("position") / run->value};
+  return Estimate{*end - *begin, std::sqrt(2.0) * test_.smooth_noise_std(ChannelRole::stroke) / run->value};
 }
 
 /// Where the piston stands: the mean of the settled part, the last value where that is too short.
@@ -135,7 +135,7 @@ void FeatureList::add_motion() {
   const MotionPhase& front = test_.phases().front();
   const double start = front.kind == MotionKind::rest ? standstill_position(front) : x.front();
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
-  const double noise = test_.smooth_noise_std("position");
+  const double noise = test_.smooth_noise_std(ChannelRole::stroke);
   add("travel", Estimate{std::max(*most - start, start - *least), std::sqrt(2.0) * noise});
   const MotionPhase& last = test_.phases().back();
   const std::vector<Range> rests = ranges(MotionKind::rest);
@@ -163,10 +163,11 @@ std::optional<Estimate> FeatureList::breakaway_pressure() const {
   double largest = 0.0;
   for (std::size_t i = range.begin; i < range.end; ++i)
     largest = std::max(largest, out_direction() * (pressure[i] - rest->value));
-  const double noise = test_.raw("pressure_differential") && !test_.raw("pressure_a")
-                           ? test_.smooth_noise_std("pressure_differential")
-                           : std::hypot(test_.smooth_noise_std("pressure_a"),
-                                        test_.cylinder().area_ratio * test_.smooth_noise_std("pressure_b"));
+  const double noise =
+      test_.raw(ChannelRole::pressure_difference) && !test_.raw(ChannelRole::pressure_up)
+          ? test_.smooth_noise_std(ChannelRole::pressure_difference)
+          : std::hypot(test_.smooth_noise_std(ChannelRole::pressure_up),
+                       test_.cylinder().area_ratio * test_.smooth_noise_std(ChannelRole::pressure_down));
   return Estimate{largest, std::hypot(noise, rest->std_error)};
 }
 
@@ -215,7 +216,7 @@ void FeatureList::add_leakage() {
 
 std::optional<Estimate> FeatureList::efficiency(MotionKind kind) const {
   const std::optional<Estimate> velocity = mean_over(kind, &test_.velocity());
-  const std::optional<Estimate> shaft = mean_over(kind, test_.raw("shaft_speed"));
+  const std::optional<Estimate> shaft = mean_over(kind, test_.raw(ChannelRole::shaft_speed));
   const Cylinder& cylinder = test_.cylinder();
   if (!velocity || !shaft || !cylinder.area_a_m2 || !cylinder.displacement_m3_rad) return std::nullopt;
   if (std::abs(shaft->value) < 3.0 * shaft->std_error || velocity->value == 0.0) return std::nullopt;
@@ -227,21 +228,22 @@ std::optional<Estimate> FeatureList::efficiency(MotionKind kind) const {
 }
 
 void FeatureList::add_electrics() {
-  const std::vector<double>* current = test_.raw("motor_current");
-  const std::vector<double>* voltage = test_.raw("motor_voltage");
-  const std::vector<double>* shaft = test_.raw("shaft_speed");
-  if (current) add("peak_current", peak(*test_.smooth("motor_current"), test_.smooth_noise_std("motor_current")));
+  const std::vector<double>* current = test_.raw(ChannelRole::current);
+  const Series* drive = test_.drive();
+  const std::vector<double>* voltage = drive != nullptr && drive->unit == "V" ? &drive->values : nullptr;
+  const std::vector<double>* shaft = test_.raw(ChannelRole::shaft_speed);
+  if (current)
+    add("peak_current", peak(*test_.smooth(ChannelRole::current), test_.smooth_noise_std(ChannelRole::current)));
   add("running_current_out", mean_over(MotionKind::out, current));
   add("running_current_back", mean_over(MotionKind::back, current));
-  if (voltage) add("peak_voltage", peak(*voltage, test_.samples().find("motor_voltage")->noise_std));
+  if (voltage) add("peak_voltage", peak(*voltage, drive->noise_std));
   add("running_voltage_out", mean_over(MotionKind::out, voltage));
   add("running_voltage_back", mean_over(MotionKind::back, voltage));
   add("running_shaft_speed_out", mean_over(MotionKind::out, shaft));
   add("running_shaft_speed_back", mean_over(MotionKind::back, shaft));
   add("volumetric_efficiency_out", efficiency(MotionKind::out));
   add("volumetric_efficiency_back", efficiency(MotionKind::back));
-  if (const auto* drive = voltage ? voltage : test_.raw("motor_duty"))
-    add("drive_saturation", Estimate{saturation(*drive), 0.0});
+  if (drive) add("drive_saturation", Estimate{saturation(drive->values), 0.0});
 }
 
 }  // namespace

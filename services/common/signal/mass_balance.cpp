@@ -12,7 +12,7 @@ constexpr double kClearly = 3.0;  // standard errors
 }  // namespace
 
 bool MassBalance::possible() const {
-  return test_.raw("flow") != nullptr && !test_.position().empty() && test_.cylinder().area_a_m2.has_value();
+  return test_.raw(ChannelRole::flow) != nullptr && !test_.position().empty() && test_.cylinder().area_a_m2.has_value();
 }
 
 /// Mean rate of change over the range from its smoothed ends.
@@ -25,8 +25,8 @@ Estimate MassBalance::rate(const std::vector<double>& smooth, double noise_std, 
 Estimate MassBalance::compression(Range range) const {
   const Cylinder& cylinder = test_.cylinder();
   if (!cylinder.bulk_modulus_Pa) return {};
-  const bool has_a = test_.raw("pressure_a") != nullptr;
-  const std::string_view channel = has_a ? "pressure_a" : "pressure_differential";
+  const bool has_a = test_.raw(ChannelRole::pressure_up) != nullptr;
+  const ChannelRole channel = has_a ? ChannelRole::pressure_up : ChannelRole::pressure_difference;
   const std::vector<double>* pressure = test_.smooth(channel);
   if (!pressure) return {};
   const double volume =
@@ -38,9 +38,10 @@ Estimate MassBalance::compression(Range range) const {
 
 Estimate MassBalance::leakage(Range range) const {
   const double area = *test_.cylinder().area_a_m2;
-  const Estimate flow = mean(part(*test_.raw("flow"), range));
-  const Estimate swept = test_.raw("position") ? rate(test_.position(), test_.smooth_noise_std("position"), range)
-                                               : mean(part(*test_.raw("velocity"), range));
+  const Estimate flow = mean(part(*test_.raw(ChannelRole::flow), range));
+  const Estimate swept = test_.raw(ChannelRole::stroke)
+                             ? rate(test_.position(), test_.smooth_noise_std(ChannelRole::stroke), range)
+                             : mean(part(*test_.raw(ChannelRole::speed), range));
   const Estimate stored = compression(range);
   return {flow.value - area * swept.value - stored.value,
           std::hypot(flow.std_error, area * swept.std_error, stored.std_error)};
@@ -55,10 +56,10 @@ std::optional<Estimate> MassBalance::leakage(const std::vector<Range>& ranges) c
 }
 
 std::vector<double> MassBalance::differential_pressure() const {
-  const std::vector<double>* pressure_a = test_.raw("pressure_a");
-  const std::vector<double>* pressure_b = test_.raw("pressure_b");
+  const std::vector<double>* pressure_a = test_.raw(ChannelRole::pressure_up);
+  const std::vector<double>* pressure_b = test_.raw(ChannelRole::pressure_down);
   if (!pressure_a || !pressure_b) {
-    const std::vector<double>* differential = test_.raw("pressure_differential");
+    const std::vector<double>* differential = test_.raw(ChannelRole::pressure_difference);
     return differential ? *differential : std::vector<double>{};
   }
   std::vector<double> result = *pressure_a;

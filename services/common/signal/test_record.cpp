@@ -43,9 +43,10 @@ std::vector<double> speeds(std::span<const double> velocity, Range range) {
 
 }  // namespace
 
-TestRecord::TestRecord(const TimeSeries& samples, Cylinder cylinder)
+TestRecord::TestRecord(const TimeSeries& samples, Cylinder cylinder, const PlantDescription& plant)
     : samples_(samples),
       cylinder_(cylinder),
+      plant_(&plant),
       interval_s_((samples.time_s.back() - samples.time_s.front()) / static_cast<double>(samples.time_s.size() - 1)),
       filter_(LowPass::butterworth(2, cutoff_Hz(interval_s_), 1.0 / interval_s_)) {
   assert(samples.time_s.size() >= 8);
@@ -66,32 +67,34 @@ void TestRecord::smooth_channels() {
 }
 
 void TestRecord::find_load_pressure() {
-  const std::vector<double>* pressure_a = raw("pressure_a");
-  const std::vector<double>* pressure_b = raw("pressure_b");
+  const std::vector<double>* pressure_a = raw(ChannelRole::pressure_up);
+  const std::vector<double>* pressure_b = raw(ChannelRole::pressure_down);
   if (pressure_a && pressure_b) {
     load_pressure_ = *pressure_a;
     for (std::size_t i = 0; i < load_pressure_.size(); ++i)
       load_pressure_[i] -= cylinder_.area_ratio * (*pressure_b)[i];
-  } else if (const std::vector<double>* differential = raw("pressure_differential")) {
+  } else if (const std::vector<double>* differential = raw(ChannelRole::pressure_difference)) {
     load_pressure_ = *differential;
   }
   if (!load_pressure_.empty()) smooth_load_pressure_ = filter_.apply_zero_phase(load_pressure_);
 }
 
 void TestRecord::find_motion() {
-  if (const std::vector<double>* position = smooth("position")) {
+  if (const std::vector<double>* position = smooth(ChannelRole::stroke)) {
     position_ = *position;
     velocity_ = derivative(position_, interval_s_);
-    velocity_noise_std_ = samples_.find("position")->noise_std * derivative_noise_gain(filter_, interval_s_);
-  } else if (const std::vector<double>* velocity = smooth("velocity")) {
+    velocity_noise_std_ =
+        find_series(samples_, *plant_, ChannelRole::stroke)->noise_std * derivative_noise_gain(filter_, interval_s_);
+  } else if (const std::vector<double>* velocity = smooth(ChannelRole::speed)) {
     velocity_ = *velocity;
     position_ = integral(velocity_, interval_s_);
-    velocity_noise_std_ = smooth_noise_std("velocity");
+    velocity_noise_std_ = smooth_noise_std(ChannelRole::speed);
   }
 }
 
 Motion TestRecord::motion() const {
-  const double position_noise = raw("position") ? kLeastTravel_std * smooth_noise_std("position") : 0.0;
+  const double position_noise =
+      raw(ChannelRole::stroke) ? kLeastTravel_std * smooth_noise_std(ChannelRole::stroke) : 0.0;
   Motion motion{.begin_s = samples_.time_s.front(),
                 .interval_s = interval_s_,
                 .velocity_m_s = velocity_,
@@ -99,23 +102,22 @@ Motion TestRecord::motion() const {
                 .least_speed_m_s = kLeastSpeed_std * velocity_noise_std_,
                 .least_travel_m = std::max(kLeastTravelShare * cylinder_.stroke_m, position_noise)};
   if (!smooth_load_pressure_.empty()) motion.effort.push_back(smooth_load_pressure_);
-  for (const char* drive : {"motor_voltage", "motor_duty"})
-    if (const std::vector<double>* values = smooth(drive)) motion.effort.push_back(*values);
+  if (const std::vector<double>* values = smooth(ChannelRole::drive)) motion.effort.push_back(*values);
   return motion;
 }
 
-const std::vector<double>* TestRecord::raw(std::string_view channel) const {
-  const Series* series = samples_.find(channel);
+const std::vector<double>* TestRecord::raw(ChannelRole channel) const {
+  const Series* series = find_series(samples_, *plant_, channel);
   return series ? &series->values : nullptr;
 }
 
-const std::vector<double>* TestRecord::smooth(std::string_view channel) const {
-  const auto found = smooth_.find(channel);
+const std::vector<double>* TestRecord::smooth(ChannelRole channel) const {
+  const auto found = smooth_.find(channel_name(*plant_, channel));
   return found == smooth_.end() ? nullptr : &found->second;
 }
 
-double TestRecord::smooth_noise_std(std::string_view channel) const {
-  const Series* series = samples_.find(channel);
+double TestRecord::smooth_noise_std(ChannelRole channel) const {
+  const Series* series = find_series(samples_, *plant_, channel);
   return series ? series->noise_std * filter_.zero_phase_noise_gain() : 0.0;
 }
 

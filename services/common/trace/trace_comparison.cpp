@@ -325,6 +325,8 @@ class Comparison {
     if (driven.empty()) return;
     ask_common("input_delay", "input", driven, {.delay = true}, false);
     ask_common("input_gain", "input", driven, {.gain = true}, true);
+    ask_common("input_sign", "input", driven, {.fixed_gain = -1.0}, true);
+    if (driven.size() > 1) ask_input_offset(driven);
     std::ranges::sort(out_.common,
                       [](const Alteration& a, const Alteration& b) { return a.removed_share > b.removed_share; });
   }
@@ -335,6 +337,24 @@ class Comparison {
     for (const Pair* pair : pairs) channels.push_back(altered(*pair, about_start ? pair->simulated(0) : 0.0));
     const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom);
     if (fit) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
+  }
+
+  /// An offset of the input shifts all that it drives, each by a size of its own.
+  void ask_input_offset(const std::vector<const Pair*>& driven) {
+    constexpr double kShifted = 4.0;  // standard errors, of every one
+    Alteration all{.id = "input_bias", .where = "input", .parameters = {}, .removed_share = 1.0, .would_do = true};
+    for (const Pair* pair : driven) {
+      const Freedom freedom{.offset = true};
+      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair)}, freedom);
+      if (!fit) return;
+      Alteration one = judged(all.id, all.where, {pair}, *fit, freedom);
+      one.parameters.front().name = "offset of " + pair->name;
+      all.removed_share = std::min(all.removed_share, one.removed_share);
+      all.criterion += one.criterion;
+      all.would_do = all.would_do && one.would_do && std::abs(fit->offset) > kShifted * fit->offset_std;
+      all.parameters.push_back(std::move(one.parameters.front()));
+    }
+    out_.common.push_back(std::move(all));
   }
 
   /// One cause for all channels that differ before one for each.

@@ -20,7 +20,8 @@ namespace {
 constexpr std::size_t kFewestSamples = 16;  // as data manipulation has it
 
 std::vector<Phase> phases_of(const AssetConfig& asset, const TimeSeries& samples) {
-  const signal::TestRecord record(samples, AssetView{.asset = &asset}.cylinder());
+  const AssetView view{.asset = &asset};
+  const signal::TestRecord record(samples, view.cylinder(), view.described());
   std::vector<Phase> phases;
   for (const signal::MotionPhase& phase : record.phases())
     phases.push_back({static_cast<PhaseKind>(phase.kind), phase.begin_s, phase.end_s});

@@ -68,7 +68,7 @@ Result<std::optional<forecast::ConditionSample>> LifeSimulator::estimate(const b
   if (setting_.truth == TruthKind::condition) {
     const double conductance_std = kConductanceStd_m3_Pa_s / (1.0 + test.load_factor);
     const double resistance_std = conductance_std * test.resistance_Pa_s_m3 * test.resistance_Pa_s_m3;
-    const double condition_std = asset.seal->condition_std(resistance_std);
+    const double condition_std = asset.condition->condition_std(test.resistance_Pa_s_m3, resistance_std);
     bench::NormalRandom noise(test.seed);
     return forecast::ConditionSample{test.start_time, test.condition + condition_std * noise.next(), condition_std};
   }
@@ -112,7 +112,7 @@ bench::LifeSetting LifeSimulator::calendar(std::uint32_t number) const {
 
 Result<LifeRecord> LifeSimulator::run(std::uint32_t number) const {
   bench::LifeSetting life = calendar(number);
-  const double threshold = setting_.asset.seal->threshold;
+  const double threshold = setting_.asset.condition->threshold;
   const SealLife seal = seal_life(life.seed, setting_.degradation, threshold, setting_.scenario);
   life.months += static_cast<int>(seal.installed_months);  // months of service of the seal that fails
   const auto plan = bench::plan_life(setting_.asset, life);
@@ -127,7 +127,7 @@ Result<LifeRecord> LifeSimulator::run(std::uint32_t number) const {
     const double time_months = months_between(life.installed, planned.start_time);
     if (time_months >= seal.end_of_life_months) break;
     if (planned.recorded_share <= 0.0) continue;
-    const bench::PlannedTest test = as_it_comes(planned, *setting_.asset.seal, seal, life.seed, setting_.scenario);
+    const bench::PlannedTest test = as_it_comes(planned, *setting_.asset.condition, seal, life.seed, setting_.scenario);
     const auto estimated = estimate(life, test);
     if (!estimated) return fail(estimated.error());
     if (*estimated) request.history.push_back(**estimated);

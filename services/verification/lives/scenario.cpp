@@ -116,7 +116,7 @@ SealLife seal_life(std::uint64_t life_seed, const DegradationSetting& setting, d
   return life;
 }
 
-bench::PlannedTest as_it_comes(bench::PlannedTest test, const SealSetting& seal, const SealLife& life,
+bench::PlannedTest as_it_comes(bench::PlannedTest test, const ConditionSetting& seal, const SealLife& life,
                                std::uint64_t life_seed, Scenario scenario) {
   test.condition = life.months[static_cast<std::size_t>(test.month)].condition;
   if (scenario == Scenario::outliers) {
@@ -126,7 +126,7 @@ bench::PlannedTest as_it_comes(bench::PlannedTest test, const SealSetting& seal,
     if (off) test.condition += sign * random.between(kOutlierLeast, kOutlierMost);
   }
   if (scenario == Scenario::load_change && test.month > life.change_months) test.load_factor += kLoadRise;
-  test.resistance_Pa_s_m3 = seal.resistance_Pa_s_m3(test.condition);
+  test.resistance_Pa_s_m3 = seal.value(test.condition);
   return test;
 }
 

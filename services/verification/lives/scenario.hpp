@@ -51,7 +51,7 @@ struct SealLife {
                                  Scenario scenario);
 
 /// The test of a month as this life has it: condition and resistance are what the test shows.
-[[nodiscard]] bench::PlannedTest as_it_comes(bench::PlannedTest test, const SealSetting& seal, const SealLife& life,
-                                             std::uint64_t life_seed, Scenario scenario);
+[[nodiscard]] bench::PlannedTest as_it_comes(bench::PlannedTest test, const ConditionSetting& seal,
+                                             const SealLife& life, std::uint64_t life_seed, Scenario scenario);
 
 }  // namespace sealwatch::verification

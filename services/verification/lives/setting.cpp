@@ -111,7 +111,7 @@ Status validate(const VerificationSetting& setting) {
   if (const Status ok = range("load range", setting.load_range, 0, 0.5, "must be 0 to 0.5"); !ok) return ok;
   if (const Status ok = range("missing share", setting.missing_share, 0, 0.9, "must be 0 to 0.9"); !ok) return ok;
   if (const Status ok = range("cut share", setting.cut_share, 0, 1, "must be 0 to 1"); !ok) return ok;
-  if (!setting.asset.seal)
+  if (!setting.asset.condition)
     return fail(wrong("asset " + setting.asset.asset_id + ", key seal", {}, "is needed to simulate a life",
                       "give resistance_100 and resistance_60"));
   if (setting.forecasters.empty()) return fail("at least one forecaster is needed");

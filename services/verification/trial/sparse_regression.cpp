@@ -119,7 +119,7 @@ class Regression {
     std::array<bool, kBalances> usable{};
     for (std::size_t b = 0; b < kBalances; ++b)
       usable[b] = std::ranges::all_of(kNeeds[b], [&](std::string_view name) { return known.contains(name); });
-    mismatch::LawColumns laws(columns_);
+    mismatch::LawColumns laws(columns_, **find_plant("eha"));
     for (std::size_t k = 0; k < recorded.time_s.size(); ++k)
       add_row(known, usable, laws, recorded.time_s[k], k, recording);
   }

@@ -121,7 +121,7 @@ int main() {
   for (int repetition = 0; repetition < 3; ++repetition)
     pass_s = std::min(
         pass_s, seconds([&] {
-          LawColumns injected(laws);
+          LawColumns injected(laws, (*simulation)->plant());
           const auto outputs = (*simulation)->run(values, free, {}, &injected);
           for (Eigen::Index row = 0; outputs && row < samples; ++row)
             pass.row(row) =
@@ -137,7 +137,7 @@ int main() {
   });
   perf::CvodesRun cvodes;
   const double cvodes_s = seconds([&] {
-    LawColumns injected(laws);
+    LawColumns injected(laws, (*simulation)->plant());
     cvodes = perf::sensitivities_by_cvodes(values, recorded, SimulationOptions{}.relative_tolerance, injected);
   });
   std::printf("%ld columns of laws without memory, %ld samples\n", static_cast<long>(count),

@@ -25,7 +25,8 @@ class Question : public ::testing::Test {
   Question() {
     asset_.asset_id = "A";
     asset_.site = "field";
-    asset_.seal.emplace();
+    asset_.condition = ConditionSetting{
+        .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
     SiteConfig site;
     site.site = "field";
     site.booking_lead_time_months = 9.0;
@@ -111,7 +112,7 @@ TEST_F(Question, HasTheAdviceThatIsInForce) {
 
 TEST_F(Question, IsNoneWithoutASealOrATest) {
   EXPECT_FALSE(ConcludedHistory().question(asset_, configuration_));
-  asset_.seal.reset();
+  asset_.condition.reset();
   EXPECT_FALSE(history_.question(asset_, configuration_));
 }
 

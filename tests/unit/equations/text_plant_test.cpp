@@ -6,6 +6,7 @@
 
 #include "docs/examples/own_plant/spring_return.hpp"
 #include "sealwatch/estimation/actuator_fit.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "tests/unit/model/recording_for_tests.hpp"
 
@@ -60,7 +61,7 @@ PhysicsTerm law_at(const std::string& element, const std::string& id, const std:
   const auto law = std::ranges::find_if(all_laws(), [&](const Law& known) { return known.id == id && known.evaluate; });
   PhysicsTerm term{.id = id, .element = element, .parameters = {}};
   for (const LawParameter& parameter : law->parameters) {
-    const double value = parameter.start.front() * (*find_plant(plant))->law_size(parameter.unit);
+    const double value = law_start(**find_plant(plant), parameter);
     term.parameters[std::string(parameter.name)] = {value, value, value, false};
   }
   return term;

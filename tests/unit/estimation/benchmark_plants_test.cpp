@@ -9,7 +9,7 @@
 
 #include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/model/eha_switched.hpp"
-#include "services/common/estimation/closed_valves.hpp"
+#include "services/common/model/plants/eha_switched/estimation/closed_valves.hpp"
 #include "tests/unit/estimation/recordings.hpp"
 
 namespace sealwatch {

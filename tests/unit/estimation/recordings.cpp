@@ -33,7 +33,8 @@ AssetConfig nominal_asset(const std::string& plant) {
                                    .time_constant_s = channel.time_constant_s,
                                    .range_min = channel.range_min,
                                    .range_max = channel.range_max};
-  asset.seal = SealSetting{};
+  asset.condition = ConditionSetting{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
   return asset;
 }
 

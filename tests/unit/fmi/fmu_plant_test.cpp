@@ -6,8 +6,10 @@
 #include <fstream>
 #include <numbers>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/fmi/export/fmu_writer.hpp"
+#include "services/common/fmi/export/law_code.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
 #include "tests/unit/model/recording_for_tests.hpp"
@@ -51,9 +53,28 @@ law_sizes: {N: 0.02, m: 1.0, m2: 1.0, m/s: 10.0, N/m: 0.02, N/m2: 0.02, N s/m: 0
 )yaml";
 }
 
-std::string text_plant() {
-  return plant_with("spring_in_text", "", "x", "der: v, ",
-                    "der: (k_F * (drive_voltage - u_lost) - F_v * v - k_s * x) / M, ");
+/// Laws that the plant brings itself, with every operation that an expression has.
+constexpr const char* kOwnLaws = R"yaml(
+laws:
+  - id: gripping_seal
+    element: piston
+    equation: F_0*sign(speed, v_s) + k*grip
+    meaning: an O-ring that grips before it slides
+    parameters:
+      F_0: {unit: N, usual: 5.0, matters: 0.5, min: 0, max: 100, strength: true}
+      k: {unit: N/m, usual: 1.0e3, matters: 100, min: 0, max: 1.0e6, strength: true}
+      v_s: {unit: m/s, usual: 1.0e-3, grid: [1.0e-4], min: 1.0e-5, max: 0.1}
+    hidden: {name: grip, unit: m, der: "speed - abs(speed)*grip/1e-4[m]", size: 1.0e-4}
+  - id: odd_spring
+    element: piston
+    equation: "k_3*max(position, 0, 1e-3[m])^3*(1 + step(position, 1e-3[m]))*cos(position/1[m])*atan(exp(log(2)))"
+    meaning: a spring that grows harder with its way
+    parameters:
+      k_3: {unit: N/m3, usual: 1.0e7, matters: 10, min: -1.0e9, max: 1.0e9, strength: true}
+)yaml";
+
+std::string text_plant(const std::string& name = "spring_in_text") {
+  return plant_with(name, "", "x", "der: v, ", "der: (k_F * (drive_voltage - u_lost) - F_v * v - k_s * x) / M, ");
 }
 
 std::string plant_text(const std::string& name) {
@@ -94,7 +115,7 @@ PhysicsTerm law_at(const std::string& element, const std::string& id, const std:
   const auto law = std::ranges::find_if(all_laws(), [&](const Law& known) { return known.id == id && known.evaluate; });
   PhysicsTerm term{.id = id, .element = element, .parameters = {}};
   for (const LawParameter& parameter : law->parameters) {
-    const double value = parameter.start.front() * (*find_plant(plant))->law_size(parameter.unit);
+    const double value = law_start(**find_plant(plant), parameter);
     term.parameters[std::string(parameter.name)] = {value, value, value, false};
   }
   return term;
@@ -183,16 +204,12 @@ TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {
               AllOf(HasSubstr("d der(v) / d v is said to be 0"), HasSubstr("not the derivatives of its own values")));
 }
 
-TEST(ExportedFmu, SimulatesAsThePlantWithItsLaws) {
-  const TestFolder folder;
-  const auto read = read_plant_file(text_file());
+/// The asset's plant with its laws, exported and imported again, simulates as the asset does. `hidden`: states of laws, as
+/// an imported plant names them.
+void expect_same_exported(const TestFolder& folder, const std::string& plant_file, const AssetConfig& asset,
+                          const std::string& name, const std::string& hidden) {
+  const auto read = read_plant_file(plant_file);
   ASSERT_TRUE(read) << read.error().front().describe();
-  ASSERT_TRUE(load_plant(text_file()));
-  AssetConfig asset = nominal_asset("spring_in_text");
-  asset.parameters["M"].value = 25.0;
-  asset.physics = {law_at("piston", "stribeck_friction", "spring_in_text"),
-                   law_at("piston", "presliding_friction", "spring_in_text"),
-                   law_at("driver", "driver_dead_time", "spring_in_text")};
   const auto model = export_model(read->built.plant, asset);
   ASSERT_TRUE(model) << model.error().describe();
   const auto fmu = write_fmu((folder / "out.fmu").string(), *model);
@@ -200,7 +217,7 @@ TEST(ExportedFmu, SimulatesAsThePlantWithItsLaws) {
   EXPECT_FALSE(write_fmu((folder / "out.fmu").string(), *model)) << "an FMU was written over";
   if (!fmu->binary) GTEST_SKIP() << fmu->without_binary;
   const std::string file = (folder / "exported.yaml").string();
-  std::ofstream(file) << R"yaml(name: exported
+  std::ofstream(file) << "name: " << name << R"yaml(
 meaning: the plant with its laws
 fmu:
   file: out.fmu
@@ -210,9 +227,7 @@ outputs: {position: {value: x, unit: m, noise_std: 1.0e-5}}
 states:
   x: {unit: m, start: position, size: 0.02}
   v: {unit: m/s, start: "0[m/s]", own: false, size: 1.0}
-  bristle: {variable: piston.presliding_friction.bristle, unit: "1", start: "0", own: false, size: 1.0}
-law_sizes: {}
-)yaml";
+)yaml" << hidden << "law_sizes: {}\n";
   auto plant = load_plant(file);
   ASSERT_TRUE(plant) << plant.error().front().describe();
   const auto run = [](const AssetConfig& of) {
@@ -222,8 +237,39 @@ law_sizes: {}
     EXPECT_TRUE(outputs) << outputs.error().describe();
     return std::move(outputs->values);
   };
-  const RowMatrix expected = run(asset), found = run(nominal_asset("exported"));
+  const RowMatrix expected = run(asset), found = run(nominal_asset(name));
   EXPECT_LT((expected - found).cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff());
+}
+
+TEST(ExportedFmu, SimulatesAsThePlantWithItsLaws) {
+  const TestFolder folder;
+  ASSERT_TRUE(load_plant(text_file()));
+  AssetConfig asset = nominal_asset("spring_in_text");
+  asset.parameters["M"].value = 25.0;
+  asset.physics = {law_at("piston", "stribeck_friction", "spring_in_text"),
+                   law_at("piston", "presliding_friction", "spring_in_text"),
+                   law_at("driver", "driver_dead_time", "spring_in_text")};
+  expect_same_exported(
+      folder, text_file(), asset, "exported",
+      "  bristle: {variable: piston.presliding_friction.bristle, unit: \"1\", start: \"0\", own: false, size: 1.0}\n");
+}
+
+TEST(ExportedFmu, HasTheLawsThatThePlantBringsItself) {
+  const TestFolder folder;
+  const std::string file = written(folder, text_plant("spring_with_laws") + kOwnLaws);
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  AssetConfig asset = nominal_asset("spring_with_laws");
+  asset.physics = {law_at("piston", "gripping_seal", "spring_with_laws"),
+                   law_at("piston", "odd_spring", "spring_with_laws")};
+  expect_same_exported(
+      folder, file, asset, "exported_with_laws",
+      "  grip: {variable: piston.gripping_seal.grip, unit: \"m\", start: \"0\", own: false, size: 1.0e-4}\n");
+  const LawCode code = law_code(**plant, asset);
+  EXPECT_THAT(code.c, HasSubstr("double piston_gripping_seal(double s1, double s2"));
+  EXPECT_THAT(code.c, HasSubstr("double piston_gripping_seal_rate("));
+  EXPECT_THAT(code.modelica, HasSubstr("function piston_odd_spring"));
+  EXPECT_THAT(code.modelica, Not(HasSubstr("not written here")));
 }
 
 TEST(FmuPlant, ACrashInARunIsAnErrorOfTheRun) {

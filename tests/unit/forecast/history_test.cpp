@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 constexpr const char* kHeader = "time[iso8601],theta[1],theta_std[1]\n";
 
-std::string error_of(const std::string& text, const std::optional<SealSetting>& seal = {}) {
+std::string error_of(const std::string& text, const std::optional<ConditionSetting>& seal = {}) {
   const auto history = parse_history(text, "H.csv", seal);
   return history ? "no error" : history.error().describe();
 }
@@ -34,7 +34,8 @@ TEST(History, ReadsColumnsByNameAndQuotes) {
 }
 
 TEST(History, TurnsResistanceIntoCondition) {
-  const SealSetting seal;
+  const ConditionSetting seal{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
   const std::string text =
       "time[iso8601],R_CL[Pa s/m3],R_CL_std[Pa s/m3]\n2031-01-05,4.64e12,2.136e11\n2031-02-05,2.6e13,0\n";
   const auto history = parse_history(text, "H.csv", seal);
@@ -53,8 +54,11 @@ TEST(History, AMisspeltColumnIsNotPassedOver) {
 }
 
 TEST(History, RefusesNegativeResistances) {
-  EXPECT_THAT(error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,-4.64e12\n", SealSetting{}),
-              AllOf(HasSubstr("R_CL[Pa s/m3]"), HasSubstr("must be positive")));
+  EXPECT_THAT(
+      error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,-4.64e12\n",
+               ConditionSetting{
+                   .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"}),
+      AllOf(HasSubstr("R_CL[Pa s/m3]"), HasSubstr("must be positive")));
 }
 
 TEST(History, NamesRowAndColumnOfBadCells) {
@@ -78,14 +82,20 @@ TEST(History, RefusesRepeatedAndUnorderedMonths) {
 }
 
 TEST(History, RefusesNegativeResistance) {
-  EXPECT_THAT(error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,-2e13\n", SealSetting{}),
-              AllOf(HasSubstr("row 2"), HasSubstr("R_CL[Pa s/m3]"), HasSubstr("must be positive")));
+  EXPECT_THAT(
+      error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,-2e13\n",
+               ConditionSetting{
+                   .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"}),
+      AllOf(HasSubstr("row 2"), HasSubstr("R_CL[Pa s/m3]"), HasSubstr("must be positive")));
 }
 
 // Unlike theta[1], which a percentage would exceed, a resistance in another unit is off by orders of magnitude.
 TEST(History, RefusesResistancesThatAreNoCondition) {
-  EXPECT_THAT(error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,2e13\n2031-02-05,1e300\n", SealSetting{}),
-              AllOf(HasSubstr("row 3"), HasSubstr("R_CL[Pa s/m3]"), HasSubstr("1e300"), HasSubstr("above 2")));
+  EXPECT_THAT(
+      error_of("time[iso8601],R_CL[Pa s/m3]\n2031-01-05,2e13\n2031-02-05,1e300\n",
+               ConditionSetting{
+                   .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"}),
+      AllOf(HasSubstr("row 3"), HasSubstr("R_CL[Pa s/m3]"), HasSubstr("1e300"), HasSubstr("above 2")));
 }
 
 TEST(History, RefusesFilesWithoutTheColumns) {

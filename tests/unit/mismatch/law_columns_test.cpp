@@ -81,7 +81,8 @@ TEST(LawColumns, AreTheChangeThatALittleOfTheLawMakes) {
                          .sites = which.sites,
                          .parameters = parameters,
                          .strength = strength,
-                         .unit = parameters[strength]}});
+                         .unit = parameters[strength]}},
+                       (*plain)->plant());
     const auto injected = (*plain)->run((*plain)->start(), {}, tight, &columns);
     ASSERT_TRUE(injected) << which.law->id;
     const Eigen::Index channels = before->values.cols();

@@ -99,9 +99,9 @@ TEST(InputJumps, TheTwoSamplesAfterAJumpDoNotCount) {
     samples.time_s.push_back(0.01 * k);
     samples.channels[0].values.push_back(0.02 * k + (k >= 40 ? 5.0 : 0.0));
   }
-  EXPECT_EQ(samples_after_jumps(samples), (std::vector<Eigen::Index>{40, 41}));
+  EXPECT_EQ(samples_after_jumps(samples, plant_or_default({})), (std::vector<Eigen::Index>{40, 41}));
   samples.input_hold = true;  // then it is known when it came
-  EXPECT_TRUE(samples_after_jumps(samples).empty());
+  EXPECT_TRUE(samples_after_jumps(samples, plant_or_default({})).empty());
 }
 
 TEST(InputJumps, RampsRoundingAndNoiseAreNone) {
@@ -114,7 +114,8 @@ TEST(InputJumps, RampsRoundingAndNoiseAreNone) {
     const double ramp = k < 200 ? 0.0 : 0.05 * (k - 200);
     samples.channels[0].values.push_back(k < 100 ? std::round(0.01 * k) * 1e-3 : ramp + 1e-2 * normal(random));
   }
-  EXPECT_LE(samples_after_jumps(samples).size(), 2U);  // the first noisy sample after a silent stretch may be one
+  EXPECT_LE(samples_after_jumps(samples, plant_or_default({})).size(),
+            2U);  // the first noisy sample after a silent stretch may be one
 }
 
 }  // namespace

@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <random>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "tests/unit/model/recording_for_tests.hpp"
 
@@ -74,6 +79,83 @@ TEST(TextPlants, FindTheSilverboxsSpringAndOffset) {
   EXPECT_LT(y.rms_after, 0.1 * y.rms_before) << found->summary;
   constexpr double kGoal = 6e-4;  // V, free run of a piece that took no part; linear models miss by 7 mV
   EXPECT_LT(y.rms_after * found->recordings.back().recorded.channels.at(0).noise_std, kGoal);
+}
+
+/// The positioner of config/plants/spring_return.yaml, a thousand times as strong.
+constexpr double kTimes = 1000.0;
+std::string large_positioner() {
+  return R"yaml(name: large_positioner
+meaning: valve positioner with a return spring
+inputs: {drive_voltage: {unit: V, meaning: command u to the drive}}
+outputs: {position: {value: x, unit: m, noise_std: 1.0e-5, meaning: stem position}}
+parameters:
+  M:   {value: 20.0e3, unit: kg,    meaning: moved mass, estimate: true}
+  F_v: {value: 2.0e6,  unit: N s/m, meaning: viscous friction, estimate: true}
+  k_s: {value: 1.0e7,  unit: N/m,   meaning: stiffness of the return spring, estimate: true}
+  k_F: {value: 100.0e3, unit: N/V,  meaning: force of the drive per voltage}
+states:
+  x: {der: v, unit: m, start: position, meaning: stem position}
+  v: {der: (k_F*drive_voltage - F_v*v - k_s*x - F_missing) / M, unit: m/s, start: "0[m/s]", own: false, size: 0.1}
+elements:
+  piston:
+    meaning: force on the stem
+    sites:
+      - {kind: piston_force, symbol: F_missing, signals: {speed: v, position: x}}
+law_sizes: {N: 20, m: 1.0, m/s: 10.0, N/m: 20, N/m2: 20, N s/m: 10, N s2/m2: 1.0}
+)yaml";
+}
+
+/// Dry friction of `friction_N` in explicit Euler steps of 5 us: other code than the simulation's.
+Recording large_stroke(const std::string& name, double period_s, double friction_N, unsigned seed) {
+  constexpr double kStep_s = 5e-6, kSample_s = 0.01, kDuration_s = 12.0, kReversal = 1e-3;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  Recording recording;
+  recording.recording_id = name;
+  Series voltage{"drive_voltage", "V", 0.0, {}}, position{"position", "m", 0.0, {}};
+  const auto command = [&](double t) { return 4.0 * (1.0 - std::cos(2.0 * std::numbers::pi * t / period_s)); };
+  double x = 0.0, v = 0.0;
+  for (int sample = 0; sample * kSample_s <= kDuration_s; ++sample) {
+    recording.samples.time_s.push_back(sample * kSample_s);
+    voltage.values.push_back(command(sample * kSample_s));
+    position.values.push_back(x + noise(random));
+    for (int k = 0; k < static_cast<int>(std::lround(kSample_s / kStep_s)); ++k) {
+      const double force = kTimes * (100.0 * command(sample * kSample_s + k * kStep_s) - 1.7e3 * v - 1.1e4 * x) -
+                           friction_N * std::tanh(v / kReversal);
+      v += kStep_s * force / (23.0 * kTimes);
+      x += kStep_s * v;
+    }
+  }
+  recording.samples.channels = {std::move(voltage), std::move(position)};
+  return recording;
+}
+
+/// Bounds of laws grow with the plant's sizes: of the actuator that they are written for none has 200 kN of friction.
+TEST(TextPlants, ADriveAThousandTimesLargerHasLawsAsLarge) {
+  const std::string folder = ::testing::TempDir(), file = folder + "large_positioner.yaml";
+  std::ofstream(file) << large_positioner();
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  constexpr double kFriction_N = 200.0 * kTimes;
+  const std::vector<Recording> fit = {large_stroke("slow", 6.0, kFriction_N, 1),
+                                      large_stroke("fast", 2.5, kFriction_N, 2)};
+  const auto found = mismatch::explain(nominal_asset("large_positioner"), fit,
+                                       std::vector{large_stroke("between", 4.0, kFriction_N, 3)});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->verdict, MismatchVerdict::mismatch) << found->summary;
+  EXPECT_TRUE(names(*found, "coulomb_friction")) << found->summary;
+  const auto& terms = found->explained.physics;
+  ASSERT_EQ(terms.size(), 1U);
+  const auto strength = terms[0].parameters.find("F_c");
+  ASSERT_NE(strength, terms[0].parameters.end()) << found->summary;
+  EXPECT_NEAR(strength->second.value, kFriction_N, 0.03 * kFriction_N);
+  // The explained asset reads back, beyond the bounds that the laws are written with.
+  AssetConfig explained = found->explained;
+  explained.asset_id = "L";
+  ASSERT_TRUE(save_asset(explained, folder + "large_explained.yaml"));
+  const auto back = load_asset(folder + "large_explained.yaml");
+  ASSERT_TRUE(back) << back.error().describe();
+  EXPECT_EQ(back->physics[0].parameters.at("F_c").value, strength->second.value);
 }
 
 TEST(TextPlants, FindTheFrictionOfAnORingInAPlantWithoutStates) {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/estimation/model_validation.hpp"
 #include "services/common/mismatch/tolerance.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
@@ -68,6 +69,8 @@ TEST(Tolerance, WithinItNothingIsMissing) {
   EXPECT_THAT(found->asset_values, IsEmpty());
 }
 
+constexpr double kSameFit = 2e-3;  // each recording's own state is estimated once more, to the search's tolerance
+
 AssetConfig with_inexact_sensors() {
   AssetConfig truth = actuator();
   truth.sensors.at("flow").gain_error = 0.004;
@@ -104,6 +107,30 @@ TEST(Tolerance, SensorsOffByLessThanTheyMayBeHideNoPhysics) {
   ASSERT_TRUE(found) << found.error().describe();
   ASSERT_EQ(found->effects.size(), 1U) << found->summary;
   EXPECT_EQ(found->effects[0].what.id, "external_leakage") << found->summary;
+}
+
+// What `validate` and `simulate` get of the explained asset is what the report calls "after".
+TEST(Tolerance, WhatIsFoundOfSensorsIsWrittenWithTheAsset) {
+  AssetConfig truth = with_inexact_sensors();
+  truth.physics = {{"external_leakage", "chamber_a", {{"G", {4e-14, 0.0, 1e-10, false}}}}};
+  const std::vector<Recording> tests = tests_of(truth);
+  const auto found = explain(actuator(), tests, {});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_NE(found->explained.sensors.at("flow").gain_error, 0.0);
+  const std::string file = ::testing::TempDir() + "sensors.explained.yaml";
+  ASSERT_TRUE(save_asset(found->explained, file));
+  std::vector<std::string> names;
+  for (const Recording& test : tests) names.push_back(test.file);
+  const auto again = validate_model(load_asset(file).value(), tests, names, false);
+  ASSERT_TRUE(again) << again.error().describe();
+  for (std::size_t k = 0; k < tests.size(); ++k)
+    for (const ChannelValidation& channel : again->recordings[k].channels) {
+      const auto& reported = found->recordings[k].channels;
+      const auto after = std::ranges::find(reported, channel.fit.channel, &ChannelComparison::channel);
+      ASSERT_NE(after, reported.end());
+      EXPECT_NEAR(channel.fit.noise_normalised_rms, after->rms_after, kSameFit * after->rms_after)
+          << channel.fit.channel;
+    }
 }
 
 TEST(Tolerance, ASensorThatIsFurtherOffIsAFault) {

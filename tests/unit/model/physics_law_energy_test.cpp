@@ -115,7 +115,7 @@ Cycle run_cycles(const Law& law, std::span<const double> parameters, const Signa
   double hidden = 0.0;
   for (int step = 0; step < kPeriods * kSteps; ++step) {
     const auto signals = signals_at(2.0 * M_PI * step * kStep_s);
-    const LawOutput output = law.evaluate(law_input(signals, hidden, parameters));
+    const LawOutput output = law.evaluate(law_input(signals, hidden, parameters, roundings_of(law)));
     if (step >= (kPeriods - 1) * kSteps) cycle.work += output.contribution.value * signals[0] * kStep_s;
     hidden += output.rate.value * kStep_s;
     cycle.lowest = std::min(cycle.lowest, hidden);
@@ -175,7 +175,8 @@ TEST(PhysicsLaws, BacklashLosesTheLoadOnlyWhileTheClearanceIsCrossed) {
   const Law& law = law_of("backlash", {"F_b", "b"});
   const std::array parameters{5e3, 2e-4};
   const auto loss = [&](double place) {
-    return law.evaluate(law_input(std::array{1e-3, 0.05, 0.0, 0.0}, place, parameters)).contribution.value;
+    return law.evaluate(law_input(std::array{1e-3, 0.05, 0.0, 0.0}, place, parameters, roundings_of(law)))
+        .contribution.value;
   };
   EXPECT_EQ(loss(0.0), 0.0);
   EXPECT_EQ(loss(0.5), -5e3);
@@ -193,15 +194,15 @@ TEST(PhysicsLaws, BacklashLosesTheLoadOnlyWhileTheClearanceIsCrossed) {
 TEST(PhysicsLaws, OilAndWindingWarmTowardsTheirSteadyState) {
   const auto steady = [](double first) { return std::array{first, 0.0, 0.0, 0.0}; };
   const Law& winding = law_of("winding_heating", {"k", "tau"});
-  const LawInput hot = law_input(steady(5.0), 25.0, std::array{2e-3, 60.0});
+  const LawInput hot = law_input(steady(5.0), 25.0, std::array{2e-3, 60.0}, {});
   EXPECT_EQ(winding.evaluate(hot).rate.value, 0.0);
   EXPECT_DOUBLE_EQ(winding.evaluate(hot).contribution.value, 2e-3 * 25.0 * 5.0);
   const Law& oil = law_of("viscosity_warm_up", {"b", "tau"});
-  EXPECT_EQ(oil.evaluate(law_input(steady(100.0), 1.0, std::array{0.9, 30.0})).rate.value, 0.0);
+  EXPECT_EQ(oil.evaluate(law_input(steady(100.0), 1.0, std::array{0.9, 30.0}, {})).rate.value, 0.0);
   for (const double warmth : {0.0, 0.5, 2.0, 1e3})
-    EXPECT_GE(oil.evaluate(law_input(steady(100.0), warmth, std::array{0.9, 30.0})).contribution.value, -0.9);
+    EXPECT_GE(oil.evaluate(law_input(steady(100.0), warmth, std::array{0.9, 30.0}, {})).contribution.value, -0.9);
   const Law& by_time = law_of("viscosity_warm_up", {"b_t", "tau_t"});
-  const LawOutput end = by_time.evaluate(law_input(steady(0.0), 1.0, std::array{0.9, 30.0}));
+  const LawOutput end = by_time.evaluate(law_input(steady(0.0), 1.0, std::array{0.9, 30.0}, {}));
   EXPECT_EQ(end.rate.value, 0.0);
   EXPECT_DOUBLE_EQ(end.contribution.value, -0.9);
 }
@@ -214,7 +215,8 @@ TEST(PhysicsLaws, ValveMemoryNeverLowersTheCrackingPressureBelowZero) {
     const auto open_and_close = [](double phase) { return std::array{1e5 * std::sin(phase), 0.0, 0.0, 0.0}; };
     const Cycle cycle = run_cycles(law, parameters, open_and_close);
     for (const double memory : {cycle.lowest, cycle.highest}) {
-      const double lowered = law.evaluate(law_input(open_and_close(0.0), memory, parameters)).contribution.value;
+      const double lowered =
+          law.evaluate(law_input(open_and_close(0.0), memory, parameters, roundings_of(law))).contribution.value;
       EXPECT_LE(lowered, 5e4);
     }
   }
@@ -226,7 +228,8 @@ TEST(PhysicsLaws, FreeAirIsWorthItsVolume) {
   const double expected = 0.01 * 101325.0 / (kPressure_Pa * kPressure_Pa);
   const std::array signals{kPressure_Pa, 0.0, 0.0, 0.0};
   const auto softness = [&](const std::vector<std::string>& names, std::span<const double> parameters) {
-    return law_of("entrained_air", names).evaluate(law_input(signals, 0.0, parameters)).contribution.value;
+    const Law& air = law_of("entrained_air", names);
+    return air.evaluate(law_input(signals, 0.0, parameters, roundings_of(air))).contribution.value;
   };
   EXPECT_NEAR(softness({"alpha"}, std::array{0.01}), expected, 1e-9 * expected);
   EXPECT_NEAR(softness({"alpha", "n"}, std::array{0.01, 1.0}), expected, 1e-9 * expected);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/physics.hpp"
 
 namespace sealwatch::law_test {
@@ -58,7 +59,8 @@ struct Point {
 };
 
 inline LawOutput output_at(const Law& law, const Point& point) {
-  return law.evaluate(law_input(point.signal, point.hidden, std::span(point.parameter).first(law.parameters.size())));
+  return law.evaluate(law_input(point.signal, point.hidden, std::span(point.parameter).first(law.parameters.size()),
+                                roundings_of(law)));
 }
 
 /// Random signals of either sign and of any size up to the usual, which of them is zero by `zero_signal`; each shape

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "tests/unit/model/physics_law_for_tests.hpp"
 
 namespace sealwatch::law_test {
@@ -229,6 +230,25 @@ TEST(PhysicsLaws, StandInTheDocumentation) {
     EXPECT_NE(overview.str().find("`" + std::string(law.id) + "`"), std::string::npos)
         << "docs/laws.md lacks " << law.id;
   }
+}
+
+TEST(LawSizes, EveryPlantGivesThoseOfTheLawsThatFitItsSites) {
+  for (const PlantDescription& plant : all_plants()) EXPECT_EQ(missing_law_sizes(plant), "") << plant.name;
+}
+
+TEST(LawSizes, NumbersOfALawGrowWithItsUnit) {
+  const Law& dry = **find_law("coulomb_friction", {"F_c", "v_s"});
+  const LawParameter &force = dry.parameters[0], &speed = dry.parameters[1];
+  PlantDescription large;
+  large.law_sizes = {{"N", 1000.0}, {"m/s", 10.0}, {"V", 5.0}};
+  EXPECT_EQ(law_bounds(large, force).max, 1000.0 * force.max);
+  EXPECT_EQ(law_start(large, speed), 10.0 * speed.start.front());
+  EXPECT_EQ(significant_size(large, force), 1000.0 * force.significant);
+  const Law& dead = **find_law("pump_dead_voltage", {"V_0", "u_0"});
+  EXPECT_EQ(roundings_of(large, dead)[0], 5.0 * roundings_of(dead)[0]);
+  LawParameter own = force;
+  own.own_size = true;
+  EXPECT_EQ(law_bounds(large, own).max, force.max) << "a plant's own law has its numbers already";
 }
 
 }  // namespace

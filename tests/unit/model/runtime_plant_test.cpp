@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/runtime_equations.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "tests/unit/model/recording_for_tests.hpp"
@@ -177,8 +178,7 @@ TEST(RuntimePlant, CarriesLawsWithAndWithoutHiddenStates) {
   ASSERT_NE(dahl, all_laws().end());
   std::map<std::string, double> values;
   for (const LawParameter& parameter : dahl->parameters)
-    values[std::string(parameter.name)] =
-        parameter.start.front() * find_plant("emps").value()->law_size(parameter.unit);
+    values[std::string(parameter.name)] = law_start(**find_plant("emps"), parameter);
   expect_equal("emps_by_hand", {law("presliding_friction", values)}, nullptr);
 }
 

@@ -67,6 +67,8 @@ const BadCase kBadCases[] = {
      "a.yaml: line 2, key sensors.flow.noise_std: '-1': must be a number above 0"},
     {"no_noise", "asset_id: A\nsensors:\n  noise_std: {flow: 0}\n",
      "a.yaml: line 3, key sensors.noise_std.flow: '0': must be a number above 0"},
+    {"gain", "asset_id: A\nsensors: {flow: {gain_error: -1}}\n",
+     "a.yaml: line 2, key sensors.flow.gain_error: '-1': must be a number above -1"},
     {"range", "asset_id: A\nsensors: {flow: {range: [2, 1]}}\n",
      "a.yaml: line 2, key sensors.flow.range: must be two numbers, the lower one first: [min, max]"},
     {"seal", "asset_id: A\nseal: {resistance_100: 1.0e12}\n",
@@ -141,8 +143,8 @@ TEST(AssetTest, UnsetValuesTakeThePlantTablesDefaults) {
   ASSERT_EQ(asset.sensors.size(), plant.channels.size());
   EXPECT_EQ(asset.sensors.at("pressure_a").noise_std, 1.0e4);
   EXPECT_EQ(asset.sensors.at("pressure_a").time_constant_s, 5e-3);
-  ASSERT_TRUE(asset.seal.has_value());
-  EXPECT_EQ(asset.seal->resistance_100_Pa_s_m3, 2.6e13);
+  ASSERT_TRUE(asset.condition.has_value());
+  EXPECT_EQ(asset.condition->at_100, 2.6e13);
   EXPECT_EQ(asset.pst.stroke_m, -0.016);
 }
 
@@ -175,7 +177,7 @@ physics:
   EXPECT_EQ(asset.sensors.at("pressure_a").time_constant_s, 0.001);
   EXPECT_EQ(asset.sensors.at("pressure_a").quantisation, 2.0);
   EXPECT_EQ(asset.sensors.at("pressure_a").range_max, 1.0e7);
-  EXPECT_EQ(asset.seal->threshold, 0.55);
+  EXPECT_EQ(asset.condition->threshold, 0.55);
   EXPECT_EQ(asset.pst.interval_months, 3.0);
   EXPECT_EQ(asset.alert_limits.at("leakage_resistance").alarm, 6.0e12);
   ASSERT_EQ(asset.physics.size(), 2U);
@@ -201,9 +203,9 @@ TEST(AssetTest, AValueOutsideTheTablesBoundsBringsItsOwn) {
 }
 
 TEST(AssetTest, TheSealIsUndefinedWhereTheFileSaysSoOrThePlantHasNone) {
-  EXPECT_FALSE(load("asset_id: A\nseal: null\n").seal.has_value());
-  EXPECT_FALSE(load("asset_id: A\nmodel: eha_switched\n").seal.has_value());
-  EXPECT_TRUE(load("asset_id: A\nmodel: eha_switched\nseal: {}\n").seal.has_value());
+  EXPECT_FALSE(load("asset_id: A\nseal: null\n").condition.has_value());
+  EXPECT_FALSE(load("asset_id: A\nmodel: eha_switched\n").condition.has_value());
+  EXPECT_TRUE(load("asset_id: A\nmodel: eha_switched\nseal: {}\n").condition.has_value());
 }
 
 TEST(AssetTest, SeveralFaultsAsOneErrorNameThemAll) {
@@ -218,8 +220,8 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   AssetConfig asset = load("asset_id: 'yes: \"odd\" id'\nsegment: \"# no comment\"\n");
   double odd = 1.0 / 3.0;
   for (auto& [name, setting] : asset.parameters) setting.value *= 1.0 + 1e-3 * (odd = odd * 0.7 + 0.01);
-  asset.sensors.at("flow") = {1.0 / 3.0, 1e-300, 0.1, -0.1, 1e300};
-  asset.seal->threshold = 0.1 + 0.2;
+  asset.sensors.at("flow") = {1.0 / 3.0, 1e-300, 0.1, -0.1, 1e300, 1.0 / 7.0, 1e-9 / 3.0, -1.0 / 9.0, -1e-8 / 3.0};
+  asset.condition->threshold = 0.1 + 0.2;
   asset.pst.hold_s = 1.0 / 7.0;
   asset.physics = {
       {"coulomb_friction", "piston", {{"F_c", {1.0 / 3.0, 0.0, 1e5, true}}, {"v_s", {1e-4, 1e-5, 1e-3, false}}}}};
@@ -229,14 +231,14 @@ TEST(AssetTest, WhatIsWrittenReadsBackToTheBit) {
   EXPECT_EQ(back.asset_id, asset.asset_id);
   EXPECT_EQ(back.segment, asset.segment);
   for (const auto& [name, setting] : asset.parameters) EXPECT_EQ(back.parameters.at(name).value, setting.value) << name;
-  EXPECT_EQ(back.sensors.at("flow").time_constant_s, 1e-300);
-  EXPECT_EQ(back.seal->threshold, asset.seal->threshold);
+  EXPECT_EQ(back.sensors, asset.sensors);
+  EXPECT_EQ(back.condition->threshold, asset.condition->threshold);
   EXPECT_EQ(back.pst.hold_s, asset.pst.hold_s);
   EXPECT_EQ(back.physics.at(0).parameters, asset.physics.at(0).parameters);
   EXPECT_EQ(back.alert_limits.at("hold_decay_rate").advisory, 1.0 / 3.0);
   AssetConfig without = asset;
-  without.seal.reset();
-  EXPECT_FALSE(load(asset_to_yaml(without)).seal.has_value());
+  without.condition.reset();
+  EXPECT_FALSE(load(asset_to_yaml(without)).condition.has_value());
 }
 
 TEST(AssetTest, IsSavedWhereItMayBeWritten) {

@@ -374,7 +374,7 @@ TEST(ConfigurationTest, TheOneThatComesWithSealwatchIsValid) {
   AdviceOptions::visit_pair(same_as_default, configuration->advice, AdviceOptions{});
   const AssetConfig* asset = configuration->find_asset("XT03-MV2");
   ASSERT_NE(asset, nullptr);
-  EXPECT_TRUE(asset->seal.has_value());
+  EXPECT_TRUE(asset->condition.has_value());
   const SiteConfig* site = configuration->find_site(asset->site);
   ASSERT_NE(site, nullptr);
   EXPECT_FALSE(site->campaigns.empty());

@@ -27,7 +27,7 @@ Cylinder cylinder_of(const SyntheticPst& pst) {
 
 std::map<std::string, Feature> features_of(const SyntheticPst& pst, const TimeSeries& samples) {
   std::map<std::string, Feature> result;
-  const TestRecord record(samples, cylinder_of(pst));
+  const TestRecord record(samples, cylinder_of(pst), plant_or_default({}));
   for (const Feature& feature : compute_features(record)) result[feature.name] = feature;
   return result;
 }
@@ -43,7 +43,7 @@ TEST(Phases, FollowTheStrokes) {
     for (const double stroke_m : {-0.016, 0.016}) {
       const SyntheticPst pst{.rate_Hz = rate_Hz, .stroke_m = stroke_m};
       const TimeSeries samples = pst.record();
-      const TestRecord record(samples, cylinder_of(pst));
+      const TestRecord record(samples, cylinder_of(pst), plant_or_default({}));
       ASSERT_EQ(record.phases().size(), 6U) << rate_Hz << " Hz";
       const MotionKind expected[] = {MotionKind::rest, MotionKind::breakaway, MotionKind::out,
                                      MotionKind::hold, MotionKind::back,      MotionKind::hold};
@@ -62,7 +62,7 @@ TEST(Phases, FollowTheStrokes) {
 TEST(Phases, OfACutTestEndWhereItWasCut) {
   const SyntheticPst pst{.duration_s = 7.4};
   const TimeSeries samples = pst.record();
-  const TestRecord record(samples, cylinder_of(pst));
+  const TestRecord record(samples, cylinder_of(pst), plant_or_default({}));
   ASSERT_EQ(record.phases().size(), 3U);
   EXPECT_EQ(record.phases().back().kind, MotionKind::out);
   const auto features = features_of(pst, samples);
@@ -74,7 +74,7 @@ TEST(Phases, OfACutTestEndWhereItWasCut) {
 TEST(Phases, AreAbsentWhereThePistonStands) {
   const SyntheticPst pst{.stroke_m = 1e-9};
   const TimeSeries samples = pst.record();
-  EXPECT_TRUE(TestRecord(samples, cylinder_of(pst)).phases().empty());
+  EXPECT_TRUE(TestRecord(samples, cylinder_of(pst), plant_or_default({})).phases().empty());
 }
 
 TEST(Phases, OfTheSourcesChannelSetAreTheSame) {
@@ -85,11 +85,11 @@ TEST(Phases, OfTheSourcesChannelSetAreTheSame) {
   for (std::size_t i = 0; i < differential.values.size(); ++i)
     differential.values[i] -= samples.find("pressure_b")->values[i];
   source.channels.push_back(differential);
-  const TestRecord all(samples, cylinder_of(pst));
-  const TestRecord few(source, cylinder_of(pst));
+  const TestRecord all(samples, cylinder_of(pst), plant_or_default({}));
+  const TestRecord few(source, cylinder_of(pst), plant_or_default({}));
   for (const double time_s : {0.5, 5.0, 15.0, 22.0, 30.5}) EXPECT_EQ(kind_at(few, time_s), kind_at(all, time_s));
   const TimeSeries velocity_alone = only(samples, {"velocity"});
-  EXPECT_EQ(TestRecord(velocity_alone, cylinder_of(pst)).phases().size(), 6U);
+  EXPECT_EQ(TestRecord(velocity_alone, cylinder_of(pst), plant_or_default({})).phases().size(), 6U);
 }
 
 /// What the synthetic test must give. Systematic errors of the smoothing are allowed for by `least`.

@@ -138,6 +138,34 @@ TEST(Trace, AnInputsDelayMovesAllThatItDrives) {
   EXPECT_NEAR(found.answer[0].parameters[0].value, 0.08, 4.0 * found.answer[0].parameters[0].std_error);
 }
 
+TimeSeries all_changed(TimeSeries series, const std::function<double(double, const Series&)>& change) {
+  for (Series& channel : series.channels) {
+    const Series before = channel;
+    for (double& value : channel.values) value = change(value, before);
+  }
+  return series;
+}
+
+TEST(Trace, AnInputThatIsTurnedRoundMirrorsAllThatItDrives) {
+  const auto mirrored = [](double value, const Series& of) { return 2.0 * of.values.front() - value; };
+  const TraceComparison found = compare(noisy(all_changed(stroke(), mirrored), 0.002, 0.8, 7), stroke());
+  ASSERT_THAT(found.answer, SizeIs(1));
+  EXPECT_EQ(found.answer[0].id, "input_sign");
+  EXPECT_EQ(found.answer[0].where, "input");
+  EXPECT_EQ(found.answer[0].parameters[0].value, -1.0);
+}
+
+TEST(Trace, AnOffsetOfTheInputShiftsAllThatItDrives) {
+  const auto shifted = [](double value, const Series& of) { return value + (of.name == "position" ? 0.004 : 2e5); };
+  const TraceComparison found = compare(noisy(all_changed(stroke(), shifted), 0.002, 0.8, 8), stroke());
+  ASSERT_THAT(found.answer, SizeIs(1));
+  EXPECT_EQ(found.answer[0].id, "input_bias");
+  ASSERT_THAT(found.answer[0].parameters, SizeIs(2));
+  EXPECT_EQ(found.answer[0].parameters[0].name, "offset of position");
+  EXPECT_NEAR(found.answer[0].parameters[0].value, 0.004, 4.0 * found.answer[0].parameters[0].std_error);
+  EXPECT_NEAR(found.answer[0].parameters[1].value, 2e5, 4.0 * found.answer[0].parameters[1].std_error);
+}
+
 TEST(Trace, AFrictionIsNoneOfThese) {
   TimeSeries recorded = stroke();
   for (std::size_t k = 1; k + 1 < recorded.time_s.size(); ++k) {

@@ -13,7 +13,7 @@ TEST(EstimateTest, TheLayersOfTheServicesGiveTheSame) {
   const CircuitTruth truth = CircuitTruth::make(asset, 50.0).value();
   const UtcTime when = parse_utc("2031-04-12T03:00:00Z").value();
   for (const double condition : {0.98, 0.8, 0.61}) {
-    const TimeSeries samples = truth.simulate(asset.seal->resistance_Pa_s_m3(condition), 0.1, 5);
+    const TimeSeries samples = truth.simulate(asset.condition->value(condition), 0.1, 5);
     const auto direct = estimate_condition(asset, samples, when);
     const auto layered = estimate_through_layers(asset, samples, when);
     ASSERT_TRUE(direct && layered);

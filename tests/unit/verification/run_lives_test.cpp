@@ -173,7 +173,7 @@ TEST(Setting, BadInputIsNamed) {
   EXPECT_NE(bad([](auto& s) { s.months = 0; }).find("months"), std::string::npos);
   EXPECT_NE(bad([](auto& s) { s.forecasters.clear(); }).find("forecaster"), std::string::npos);
   EXPECT_NE(bad([](auto& s) { s.forecasters.push_back(s.forecasters[0]); }).find("twice"), std::string::npos);
-  EXPECT_NE(bad([](auto& s) { s.asset.seal.reset(); }).find("seal"), std::string::npos);
+  EXPECT_NE(bad([](auto& s) { s.asset.condition.reset(); }).find("seal"), std::string::npos);
   EXPECT_NE(bad([](auto& s) { s.asset.model = "emps"; }).find("emps"), std::string::npos);
   EXPECT_NE(bad([](auto& s) { s.degradation.n_0 = 0.0; }).find("n_0"), std::string::npos);
   EXPECT_NE(bad([](auto& s) { s.degradation.irregularity = {0.1, -0.1}; }).find("irregularity"), std::string::npos);

@@ -23,7 +23,11 @@ bench::PlannedTest test_of(int month, Scenario scenario, std::uint64_t seed = kS
   bench::PlannedTest planned;
   planned.month = month;
   planned.load_factor = 0.1;
-  return as_it_comes(planned, SealSetting{}, life_of(scenario, seed), seed, scenario);
+  return as_it_comes(
+      planned,
+      ConditionSetting{
+          .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"},
+      life_of(scenario, seed), seed, scenario);
 }
 
 TEST(Scenario, NamesGoBothWays) {

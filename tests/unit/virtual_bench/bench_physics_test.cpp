@@ -52,9 +52,7 @@ TEST(BenchPhysics, EveryLawActsAsTheEstimatorKnowsIt) {
     std::string element = is_sensor(law.kind) ? "sensor:velocity" : "";
     if (is_of_recording(law.kind)) element = law.kind == SiteKind::clock_rate ? "clock" : "input:motor_voltage";
     for (const Site& site : plant.sites)
-      if (element.empty() && site.kind == law.kind &&
-          (law.elements.empty() || std::ranges::find(law.elements, site.element) != law.elements.end()))
-        element = site.element;
+      if (element.empty() && fits(law, site)) element = site.element;
     if (element.empty()) continue;  // of another plant
     AssetConfig asset = quiet_asset();
     asset.physics = {usual(law, element)};

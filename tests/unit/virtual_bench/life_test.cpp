@@ -72,7 +72,7 @@ TEST(Life, SimulatesWhatWasPlanned) {
 
 TEST(Life, NeedsSealResistances) {
   AssetConfig asset = nominal_asset();
-  asset.seal.reset();
+  asset.condition.reset();
   EXPECT_FALSE(plan_life(asset, {}));
 }
 

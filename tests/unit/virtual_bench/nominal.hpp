@@ -14,7 +14,8 @@ namespace sealwatch::bench {
 inline AssetConfig nominal_asset() {
   AssetConfig asset;
   asset.asset_id = "XT03-MV2";
-  asset.seal = SealSetting{};
+  asset.condition = ConditionSetting{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
   return asset;  // parameters and sensors: the plant's defaults
 }
 

@@ -54,6 +54,13 @@ TEST(Sensors, QuantisationRoundsToStepsAndCountsAsNoise) {
   EXPECT_DOUBLE_EQ(series.noise_std, 0.25 / std::sqrt(12.0));
 }
 
+TEST(Sensors, AreOffByWhatTheAssetSays) {
+  Sensor off = sensor(0.0, 0.0);
+  off.setting.gain_error = 0.01;
+  off.setting.offset_error = -0.5;
+  EXPECT_DOUBLE_EQ(measure(off, {5.0}, 3).values[0], 1.01 * 5.0 - 0.5);
+}
+
 TEST(Sensors, ChannelsHaveTheirOwnNoise) {
   EXPECT_NE(sub_seed(1, "pressure_a"), sub_seed(1, "pressure_b"));
   EXPECT_NE(sub_seed(1, "pressure_a"), sub_seed(2, "pressure_a"));

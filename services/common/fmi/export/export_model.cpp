@@ -177,12 +177,12 @@ static void model_outputs(double t, const double* x, const double* u, const doub
       bool first = true;
       for (const ActiveTerm& term : terms_.active) {
         if (std::ranges::find(term.sites, site) == term.sites.end()) continue;
-        const LawFormula* formula = find_formula(*term.law);
-        if (formula == nullptr)
+        const auto formula = written(*term.law);
+        if (!formula)
           return fail(Error{.file = plant_.description.file,
                             .place = {},
                             .value = std::string(term.law->id),
-                            .rule = "is a law that the plant brings itself, which is not written in C yet",
+                            .rule = "is a law that is not written in C",
                             .advice = "leave it out of the asset's physics"});
         if (first && parts_->signals_see_added) out << "  plant_signals(t, x, u, p, e, s);\n";
         first = false;
@@ -196,7 +196,10 @@ static void model_outputs(double t, const double* x, const double* u, const doub
           out << "    const double p" << k + 1 << " = "
               << (k < term.law->parameters.size() ? "p[" + std::to_string(term.first_parameter + k) + "]" : "0.0")
               << ";\n";
-        out << "    (void)s1, (void)s2, (void)s3, (void)s4, (void)h, (void)p1, (void)p2, (void)p3, (void)p4;\n"
+        for (std::size_t k = 0; k < kLawRoundings; ++k)
+          out << "    const double r" << k + 1 << " = " << c_number(term.roundings[k]) << ";\n";
+        out << "    (void)s1, (void)s2, (void)s3, (void)s4, (void)h, (void)p1, (void)p2, (void)p3, (void)p4, (void)r1, "
+               "(void)r2;\n"
             << "    e[" << site << "] += " << in_c(formula->contribution) << ";\n";
         if (term.hidden >= 0 && site == term.sites.back())
           out << "    hidden_rates[" << term.hidden << "] = " << in_c(formula->rate) << ";\n";

@@ -23,7 +23,7 @@ struct ExportedModel {
   std::vector<std::string> left_out;
 };
 
-/// An Error where something cannot be written in C: tables, laws that the plant brings itself.
+/// An Error where something cannot be written in C: tables.
 [[nodiscard]] Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset);
 
 }  // namespace sealwatch::fmi

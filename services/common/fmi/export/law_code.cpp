@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-#include "sealwatch/model/physics.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/fmi/export/law_formulas.hpp"
 
@@ -30,7 +30,7 @@ struct Argument {
   std::string unit, meaning, value;  ///< value: "" of a signal
 };
 
-std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term) {
+std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term, const PlantDescription& plant) {
   std::vector<Argument> arguments;
   const equations::SiteNames& names = equations::names_of_site(law.kind);
   for (std::size_t k = 0; k < kSiteSignals; ++k)
@@ -47,6 +47,10 @@ std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term) {
                          std::string(parameter.name) + ": " + std::string(parameter.meaning),
                          number(setting->second.value)});
   }
+  const Roundings widths = roundings_of(plant, law);
+  for (std::size_t k = 0; k < law.roundings.size(); ++k)
+    arguments.push_back({"r" + std::to_string(k + 1), std::string(law.roundings[k].unit),
+                         "width over which a corner is rounded", number(widths[k])});
   return arguments;
 }
 
@@ -103,15 +107,15 @@ LawCode law_code(const PlantDescription& plant, const AssetConfig& asset) {
     std::vector<std::string> names;
     for (const auto& [name, setting] : term.parameters) names.push_back(name);
     const auto law = find_law(term.id, names, plant.name);
-    const LawFormula* formula = law ? find_formula(**law) : nullptr;
-    if (formula == nullptr) {
-      code.c += "/* " + term.id + " at " + term.element +
-                ": of a sensor or of the recording, or the plant's own: not written here. */\n";
-      code.modelica += "  // " + term.id + " at " + term.element +
-                       ": of a sensor or of the recording, or the plant's own: not written here.\n";
+    const auto formula = law ? written(**law) : std::nullopt;
+    if (!formula) {
+      const std::string left_out =
+          term.id + " at " + term.element + ": of a sensor or of the recording, not written here.";
+      code.c += "/* " + left_out + " */\n";
+      code.modelica += "  // " + left_out + "\n";
       continue;
     }
-    const std::vector<Argument> arguments = arguments_of(**law, term);
+    const std::vector<Argument> arguments = arguments_of(**law, term, plant);
     const std::string function = name_of_function(term), head = heading(**law, term);
     code.c += "/*\n" + with_line_starts(head, " * ") + "\n */\n" +
               c_function(function, arguments, formula->contribution) + "\n";

@@ -13,7 +13,7 @@ struct LawCode {
   std::string c, modelica;
 };
 
-/// Sensors' laws and laws that the plant brings itself are named in a comment.
+/// Sensors' laws are named in a comment.
 [[nodiscard]] LawCode law_code(const PlantDescription& plant, const AssetConfig& asset);
 
 }  // namespace sealwatch::fmi

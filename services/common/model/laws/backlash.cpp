@@ -13,7 +13,7 @@ static LawOutput evaluate_backlash(const LawInput& in) {
   const auto& b = in.parameter[1];
   const LawScalar s = 1.0 - 2.0 * in.hidden;
   const LawScalar s_4 = s * s * s * s;
-  return {.contribution = -F_b * (1.0 - s_4), .rate = (magnitude(v, kStandstill_m_s) * s_4 * s - v) / b};
+  return {.contribution = -F_b * (1.0 - s_4), .rate = (magnitude(v, in.rounding[0]) * s_4 * s - v) / b};
 }
 
 Law backlash() {
@@ -28,7 +28,8 @@ Law backlash() {
                                   {.usual = 5e3, .significant = 600.0, .max = 1e5}),
                          shape("b", "m", "clearance", {2e-4, 5e-5, 8e-4}, 1e-5, 2e-3)},
           .hidden = HiddenState{.name = "place_in_clearance", .unit = "1", .scale = 1.0},
-          .evaluate = &evaluate_backlash};
+          .evaluate = &evaluate_backlash,
+          .roundings = {{"m/s", kStandstill_m_s}}};
 }
 
 }  // namespace sealwatch::laws

@@ -18,7 +18,7 @@ Law driver_dead_time() {
           .parameters = {strength("V_d", "V", "voltage lost", {.usual = 1.0, .significant = 0.3, .max = 20.0}),
                          shape("i_s", "A", "current over which the direction changes", {0.2, 0.05, 1.0}, 0.01, 5.0)},
           .evaluate = &evaluate_driver_dead_time,
-          .elements = {"driver"}};
+          .feeds = Feeds::motor};
 }
 
 }  // namespace sealwatch::laws

@@ -17,7 +17,7 @@ Law driver_dead_time_delay() {
           .source = "first term of the delay's Taylor series",
           .parameters = {strength("tau_d", "s", "delay", {.usual = 2e-3, .significant = 1e-3, .max = 0.1})},
           .evaluate = &evaluate_driver_dead_time_delay,
-          .elements = {"driver"}};
+          .feeds = Feeds::motor};
 }
 
 }  // namespace sealwatch::laws

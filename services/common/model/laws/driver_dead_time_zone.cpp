@@ -19,7 +19,7 @@ Law driver_dead_time_zone() {
       .parameters = {strength("V_z", "V", "command that is swallowed", {.usual = 1.0, .significant = 0.3, .max = 20.0}),
                      shape("u_s", "V", "command over which it is", {1.0, 0.2, 4.0}, 0.05, 20.0)},
       .evaluate = &evaluate_driver_dead_time_zone,
-      .elements = {"driver"}};
+      .feeds = Feeds::motor};
 }
 
 }  // namespace sealwatch::laws

@@ -9,7 +9,7 @@ static LawOutput evaluate_hysteretic_load(const LawInput& in) {
   const auto& zeta = in.hidden;
   const auto& F_h = in.parameter[0];
   const auto& x_y = in.parameter[1];
-  const LawScalar yielding = magnitude(v, kStandstill_m_s) * zeta + v * magnitude(zeta, 1e-3);
+  const LawScalar yielding = magnitude(v, in.rounding[0]) * zeta + v * magnitude(zeta, 1e-3);
   return {.contribution = F_h * zeta, .rate = (v - 0.5 * yielding) / x_y};
 }
 
@@ -26,6 +26,7 @@ Law hysteretic_load() {
                      shape("x_y", "m", "way over which it yields", {2e-3, 5e-4, 6e-3}, 1e-4, 5e-2)},
       .hidden = HiddenState{.name = "memory", .unit = "1", .scale = 1.0},
       .evaluate = &evaluate_hysteretic_load,
+      .roundings = {{"m/s", kStandstill_m_s}},
       .limit = "coulomb_friction"};
 }
 

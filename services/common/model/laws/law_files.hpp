@@ -53,13 +53,15 @@ inline constexpr double kStandstill_m_s = 1e-9;
 /// exp(-a^2)
 [[nodiscard]] inline LawScalar bell(const LawScalar& a) { return exp(-(a * a)); }
 
-/// An absolute pressure that stays above 1 kPa, rounded over 0.5 kPa: below that the oil has cavitated. [Pa]
-[[nodiscard]] inline LawScalar above_vacuum(const LawScalar& pressure) {
-  constexpr double kFloor_Pa = 1e3;
-  return kFloor_Pa + smooth_positive(pressure - kFloor_Pa, 500.0);
+/// An absolute pressure that stays above a floor, rounded over a width: below that the oil has cavitated. [Pa]
+[[nodiscard]] inline LawScalar above_vacuum(const LawScalar& pressure, const Roundings& floor_and_width) {
+  return floor_and_width[0] + smooth_positive(pressure - floor_and_width[0], floor_and_width[1]);
 }
+inline constexpr double kVacuum_Pa = 1e3, kVacuumWidth_Pa = 500.0;
 
-/// A tank's level that stays positive, rounded over 0.02 V. [V]
-[[nodiscard]] inline LawScalar wetted(const LawScalar& level) { return 1e-6 + smooth_positive(level, 0.02); }
+/// A tank's level that stays above a floor, rounded over a width. [V]
+[[nodiscard]] inline LawScalar wetted(const LawScalar& level, const Roundings& floor_and_width) {
+  return floor_and_width[0] + smooth_positive(level, floor_and_width[1]);
+}
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,7 @@ namespace sealwatch::laws {
 
 // q = k (sqrt(level + h) - sqrt(level)), the level kept positive
 static LawOutput evaluate_outlet_level_offset(const LawInput& in) {
-  const LawScalar level = wetted(in.signal[0]);
+  const LawScalar level = wetted(in.signal[0], in.rounding);
   return {.contribution = in.parameter[0] * (sqrt(level + in.parameter[1]) - sqrt(level)), .rate = {}};
 }
 
@@ -19,7 +19,8 @@ Law outlet_level_offset() {
           .parameters = {strength("k", "V^0.5/s", "coefficient of the outlet",
                                   {.usual = 0.05, .significant = 5e-3, .max = 2.0}),
                          shape("h", "V", "depth of the outlet", {0.5, 0.1, 1.5}, 0.01, 5.0)},
-          .evaluate = &evaluate_outlet_level_offset};
+          .evaluate = &evaluate_outlet_level_offset,
+          .roundings = {{"V", 1e-6}, {"V", 0.02}}};
 }
 
 }  // namespace sealwatch::laws

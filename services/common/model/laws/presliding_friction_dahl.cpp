@@ -8,7 +8,7 @@ static LawOutput evaluate_presliding_friction_dahl(const LawInput& in) {
   const auto& zeta = in.hidden;
   const auto& F_c = in.parameter[0];
   const auto& delta = in.parameter[1];
-  return {.contribution = F_c * zeta, .rate = (v - magnitude(v, kStandstill_m_s) * zeta) / delta};
+  return {.contribution = F_c * zeta, .rate = (v - magnitude(v, in.rounding[0]) * zeta) / delta};
 }
 
 Law presliding_friction_dahl() {
@@ -24,6 +24,7 @@ Law presliding_friction_dahl() {
                          shape("delta", "m", "deflection at which the contacts slide", {5e-5, 5e-6, 2e-4}, 1e-6, 5e-4)},
           .hidden = HiddenState{.name = "bristle", .unit = "1", .scale = 1.0},
           .evaluate = &evaluate_presliding_friction_dahl,
+          .roundings = {{"m/s", kStandstill_m_s}},
           .limit = "coulomb_friction"};
 }
 

@@ -9,7 +9,7 @@ static LawOutput evaluate_presliding_friction_lugre(const LawInput& in) {
   const auto& F_c = in.parameter[0];
   const auto& delta = in.parameter[1];
   const auto& sigma_1 = in.parameter[2];
-  const LawScalar deflection_rate = v - magnitude(v, kStandstill_m_s) * zeta;
+  const LawScalar deflection_rate = v - magnitude(v, in.rounding[0]) * zeta;
   return {.contribution = F_c * zeta + sigma_1 * deflection_rate, .rate = deflection_rate / delta};
 }
 
@@ -28,6 +28,7 @@ Law presliding_friction_lugre() {
                                   {.usual = 1e5, .significant = 4e5, .max = 1e7})},
           .hidden = HiddenState{.name = "bristle", .unit = "1", .scale = 1.0},
           .evaluate = &evaluate_presliding_friction_lugre,
+          .roundings = {{"m/s", kStandstill_m_s}},
           .limit = "coulomb_friction"};
 }
 

@@ -7,7 +7,7 @@ static LawOutput evaluate_pressure_dependent_friction_difference(const LawInput&
   const auto& [v, x, p_A, p_B] = in.signal;
   const auto& k_d = in.parameter[0];
   const auto& v_s = in.parameter[1];
-  return {.contribution = k_d * smooth_abs(p_A - p_B, 1e4) * tanh(v / v_s), .rate = {}};
+  return {.contribution = k_d * smooth_abs(p_A - p_B, in.rounding[0]) * tanh(v / v_s), .rate = {}};
 }
 
 Law pressure_dependent_friction_difference() {
@@ -21,7 +21,8 @@ Law pressure_dependent_friction_difference() {
           .parameters = {strength("k_d", "m2", "seal face times friction coefficient",
                                   {.usual = 1e-4, .significant = 6e-5, .max = 1e-2}),
                          reversal_speed()},
-          .evaluate = &evaluate_pressure_dependent_friction_difference};
+          .evaluate = &evaluate_pressure_dependent_friction_difference,
+          .roundings = {{"Pa", 1e4}}};
 }
 
 }  // namespace sealwatch::laws

@@ -7,7 +7,7 @@ static LawOutput evaluate_pressure_dependent_friction_sum(const LawInput& in) {
   const auto& [v, x, p_A, p_B] = in.signal;
   const auto& k = in.parameter[0];
   const auto& v_s = in.parameter[1];
-  return {.contribution = k * smooth_abs(p_A + p_B, 1e4) * tanh(v / v_s), .rate = {}};
+  return {.contribution = k * smooth_abs(p_A + p_B, in.rounding[0]) * tanh(v / v_s), .rate = {}};
 }
 
 Law pressure_dependent_friction_sum() {
@@ -21,7 +21,8 @@ Law pressure_dependent_friction_sum() {
           .parameters = {strength("k", "m2", "seal face times friction coefficient",
                                   {.usual = 1e-4, .significant = 5e-5, .max = 1e-2}),
                          reversal_speed()},
-          .evaluate = &evaluate_pressure_dependent_friction_sum};
+          .evaluate = &evaluate_pressure_dependent_friction_sum,
+          .roundings = {{"Pa", 1e4}}};
 }
 
 }  // namespace sealwatch::laws

@@ -6,7 +6,7 @@ namespace sealwatch::laws {
 static LawOutput evaluate_pressure_dependent_shaft_friction(const LawInput& in) {
   const auto& omega = in.signal[0];
   const auto& dp = in.signal[1];
-  return {.contribution = in.parameter[0] * smooth_abs(dp, 1e4) * tanh(omega / in.parameter[1]), .rate = {}};
+  return {.contribution = in.parameter[0] * smooth_abs(dp, in.rounding[0]) * tanh(omega / in.parameter[1]), .rate = {}};
 }
 
 Law pressure_dependent_shaft_friction() {
@@ -21,7 +21,8 @@ Law pressure_dependent_shaft_friction() {
       .parameters = {strength("k", "m3/rad", "torque per pressure, a share of the displacement",
                               {.usual = 2e-9, .significant = 4e-10, .max = 1e-6}),
                      shape("omega_s", "rad/s", "speed over which the direction changes", {2.0, 0.5, 10.0}, 0.05, 50.0)},
-      .evaluate = &evaluate_pressure_dependent_shaft_friction};
+      .evaluate = &evaluate_pressure_dependent_shaft_friction,
+      .roundings = {{"Pa", 1e4}}};
 }
 
 }  // namespace sealwatch::laws

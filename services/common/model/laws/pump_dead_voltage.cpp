@@ -4,8 +4,7 @@ namespace sealwatch::laws {
 
 // V = V_0 tanh(max(u, 0) / u_0): below about u_0 nothing arrives, above it what arrives lags the command by V_0
 static LawOutput evaluate_pump_dead_voltage(const LawInput& in) {
-  constexpr double kRounding_V = 0.02;
-  return {.contribution = in.parameter[0] * tanh(smooth_positive(in.signal[1], kRounding_V) / in.parameter[1]),
+  return {.contribution = in.parameter[0] * tanh(smooth_positive(in.signal[1], in.rounding[0]) / in.parameter[1]),
           .rate = {}};
 }
 
@@ -22,7 +21,8 @@ Law pump_dead_voltage() {
                               {.usual = 0.5, .significant = 0.05, .max = 10.0}),
                      shape("u_0", "V", "voltage over which it is lost", {0.5, 1.5}, 0.05, 5.0)},
       .evaluate = &evaluate_pump_dead_voltage,
-      .elements = {"pump"}};
+      .feeds = Feeds::pump,
+      .roundings = {{"V", 0.02}}};
 }
 
 }  // namespace sealwatch::laws

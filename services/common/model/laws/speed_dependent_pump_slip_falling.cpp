@@ -5,7 +5,8 @@ namespace sealwatch::laws {
 // q = k_0 dp / (1 + |omega| / omega_k), |omega| rounded over 1 rad/s
 static LawOutput evaluate_speed_dependent_pump_slip_falling(const LawInput& in) {
   const auto& omega_k = in.parameter[1];
-  return {.contribution = in.parameter[0] * in.signal[0] / (1.0 + smooth_abs(in.signal[1], 1.0) / omega_k), .rate = {}};
+  return {.contribution = in.parameter[0] * in.signal[0] / (1.0 + smooth_abs(in.signal[1], in.rounding[0]) / omega_k),
+          .rate = {}};
 }
 
 Law speed_dependent_pump_slip_falling() {
@@ -19,7 +20,8 @@ Law speed_dependent_pump_slip_falling() {
           .parameters = {strength("k_0", "m3/(s Pa)", "flow per pressure at rest",
                                   {.usual = 2e-14, .significant = 8e-15, .max = 1e-10}),
                          shape("omega_k", "rad/s", "speed at which it has halved", {30.0, 10.0, 100.0}, 1.0, 1000.0)},
-          .evaluate = &evaluate_speed_dependent_pump_slip_falling};
+          .evaluate = &evaluate_speed_dependent_pump_slip_falling,
+          .roundings = {{"rad/s", 1.0}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,7 @@ namespace sealwatch::laws {
 
 // q = k |omega| dp, |omega| rounded over 1 rad/s
 static LawOutput evaluate_speed_dependent_pump_slip_rising(const LawInput& in) {
-  return {.contribution = in.parameter[0] * smooth_abs(in.signal[1], 1.0) * in.signal[0], .rate = {}};
+  return {.contribution = in.parameter[0] * smooth_abs(in.signal[1], in.rounding[0]) * in.signal[0], .rate = {}};
 }
 
 Law speed_dependent_pump_slip_rising() {
@@ -17,7 +17,8 @@ Law speed_dependent_pump_slip_rising() {
           .source = "Ivantysyn, Ivantysynova, Hydrostatic Pumps and Motors (2001): mixed term of the loss polynomial",
           .parameters = {strength("k", "m3/(rad Pa)", "flow per speed and pressure",
                                   {.usual = 1e-16, .significant = 4e-17, .max = 1e-12})},
-          .evaluate = &evaluate_speed_dependent_pump_slip_rising};
+          .evaluate = &evaluate_speed_dependent_pump_slip_rising,
+          .roundings = {{"rad/s", 1.0}}};
 }
 
 }  // namespace sealwatch::laws

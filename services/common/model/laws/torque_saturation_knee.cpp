@@ -5,10 +5,10 @@ namespace sealwatch::laws {
 // T = k (max(|i| - i_k, 0)) sign(i) as the difference of two positive parts, each rounded over 0.2 A: odd, zero at
 // zero.
 static LawOutput evaluate_torque_saturation_knee(const LawInput& in) {
-  constexpr double kWidth_A = 0.2;
+  const double width = in.rounding[0];
   const auto& i = in.signal[2];
   const auto& i_k = in.parameter[1];
-  return {.contribution = in.parameter[0] * (smooth_positive(i - i_k, kWidth_A) - smooth_positive(-i - i_k, kWidth_A)),
+  return {.contribution = in.parameter[0] * (smooth_positive(i - i_k, width) - smooth_positive(-i - i_k, width)),
           .rate = {}};
 }
 
@@ -23,7 +23,8 @@ Law torque_saturation_knee() {
           .parameters = {strength("k", "N m/A", "torque lost per current beyond the knee",
                                   {.usual = 0.04, .significant = 5e-3, .max = 2.0}),
                          shape("i_k", "A", "knee", {5.0, 2.5, 8.0}, 0.2, 100.0)},
-          .evaluate = &evaluate_torque_saturation_knee};
+          .evaluate = &evaluate_torque_saturation_knee,
+          .roundings = {{"A", 0.2}}};
 }
 
 }  // namespace sealwatch::laws

@@ -7,7 +7,7 @@ static LawOutput evaluate_unlisted_breaking_in(const LawInput& in) {
   const auto& [F_r, s_r, v_r, none] = in.parameter;
   const LawScalar left = 1.0 - in.hidden;
   return {.contribution = F_r * left * tanh(in.signal[0] / v_r),
-          .rate = magnitude(in.signal[0], kStandstill_m_s) * left / s_r};
+          .rate = magnitude(in.signal[0], in.rounding[0]) * left / s_r};
 }
 
 Law unlisted_breaking_in() {
@@ -24,7 +24,8 @@ Law unlisted_breaking_in() {
                      shape("s_r", "m", "way over which it wears off", {5e-3, 1e-3}, 1e-4, 0.1),
                      shape("v_r", "m/s", "speed over which the direction changes", {1e-4}, 5e-6, 5e-3)},
       .hidden = HiddenState{.name = "worn_off", .unit = "1", .scale = 1.0},
-      .evaluate = &evaluate_unlisted_breaking_in};
+      .evaluate = &evaluate_unlisted_breaking_in,
+      .roundings = {{"m/s", kStandstill_m_s}}};
 }
 
 }  // namespace sealwatch::laws

@@ -26,7 +26,8 @@ inline Configuration configuration() {
   configuration.assets[0].asset_id = kAsset;
   configuration.assets[0].site = "north";
   configuration.assets[0].segment = "XT03";
-  configuration.assets[0].seal = SealSetting{};
+  configuration.assets[0].condition = ConditionSetting{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
   return configuration;
 }
 

@@ -11,9 +11,10 @@ namespace {
 StateReport with_seal_at(double theta) {
   StateReport report;
   report.verdict = PstVerdict::passed;
-  const SealSetting seal;
-  report.judgements = {{"leakage_resistance", Reference::limit, "Pa s/m3", seal.resistance_Pa_s_m3(theta), 1e13, 7e12,
-                        4e12, AlertRegion::normal, AlertRegion::normal, 1}};
+  const ConditionSetting seal{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
+  report.judgements = {{"leakage_resistance", Reference::limit, "Pa s/m3", seal.value(theta), 1e13, 7e12, 4e12,
+                        AlertRegion::normal, AlertRegion::normal, 1}};
   return report;
 }
 
@@ -58,7 +59,7 @@ TEST(Grade, AFailedTestIsZero) {
 
 TEST(Grade, WithoutSealResistancesTheDeviationCounts) {
   AssetConfig asset = synthetic::asset();
-  asset.seal.reset();
+  asset.condition.reset();
   StateReport report;
   report.verdict = PstVerdict::passed;
   report.judgements = {{"leakage_resistance", Reference::own_baseline, "Pa s/m3", 5.5e12, 7e12, 4e12, 1e12,

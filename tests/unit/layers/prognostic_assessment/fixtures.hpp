@@ -23,7 +23,8 @@ inline Configuration configuration() {
   configuration.assets.resize(2);
   configuration.assets[0].asset_id = kAsset;
   configuration.assets[0].site = "north";
-  configuration.assets[0].seal = SealSetting{};
+  configuration.assets[0].condition = ConditionSetting{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
   configuration.assets[1].asset_id = "BENCH-1";
   configuration.assets[1].model = "eha_switched";
   return configuration;
@@ -80,10 +81,11 @@ struct TestCase {
     TestWindow window;
     window.asset_id = asset_id;
     window.header = header("test_window");
-    const SealSetting seal;
-    const double slope = seal.resistance_Pa_s_m3(1.0) - seal.resistance_Pa_s_m3(0.0);
+    const ConditionSetting seal{
+        .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
+    const double slope = seal.value(1.0) - seal.value(0.0);
     window.samples.channels = {
-        {"told", "1", 0.0, {seal.resistance_Pa_s_m3(condition), condition_std * slope, fit_admissible ? 1.0 : 0.0}}};
+        {"told", "1", 0.0, {seal.value(condition), condition_std * slope, fit_admissible ? 1.0 : 0.0}}};
     return window;
   }
 };

@@ -289,7 +289,8 @@ TEST_F(PrognosticAssessmentTest, SaysWhyThereIsNoForecast) {
 
 TEST_F(PrognosticAssessmentTest, AssetsDoNotMix) {
   Configuration two = configuration_;
-  two.assets[1].seal = SealSetting{};
+  two.assets[1].condition = ConditionSetting{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
   auto inputs = inputs_of(straight_life(1, 40));
   for (TestCase test : straight_life(1, 40)) {
     test.asset_id = "BENCH-1";

@@ -77,9 +77,9 @@ TEST(Rules, SealLimitsFollowTheConditionThatIsLeft) {
   const AssetConfig asset = synthetic::asset();
   const auto limits = fixed_limits(asset, "leakage_resistance");
   ASSERT_TRUE(limits);
-  EXPECT_NEAR(asset.seal->condition(limits->advisory), 0.70, 1e-12);
-  EXPECT_NEAR(asset.seal->condition(limits->warning), 0.65, 1e-12);
-  EXPECT_NEAR(asset.seal->condition(limits->alarm), 0.60, 1e-12);
+  EXPECT_NEAR(asset.condition->condition(limits->advisory), 0.70, 1e-12);
+  EXPECT_NEAR(asset.condition->condition(limits->warning), 0.65, 1e-12);
+  EXPECT_NEAR(asset.condition->condition(limits->alarm), 0.60, 1e-12);
   EXPECT_FALSE(baseline_rule(asset, "leakage_resistance"));
 }
 

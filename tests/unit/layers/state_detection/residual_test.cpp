@@ -26,7 +26,7 @@ TEST(Residual, AgeingOfTheSealIsTakenOutOfTheOwnBaseline) {
   const AssetConfig asset = synthetic::asset();
   synthetic::Condition worn;
   worn.theta = 0.65;
-  const double truth = asset.seal->resistance_Pa_s_m3(0.65);
+  const double truth = asset.condition->value(0.65);
   const synthetic::Test test = synthetic::make(worn, {});
   const auto summaries = residuals_of(asset, test.window, truth, FakeSimulator(1.0, 50.0, truth));
   ASSERT_TRUE(summaries);
@@ -45,7 +45,7 @@ TEST(Residual, AgeingIsTakenOutWhereNoFlowTellsIt) {
   circumstances.absent_channel = "flow";
   const synthetic::Test test = synthetic::make({}, circumstances);
   for (const double theta : {0.97, 0.8, 0.61}) {
-    const FakeSimulator simulator(1.0, 50.0, asset.seal->resistance_Pa_s_m3(theta));
+    const FakeSimulator simulator(1.0, 50.0, asset.condition->value(theta));
     const auto summaries = residuals_of(asset, test.window, std::nullopt, simulator);
     ASSERT_TRUE(summaries);
     for (const ResidualSummary& summary : *summaries) {

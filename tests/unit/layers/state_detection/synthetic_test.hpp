@@ -32,7 +32,8 @@ inline AssetConfig asset(const std::string& id = "A1") {
   set("R_CL", 2.6e13);
   set("phi", 6e4);
   set("x_C", 0.08);
-  a.seal = SealSetting{};
+  a.condition = ConditionSetting{
+      .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"};
   return a;
 }
 
@@ -89,7 +90,11 @@ inline Steady steady(const Condition& c, double v) {
   Steady s{};
   s.v = v;
   s.dp = force / kArea;
-  s.q = kArea * v + s.dp / SealSetting{}.resistance_Pa_s_m3(c.theta);
+  s.q = kArea * v +
+        s.dp /
+            ConditionSetting{
+                .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"}
+                .value(c.theta);
   s.omega = (s.q + c.slip * s.dp) / kAlpha;
   s.i = (kAlpha * s.dp + c.drag * s.omega) / kTorque;
   s.u = c.emf * s.omega + kWinding * s.i;

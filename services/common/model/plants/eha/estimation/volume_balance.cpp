@@ -1,4 +1,4 @@
-#include "services/common/estimation/volume_balance.hpp"
+#include "services/common/model/plants/eha/estimation/volume_balance.hpp"
 
 #include <algorithm>
 #include <cmath>

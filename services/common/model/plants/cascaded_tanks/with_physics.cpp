@@ -1,6 +1,6 @@
-// The heavy half of simulation_cascaded_tanks.cpp: with laws in force and injected columns.
-#include "services/common/model/cascaded_tanks_model.hpp"
+// The heavy half of plant.cpp: with laws in force and injected columns.
 #include "services/common/model/plant_physics.hpp"
+#include "services/common/model/plants/cascaded_tanks/model.hpp"
 
 namespace sealwatch {
 

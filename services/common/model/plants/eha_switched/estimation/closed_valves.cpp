@@ -1,4 +1,4 @@
-#include "services/common/estimation/closed_valves.hpp"
+#include "services/common/model/plants/eha_switched/estimation/closed_valves.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -53,7 +53,8 @@ PlantDescription describe_cascaded_tanks() {
       .parameters = parameters(),
       .states = {{"level_upper", "V", "level of the upper tank"}, {"level_lower", "V", "level of the lower tank"}},
       .elements = elements(),
-      .sites = {CascadedTanks::kSites.begin(), CascadedTanks::kSites.end()}};
+      .sites = {CascadedTanks::kSites.begin(), CascadedTanks::kSites.end()},
+      .law_sizes = {{"V", 1.0}, {"V/s", 1.0}, {"1/s", 1.0}, {"V^0.5/s", 1.0}}};
   add_sensor_elements(plant);
   return plant;
 }

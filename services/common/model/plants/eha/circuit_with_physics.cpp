@@ -1,6 +1,6 @@
-// The heavy half of simulation_eha_circuit.cpp: with laws in force and injected columns.
-#include "services/common/model/eha_circuit_model.hpp"
+// The heavy half of circuit.cpp: with laws in force and injected columns.
 #include "services/common/model/plant_physics.hpp"
+#include "services/common/model/plants/eha/circuit_model.hpp"
 
 namespace sealwatch {
 

@@ -1,6 +1,6 @@
-// The heavy half of simulation_eha.cpp: with laws in force and injected columns.
-#include "services/common/model/eha_model.hpp"
+// The heavy half of plant.cpp: with laws in force and injected columns.
 #include "services/common/model/plant_physics.hpp"
+#include "services/common/model/plants/eha/model.hpp"
 
 namespace sealwatch {
 

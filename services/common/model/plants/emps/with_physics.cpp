@@ -1,6 +1,6 @@
-// The heavy half of simulation_emps.cpp: with laws in force and injected columns.
-#include "services/common/model/emps_model.hpp"
+// The heavy half of plant.cpp: with laws in force and injected columns.
 #include "services/common/model/plant_physics.hpp"
+#include "services/common/model/plants/emps/model.hpp"
 
 namespace sealwatch {
 

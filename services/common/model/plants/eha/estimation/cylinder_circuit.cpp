@@ -9,9 +9,9 @@
 
 #include "sealwatch/estimation/covariance.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
-#include "services/common/estimation/chamber_pressure.hpp"
-#include "services/common/estimation/volume_balance.hpp"
 #include "services/common/estimation/words.hpp"
+#include "services/common/model/plants/eha/estimation/chamber_pressure.hpp"
+#include "services/common/model/plants/eha/estimation/volume_balance.hpp"
 
 namespace sealwatch {
 namespace {
@@ -251,6 +251,8 @@ FitReport fit_signals(const AssetConfig& asset, const TimeSeries& samples, std::
 }
 
 }  // namespace
+
+bool has_cylinder_circuit(const AssetConfig& asset) { return asset.parameters.contains("A_C"); }
 
 Status CylinderCircuitOptions::validate() const {
   if (!(steady_window_s > 0.0 && settling_time_s >= 0.0))

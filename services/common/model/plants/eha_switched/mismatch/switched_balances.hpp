@@ -48,6 +48,7 @@ struct BalanceModel {
 
 class SwitchedBalances {
  public:
+  static constexpr std::string_view kPlant = "eha_switched";
   static constexpr std::array<BalanceDescription, 5> kBalances = {{{"volume", "pump", "m/s"},
                                                                    {"force", "piston", "Pa"},
                                                                    {"voltage", "winding", "1"},

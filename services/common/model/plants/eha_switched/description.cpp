@@ -12,43 +12,50 @@ std::vector<ChannelDescription> channels() {
       {.name = "position_reference",
        .unit = "m",
        .meaning = "set-point of the position (not simulated)",
-       .input = true},
+       .input = true,
+       .role = ChannelRole::reference},
       {.name = "position",
        .unit = "m",
        .meaning = "piston position x, 0 = retracted",
        .noise_std = 1.0e-5,
        .range_min = -0.005,
-       .range_max = 0.080},
+       .range_max = 0.080,
+       .role = ChannelRole::stroke},
       {.name = "pressure_a",
        .unit = "Pa",
        .meaning = "chamber A (piston side) pressure above ambient",
        .noise_std = 1.2e4,
        .range_min = -2.0e5,
-       .range_max = 2.5e7},
+       .range_max = 2.5e7,
+       .role = ChannelRole::pressure_up},
       {.name = "pressure_b",
        .unit = "Pa",
        .meaning = "chamber B (rod side) pressure above ambient",
        .noise_std = 6.0e4,
        .range_min = -2.0e5,
-       .range_max = 2.5e7},
+       .range_max = 2.5e7,
+       .role = ChannelRole::pressure_down},
       {.name = "shaft_speed",
        .unit = "rad/s",
        .meaning = "shaft speed with the sign of the valves' direction",
        .noise_std = 2.0,
        .range_min = -500.0,
-       .range_max = 500.0},
+       .range_max = 500.0,
+       .role = ChannelRole::shaft_speed},
       {.name = "pump_angle",
        .unit = "rad",
        .meaning = "pump shaft angle, unwrapped",
        .noise_std = 1.0e-2,
        .range_min = 0.0,
-       .range_max = 0.0},
+       .range_max = 0.0,
+       .role = ChannelRole::shaft_angle},
       {.name = "motor_duty",
        .unit = "1",
        .meaning = "share of the supply voltage with the sign of the valves' direction",
        .input = true,
        .range_min = -1.05,
-       .range_max = 1.05},
+       .range_max = 1.05,
+       .role = ChannelRole::drive},
       {.name = "motor_current_raw",
        .unit = "1",
        .meaning = "uncalibrated motor current (not simulated)",
@@ -134,16 +141,27 @@ std::vector<ElementDescription> elements() {
 }  // namespace
 
 PlantDescription describe_eha_switched() {
-  PlantDescription plant{.name = "eha_switched",
-                         .meaning = "bench with one-way pump, directional valves and single-rod cylinder",
-                         .channels = channels(),
-                         .parameters = parameters(),
-                         .states = states(),
-                         .elements = elements(),
-                         .sites = {EhaSwitched::kSites.begin(), EhaSwitched::kSites.end()},
-                         .window_s = 2.0,
-                         .load_parameter = "phi",
-                         .wear_parameter = "R_CL"};
+  PlantDescription plant{
+      .name = "eha_switched",
+      .meaning = "bench with one-way pump, directional valves and single-rod cylinder",
+      .channels = channels(),
+      .parameters = parameters(),
+      .states = states(),
+      .elements = elements(),
+      .sites = {EhaSwitched::kSites.begin(), EhaSwitched::kSites.end()},
+      .law_sizes = reference_sizes(),
+      .window_s = 2.0,
+      .load_parameter = "phi",
+      .wear_parameter = "R_CL",
+      .condition = ConditionSetting{
+          .parameter = "R_CL", .at_100 = 2.6e13, .at_60 = 4.64e12, .unit = "Pa s/m3", .part = "piston seal"}};
+  set_role(plant, "x_C", ParameterRole::stroke);
+  set_role(plant, "A_A", ParameterRole::area_up);
+  set_role(plant, "A_B", ParameterRole::area_down);
+  set_role(plant, "V_0", ParameterRole::dead_volume);
+  set_role(plant, "beta", ParameterRole::bulk_modulus);
+  set_role(plant, "alpha_P", ParameterRole::displacement);
+  set_role(plant, "R_M", ParameterRole::motor_resistance);
   add_sensor_elements(plant);
   return plant;
 }

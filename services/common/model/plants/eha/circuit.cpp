@@ -1,5 +1,5 @@
-#include "services/common/model/eha_circuit_model.hpp"
 #include "services/common/model/measured_input.hpp"
+#include "services/common/model/plants/eha/circuit_model.hpp"
 #include "services/common/model/simulation_plants.hpp"
 
 namespace sealwatch {

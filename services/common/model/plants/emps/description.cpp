@@ -13,18 +13,21 @@ std::vector<ChannelDescription> channels() {
        .input = true,
        .range_min = -10.0,
        .range_max = 10.0,
-       .hold = true},
+       .hold = true,
+       .role = ChannelRole::drive},
       {.name = "position_reference",
        .unit = "m",
        .meaning = "set-point of the position (not simulated)",
        .input = true,
-       .hold = true},
+       .hold = true,
+       .role = ChannelRole::reference},
       {.name = "position",
        .unit = "m",
        .meaning = "carriage position x",
        .noise_std = 2.0e-8,  // third differences of the published recording, whose grid is 5e-8 m
        .range_min = -0.01,
-       .range_max = 0.30},
+       .range_max = 0.30,
+       .role = ChannelRole::stroke},
   };
 }
 
@@ -47,7 +50,11 @@ std::vector<LawSize> law_sizes() {
           {"N/m", kForce / kWay},
           {"N/m2", kForce / (kWay * kWay)},
           {"N s/m", kForce / kSpeed},
-          {"N s2/m2", kForce / (kSpeed * kSpeed)}};
+          {"N s2/m2", kForce / (kSpeed * kSpeed)},
+          {"V", 1.0},
+          {"A", 1.0},
+          {"s", 1.0},
+          {"m2", kForce}};
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "services/common/estimation/chamber_pressure.hpp"
+#include "services/common/model/plants/eha/estimation/chamber_pressure.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Pressure of chamber A simulated from flow, motion and the other chamber's pressure.
 #pragma once
 
-#include "services/common/estimation/volume_balance.hpp"
+#include "services/common/model/plants/eha/estimation/volume_balance.hpp"
 
 namespace sealwatch {
 

@@ -1,10 +1,11 @@
-#include "services/common/mismatch/switched_balances.hpp"
+#include "services/common/model/plants/eha_switched/mismatch/switched_balances.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "sealwatch/model/eha_switched.hpp"
+#include "sealwatch/model/law_sizes.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -35,6 +36,7 @@ struct Term {
   const Law* law = nullptr;
   std::vector<std::size_t> sites;
   std::vector<double> parameters;
+  Roundings roundings{};
 };
 
 struct SensorError {
@@ -57,7 +59,7 @@ struct Terms {
         add_sensor(**law, physics);
         continue;
       }
-      Term term{.law = *law, .sites = {}, .parameters = {}};
+      Term term{.law = *law, .sites = {}, .parameters = {}, .roundings = roundings_of(**law)};
       for (std::size_t k = 0; k < Plant::kSites.size(); ++k)
         if (Plant::kSites[k].element == physics.element && Plant::kSites[k].kind == (*law)->kind)
           term.sites.push_back(k);
@@ -87,7 +89,7 @@ struct Terms {
     for (const Term& term : laws) {
       if (std::ranges::find(term.sites, site) == term.sites.end() || term.law->hidden) continue;
       const auto signals = Plant::signals<double>(site, y, input, p, NoExtra{});
-      sum += term.law->evaluate(law_input(signals, 0.0, term.parameters)).contribution.value;
+      sum += term.law->evaluate(law_input(signals, 0.0, term.parameters, term.roundings)).contribution.value;
     }
     return sum;
   }

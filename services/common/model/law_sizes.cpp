@@ -1,0 +1,68 @@
+#include "sealwatch/model/law_sizes.hpp"
+
+#include <algorithm>
+
+#include "services/common/model/plant_tables.hpp"
+
+namespace sealwatch {
+namespace {
+
+// A sensor's and a recording's laws go by their channel; some laws of a site are never asked, as they see nothing there.
+double size_of(const PlantDescription& plant, std::string_view unit) {
+  const auto size = std::ranges::find(plant.law_sizes, unit, &LawSize::unit);
+  return size == plant.law_sizes.end() ? 1.0 : size->factor;
+}
+
+}  // namespace
+
+double law_size(const PlantDescription& plant, const LawParameter& parameter) {
+  return parameter.own_size ? 1.0 : size_of(plant, parameter.unit);
+}
+
+LawBounds law_bounds(const PlantDescription& plant, const LawParameter& parameter) {
+  const double size = law_size(plant, parameter);
+  return {size * parameter.min, size * parameter.max};
+}
+
+double law_start(const PlantDescription& plant, const LawParameter& parameter, std::size_t which) {
+  const LawBounds bounds = law_bounds(plant, parameter);
+  return std::clamp(law_size(plant, parameter) * parameter.start[which], bounds.min, bounds.max);
+}
+
+double significant_size(const PlantDescription& plant, const LawParameter& strength) {
+  return law_size(plant, strength) * strength.significant;
+}
+
+Roundings roundings_of(const PlantDescription& plant, const Law& law) {
+  Roundings widths{};
+  for (std::size_t k = 0; k < law.roundings.size(); ++k)
+    widths[k] = size_of(plant, law.roundings[k].unit) * law.roundings[k].width;
+  return widths;
+}
+
+std::vector<LawSize> reference_sizes() {
+  std::vector<LawSize> sizes;
+  for (const Law& law : all_laws())
+    for (const LawParameter& parameter : law.parameters)
+      if (law.plant.empty() && std::ranges::find(sizes, parameter.unit, &LawSize::unit) == sizes.end())
+        sizes.push_back({parameter.unit, 1.0});
+  return sizes;
+}
+
+Roundings roundings_of(const Law& law) { return roundings_of(PlantDescription{}, law); }
+
+std::string missing_law_sizes(const PlantDescription& plant) {
+  std::vector<std::string_view> units;
+  for (const Site& site : plant.sites)
+    for (const Law& law : all_laws())
+      for (const LawParameter& parameter : law.parameters)
+        if (law.plant.empty() && fits(law, site) && parameter.unit != "1") units.push_back(parameter.unit);
+  std::string missing;
+  for (auto unit = units.begin(); unit != units.end(); ++unit)
+    if (std::find(units.begin(), unit, *unit) == unit &&
+        std::ranges::find(plant.law_sizes, *unit, &LawSize::unit) == plant.law_sizes.end())
+      missing.append(missing.empty() ? "" : ", ").append(*unit);
+  return missing;
+}
+
+}  // namespace sealwatch

@@ -25,14 +25,6 @@ const PlantDescription& plant_of(const FittedModel& model) {
   return model.problem.recordings.front().simulation->plant();
 }
 
-AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
-  ParameterSetting& setting = asset.parameters.at(name);
-  const auto [low, high] = std::minmax({setting.value / kOffByAtMost, setting.value * kOffByAtMost});
-  setting = {
-      .value = setting.value, .min = std::max(setting.min, low), .max = std::min(setting.max, high), .estimate = true};
-  return asset;
-}
-
 // An asset with some values set free, and a model near it.
 struct Attempt {
   AssetConfig asset;
@@ -248,6 +240,14 @@ void drop_what_is_not_needed(const DatasheetQuestion& of, Replaced& replaced) {
 }
 
 }  // namespace
+
+AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
+  ParameterSetting& setting = asset.parameters.at(name);
+  const auto [low, high] = std::minmax({setting.value / kOffByAtMost, setting.value * kOffByAtMost});
+  setting = {
+      .value = setting.value, .min = std::max(setting.min, low), .max = std::min(setting.max, high), .estimate = true};
+  return asset;
+}
 
 std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) {
   std::string text;

@@ -47,4 +47,7 @@ struct DatasheetQuestion {
 /// A value in place of one law or more of those found. Nothing where these are better by more than 6.
 [[nodiscard]] std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& question);
 
+/// The asset with a fixed value set free, up to kOffByAtMost times off and within its range.
+[[nodiscard]] AssetConfig with_free_value(AssetConfig asset, const std::string& name);
+
 }  // namespace sealwatch::mismatch

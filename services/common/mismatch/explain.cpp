@@ -136,6 +136,14 @@ class Analysis {
     Result<Naming> naming = name_effects(baseline_, data, options, progress_, from.value_or(Trial{{}, baseline_}));
     if (naming && naming->sensors_are_inexact) {
       Result<Naming> again = beside_inexact_sensors(*naming, options);
+      if (again && value_in_place_of_sensors(*again, data.sensors)) {
+        tell("looking again, with exact sensors", 0.6);
+        data.sensors.clear();
+        again = name_effects(baseline_, data, options, progress_);
+      } else if (again) {
+        std::ranges::copy(data.sensors, std::back_inserter(fit_.known));
+        baseline_ = again->baseline;
+      }
       if (again || !deadline_.passed())
         naming = std::move(again);
       else
@@ -166,7 +174,7 @@ class Analysis {
   }
 
   // What was found is asked again beside sensors that are off by no more than they may be.
-  Result<Naming> beside_inexact_sensors(const Naming& found, const ExplainOptions& options) {
+  [[nodiscard]] Result<Naming> beside_inexact_sensors(const Naming& found, const ExplainOptions& options) const {
     Data inexact = fit_;
     std::ranges::copy(known_sensors(asset_, baseline_->problem), std::back_inserter(inexact.known));
     Result<FittedModel> baseline = fit_model(baseline_->asset, prepared(inexact), baseline_.get(), options_.threads);
@@ -179,10 +187,19 @@ class Analysis {
     tell("looking again, with sensors within their tolerances", 0.5);
     Result<Naming> again = name_effects(with_sensors, prepared(inexact), options, progress_,
                                         laws.effects.empty() ? Trial{{}, with_sensors} : from);
-    if (!again) return again;
-    baseline_ = with_sensors;
-    fit_ = std::move(inexact);
     return again;
+  }
+
+  // With the laws that were found beside inexact sensors, one value of the asset file does what all sensors did.
+  [[nodiscard]] bool value_in_place_of_sensors(const Naming& found, const std::vector<KnownValue>& sensors) const {
+    const FittedModel& inexact = *found.best.model;
+    AssetConfig asset = inexact.asset;
+    asset.sensors = baseline_->asset.sensors;
+    const Data exact = prepared(fit_);
+    const auto model = fit_model(asset, exact, &inexact, options_.threads);
+    const double phi = dispersion(inexact);
+    const double score = criterion(inexact, phi) + occam_factor(inexact, sensors, phi);
+    return model && a_value_explains(*model, score, phi, exact, options_.threads);
   }
 
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.

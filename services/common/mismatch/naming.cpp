@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "services/common/mismatch/candidates.hpp"
+#include "services/common/mismatch/datasheet.hpp"
+#include "services/common/mismatch/in_parallel.hpp"
 #include "services/common/mismatch/one_shape.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
@@ -175,18 +177,19 @@ bool sensors_are_inexact(Naming& naming, const std::vector<Trial>& trials, const
     if (inexact) phi = std::min(phi, dispersion(*inexact));
   double known = criterion(*naming.best.model, phi);
   if (law != nullptr) known = std::min(known, criterion(*law->model, phi));
-  double best = known - kWorthAnother;
-  bool any = false;
+  double score = known - kWorthAnother;
+  const Trial* beside = nullptr;
   for (const auto& [trial, inexact] : asked) {
     if (!inexact) continue;
     const double gain = (trial.model->misfit - inexact->misfit) / phi - occam_factor(*inexact, data.sensors, phi);
-    const double score = criterion(*trial.model, phi) - gain;
-    if (score > best) continue;
-    best = score - kWorthAnother;  // what a law more must bring
-    naming.best = trial;
-    any = true;
+    const double worth = beside == nullptr ? 0.0 : kWorthAnother;  // what a law more must bring
+    if (criterion(*trial.model, phi) - gain > score - worth) continue;
+    score = criterion(*trial.model, phi) - gain;
+    beside = &trial;
   }
-  return any;
+  if (beside == nullptr || a_value_explains(*beside->model, score, phi, data, threads)) return false;
+  naming.best = *beside;
+  return true;
 }
 
 // A sensor's gain or offset that is no further off than its tolerance lets it be is no fault.
@@ -230,6 +233,22 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
 }
 
 }  // namespace
+
+bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads) {
+  std::vector<std::string> ends;
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const Unknown& unknown = model.problem.shared[k];
+    const bool fixed = !unknown.quantity.is_of_sensor() && unknown.is_known();
+    if (fixed && at_bound(unknown, model.optimum.point.shared[k])) ends.push_back(unknown.name);
+  }
+  const auto explains = [&](std::size_t k) {
+    Data others = data;
+    std::erase_if(others.known, [&](const KnownValue& value) { return value.name == ends[k]; });
+    const auto freed = fit_model(with_free_value(model.asset, ends[k]), others, &model, 1);
+    return freed && criterion(*freed, phi) < score;
+  };
+  return std::ranges::any_of(in_parallel<char>(ends.size(), threads, explains), [](char yes) { return yes != 0; });
+}
 
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                             const ExplainOptions& options, const Progress& progress, const Trial& from) {

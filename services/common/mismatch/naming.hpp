@@ -46,4 +46,8 @@ struct Naming {
                                           const ExplainOptions& options, const Progress& progress,
                                           const Trial& from = {});
 
+/// Whether one fixed value beyond its tolerance brings the criterion below `score`: sensors need not be off then. Asked
+/// are those that the model holds at an end of their tolerance.
+[[nodiscard]] bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads);
+
 }  // namespace sealwatch::mismatch

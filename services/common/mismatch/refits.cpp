@@ -80,13 +80,16 @@ double could_reach(const FittedModel& model) {
 }
 
 // Which of the refits, the best first, go on: those that may come near the best of them, or what is to beat. Further off
-// than twice what decides they are no alternative to it.
+// than twice what decides they are no alternative to it. In a gross misfit no linear model tells how far down a search
+// leads: all go on.
 std::vector<std::size_t> going_on(const std::vector<Refit>& refits, double to_beat) {
   const FittedModel& best = *refits.front().model;
   const double limit = std::min(best.misfit, to_beat) + 2.0 * kWorthAnother * dispersion(best);
+  const bool gross = excess(best) > kGross;
   std::vector<std::size_t> open;
-  for (std::size_t k = 0; k < refits.size() && open.size() < kGoOn; ++k)
-    if (!refits[k].model->optimum.converged && could_reach(*refits[k].model) <= limit) open.push_back(k);
+  for (std::size_t k = 0; k < std::min(refits.size(), kGoOn); ++k)
+    if (const FittedModel& model = *refits[k].model; !model.optimum.converged && (gross || could_reach(model) <= limit))
+      open.push_back(k);
   return open;
 }
 

@@ -14,8 +14,8 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr int kSizes = 8;            // iterations with shapes held, at most
-constexpr int kRound = 5;            // iterations of a round
-constexpr int kRounds = 7;           // after the first one
+constexpr int kRound = 8;            // iterations of a round
+constexpr int kRounds = 4;           // after the first one
 constexpr std::size_t kGoOn = 5;     // refits that go on after a round
 constexpr double kOptimistic = 2.0;  // times what the linear model promises: no search has done better by far
 constexpr double kFar = 100.0;       // times the noise: a model that misses by more says nothing of sizes

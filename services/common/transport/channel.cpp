@@ -111,9 +111,8 @@ bool Channel::take_batch(std::vector<Stamped>& taken) const {
     const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> sample(samples[k], &ddsi_serdata_unref);
     if (!infos[k].valid_data) continue;
     if (auto item = decode(*sample))
-      taken.push_back({.published = infos[k].source_timestamp,
-                       .writer = infos[k].publication_handle,
-                       .item = std::move(*item)});
+      taken.push_back(
+          {.published = infos[k].source_timestamp, .writer = infos[k].publication_handle, .item = std::move(*item)});
   }
   return count == static_cast<dds_return_t>(most);
 }

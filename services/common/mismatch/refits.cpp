@@ -5,7 +5,6 @@
 #include <limits>
 #include <ranges>
 
-#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/in_parallel.hpp"
@@ -13,13 +12,14 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr int kSizes = 8;            // iterations with shapes held, at most
-constexpr int kRound = 8;            // iterations of a round
-constexpr int kRounds = 4;           // after the first one
-constexpr std::size_t kGoOn = 5;     // refits that go on after a round
-constexpr double kOptimistic = 2.0;  // times what the linear model promises: no search has done better by far
-constexpr double kFar = 100.0;       // times the noise: a model that misses by more says nothing of sizes
-constexpr double kSmaller = 0.1;     // strength with which one starts again that set out too far
+constexpr int kFirstRound = 8;           // iterations of every refit
+constexpr int kRound = 10, kRounds = 3;  // iterations of those that go on, so often
+constexpr std::size_t kGoOn = 5;         // refits that go on after the first round
+constexpr double kOptimistic = 2.0;      // times what the linear model promises: no search has done better by far
+constexpr double kHopeful = 10.0;        // times the best misfit, in a gross one: further off a refit does not go on,
+constexpr double kNearer = 0.5;          // nor where a round leaves more than this share of the distance to the best
+constexpr double kFar = 100.0;           // times the noise: a model that misses by more says nothing of sizes
+constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
 
 // Whether a strength of the laws added last has come to an end of its range: nothing depends on their shapes there.
 bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added) {
@@ -45,9 +45,9 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
       if (!parameter.strength)
         asset.physics[asset.physics.size() - added.size() + k].parameters.at(std::string(parameter.name)).estimate =
             false;
-  const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kSizes);
+  const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
   const bool sizes_fit = sized && !came_to_an_end(*sized, added);
-  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kRound);
+  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound);
 }
 
 // A trial while it is being worked on.
@@ -68,7 +68,7 @@ bool lost_its_core(const Refit& refit) {
     if (law.limit.empty()) continue;
     const LawParameter& core = law.parameters[strengths_of(law).front()];
     const double value = asset.physics[first + k].parameters.at(std::string(core.name)).value;
-    if (std::abs(value) < kNothing * sealwatch::significant_size(plant, core)) return true;
+    if (std::abs(value) < kNothing * plant.law_size(core.unit) * core.significant) return true;
   }
   return false;
 }
@@ -79,19 +79,28 @@ double could_reach(const FittedModel& model) {
   return model.misfit - kOptimistic * 2.0 * model.optimum.promised;
 }
 
-// Which of the refits, the best first, go on: those that may come near the best of them, or what is to beat. Further off
-// than twice what decides they are no alternative to it. In a gross misfit no linear model tells how far down a search
-// leads: all go on.
-std::vector<std::size_t> going_on(const std::vector<Refit>& refits, double to_beat) {
-  const FittedModel& best = *refits.front().model;
-  const double limit = std::min(best.misfit, to_beat) + 2.0 * kWorthAnother * dispersion(best);
-  const bool gross = excess(best) > kGross;
-  std::vector<std::size_t> open;
-  for (std::size_t k = 0; k < std::min(refits.size(), kGoOn); ++k)
-    if (const FittedModel& model = *refits[k].model; !model.optimum.converged && (gross || could_reach(model) <= limit))
-      open.push_back(k);
-  return open;
-}
+// Whether a refit goes on: where it may come near the best of them, or what is to beat. Further off than twice what
+// decides it is no alternative to it. In a gross misfit no linear model tells how far down a search leads: there it goes
+// on as long as it comes much nearer to the best.
+class GoesOn {
+ public:
+  GoesOn(const FittedModel& best, double to_beat)
+      : gross_(excess(best) > kGross),
+        best_(best.misfit),
+        limit_(std::min(best.misfit, to_beat) + 2.0 * kWorthAnother * dispersion(best)) {}
+
+  [[nodiscard]] bool at_first(const FittedModel& model) const {
+    return !model.optimum.converged && (gross_ ? model.misfit <= kHopeful * best_ : could_reach(model) <= limit_);
+  }
+  [[nodiscard]] bool after(const FittedModel& before, const FittedModel& model) const {
+    const bool nearer = model.misfit - best_ <= kNearer * std::max(before.misfit - best_, 0.0);
+    return !model.optimum.converged && (gross_ ? nearer : could_reach(model) <= limit_);
+  }
+
+ private:
+  bool gross_;
+  double best_, limit_;
+};
 
 // Only those near the best keep their derivatives: ten recordings' worth of them take as much memory as all else.
 std::vector<Trial> trials_of(std::vector<Refit> refits) {
@@ -135,7 +144,7 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
-    Result<FittedModel> model = options.in_place_of.empty() ? fit_model(asset, data, from.model.get(), 1, kRound)
+    Result<FittedModel> model = options.in_place_of.empty() ? fit_model(asset, data, from.model.get(), 1, kFirstRound)
                                                             : sizes_first(asset, added, data, *from.model);
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
@@ -150,22 +159,24 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
     return better ? again : refit;
   };
-  const auto further = [&](Refit refit) -> Refit {
-    Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound);
-    if (model && model->misfit <= refit.model->misfit) refit.model = std::make_shared<FittedModel>(std::move(*model));
-    return refit;
-  };
   std::vector<Refit> refits = in_parallel<Refit>(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); });
   std::erase_if(refits, [](const Refit& refit) { return refit.model == nullptr; });
   if (refits.empty()) return {};
-  for (int round = 0; round < kRounds; ++round) {
-    std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
-    const std::vector<std::size_t> open = going_on(refits, options.to_beat);
-    if (open.empty()) break;
-    std::vector<Refit> gone_on =
-        in_parallel<Refit>(open.size(), threads, [&](std::size_t k) { return further(refits[open[k]]); });
-    for (std::size_t k = 0; k < open.size(); ++k) refits[open[k]] = std::move(gone_on[k]);
-  }
+  std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
+  const GoesOn goes_on(*refits.front().model, options.to_beat);
+  const auto further = [&](Refit refit) -> Refit {
+    bool open = goes_on.at_first(*refit.model);
+    for (int round = 0; round < kRounds && open; ++round) {
+      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound);
+      if (!model || model->misfit > refit.model->misfit) break;
+      open = goes_on.after(*refit.model, *model);
+      refit.model = std::make_shared<FittedModel>(std::move(*model));
+    }
+    return refit;
+  };
+  std::ranges::move(
+      in_parallel<Refit>(std::min(refits.size(), kGoOn), threads, [&](std::size_t k) { return further(refits[k]); }),
+      refits.begin());
   std::erase_if(refits, lost_its_core);
   return trials_of(std::move(refits));
 }

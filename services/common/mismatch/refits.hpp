@@ -39,8 +39,8 @@ struct RefitOptions {
 };
 
 /// Refits of `laws` (each with its start values) added to `from`, on `threads` threads; those that fail are left out.
-/// All go on in rounds of a few iterations. Between them, those are cut that cannot come near the best, however well the
-/// rest of their search went: by twice what their linear model promises.
+/// After a first round of iterations, those are cut that cannot come near the best, however well the rest of their search
+/// went: by twice what their linear model promises.
 [[nodiscard]] std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws,
                                        const Data& data, int threads, const RefitOptions& options = {});
 

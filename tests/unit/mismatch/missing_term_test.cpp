@@ -298,10 +298,11 @@ TEST(Regime, ALawSeesWhatMovesItAndNotWhatItCauses) {
   TermPath path = path_of([](double, double, double) { return 0.0; });
   for (auto& signals : path.signals) signals[2] = signals[3] = 5e6;
   const std::array paths{path};
+  const PlantDescription& plant = **find_plant("eha");
   const Law& coulomb = **find_law("coulomb_friction", {"F_c", "v_s"});
-  EXPECT_THAT(signals_seen(paths, coulomb, std::array{500.0, 5e-4}), ElementsAre(true, false, false, false));
+  EXPECT_THAT(signals_seen(paths, coulomb, std::array{500.0, 5e-4}, plant), ElementsAre(true, false, false, false));
   const Law& hysteretic = **find_law("hysteretic_load", {"F_h", "x_y"});
-  EXPECT_THAT(signals_seen(paths, hysteretic, std::array{500.0, 2e-3}), ElementsAre(true, true, false, false));
+  EXPECT_THAT(signals_seen(paths, hysteretic, std::array{500.0, 2e-3}, plant), ElementsAre(true, true, false, false));
 }
 
 }  // namespace

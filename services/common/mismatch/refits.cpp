@@ -5,6 +5,7 @@
 #include <limits>
 #include <ranges>
 
+#include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/in_parallel.hpp"
@@ -68,7 +69,7 @@ bool lost_its_core(const Refit& refit) {
     if (law.limit.empty()) continue;
     const LawParameter& core = law.parameters[strengths_of(law).front()];
     const double value = asset.physics[first + k].parameters.at(std::string(core.name)).value;
-    if (std::abs(value) < kNothing * plant.law_size(core.unit) * core.significant) return true;
+    if (std::abs(value) < kNothing * sealwatch::significant_size(plant, core)) return true;
   }
   return false;
 }

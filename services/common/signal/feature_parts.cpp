@@ -32,12 +32,18 @@ double saturation(const std::vector<double>& drive) {
   double largest = 0.0;
   for (const double value : drive) largest = std::max(largest, std::abs(value));
   if (largest == 0.0) return 0.0;
-  std::size_t saturated = 0;
+  std::size_t saturated = 0, elsewhere = 0;
   for (std::size_t i = 0, end = 0; i < drive.size(); i = end) {
     ++end;  // a run has one sample at least, whatever it compares like
     while (end < drive.size() && drive[end] == drive[i]) ++end;
-    if (end - i >= 5 && std::abs(drive[i]) >= largest) saturated += end - i;
+    if (end - i < 5) continue;
+    if (std::abs(drive[i]) >= largest)
+      saturated += end - i;
+    else if (drive[i] != 0.0)
+      elsewhere += end - i;
   }
+  // A program of set values stands still at others too: its largest is no end of a range.
+  if (elsewhere >= saturated) return 0.0;
   return static_cast<double>(saturated) / static_cast<double>(drive.size());
 }
 

@@ -108,12 +108,22 @@ class Masking {
       show("@");
     }
     const std::string_view base = rest_.substr(0, rest_.find('?'));
-    show_if(is_plain(base, "_.-:,/[]%"), base);
+    show_if(is_plain(base, "_.-:,/[]%") && has_numbers_as_ports(base), base);
     while (!rest_.empty()) parameter();
     return std::move(shown_);
   }
 
  private:
+  /// After the ":" of each host: what is no number there may be a part of a password.
+  static bool has_numbers_as_ports(std::string_view base) {
+    const std::string_view hosts = base.substr(0, base.find('/'));
+    for (std::size_t colon = hosts.find(':'); colon != std::string_view::npos; colon = hosts.find(':', colon + 1)) {
+      if (hosts.find(']', colon) != std::string_view::npos) continue;  // of an IPv6 address
+      const std::string_view port = hosts.substr(colon + 1, hosts.find(',', colon) - colon - 1);
+      if (!std::ranges::all_of(port, [](unsigned char digit) { return std::isdigit(digit) != 0; })) return false;
+    }
+    return true;
+  }
   void show(std::string_view text) {
     shown_.text += text;
     rest_.remove_prefix(std::min(text.size(), rest_.size()));

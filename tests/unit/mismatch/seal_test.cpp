@@ -112,7 +112,7 @@ TEST(Seal, WhoseLeakALawTellsInPartIsNotCalledHealthier) {
   EXPECT_EQ(explanation->effects.at(0).what.element, "piston_seal");
   EXPECT_FALSE(explanation->prognosis.known);
   EXPECT_TRUE(std::ranges::any_of(explanation->notes, [](const std::string& note) {
-    return note.find("R_CL alone no longer tells") != std::string::npos;
+    return note.find("R_CL alone no longer describes") != std::string::npos;
   }));
 }
 

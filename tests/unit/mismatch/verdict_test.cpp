@@ -29,7 +29,7 @@ TEST(KeptAside, RecordingsThatDifferFromTheFittedOnesAreNotConsistent) {
   const auto other = explain(asset, fit, std::vector{recording_of(leaking, 1.0)});
   ASSERT_TRUE(other) << other.error().describe();
   EXPECT_EQ(other->verdict, Verdict::undetermined);
-  EXPECT_NE(other->summary.find("those that were held out do not"), std::string::npos) << other->summary;
+  EXPECT_NE(other->summary.find("the held-out ones do not"), std::string::npos) << other->summary;
 }
 
 // Four sensors are off, each by about as much of its noise and not to the same side, far beyond what these may be off by;

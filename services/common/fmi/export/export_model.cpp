@@ -81,7 +81,10 @@ class Exporter {
     if (!start) return fail(start.error());
     for (std::size_t k = 0; k < plant.states.size(); ++k)
       states_.push_back({plant.states[k].name, plant.states[k].unit, plant.states[k].meaning, (*start)[k]});
-    for (const std::string& name : terms_.hidden_names) states_.push_back({name, "1", "hidden state of a law", 0.0});
+    for (const ActiveTerm& term : terms_.active)  // in the order of their hidden states
+      if (term.hidden >= 0)
+        states_.push_back({terms_.hidden_names[static_cast<std::size_t>(term.hidden)],
+                           std::string(term.law->hidden->unit), "hidden state of a law", 0.0});
     for (const PhysicsParameter& row : terms_.parameters)
       parameters_.push_back(
           {row.name, std::string(row.parameter->unit), std::string(row.parameter->meaning), row.setting.value});

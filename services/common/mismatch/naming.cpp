@@ -160,36 +160,20 @@ std::optional<FittedModel> with_inexact_sensors(const FittedModel& exact, const 
   return std::move(*model);
 }
 
-// Whether sensors that are not exact explain more than anything tried, beside what was found before or beside the best
-// law tried now, which then is the naming's. What the recordings tell of the sensors is paid for (occam_factor): else
-// they could imitate much of what small effects do.
-bool sensors_are_inexact(Naming& naming, const std::vector<Trial>& trials, const Data& data, int threads) {
+// Whether sensors that are not exact explain more, beside what was found before, than the best law tried now. What the
+// recordings tell of the sensors is paid for (occam_factor): else they could imitate much of what small effects do. Not
+// asked beside a law whose other forms were not: sensors would bend to what its form lacks.
+bool sensors_are_inexact(const Naming& naming, const std::vector<Trial>& trials, const Data& data, int threads) {
   if (data.sensors.empty()) return false;
-  const bool asked_before = naming.exact_beside == naming.best.model;
-  if (asked_before && trials.empty()) return false;
-  naming.exact_beside = naming.best.model;
-  double phi = smallest_dispersion(trials, *naming.best.model);
+  const FittedModel& best = *naming.best.model;
+  const std::optional<FittedModel> inexact = with_inexact_sensors(best, data, threads);
+  if (!inexact) return false;
+  const double phi = std::min(smallest_dispersion(trials, best), dispersion(*inexact));
   const Trial* law = best_of(trials, phi);
-  std::vector<std::pair<Trial, std::optional<FittedModel>>> asked;
-  if (!asked_before) asked.emplace_back(naming.best, with_inexact_sensors(*naming.best.model, data, threads));
-  if (law != nullptr) asked.emplace_back(*law, with_inexact_sensors(*law->model, data, threads));
-  for (const auto& [trial, inexact] : asked)
-    if (inexact) phi = std::min(phi, dispersion(*inexact));
-  double known = criterion(*naming.best.model, phi);
-  if (law != nullptr) known = std::min(known, criterion(*law->model, phi));
-  double score = known - kWorthAnother;
-  const Trial* beside = nullptr;
-  for (const auto& [trial, inexact] : asked) {
-    if (!inexact) continue;
-    const double gain = (trial.model->misfit - inexact->misfit) / phi - occam_factor(*inexact, data.sensors, phi);
-    const double worth = beside == nullptr ? 0.0 : kWorthAnother;  // what a law more must bring
-    if (criterion(*trial.model, phi) - gain > score - worth) continue;
-    score = criterion(*trial.model, phi) - gain;
-    beside = &trial;
-  }
-  if (beside == nullptr || a_value_explains(*beside->model, score, phi, data, threads)) return false;
-  naming.best = *beside;
-  return true;
+  const double known = criterion(best, phi),
+               with_law = law == nullptr ? known : std::min(known, criterion(*law->model, phi));
+  const double score = known - (best.misfit - inexact->misfit) / phi + occam_factor(*inexact, data.sensors, phi);
+  return score < with_law - kWorthAnother && !a_value_explains(best, score, phi, data, threads);
 }
 
 // A sensor's gain or offset that is no further off than its tolerance lets it be is no fault.
@@ -302,10 +286,6 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       naming.sensors_are_inexact = true;
       return naming;
     }
-    // What is left may lie in the sensors: before many forms of the law bend to that.
-    naming.sensors_are_inexact = differs(naming.last.p_value, *naming.best.model, options.false_alarm_rate) &&
-                                 sensors_are_inexact(naming, {}, data, options.threads);
-    if (naming.sensors_are_inexact) return naming;
     if (in_time("other shapes of the law found")) from_other_shapes(naming, level, asked, data, options);
     if (in_time("other laws in place of those found before")) another_law_for_each(naming, data, options);
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);

@@ -35,7 +35,6 @@ struct Naming {
   /// Sensors that are off by what they may be (Data::sensors) explain more than any law: the search ended there, and
   /// `best` is to be asked beside them.
   bool sensors_are_inexact = false;
-  std::shared_ptr<const FittedModel> exact_beside = {};  ///< the model beside which that was asked last, and denied
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
 };
 

@@ -100,7 +100,8 @@ class CommandLine {
   /// In `--help`; a command that is in no group would stand under "Subcommands".
   void group_commands() {
     for (const auto& [group, names] : std::initializer_list<std::pair<const char*, std::vector<const char*>>>{
-             {"Analyse", {"simulate", "fit", "validate", "explain", "forecast", "verify", "plant", "fleet", "asset"}},
+             {"Analyse",
+              {"simulate", "fit", "validate", "explain", "forecast", "verify", "plant", "laws", "fleet", "asset"}},
              {"Run", {"up", "replay", "watch", "publish", "status", "show"}},
              {"Operate",
               {"acknowledge", "shelve", "unshelve", "out-of-service", "in-service", "replaced", "retract", "confirm",
@@ -126,7 +127,7 @@ class CommandLine {
 
   void add_recordings() {
     CLI::App* simulate =
-        command("simulate", "simulate partial stroke tests on the virtual bench, or any plant with given inputs",
+        command("simulate", "simulate tests on the virtual bench, or any plant's outputs",
                 "sealwatch simulate --asset config/assets/xt03-mv2.yaml --ageing --months 108 --out recordings\n"
                 "  sealwatch simulate --asset valve-7.yaml --input inputs.csv --out simulated",
                 [this] { return run_simulate(simulate_); });
@@ -553,7 +554,7 @@ class CommandLine {
   }
 
   void add_laws() {
-    CLI::App* laws = command("laws", "physics that a model may lack: the catalogue that explain searches",
+    CLI::App* laws = command("laws", "list the catalogue of physics that explain searches",
                              "sealwatch laws\n  sealwatch laws piston\n  sealwatch laws coulomb_friction --json",
                              [this] { return run_laws(laws_); });
     laws->add_option("asked", laws_.asked, "a law's id, an element of a plant, or a kind of site (default: all)");

@@ -11,12 +11,11 @@ add_library(sealwatch_flags INTERFACE)
 target_compile_options(sealwatch_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror>)
 # 0.45 % more instructions in an estimate (estimation_benchmark under callgrind). Debian's compiler makes position-independent
-# executables by itself; the sanitizers have checks of their own, and FORTIFY needs an optimising compiler.
+# executables by itself; the sanitizers have checks of their own.
 if(SEALWATCH_HARDENED AND NOT SEALWATCH_SANITIZE)
   set(optimised $<CONFIG:Release,RelWithDebInfo,MinSizeRel>)
   target_compile_options(sealwatch_flags INTERFACE
-    $<${optimised}:-U_FORTIFY_SOURCE$<SEMICOLON>-D_FORTIFY_SOURCE=2$<SEMICOLON>-fstack-protector-strong>
-    $<${optimised}:-fstack-clash-protection>)
+    $<${optimised}:-fstack-protector-strong$<SEMICOLON>-fstack-clash-protection>)
   if(CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64)
     target_compile_options(sealwatch_flags INTERFACE $<${optimised}:-fcf-protection>)
   endif()

@@ -97,12 +97,14 @@ void ReplayLog::write(const Message& message) {
   const Topic topic = topic_of(message);
   std::unique_ptr<std::ofstream>& file = results_[topic];
   if (!file) file = std::make_unique<std::ofstream>(results_file(topic));
-  // Publishing time and stream stamps differ from run to run; everything else does not.
+  // Publishing time, the clock and stream stamps differ from run to run; everything else does not.
   Message plain = message;
   Header& header = header_of(plain);
   header.publishing_time_ns = 0;
   header.writer_id.clear();
   header.stream_sequence = 0;
+  header.writer_started_ns = 0;
+  stamp_clock(header, {});
   *file << to_json(plain) << "\n";
 }
 

@@ -165,10 +165,10 @@ check_page() {
 # The commands that begin with these letters, as --help lists them.
 check_completion() {
   local completed listed
-  listed=$("${as_user[@]}" "$root/usr/bin/sealwatch" --help | awk '/^Subcommands:/ { on = 1 } on && /^  re/ { print $1 }' | paste -sd' ')
+  listed=$("${as_user[@]}" "$root/usr/bin/sealwatch" --help | awk '/^  re/ { print $1 }' | sort | paste -sd' ')
   [[ " $listed " == *" replay "* ]] || fail "--help lists '$listed' for 're'"
-  completed=$(bash -c 'source "$1"; COMP_WORDS=(sealwatch re); COMP_CWORD=1; _sealwatch; echo "${COMPREPLY[@]}"' bash \
-    "$root/usr/share/bash-completion/completions/sealwatch")
+  completed=$(bash -c 'source "$1"; COMP_WORDS=(sealwatch re); COMP_CWORD=1; _sealwatch; printf "%s\n" "${COMPREPLY[@]}"' bash \
+    "$root/usr/share/bash-completion/completions/sealwatch" | sort | paste -sd' ')
   [ "$completed" = "$listed" ] || fail "'sealwatch re' completes to '$completed' and not to '$listed'"
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Who may include whom (docs/architecture.md). Prints each include that breaks a rule and fails; checks itself on a bad file first.
+# Who may include whom: `rules` below. Prints each include that breaks a rule and fails; checks itself on a bad file first.
 #   include_rules.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"
@@ -34,7 +34,7 @@ headers() {
   awk -v where="^include/sealwatch/$1/" -v allowed="^sealwatch/($allowed)[/.]" '
     FILENAME ~ where && match($0, /^[ \t]*#[ \t]*include[ \t]*[<"]sealwatch\/[^>"]+/) {
       included = substr($0, RSTART, RLENGTH); sub(/^.*[<"]/, "", included)
-      if (included !~ allowed) { printf "%s:%d: includes %s, which stands above it in docs/architecture.md\n", FILENAME, FNR, included; bad = 1 }
+      if (included !~ allowed) { printf "%s:%d: includes %s, which `rules` does not allow it\n", FILENAME, FNR, included; bad = 1 }
     }
     END { exit bad }' "${files[@]}" || failed=1
 }
@@ -43,7 +43,7 @@ rules() {
   local failed=0
   forbid '^include/' '^services/' 'headers in include/ know nothing of services/' || failed=1
   forbid '^include/' '^(dds|yaml-cpp|soci|ceres|spdlog|nlohmann|CLI|matio|boost|sqlite3|zip|pugixml)' 'mathematics and plain types stand alone' || failed=1
-  # The table of docs/architecture.md: from top to bottom, each may include itself and what stands beside it here.
+  # From top to bottom, each may include itself and what stands beside it here.
   headers core ''
   headers config core
   headers message core

@@ -45,7 +45,7 @@ std::vector<Route> all_routes() {
           {Topic::acknowledgement, operators, {advice}},
           {Topic::health_report, health, {advice}},
           {Topic::test_window, manipulation, {health, prognosis}},
-          {Topic::model_discrepancy, health, {operators}},
+          {Topic::model_discrepancy, health, {detection, prognosis, operators}},
           {Topic::state_report, detection, {advice}},
           {Topic::model_acceptance, operators, {detection, prognosis}},
           {Topic::pst_request, prognosis, {control}},

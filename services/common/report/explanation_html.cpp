@@ -77,8 +77,8 @@ std::string steps_after(const Explanation& explanation) {
   std::string html = "<ol>\n";
   const auto add = [&html](const std::string& step) { html.append("<li>").append(escaped(step)).append("</li>\n"); };
   for (const mismatch::FoundEffect& effect : explanation.effects) add(step_for(effect));
-  add("Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. To use it in the "
-      "services, run sealwatch accept; --revoke undoes that.");
+  add("Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. For the services, "
+      "put it in place of the asset file.");
   if (!explanation.next_test.empty()) add(explanation.next_test);
   return html.append("</ol>\n");
 }

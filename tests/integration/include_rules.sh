@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Who may include whom: `rules` below. Prints each include that breaks a rule and fails; checks itself on a bad file first.
+# Who may include whom (the rules below). Prints each include that breaks a rule and fails; checks itself on a bad file first.
 #   include_rules.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"
@@ -34,7 +34,7 @@ headers() {
   awk -v where="^include/sealwatch/$1/" -v allowed="^sealwatch/($allowed)[/.]" '
     FILENAME ~ where && match($0, /^[ \t]*#[ \t]*include[ \t]*[<"]sealwatch\/[^>"]+/) {
       included = substr($0, RSTART, RLENGTH); sub(/^.*[<"]/, "", included)
-      if (included !~ allowed) { printf "%s:%d: includes %s, which `rules` does not allow it\n", FILENAME, FNR, included; bad = 1 }
+      if (included !~ allowed) { printf "%s:%d: includes %s, which its folder may not\n", FILENAME, FNR, included; bad = 1 }
     }
     END { exit bad }' "${files[@]}" || failed=1
 }

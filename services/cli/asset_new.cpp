@@ -16,9 +16,10 @@
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/plant_file.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -35,14 +36,7 @@ struct Understood {
   std::vector<std::string> remarks;
 };
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') out += '\\';
-    out += letter;
-  }
-  return out + "\"";
-}
+using text::quoted;
 
 const char* word_of(char sign) {
   return sign == ';' ? "semicolon" : sign == '\t' ? "tab" : sign == '|' ? "bar" : sign == ' ' ? "blank" : "comma";
@@ -124,7 +118,7 @@ std::string range_text(const std::vector<Recording>& tests, const std::string& c
       low = any ? std::min(low, least) : least, high = any ? std::max(high, most) : most;
       any = true, unit = series->unit;
     }
-  return any ? report::readable(low, unit) + " to " + report::readable(high, unit) : "";
+  return any ? text::readable(low, unit) + " to " + text::readable(high, unit) : "";
 }
 
 std::string left_aside(const Understood& log) {
@@ -201,13 +195,13 @@ std::string page_of(const Understood& log, const std::string& file) {
   for (const Series& channel : test.samples.channels) {
     const auto mapping = log.map.columns.find(channel.name);
     const bool mapped = mapping != log.map.columns.end();
-    table.row({report::words_of(channel.name), mapped ? mapping->second.column : channel.name,
+    table.row({text::in_words(channel.name), mapped ? mapping->second.column : channel.name,
                mapped ? mapping->second.unit : "", range_text(log.tests, channel.name),
-               report::readable(signal::estimate_noise_std(channel.values), channel.unit, 2)});
+               text::readable(signal::estimate_noise_std(channel.values), channel.unit, 2)});
     plots += "<div>" +
-             report::to_svg({.title = report::words_of(channel.name),
+             report::to_svg({.title = text::in_words(channel.name),
                              .x = {.label = "time", .unit = "s"},
-                             .y = {.label = report::words_of(channel.name), .unit = channel.unit},
+                             .y = {.label = text::in_words(channel.name), .unit = channel.unit},
                              .marks = {report::Line{.x = test.samples.time_s, .y = channel.values}},
                              .height = 180,
                              .legend = false}) +

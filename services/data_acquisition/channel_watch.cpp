@@ -1,8 +1,9 @@
 #include "services/data_acquisition/channel_watch.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -24,13 +25,6 @@ std::array<bool, kWitnesses> witnesses_for(const ChannelDescription& channel) {
   if (channel.role == ChannelRole::shaft_angle) return {true, false, false, true};
   if (channel.role == ChannelRole::shaft_speed) return {true, false, true, false};
   return {true, true, false, false};
-}
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
 }
 
 }  // namespace
@@ -94,14 +88,13 @@ bool ChannelWatch::frozen(double time_s, const DataAcquisitionOptions& options) 
 }
 
 std::string ChannelWatch::frozen_reason() const {
-  return print("frozen at %.5g %s for %.2f s from %.2f s", frozen_.value, unit_.c_str(),
-               frozen_.end_s - frozen_.begin_s, frozen_.begin_s);
+  return text::format("frozen at {:.5g} {} for {:.2f} s from {:.2f} s", frozen_.value, unit_,
+                      frozen_.end_s - frozen_.begin_s, frozen_.begin_s);
 }
 
 std::string ChannelWatch::range_reason() const {
-  return print("%llu of %llu samples out of range %.5g..%.5g %s, worst %.5g at %.2f s",
-               static_cast<unsigned long long>(out_of_range_), static_cast<unsigned long long>(count_), range_min_,
-               range_max_, unit_.c_str(), worst_, worst_s_);
+  return text::format("{} of {} samples out of range {:.5g}..{:.5g} {}, worst {:.5g} at {:.2f} s", out_of_range_,
+                      count_, range_min_, range_max_, unit_, worst_, worst_s_);
 }
 
 ChannelStatus ChannelWatch::status(const DataAcquisitionOptions& options) const {
@@ -116,8 +109,7 @@ ChannelStatus ChannelWatch::status(const DataAcquisitionOptions& options) const 
   if (frozen_.count > 0) note(frozen_reason(), true);
   if (out_of_range_ > 0) note(range_reason(), static_cast<double>(out_of_range_) > least_failed);
   if (not_a_number_ > 0)
-    note(print("%llu of %llu samples are not a number that a sensor gives",
-               static_cast<unsigned long long>(not_a_number_), static_cast<unsigned long long>(count_)),
+    note(text::format("{} of {} samples are not a number that a sensor gives", not_a_number_, count_),
          static_cast<double>(not_a_number_) > least_failed);
   return status;
 }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/units.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -213,9 +213,9 @@ std::vector<ChannelStatus> OpenTest::status() const {
   for (const auto& [name, watch] : watches_) {
     ChannelStatus status = watch.status(*options_);
     if (status.state == ChannelState::OK && lost_share > options_->unknown_missing_share) {
-      char text[120];
-      std::snprintf(text, sizeof text, "%.0f %% of the samples are missing or out of time order", 100.0 * lost_share);
-      status = {.channel = name, .state = ChannelState::UNKNOWN, .reason = text};
+      status = {.channel = name,
+                .state = ChannelState::UNKNOWN,
+                .reason = text::percent(lost_share, 0) + " of the samples are missing or out of time order"};
     }
     const auto out = left_out_.find(name);
     if (out != left_out_.end() && status.state == ChannelState::NOT_USED)

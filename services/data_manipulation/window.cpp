@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "sealwatch/signal/statistics.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -105,8 +105,7 @@ std::string cut_at_gap(TimeSeries& recorded, double longest_gap_s) {
   const auto gap = std::adjacent_find(time_s.begin(), time_s.end(),
                                       [longest_gap_s](double a, double b) { return b - a > longest_gap_s; });
   if (gap == time_s.end()) return {};
-  char reason[120];
-  std::snprintf(reason, sizeof reason, "cut: nothing was recorded for %.1f s after %.1f s", *(gap + 1) - *gap, *gap);
+  std::string reason = text::format("cut: nothing was recorded for {:.1f} s after {:.1f} s", *(gap + 1) - *gap, *gap);
   const auto rows = static_cast<std::size_t>(gap - time_s.begin()) + 1;
   recorded.time_s.resize(rows);
   for (Series& channel : recorded.channels) channel.values.resize(rows);
@@ -120,12 +119,9 @@ std::optional<std::string> beyond_window(const TimeSeries& recorded, const TestL
   if (auto why = too_fast(grid.interval_s, limits)) return why;
   const auto rows = static_cast<double>(recorded.time_s.size());
   const auto window_rows = static_cast<double>(grid.count);
-  if (window_rows > limits.most_window_rows_per_row * rows) {
-    char why[160];
-    std::snprintf(why, sizeof why, "rows %.3g s apart but for gaps: %.0f rows would stand for the %.0f recorded",
-                  grid.interval_s, window_rows, rows);
-    return why;
-  }
+  if (window_rows > limits.most_window_rows_per_row * rows)
+    return text::format("rows {:.3g} s apart but for gaps: {:.0f} rows would stand for the {:.0f} recorded",
+                        grid.interval_s, window_rows, rows);
   return too_many_numbers(window_rows * static_cast<double>(channels + 1), limits);
 }
 

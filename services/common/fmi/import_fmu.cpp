@@ -1,8 +1,6 @@
 #include "services/common/fmi/import_fmu.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
@@ -12,6 +10,8 @@
 
 #include "services/common/fmi/fmu_plant.hpp"
 #include "services/common/fmi/fmu_process.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -19,24 +19,11 @@ namespace {
 constexpr std::size_t kMostParameters = 200;  ///< in force; further ones come as comments
 
 std::string number(double value) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  std::string result(text.data(), error == std::errc() ? end : text.data());
+  std::string result = text::exact(value);
   return result.find_first_of(".en") == std::string::npos ? result + ".0" : result;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (static_cast<unsigned char>(c) < 0x20) {
-      result += ' ';
-    } else {
-      if (c == '"' || c == '\\') result += '\\';
-      result += c;
-    }
-  }
-  return result + "\"";
-}
+using text::quoted;
 
 std::string in_comment(std::string text) {
   std::ranges::replace_if(

@@ -8,7 +8,7 @@
 #include "sealwatch/forecast/forecast_average.hpp"
 #include "sealwatch/forecast/ols.hpp"
 #include "sealwatch/forecast/state_space.hpp"
-#include "sealwatch/forecast/words.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -43,9 +43,10 @@ std::vector<ConditionSample> take_unusable(std::vector<ConditionSample>& history
 }
 
 std::string describe(const Forecast& forecast) {
-  return "by its last " + std::to_string(forecast.window_months) + " months " + in_months(forecast.rul_p50_months) +
-         " are left (95 %: " + in_months(forecast.interval_95_low_months) + " to " +
-         in_months(forecast.interval_95_high_months) + ")";
+  return "by its last " + std::to_string(forecast.window_months) + " months " +
+         text::in_months(forecast.rul_p50_months) +
+         " are left (95 %: " + text::in_months(forecast.interval_95_low_months) + " to " +
+         text::in_months(forecast.interval_95_high_months) + ")";
 }
 
 bool apart(const Forecast& a, const Forecast& b) {

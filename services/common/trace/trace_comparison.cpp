@@ -10,6 +10,7 @@
 #include "sealwatch/signal/resampling.hpp"
 #include "sealwatch/signal/statistics.hpp"
 #include "sealwatch/trace/smooth_course.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/common/trace/alterations.hpp"
 #include "services/common/trace/difference_tests.hpp"
 #include "services/common/trace/regimes.hpp"
@@ -80,9 +81,9 @@ class Comparison {
     while (last > first && grid.time_s(last - 1) > simulated_.time_s.back() + rounding) --last;
     if (last - first < std::max(kFewestSamples, grid.count / 4))
       return fail("the simulation covers less than a quarter of the recording: from " +
-                      std::to_string(simulated_.time_s.front()) + " to " + std::to_string(simulated_.time_s.back()) +
-                      " s, the recording from " + std::to_string(recorded_.time_s.front()) + " to " +
-                      std::to_string(recorded_.time_s.back()) + " s",
+                      text::general(simulated_.time_s.front()) + " to " + text::general(simulated_.time_s.back()) +
+                      " s, the recording from " + text::general(recorded_.time_s.front()) + " to " +
+                      text::general(recorded_.time_s.back()) + " s",
                   "both times must count from the same moment");
     for (std::size_t k = first; k < last; ++k) out_.time_s.push_back(grid.time_s(k));
     for (const Series& channel : recorded_.channels) take(channel, grid, first, last - first);

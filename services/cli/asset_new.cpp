@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "sealwatch/core/text.hpp"
-#include "sealwatch/signal/statistics.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 #include "services/cli/channel_guess.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
@@ -197,7 +197,7 @@ std::string page_of(const Understood& log, const std::string& file) {
     const bool mapped = mapping != log.map.columns.end();
     table.row({text::in_words(channel.name), mapped ? mapping->second.column : channel.name,
                mapped ? mapping->second.unit : "", range_text(log.tests, channel.name),
-               text::readable(signal::estimate_noise_std(channel.values), channel.unit, 2)});
+               text::readable(signal::estimate_noise_floor(channel.values).standard_deviation, channel.unit, 2)});
     plots += "<div>" +
              report::to_svg({.title = text::in_words(channel.name),
                              .x = {.label = "time", .unit = "s"},

@@ -52,7 +52,7 @@ OpenTest::OpenTest(std::string asset_id, const AssetConfig* asset, const PlantDe
   if (!plant_) return;
   const double stroke_m = stroke_of(asset, *plant_);
   for (const ChannelDescription& channel : plant_->channels)
-    watches_.emplace_back(channel.name, ChannelWatch(channel, sensor_of(asset, channel.name), stroke_m));
+    watches_.emplace_back(channel.name, ChannelWatch(channel, sensor_of(asset, channel.name), stroke_m, *options_));
 }
 
 /// Beyond the longest test a time is damaged, like one that goes back.
@@ -198,8 +198,7 @@ void OpenTest::take_rows(const SampleBlock& block) {
     advance(travel_[static_cast<std::size_t>(Witness::shaft_speed)],
             value_at(samples, plant_, ChannelRole::shaft_speed, row), step_s);
     for (auto& [name, watch] : watches_)
-      if (const Series* series = samples.find(name))
-        watch.add(samples.time_s[row], series->values[row], travel_, *options_);
+      if (const Series* series = samples.find(name)) watch.add(samples.time_s[row], series->values[row], travel_);
   }
   if (plant_) return;
   for (const Series& channel : samples.channels)

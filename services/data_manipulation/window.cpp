@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sealwatch/signal/statistics.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 #include "services/common/text/format.hpp"
 
 namespace sealwatch {
@@ -53,10 +53,8 @@ signal::Interpolation interpolation(const Series& channel, const AssetView& asse
 }
 
 double noise_std(const Series& channel, const AssetView& asset) {
-  if (channel.noise_std > 0.0) return channel.noise_std;
-  if (asset.is_input(channel.name) && is_discrete(channel)) return 0.0;
-  const double estimate = signal::estimate_noise_std(channel.values);
-  return estimate > 0.0 ? estimate : asset.noise_std(channel.name);
+  if (channel.noise_std <= 0.0 && asset.is_input(channel.name) && is_discrete(channel)) return 0.0;
+  return signal::believed_noise_std(channel, asset.noise_std(channel.name));
 }
 
 /// Grid without the ends that shifted channels do not reach.

@@ -5,10 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "sealwatch/estimation/noise_floor.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 #include "sealwatch/signal/resampling.hpp"
-#include "sealwatch/signal/statistics.hpp"
 #include "sealwatch/trace/smooth_course.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/trace/alterations.hpp"
@@ -115,9 +114,10 @@ class Comparison {
       pair.simulated(k) = pair.course.at(out_.time_s[static_cast<std::size_t>(k)]).first;
     const double spread = std::sqrt((values.array() - values.mean()).square().mean());
     pair.least_variance = std::max(std::pow(kLeastOfTheSpread * spread, 2), 1e-300);
-    pair.white_variance = std::max(pair.least_variance, std::pow(signal::estimate_noise_std(channel.values), 2));
+    pair.white_variance =
+        std::max(pair.least_variance, std::pow(signal::estimate_noise_floor(channel.values).standard_deviation, 2));
     for (const std::vector<double>* series : {&channel.values, &simulated->values})
-      pair.step_variance += std::pow(estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
+      pair.step_variance += std::pow(signal::estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
     if (input) drives_.push_back(values);
     pairs_.push_back(std::move(pair));
   }

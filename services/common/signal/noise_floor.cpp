@@ -1,10 +1,11 @@
-#include "sealwatch/estimation/noise_floor.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
-namespace sealwatch {
+namespace sealwatch::signal {
 namespace {
 
 constexpr std::size_t kFewestSamples = 8;
@@ -67,9 +68,11 @@ double from_high_order(std::span<const double> values) {
 
 }  // namespace
 
-NoiseFloor estimate_noise_floor(std::span<const double> values) {
+NoiseFloor estimate_noise_floor(std::span<const double> samples) {
+  std::vector<double> values;
+  values.reserve(samples.size());
+  std::ranges::copy_if(samples, std::back_inserter(values), [](double value) { return std::isfinite(value); });
   if (values.size() < kFewestSamples) return {};
-  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) return {};
   std::vector<double> difference(values.size() - 3);
   for (std::size_t k = 0; k < difference.size(); ++k)
     difference[k] = std::abs(values[k + 3] - 3.0 * values[k + 2] + 3.0 * values[k + 1] - values[k]);
@@ -85,4 +88,11 @@ NoiseFloor estimate_noise_floor(std::span<const double> values) {
           .quantisation_step = step};
 }
 
-}  // namespace sealwatch
+double believed_noise_std(const Series& channel, double usual_noise_std) {
+  constexpr double kLeastShareOfUsual = 0.1;
+  if (channel.noise_std > 0.0) return channel.noise_std;
+  const double shown = estimate_noise_floor(channel.values).standard_deviation;
+  return shown > 0.0 ? std::max(shown, kLeastShareOfUsual * usual_noise_std) : usual_noise_std;
+}
+
+}  // namespace sealwatch::signal

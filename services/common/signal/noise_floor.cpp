@@ -18,7 +18,8 @@ constexpr double kCoarse = 0.2;                   // a step larger than this sha
 constexpr double kLargestShareOffTheGrid = 0.01;  // of steps that are no multiple of the smallest
 constexpr double kGridTolerance = 1e-3;           // of a step: rounding of decimal numbers
 
-double median(std::vector<double> values) {
+// The upper of the two in the middle of an even number.
+double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -77,7 +78,7 @@ NoiseFloor estimate_noise_floor(std::span<const double> samples) {
   for (std::size_t k = 0; k < difference.size(); ++k)
     difference[k] = std::abs(values[k + 3] - 3.0 * values[k + 2] + 3.0 * values[k + 1] - values[k]);
   const double step = find_quantisation_step(values);
-  double from_differences = kGaussianStdOverMad * median(difference) / std::sqrt(kThirdDifferenceVariance);
+  double from_differences = kGaussianStdOverMad * middle_of(difference) / std::sqrt(kThirdDifferenceVariance);
   if (step > kCoarse * from_differences)
     from_differences = trimmed_standard_deviation(std::move(difference)) / std::sqrt(kThirdDifferenceVariance);
   const double least = step / std::sqrt(12.0);

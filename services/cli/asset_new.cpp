@@ -36,8 +36,6 @@ struct Understood {
   std::vector<std::string> remarks;
 };
 
-using text::quoted;
-
 const char* word_of(char sign) {
   return sign == ';' ? "semicolon" : sign == '\t' ? "tab" : sign == '|' ? "bar" : sign == ' ' ? "blank" : "comma";
 }
@@ -138,8 +136,8 @@ std::string missing_inputs(const Understood& log) {
 }
 
 std::string mapping_text(const ColumnMapping& mapping) {
-  std::string text = "{column: " + quoted(mapping.column);
-  if (!mapping.unit.empty()) text += ", unit: " + quoted(mapping.unit);
+  std::string text = "{column: " + text::quoted(mapping.column);
+  if (!mapping.unit.empty()) text += ", unit: " + text::quoted(mapping.unit);
   return text + "}";
 }
 
@@ -156,7 +154,7 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
                     ": what sealwatch understood of it. Correct what is wrong; docs/logs.md, docs/asset-file.md.\n";
   for (const std::string& remark : log.remarks) out += "# " + remark + "\n";
   const std::string id = options.asset_id.empty() ? fs::path(options.log).stem().string() : options.asset_id;
-  out += "asset_id: " + quoted(id) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
+  out += "asset_id: " + text::quoted(id) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
   out += "# The plant's own values hold until yours stand here, in SI units:\n# parameters: {";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, log.plant->parameters.size()); ++k)
     out.append(k > 0 ? ", " : "")
@@ -168,7 +166,7 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
     const auto mapping = log.map.columns.find(channel.name);
     if (mapping == log.map.columns.end()) {
       out += "  # " + channel.name + ": not found in the log; " + channel.meaning +
-             "; as {column: NAME, scale: 1, unit: " + quoted(channel.unit) + "}\n";
+             "; as {column: NAME, scale: 1, unit: " + text::quoted(channel.unit) + "}\n";
       continue;
     }
     const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);

@@ -144,7 +144,7 @@ Result<std::vector<MatVariable>> read_container(const std::string& path,
 }
 
 Error sample_error(const std::string& name, std::size_t row, double value, std::string rule) {
-  return error_at("row " + std::to_string(row + 1) + ", column " + name, text::general(value), std::move(rule));
+  return error_at("row " + std::to_string(row + 1) + ", column " + name, text::exact(value), std::move(rule));
 }
 
 /// All samples finite, all vectors as long as time, time increasing.

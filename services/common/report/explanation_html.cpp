@@ -20,7 +20,7 @@ struct VerdictWords {
   std::string words;
 };
 
-VerdictWords text::in_words(const Explanation& explanation) {
+VerdictWords words_of(const Explanation& explanation) {
   switch (explanation.verdict) {
     case Verdict::consistent:
       return {"good", "Consistent: simulation and recordings agree within the noise"};
@@ -143,7 +143,7 @@ std::string the_element(const std::string& element) {
 }
 
 std::string banner(const Explanation& explanation) {
-  const VerdictWords verdict = text::in_words(explanation);
+  const VerdictWords verdict = words_of(explanation);
   std::string aside = std::to_string(explanation.holdout_recordings.size()) + " held out.";
   if (explanation.holdout_recordings.empty())
     aside = explanation.fit_recordings.size() > 1 ? "each left out in turn." : "none held out.";

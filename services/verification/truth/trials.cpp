@@ -270,13 +270,13 @@ std::string TrialPlan::label() const {
   for (const SensorFault& f : faults) line += text::format(" | {} of {} {:.6g}", f.kind, f.channel, f.size);
   if (!wrong_value.name.empty()) line += text::format(" | {} {:+.3g}", wrong_value.name, wrong_value.share);
   if (tolerance > 0.0) line += text::format(" | tolerance {:.3g}", tolerance);
-  add(" | R_CL %.6g f_C %.6g R_PL %.6g f_M %.6g beta %.6g R_M %.6g phi %.6g", parameters.seal_resistance,
-      parameters.piston_viscosity, parameters.pump_resistance, parameters.motor_viscosity, parameters.oil_modulus,
-      parameters.winding_resistance, parameters.load);
-  add(" | jitter %.3g", jitter);
+  line += text::format(
+      " | R_CL {:.6g} f_C {:.6g} R_PL {:.6g} f_M {:.6g} beta {:.6g} R_M {:.6g} phi {:.6g} | jitter {:.3g}",
+      parameters.seal_resistance, parameters.piston_viscosity, parameters.pump_resistance, parameters.motor_viscosity,
+      parameters.oil_modulus, parameters.winding_resistance, parameters.load, jitter);
   for (const auto& [channel, own] : noise)
     if (own.correlation > 0.0 || own.quantum > 0.0)
-      add(" | %s %.3g %.6g", channel.c_str(), own.correlation, own.quantum);
+      line += text::format(" | {} {:.3g} {:.6g}", channel, own.correlation, own.quantum);
   return line;
 }
 

@@ -13,6 +13,7 @@ constexpr double kGaussianStdOverMad = 1.4826;     // standard deviation over me
 constexpr double kThirdDifferenceVariance = 20.0;  // 1 + 9 + 9 + 1
 constexpr int kHighOrder = 12;
 constexpr double kHighOrderVariance = 2704156.0;  // 24 over 12
+constexpr std::size_t kEnoughForHighOrder = 120;
 constexpr double kClearly = 1.5;                  // noise of a first-order sensor shows within 1.1 in both orders
 constexpr double kCoarse = 0.2;                   // a step larger than this share of the noise shows in the median
 constexpr double kLargestShareOffTheGrid = 0.01;  // of steps that are no multiple of the smallest
@@ -82,7 +83,7 @@ NoiseFloor estimate_noise_floor(std::span<const double> samples) {
   if (step > kCoarse * from_differences)
     from_differences = trimmed_standard_deviation(std::move(difference)) / std::sqrt(kThirdDifferenceVariance);
   const double least = step / std::sqrt(12.0);
-  const bool enough = values.size() >= 10 * kHighOrder;
+  const bool enough = values.size() >= kEnoughForHighOrder;
   const double high_order = enough ? std::max(from_high_order(values), least) : from_differences;
   const bool signal_shows = high_order * kClearly < from_differences;
   return {.standard_deviation = std::max(signal_shows ? high_order : from_differences, least),

@@ -9,6 +9,7 @@ build_packages=(
   cyclonedds-dev cyclonedds-tools                  # DDS and its IDL compiler
   libeigen3-dev libceres-dev libboost-dev          # linear algebra, optimiser, ODE for the bench and distributions
   libyaml-cpp-dev libspdlog-dev libcli11-dev       # configuration, logs, command line
+  libfmt-dev                                       # text for people
   libsoci-dev libsqlite3-dev                       # journals
   libmatio-dev zlib1g-dev nlohmann-json3-dev libexpected-dev  # MATLAB files, JSON, error values
   libudunits2-dev                                  # units of foreign logs

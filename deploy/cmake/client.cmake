@@ -9,7 +9,8 @@ set_target_properties(sealwatch_client PROPERTIES EXPORT_NAME client)
 set_target_properties(sealwatch_transport PROPERTIES EXPORT_NAME transport)
 set_target_properties(sealwatch_topics PROPERTIES EXPORT_NAME topics)
 set_target_properties(sealwatch_core PROPERTIES EXPORT_NAME core)
-install(TARGETS sealwatch_client sealwatch_transport sealwatch_topics sealwatch_core EXPORT sealwatchTargets
+set_target_properties(sealwatch_text PROPERTIES EXPORT_NAME text)
+install(TARGETS sealwatch_client sealwatch_transport sealwatch_topics sealwatch_core sealwatch_text EXPORT sealwatchTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT client)
 install(EXPORT sealwatchTargets NAMESPACE sealwatch:: DESTINATION ${package_directory} COMPONENT client)
 

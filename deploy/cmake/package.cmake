@@ -49,6 +49,6 @@ set(CPACK_DEBIAN_CLIENT_PACKAGE_NAME sealwatch-dev)
 set(CPACK_DEBIAN_CLIENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_CLIENT_DESCRIPTION "Development files: topics in IDL, and a subscriber library for programs that
 receive sealwatch's advisories, by find_package(sealwatch).")
-set(CPACK_DEBIAN_CLIENT_PACKAGE_DEPENDS "cyclonedds-dev, libexpected-dev")
+set(CPACK_DEBIAN_CLIENT_PACKAGE_DEPENDS "cyclonedds-dev, libexpected-dev, libfmt-dev")
 set(CPACK_DEBIAN_CLIENT_PACKAGE_SUGGESTS "sealwatch, cmake")
 include(CPack)

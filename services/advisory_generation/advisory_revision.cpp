@@ -1,8 +1,7 @@
 #include "services/advisory_generation/advisory_revision.hpp"
+#include "services/common/text/words.hpp"
 
 #include <algorithm>
-
-#include "sealwatch/forecast/words.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -123,14 +122,14 @@ Advisory with_overdue_test(const std::optional<Advisory>& current, const StateRe
 
 Advisory after_replacement(const std::optional<Advisory>& current, const MaintenanceEvent& event) {
   Recommendation fresh;
-  fresh.text = "No action needed: " + forecast::in_words(event.kind) + " on " +
-               format_date({event.header.event_time_ns}) + ", the history starts anew.";
+  fresh.text = "No action needed: " + text::in_words(event.kind) + " on " + format_date({event.header.event_time_ns}) +
+               ", the history starts anew.";
   Header cause = event.header;
   cause.pst_id.clear();
   std::optional<Advisory> none_of_its_kind = current;
   if (none_of_its_kind) none_of_its_kind->action = AdvisoryAction::replace_now;  // never a mere revision
   Advisory advisory = revision_of(none_of_its_kind, event.asset_id, fresh, cause);
-  advisory.reasons = {forecast::in_words(event.kind) + " reported by " + event.reported_by +
+  advisory.reasons = {text::in_words(event.kind) + " reported by " + event.reported_by +
                       (event.remark.empty() ? "" : ": " + event.remark)};
   return advisory;
 }
@@ -139,7 +138,7 @@ Advisory after_late_replacement(const Advisory& current, const MaintenanceEvent&
   Header cause = event.header;
   cause.pst_id.clear();
   Advisory advisory = said_again(current, answer_to(cause));
-  advisory.reasons.insert(advisory.reasons.begin(), forecast::in_words(event.kind) + " on " +
+  advisory.reasons.insert(advisory.reasons.begin(), text::in_words(event.kind) + " on " +
                                                         format_date({event.header.event_time_ns}) + " reported by " +
                                                         event.reported_by +
                                                         " after later tests: this advice stands until the next test");

@@ -5,6 +5,7 @@
 
 #include "sealwatch/config/judged_quantities.hpp"
 #include "services/advisory_generation/reasons.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -116,7 +117,7 @@ std::string model_alarm(const Evidence& evidence) {
     const std::string channel = one.quantity.substr(kResidualQuantity.size());
     if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
   }
-  return joined(channels);
+  return text::joined(channels);
 }
 
 /// What became of the channel, as state detection says it.
@@ -131,7 +132,7 @@ std::string doubt_in_instruments(const Evidence& evidence, const Options& option
   if (fault && fault->kind == FaultKind::sensor) return describe(*fault);
   std::vector<std::string> fates;
   for (const std::string& channel : evidence.state.stale_channels) fates.push_back(fate_of(channel, evidence.state));
-  return joined(fates);
+  return text::joined(fates);
 }
 
 std::set<std::string> doubted_channels(const Evidence& evidence, const Options& options) {
@@ -146,7 +147,7 @@ std::string reason_to_repeat(const Evidence& evidence) {
   const StateReport& state = evidence.state;
   if (state.verdict == PstVerdict::failed || state.verdict == PstVerdict::aborted)
     return "the test " + std::string(name_of(state.verdict)) +
-           (state.verdict_reasons.empty() ? "" : ": " + joined(state.verdict_reasons));
+           (state.verdict_reasons.empty() ? "" : ": " + text::joined(state.verdict_reasons));
   const bool repetition_helps = evidence.life.threshold > 0.0 && evidence.leakage.header.event_time_known;
   if (evidence.leakage.used_for_forecast || !repetition_helps) return {};
   std::string reason = "the test could not be used";

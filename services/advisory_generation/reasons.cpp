@@ -1,20 +1,21 @@
 #include "services/advisory_generation/reasons.hpp"
 
 #include "sealwatch/config/judged_quantities.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "sealwatch/message/worn_words.hpp"
 #include "services/advisory_generation/assessment.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
 
-using forecast::as_condition;
-using forecast::condition_in_percent;
-using forecast::in_months;
-using forecast::in_percent;
-using forecast::in_words;
-using forecast::three_digits;
-using forecast::with_unit;
+using text::as_condition;
+using text::condition_in_percent;
+using text::in_months;
+using text::in_percent;
+using text::in_words;
+using text::three_digits;
+using text::with_unit;
 
 /// Below this a fault is proposed only because some fault must come first.
 constexpr double kWorthNaming = 0.10;
@@ -85,7 +86,7 @@ void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& lea
     reasons.push_back(name_of_test(leakage.header) + ": " + text);
   }
   if (!leakage.used_for_forecast)
-    reasons.push_back(name_of_test(leakage.header) + " left out of the forecast: " + joined(leakage.reasons));
+    reasons.push_back(name_of_test(leakage.header) + " left out of the forecast: " + text::joined(leakage.reasons));
 }
 
 /// Whether grade and proposals are those of an earlier test, as this one does not tell.
@@ -119,8 +120,8 @@ void add_state(std::vector<std::string>& reasons, const StateReport& state) {
       reasons.push_back(region_words(judgement));
   if (state.verdict != PstVerdict::passed)
     reasons.push_back("partial stroke test " + in_words(name_of(state.verdict)) +
-                      (state.verdict_reasons.empty() ? "" : ": " + joined(state.verdict_reasons)));
-  if (state.pst_overdue) reasons.push_back("the test came " + forecast::in_days(state.overdue_days) + " late");
+                      (state.verdict_reasons.empty() ? "" : ": " + text::joined(state.verdict_reasons)));
+  if (state.pst_overdue) reasons.push_back("the test came " + text::in_days(state.overdue_days) + " late");
 }
 
 }  // namespace
@@ -145,12 +146,6 @@ std::string describe(const ProposedFault& fault) {
   return in_words(name_of(fault.kind)) + " of " + in_words(named_twice ? element.substr(kSensor.size()) : element) +
          ", likelihood " + in_percent(fault.likelihood) +
          (fault.iso14224_code.empty() ? "" : " (ISO 14224 " + fault.iso14224_code + ")");
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text;
 }
 
 }  // namespace sealwatch::advisory_generation

@@ -20,7 +20,4 @@ struct Evidence;
 /// "internal leakage of piston seal, likelihood 81 % (ISO 14224 INL)"
 [[nodiscard]] std::string describe(const ProposedFault& fault);
 
-/// "a, b, c"
-[[nodiscard]] std::string joined(const std::vector<std::string>& parts);
-
 }  // namespace sealwatch::advisory_generation

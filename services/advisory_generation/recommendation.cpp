@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "sealwatch/forecast/words.hpp"
 #include "services/advisory_generation/reasons.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -19,7 +20,7 @@ std::string outlook(const Evidence& evidence) {
   const RemainingLife& life = evidence.life;
   std::string text;
   if (life.condition_known) {
-    text = "Seal condition is " + forecast::condition_in_percent(life.condition) + limit_of(life);
+    text = "Seal condition is " + text::condition_in_percent(life.condition) + limit_of(life);
     if (!evidence.leakage.used_for_forecast) text += " by the last test that counts, which this one does not";
   }
   if (life.forecasts.empty()) return text.empty() ? text : text + ".";
@@ -60,7 +61,7 @@ std::string earlier_doubt(const InForce& in_force) {
   std::string text = "doubted in the last tests";
   std::string join = ": ";
   for (const std::string& channel : in_force.doubted_channels)
-    text.append(std::exchange(join, ", ")).append(forecast::in_words(channel));
+    text.append(std::exchange(join, ", ")).append(text::in_words(channel));
   return text;
 }
 
@@ -186,7 +187,7 @@ std::vector<std::string> reasons_of_dates(const Recommendation& recommendation, 
   const UtcTime work = *recommendation.work_before;
   if (recommendation.latest_by && *recommendation.latest_by < work)
     reasons.push_back("latest by " + format_date(*recommendation.latest_by) + ": " +
-                      forecast::in_months(booking_lead_time_months(site)) + " before the work by " + format_date(work) +
+                      text::in_months(booking_lead_time_months(site)) + " before the work by " + format_date(work) +
                       ", the time it takes to get a vessel");
   if (work == in_force.replace_by && verdict.replace_by && *verdict.replace_by != work)
     reasons.push_back("work by " + format_date(work) + " is held although this test by itself says " +

@@ -1,11 +1,9 @@
 #include "services/advisory_generation/safety_book.hpp"
 
-#include <cstdio>
-
 #include "sealwatch/forecast/safety_margin.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "sealwatch/message/worn_words.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -58,11 +56,7 @@ void add_margins(SafetyBook& book, const AssetConfig& asset, const Evidence& evi
   book.closing_force_margin = margin->force_margin;
 }
 
-std::string amount(double money) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", money);
-  return text;
-}
+std::string amount(double money) { return text::significant(money, 4); }
 
 }  // namespace
 
@@ -95,7 +89,7 @@ std::vector<std::string> in_words(const std::vector<DecisionOption>& decision, c
   }
   if (book.failure_probability_known)
     words.push_back(std::string("average probability of failure on demand ")
-                        .append(forecast::three_digits(book.failure_probability_on_demand)));
+                        .append(text::three_digits(book.failure_probability_on_demand)));
   if (book.full_stroke_known && book.full_stroke_overdue_months > 0.0)
     words.push_back(std::string("the full stroke test was due on ").append(format_date({book.full_stroke_due_ns})));
   return words;

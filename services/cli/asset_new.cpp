@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "sealwatch/core/text.hpp"
-#include "sealwatch/signal/statistics.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 #include "services/cli/channel_guess.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
@@ -16,9 +16,10 @@
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/plant_file.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -34,15 +35,6 @@ struct Understood {
   std::vector<Recording> tests;
   std::vector<std::string> remarks;
 };
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') out += '\\';
-    out += letter;
-  }
-  return out + "\"";
-}
 
 const char* word_of(char sign) {
   return sign == ';' ? "semicolon" : sign == '\t' ? "tab" : sign == '|' ? "bar" : sign == ' ' ? "blank" : "comma";
@@ -124,7 +116,7 @@ std::string range_text(const std::vector<Recording>& tests, const std::string& c
       low = any ? std::min(low, least) : least, high = any ? std::max(high, most) : most;
       any = true, unit = series->unit;
     }
-  return any ? report::readable(low, unit) + " to " + report::readable(high, unit) : "";
+  return any ? text::readable(low, unit) + " to " + text::readable(high, unit) : "";
 }
 
 std::string left_aside(const Understood& log) {
@@ -144,8 +136,8 @@ std::string missing_inputs(const Understood& log) {
 }
 
 std::string mapping_text(const ColumnMapping& mapping) {
-  std::string text = "{column: " + quoted(mapping.column);
-  if (!mapping.unit.empty()) text += ", unit: " + quoted(mapping.unit);
+  std::string text = "{column: " + text::quoted(mapping.column);
+  if (!mapping.unit.empty()) text += ", unit: " + text::quoted(mapping.unit);
   return text + "}";
 }
 
@@ -162,7 +154,7 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
                     ": what sealwatch understood of it. Correct what is wrong; docs/logs.md, docs/asset-file.md.\n";
   for (const std::string& remark : log.remarks) out += "# " + remark + "\n";
   const std::string id = options.asset_id.empty() ? fs::path(options.log).stem().string() : options.asset_id;
-  out += "asset_id: " + quoted(id) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
+  out += "asset_id: " + text::quoted(id) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
   out += "# The plant's own values hold until yours stand here, in SI units:\n# parameters: {";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, log.plant->parameters.size()); ++k)
     out.append(k > 0 ? ", " : "")
@@ -174,7 +166,7 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
     const auto mapping = log.map.columns.find(channel.name);
     if (mapping == log.map.columns.end()) {
       out += "  # " + channel.name + ": not found in the log; " + channel.meaning +
-             "; as {column: NAME, scale: 1, unit: " + quoted(channel.unit) + "}\n";
+             "; as {column: NAME, scale: 1, unit: " + text::quoted(channel.unit) + "}\n";
       continue;
     }
     const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
@@ -201,13 +193,13 @@ std::string page_of(const Understood& log, const std::string& file) {
   for (const Series& channel : test.samples.channels) {
     const auto mapping = log.map.columns.find(channel.name);
     const bool mapped = mapping != log.map.columns.end();
-    table.row({report::words_of(channel.name), mapped ? mapping->second.column : channel.name,
+    table.row({text::in_words(channel.name), mapped ? mapping->second.column : channel.name,
                mapped ? mapping->second.unit : "", range_text(log.tests, channel.name),
-               report::readable(signal::estimate_noise_std(channel.values), channel.unit, 2)});
+               text::readable(signal::estimate_noise_floor(channel.values).standard_deviation, channel.unit, 2)});
     plots += "<div>" +
-             report::to_svg({.title = report::words_of(channel.name),
+             report::to_svg({.title = text::in_words(channel.name),
                              .x = {.label = "time", .unit = "s"},
-                             .y = {.label = report::words_of(channel.name), .unit = channel.unit},
+                             .y = {.label = text::in_words(channel.name), .unit = channel.unit},
                              .marks = {report::Line{.x = test.samples.time_s, .y = channel.values}},
                              .height = 180,
                              .legend = false}) +

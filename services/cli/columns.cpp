@@ -1,7 +1,6 @@
 #include "services/cli/columns.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
 #include "services/cli/terminal.hpp"
@@ -21,18 +20,6 @@ std::vector<std::size_t> widths_of(const std::vector<TableRow>& rows) {
 }
 
 }  // namespace
-
-std::string short_number(double number) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", number);
-  return text.data();
-}
-
-std::string joined(const std::vector<std::string>& parts, const char* between) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
-  return text;
-}
 
 void print_wrapped(const std::string& text, std::size_t indent) {
   std::printf("%s%s\n", std::string(indent, ' ').c_str(), wrapped(text, kPageWidth, indent).c_str());

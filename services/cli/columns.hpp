@@ -10,11 +10,6 @@ inline constexpr std::size_t kPageWidth = 100;
 
 using TableRow = std::vector<std::string>;
 
-/// Six significant digits, without trailing zeros: "1e-05", "0.0859437".
-[[nodiscard]] std::string short_number(double number);
-
-[[nodiscard]] std::string joined(const std::vector<std::string>& parts, const char* between);
-
 /// An empty line, the heading, then the rows in columns behind two blanks. The last column is wrapped where a line would
 /// exceed kPageWidth. Nothing where there are no rows.
 void print_table(const std::string& heading, const std::vector<TableRow>& rows);

@@ -15,8 +15,9 @@
 #include "services/common/report/explanation_html.hpp"
 #include "services/common/report/explanation_json.hpp"
 #include "services/common/report/explanation_sections.hpp"
-#include "services/common/report/readable.hpp"
 #include "services/common/runtime/asset_file.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -112,19 +113,19 @@ Status write_all(const Explanation& explanation, const std::string& json, const 
 }
 
 std::string parameter_text(const FoundParameter& parameter) {
-  return parameter.name + " = " + report::readable_with_error(parameter.value, parameter.std_error, parameter.unit);
+  return parameter.name + " = " + text::readable_with_error(parameter.value, parameter.std_error, parameter.unit);
 }
 
 void print_effect(const FoundEffect& effect) {
-  std::printf("\n  %s of the %s (%s)\n", report::words_of(effect.what.id).c_str(),
-              report::element_name(effect.what.element).c_str(), report::percent_text(effect.probability).c_str());
+  std::printf("\n  %s of the %s (%s)\n", text::in_words(effect.what.id).c_str(),
+              report::element_name(effect.what.element).c_str(), text::percent_text(effect.probability).c_str());
   std::printf("    %s\n", wrapped(effect.what.law, kWidth, 4).c_str());
   for (const FoundParameter& parameter : effect.parameters) std::printf("    %s\n", parameter_text(parameter).c_str());
   if (!effect.regime.empty()) std::printf("    acts: %s\n", wrapped(effect.regime, kWidth, 4).c_str());
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
     others += (others.empty() ? "" : ", ") + (effect.is_another_form(other) ? "another form of it (" + other.law + ")"
-                                                                            : report::words_of(other.id) + " of the " +
+                                                                            : text::in_words(other.id) + " of the " +
                                                                                   report::element_name(other.element));
   if (!others.empty()) std::printf("    %s\n", wrapped("indistinguishable from: " + others, kWidth, 4).c_str());
 }
@@ -159,8 +160,8 @@ void print_bounds(const Explanation& explanation) {
     if (!shift.before_at_bound && !shift.after_at_bound) continue;
     const double value = shift.after_at_bound ? shift.after : shift.before;
     text.append(text.empty() ? "" : "; ").append(shift.name).append(" ");
-    text.append(report::readable(value, shift.unit)).append(" (datasheet ");
-    text.append(report::readable(shift.datasheet, shift.unit));
+    text.append(text::readable(value, shift.unit)).append(" (datasheet ");
+    text.append(text::readable(shift.datasheet, shift.unit));
     if (changed && !shift.after_at_bound) text.append("; before anything was added");
     if (changed && !shift.before_at_bound) text.append("; with what was found");
     text.append(")");
@@ -176,8 +177,8 @@ void print_estimates(const Explanation& explanation) {
     const bool told = std::isfinite(shift.after_std) && !shift.after_at_bound;
     if (!told || !(std::abs(shift.after - shift.datasheet) > kShown * std::abs(shift.datasheet))) continue;
     text.append(text.empty() ? "" : "; ").append(shift.name).append(" ");
-    text.append(report::readable_with_error(shift.after, shift.after_std, shift.unit)).append(" (asset file ");
-    text.append(report::readable(shift.datasheet, shift.unit)).append(")");
+    text.append(text::readable_with_error(shift.after, shift.after_std, shift.unit)).append(" (asset file ");
+    text.append(text::readable(shift.datasheet, shift.unit)).append(")");
   }
   if (!text.empty()) std::printf("\n  %s\n", wrapped("fitted: " + text, kWidth, 4).c_str());
 }

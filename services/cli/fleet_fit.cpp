@@ -7,6 +7,7 @@
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/forecast/history.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -52,11 +53,7 @@ Result<std::vector<FleetLife>> read_fleet(const FleetFitOptions& options) {
 std::string yaml_of(const FleetConstants& constants) {
   std::string out = "services:\n  prognostic_assessment:\n    fleet:\n";
   FleetConstants::visit(
-      [&out](std::string_view name, double value) {
-        char line[96];
-        std::snprintf(line, sizeof line, "      %s: %.6g\n", std::string(name).c_str(), value);
-        out += line;
-      },
+      [&out](std::string_view name, double value) { out += text::format("      {}: {:.6g}\n", name, value); },
       constants);
   return out;
 }

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "sealwatch/forecast/words.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -83,7 +83,7 @@ std::string decision_table(const std::vector<DecisionOption>& decision) {
   report::Table table(headers);
   for (const DecisionOption& option : decision) {
     std::vector<std::string> cells{option.label, date(option.at_ns), number(option.months, 3),
-                                   forecast::in_percent(option.failure_probability)};
+                                   text::in_percent(option.failure_probability)};
     if (priced) cells.push_back(number(option.expected_cost, 4));
     if (priced) cells.emplace_back(option.cheapest ? "cheapest" : "");
     for (std::string& cell : cells) cell = report::escaped(cell);

@@ -7,13 +7,14 @@
 
 #include "sealwatch/forecast/normal.hpp"
 #include "sealwatch/forecast/student_t.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "services/cli/forecast_decision.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -123,7 +124,7 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
   if (!answer.left_out.empty()) plot.marks.emplace_back(tests_of(answer.left_out, Ink::bad, "left out"));
   plot.marks.emplace_back(report::Reference{.at = kPercent * threshold,
                                             .ink = Ink::bad,
-                                            .label = "failed below " + report::percent_text(threshold),
+                                            .label = "failed below " + text::percent_text(threshold),
                                             .named_at_left = true});
   const Forecast& primary = answer.forecasts.front();
   if (primary.state == ForecastState::ok) {
@@ -139,7 +140,7 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
 }
 
 std::string method_label(const Forecast& forecast) {
-  return report::words_of(forecast.method) + " " + std::to_string(forecast.window_months);
+  return text::in_words(forecast.method) + " " + std::to_string(forecast.window_months);
 }
 
 /// Remaining life by every method, with its 95 % interval.
@@ -198,7 +199,7 @@ std::string remaining_life_table(const ForecastPanel::Answer& answer) {
             range(forecast.interval_95_low_months, forecast.interval_95_high_months), date(forecast.end_of_life_ns)})
         cells.push_back(cell);
     } else {
-      cells.insert(cells.end(), {"–", "–", "–", report::words_of(name_of(forecast.state))});
+      cells.insert(cells.end(), {"–", "–", "–", text::in_words(name_of(forecast.state))});
     }
     cells.push_back(forecast.explanation);
     for (std::string& cell : cells) cell = report::escaped(cell);
@@ -209,8 +210,8 @@ std::string remaining_life_table(const ForecastPanel::Answer& answer) {
 
 void list_samples(const std::vector<ConditionSample>& samples, const std::string& why, std::string& list) {
   for (const ConditionSample& sample : samples)
-    list.append("<li>").append(report::escaped(format_date(sample.time) + ", condition " +
-                                               forecast::as_condition(sample.condition) + ": " + why));
+    list.append("<li>").append(
+        report::escaped(format_date(sample.time) + ", condition " + text::as_condition(sample.condition) + ": " + why));
 }
 
 std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::Answer& answer) {
@@ -233,11 +234,9 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
 
 /// "37 months left (80 %: 35 to 39), end of life about 2021-04-15", or why there is no such forecast.
 std::string outlook(const Forecast& forecast) {
-  if (forecast.state != ForecastState::ok)
-    return report::words_of(name_of(forecast.state)) + ": " + forecast.explanation;
-  return forecast::in_months(forecast.rul_months) + " left (80 %: " + forecast::in_months(forecast.rul_p10_months) +
-         " to " + forecast::in_months(forecast.rul_p90_months) + "), end of life about " +
-         date(forecast.end_of_life_ns);
+  if (forecast.state != ForecastState::ok) return text::in_words(name_of(forecast.state)) + ": " + forecast.explanation;
+  return text::in_months(forecast.rul_months) + " left (80 %: " + text::in_months(forecast.rul_p10_months) + " to " +
+         text::in_months(forecast.rul_p90_months) + "), end of life about " + date(forecast.end_of_life_ns);
 }
 
 /// The colour of what is to be done; of the forecast alone where the services gave no advice.
@@ -287,10 +286,10 @@ std::string figures(const ForecastQuestion& question, const ForecastPanel::Answe
   if (question.advice && question.advice->latest_by_known)
     add_figure(date(question.advice->latest_by_ns), "act by", html);
   if (!answer.used.empty())
-    add_figure(forecast::condition_in_percent(answer.used.back().condition),
-               "seal condition; failed below " + report::percent_text(question.request.threshold), html);
+    add_figure(text::condition_in_percent(answer.used.back().condition),
+               "seal condition; failed below " + text::percent_text(question.request.threshold), html);
   if (primary.state == ForecastState::ok) {
-    add_figure(forecast::in_months(primary.rul_months),
+    add_figure(text::in_months(primary.rul_months),
                "left; 80 %: " + number(primary.rul_p10_months, 3) + " to " + number(primary.rul_p90_months, 3), html);
     add_figure(date(primary.end_of_life_ns),
                "end of life; 80 %: " + day(primary.rul_p10_months) + " to " + day(primary.rul_p90_months), html);

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sealwatch/forecast/words.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -15,17 +16,14 @@ constexpr std::size_t kIndent = 19;  ///< where the figures of a screen begin
 constexpr double kCertain = 0.9995;  ///< shown as 100.0 %
 
 std::string forecast_row(const Forecast& forecast, bool in_charge) {
-  char line[200];
-  const std::string method = forecast.method + (in_charge ? " *" : "");
-  std::snprintf(line, sizeof line, "                   %-14s %2d months  ", method.c_str(), forecast.window_months);
+  const std::string line =
+      text::format("{:19}{:14} {:2} months  ", "", forecast.method + (in_charge ? " *" : ""), forecast.window_months);
   if (forecast.state != ForecastState::ok)
-    return line + report::words_of(name_of(forecast.state)) + ": " + forecast.explanation + "\n";
-  char figures[200];
-  std::snprintf(figures, sizeof figures, "%6.1f     %6.1f .. %-6.1f   %5.1f / %5.1f / %5.1f   %s\n",
-                forecast.rul_months, forecast.interval_95_low_months, forecast.interval_95_high_months,
-                forecast.rul_p10_months, forecast.rul_p50_months, forecast.rul_p90_months,
-                date(forecast.end_of_life_ns).c_str());
-  return std::string(line) + figures;
+    return line + text::in_words(name_of(forecast.state)) + ": " + forecast.explanation + "\n";
+  return line + text::format("{:6.1f}     {:6.1f} .. {:<6.1f}   {:5.1f} / {:5.1f} / {:5.1f}   {}\n",
+                             forecast.rul_months, forecast.interval_95_low_months, forecast.interval_95_high_months,
+                             forecast.rul_p10_months, forecast.rul_p50_months, forecast.rul_p90_months,
+                             date(forecast.end_of_life_ns));
 }
 
 /// A heading on the first line, blanks on the others.
@@ -56,7 +54,7 @@ std::string failure_chart(const std::vector<FailureProbability>& probabilities) 
   for (const FailureProbability& item : probabilities) {
     const std::string day = date(item.before_ns);
     const std::string before = item.label == day ? day : item.label + ", " + day;
-    rows.push_back({"before " + before + ": " + forecast::in_percent(item.probability), bar(item.probability)});
+    rows.push_back({"before " + before + ": " + text::in_percent(item.probability), bar(item.probability)});
     if (item.probability > kCertain) break;  // later ones are certain too
   }
   return aligned("P(failure)", rows);
@@ -124,7 +122,7 @@ std::string decision_chart(const std::vector<DecisionOption>& decision) {
   std::vector<std::vector<std::string>> rows{
       {"replacement", "", "", "fails before", "", "expected cost" + (currency.empty() ? "" : ", " + currency)}};
   for (const DecisionOption& option : decision)
-    rows.push_back({option.label, date(option.at_ns), forecast::in_percent(option.failure_probability),
+    rows.push_back({option.label, date(option.at_ns), text::in_percent(option.failure_probability),
                     bar(option.failure_probability), number(option.expected_cost, 3),
                     bar(dearest > 0.0 ? option.expected_cost / dearest : 0.0), option.cheapest ? "cheapest" : ""});
   return aligned("decision", rows);

@@ -10,6 +10,8 @@
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/mismatch/site_words.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -73,10 +75,10 @@ Error nothing_meant(const std::string& asked) {
 
 std::string sizes_of(const LawParameter& parameter) {
   std::vector<std::string> start;
-  for (const double value : parameter.start) start.push_back(short_number(value));
-  std::string text = (parameter.strength ? "usual " : "tried ") + joined(start, ", ");
-  if (parameter.significant > 0.0) text += ", matters from " + short_number(parameter.significant);
-  return text + ", range " + short_number(parameter.min) + " to " + short_number(parameter.max);
+  for (const double value : parameter.start) start.push_back(text::general(value));
+  std::string text = (parameter.strength ? "usual " : "tried ") + text::joined(start, ", ");
+  if (parameter.significant > 0.0) text += ", matters from " + text::general(parameter.significant);
+  return text + ", range " + text::general(parameter.min) + " to " + text::general(parameter.max);
 }
 
 /// Whether laws of both kinds are shown under one heading: the four of a sensor, the three of an input.
@@ -86,7 +88,7 @@ bool same_heading(SiteKind a, SiteKind b) {
 
 void print_heading(SiteKind kind) {
   const mismatch::SiteWords& words = mismatch::words_of(kind);
-  std::string heading = "== " + joined(elements_of(kind), ", ") + ": " + std::string(words.quantity);
+  std::string heading = "== " + text::joined(elements_of(kind), ", ") + ": " + std::string(words.quantity);
   if (!words.unit.empty()) heading.append(" [").append(words.unit).append("] (").append(name_of(kind)).append(")");
   std::printf("\n");
   print_wrapped(heading, 0);
@@ -95,7 +97,7 @@ void print_heading(SiteKind kind) {
     if (!signal.name.empty())
       seen.push_back((signal.symbol == signal.name ? "" : std::string(signal.symbol) + " ") + std::string(signal.name) +
                      " [" + std::string(signal.unit) + "]");
-  if (!seen.empty()) print_wrapped("laws see: " + joined(seen, ", "), 3);
+  if (!seen.empty()) print_wrapped("laws see: " + text::joined(seen, ", "), 3);
 }
 
 void print_law(const Law& law, bool whole) {

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
-#include "sealwatch/forecast/words.hpp"
 #include "sealwatch/message/outside.hpp"
 #include "sealwatch/message/worn_words.hpp"
 #include "services/cli/summary.hpp"
 #include "services/cli/terminal.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -24,19 +25,13 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-std::string words(std::string_view name) {
-  std::string text(name);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
 std::string fault_words(const std::vector<ProposedFault>& group) {
   const ProposedFault& first = group.front();
   if (first.likelihood < kWorthNaming) return "no fault stands out";
   std::string text = first.likelihood > 0.5 ? "most likely " : "possibly ";
-  text += words(name_of(first.kind));
-  if (first.element.starts_with(kSensor)) text.append(" ").append(words(first.element.substr(kSensor.size())));
-  return text.append(" (").append(forecast::in_percent(first.likelihood)).append(")");
+  text += text::in_words(name_of(first.kind));
+  if (first.element.starts_with(kSensor)) text.append(" ").append(text::in_words(first.element.substr(kSensor.size())));
+  return text.append(" (").append(text::in_percent(first.likelihood)).append(")");
 }
 
 std::string acceptance_words(const ModelAcceptance& m) {
@@ -50,16 +45,10 @@ std::string event_date(const Header& header) {
   return header.event_time_known ? date(header.event_time_ns) : "(no date) ";
 }
 
-std::string join(const std::vector<std::string>& parts, const char* separator = "; ") {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : separator) + part;
-  return text;
-}
-
 std::string samples_words(std::size_t count) { return count == 0 ? "no samples" : count_of(count, "sample"); }
 
 std::string forecast_words(const Forecast& forecast) {
-  if (forecast.state != ForecastState::ok) return words(name_of(forecast.state));
+  if (forecast.state != ForecastState::ok) return text::in_words(name_of(forecast.state));
   return number(forecast.rul_months, 3) + " months, 95 % within " + number(forecast.interval_95_low_months, 3) +
          " to " + number(forecast.interval_95_high_months, 3);
 }
@@ -84,9 +73,9 @@ std::string content(const TestFeatures& m) {
   return text;
 }
 std::string content(const StateReport& m) {
-  std::string text = "PST " + words(name_of(m.verdict));
+  std::string text = "PST " + text::in_words(name_of(m.verdict));
   if (m.header.pst_id.empty()) text = m.pst_overdue ? "test overdue" : "judged anew";
-  if (!m.verdict_reasons.empty()) text += " (" + join(m.verdict_reasons) + ")";
+  if (!m.verdict_reasons.empty()) text += " (" + text::separated(m.verdict_reasons) + ")";
   text += ", region " + std::string(name_of(m.region));
   if (m.pst_overdue) text += ", " + number(m.overdue_days, 2) + " days overdue";
   return text;
@@ -95,15 +84,15 @@ std::string content(const HealthReport& m) {
   std::string text = m.health_grade_known ? "grade " + number(m.health_grade, 2) : "no grade yet";
   if (m.trend_known) text += " (" + number(m.health_trend_per_year, 2) + " a year)";
   if (!m.ambiguity_group.empty()) text += ", " + fault_words(m.ambiguity_group);
-  if (!m.admissible_for_prognosis) text += ", not for prognosis: " + join(m.inadmissible_reasons);
+  if (!m.admissible_for_prognosis) text += ", not for prognosis: " + text::separated(m.inadmissible_reasons);
   return text;
 }
 std::string content(const LeakageEstimate& m) {
-  if (!m.estimated) return "no estimate: " + join(m.reasons);
+  if (!m.estimated) return "no estimate: " + text::separated(m.reasons);
   std::string text = worn_parameter(m) + " " + number(m.resistance_Pa_s_m3, 3) + " +- " +
                      number(m.resistance_std_Pa_s_m3, 2) + worn_unit(m);
   if (m.condition_known) text += ", " + worn_condition(m) + " " + percent(m.condition);
-  if (!m.used_for_forecast) text += ", left out: " + join(m.reasons);
+  if (!m.used_for_forecast) text += ", left out: " + text::separated(m.reasons);
   return text;
 }
 std::string content(const RemainingLife& m) {
@@ -112,13 +101,15 @@ std::string content(const RemainingLife& m) {
 }
 std::string content(const PstRequest& m) { return "test due " + date(m.due_time_ns) + ": " + m.reason; }
 std::string content(const Advisory& m) {
-  std::string text = upper(name_of(m.priority)) + " " + words(name_of(m.action));
+  std::string text = upper(name_of(m.priority)) + " " + text::in_words(name_of(m.action));
   if (m.latest_by_known) text += " by " + date(m.latest_by_ns);
   if (m.state != AdvisoryState::active) text += " [" + std::string(name_of(m.state)) + "]";
   return text + ": " + m.recommendation;
 }
 std::string content(const Acknowledgement& m) { return m.advisory_id + " by " + m.acknowledged_by + " " + m.remark; }
-std::string content(const MaintenanceEvent& m) { return words(m.kind) + " by " + m.reported_by + " " + m.remark; }
+std::string content(const MaintenanceEvent& m) {
+  return text::in_words(m.kind) + " by " + m.reported_by + " " + m.remark;
+}
 std::string content(const ModelDiscrepancy& m) {
   std::string text = "version " + std::to_string(m.version) + ", ";
   if (!m.analysed) return text.append("not analysed: ").append(m.failure);

@@ -11,9 +11,7 @@ namespace sealwatch::cli {
 
 /// "URGENT"
 [[nodiscard]] std::string upper(std::string_view text);
-/// "pressure_a" as "pressure a".
-[[nodiscard]] std::string words(std::string_view name);
-/// "most likely internal leakage (81 %)", "possibly sensor pressure a (30 %)", "no fault stands out".
+/// "most likely internal leakage (81 %)", "possibly sensor pressure A (30 %)", "no fault stands out".
 [[nodiscard]] std::string fault_words(const std::vector<ProposedFault>& group);
 /// "model_discrepancy/A-1 accepted by J. Silva ..."
 [[nodiscard]] std::string acceptance_words(const ModelAcceptance& acceptance);

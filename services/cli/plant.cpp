@@ -9,6 +9,8 @@
 #include "services/cli/plant_laws.hpp"
 #include "services/common/equations/own_law.hpp"
 #include "services/common/runtime/plant_file.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -30,7 +32,7 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   for (const equations::TextOutput& output : read.text.outputs)
     rows.push_back(
         {output.channel.name, "[" + output.channel.unit + "]", "= " + output.value,
-         output.channel.noise_std > 0.0 ? "noise " + short_number(output.channel.noise_std) : "noise as recorded",
+         output.channel.noise_std > 0.0 ? "noise " + text::general(output.channel.noise_std) : "noise as recorded",
          output.channel.meaning});
   print_table("Outputs", rows);
   rows.clear();
@@ -38,8 +40,8 @@ void print_plant(const std::string& file, const ReadPlant& read) {
     const equations::TextState& state = read.text.states[k];
     const char* own = state.settles ? "settles" : state.own ? "each recording's own" : "starts there";
     rows.push_back({"d " + state.description.name + "/dt", "[(" + state.description.unit + ")/s]",
-                    "= " + (state.rate.empty() ? "as the FMU says" : state.rate), "from " + joined(state.start, " or "),
-                    own});
+                    "= " + (state.rate.empty() ? "as the FMU says" : state.rate),
+                    "from " + text::joined(state.start, " or "), own});
   }
   print_table("States", rows);
   rows.clear();
@@ -47,8 +49,8 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   print_table("Definitions", rows);
   rows.clear();
   for (const ParameterDescription& parameter : plant.parameters)
-    rows.push_back({parameter.name, short_number(parameter.value) + " " + parameter.unit,
-                    "from " + short_number(parameter.min) + " to " + short_number(parameter.max),
+    rows.push_back({parameter.name, text::general(parameter.value) + " " + parameter.unit,
+                    "from " + text::general(parameter.min) + " to " + text::general(parameter.max),
                     parameter.estimate ? "estimated" : "fixed", parameter.meaning});
   print_table("Parameters", rows);
   rows.clear();
@@ -57,18 +59,18 @@ void print_plant(const std::string& file, const ReadPlant& read) {
     for (const equations::TextSignal& signal : site.signals)
       seen.push_back(signal.name + " = " + signal.value + " [" + signal.unit + "]");
     rows.push_back(
-        {site.element, std::string(name_of(site.kind)) + " [" + site.unit + "]", "sees " + joined(seen, ", ")});
+        {site.element, std::string(name_of(site.kind)) + " [" + site.unit + "]", "sees " + text::joined(seen, ", ")});
     const std::vector<std::string> laws = laws_at(site, read.built.laws);
-    rows.push_back({"", "", "tried there: " + (laws.empty() ? "nothing" : joined(laws, ", "))});
+    rows.push_back({"", "", "tried there: " + (laws.empty() ? "nothing" : text::joined(laws, ", "))});
   }
   print_table("Sites, where physics may be missing", rows);
   rows.clear();
   for (const equations::NeededSize& size : equations::needed_sizes(read.text)) {
     const double factor = read.text.law_sizes.at(size.unit);
     const LawParameter& parameter = *size.parameter;
-    const auto here = [&](double value) { return short_number(factor * value) + " " + size.unit; };
+    const auto here = [&](double value) { return text::general(factor * value) + " " + size.unit; };
     rows.push_back(
-        {size.unit, "x " + short_number(factor),
+        {size.unit, "x " + text::general(factor),
          std::string(size.law->id) + ": " + std::string(parameter.name) + " usually " + here(parameter.start.front()),
          parameter.strength ? "matters from " + here(parameter.significant) : "",
          "from " + here(parameter.min) + " to " + here(parameter.max)});

@@ -12,6 +12,8 @@
 #include "services/cli/terminal.hpp"
 #include "services/common/mismatch/site_words.hpp"
 #include "services/common/runtime/plant_file.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -88,8 +90,8 @@ void print_channels(const PlantDescription& plant) {
       inputs.push_back({channel.name, "[" + channel.unit + "]", channel.meaning});
       continue;
     }
-    std::string sensor = channel.noise_std > 0.0 ? "noise " + short_number(channel.noise_std) : "noise as recorded";
-    if (channel.time_constant_s > 0.0) sensor += ", low-pass " + short_number(1e3 * channel.time_constant_s) + " ms";
+    std::string sensor = channel.noise_std > 0.0 ? "noise " + text::general(channel.noise_std) : "noise as recorded";
+    if (channel.time_constant_s > 0.0) sensor += ", low-pass " + text::general(1e3 * channel.time_constant_s) + " ms";
     outputs.push_back({channel.name, "[" + channel.unit + "]", sensor, channel.meaning});
   }
   print_table("Inputs", inputs);
@@ -99,8 +101,8 @@ void print_channels(const PlantDescription& plant) {
 void print_parameters(const PlantDescription& plant) {
   std::vector<TableRow> rows{{"", "", "default", "bounds", "tol.", "", ""}};
   for (const ParameterDescription& parameter : plant.parameters)
-    rows.push_back({parameter.name, "[" + parameter.unit + "]", short_number(parameter.value),
-                    short_number(parameter.min) + " to " + short_number(parameter.max), percent(parameter.tolerance),
+    rows.push_back({parameter.name, "[" + parameter.unit + "]", text::general(parameter.value),
+                    text::general(parameter.min) + " to " + text::general(parameter.max), percent(parameter.tolerance),
                     parameter.estimate ? "free" : "fixed", parameter.meaning});
   if (rows.size() > 1)
     print_table("Parameters (free: estimated where the channels allow it; tol.: standard deviation of the value)",
@@ -114,8 +116,8 @@ void print_elements(const ShownPlant& plant) {
     rows.push_back({element.name, element.meaning});
     for (const ShownSite& site : plant.sites)
       if (site.element == element.name)
-        rows.push_back({"", site.kind + " [" + site.unit +
-                                "]: " + (site.laws.empty() ? "no law of the catalogue" : joined(site.laws, ", "))});
+        rows.push_back({"", site.kind + " [" + site.unit + "]: " +
+                                (site.laws.empty() ? "no law of the catalogue" : text::joined(site.laws, ", "))});
   }
   rows.push_back({"sensor:CHANNEL", "measurement of an output"});
   rows.push_back({"", "sensor_bias, sensor_gain, sensor_lag, sensor_saturation"});
@@ -129,7 +131,7 @@ void print_elements(const ShownPlant& plant) {
 void print_law_sizes(const PlantDescription& plant) {
   std::vector<TableRow> rows;
   for (const LawSize& size : plant.law_sizes)
-    rows.push_back({std::string(size.unit), "x " + short_number(size.factor)});
+    rows.push_back({std::string(size.unit), "x " + text::general(size.factor)});
   print_table("Sizes of laws here against those of eha, by unit (law_sizes)", rows);
 }
 

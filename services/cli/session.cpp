@@ -17,6 +17,7 @@
 #include "services/common/runtime/channel_map_file.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
 #include "services/common/runtime/process_end.hpp"
+#include "services/common/text/format.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
 namespace sealwatch::cli {
@@ -113,9 +114,7 @@ bool interrupted() { return interrupt_seen; }
 
 std::string unique_name(const std::string& command) {
   std::random_device source;
-  char text[16];
-  std::snprintf(text, sizeof text, "%08x", source());
-  return command + "-" + text;
+  return text::format("{}-{:08x}", command, source());
 }
 
 }  // namespace sealwatch::cli

@@ -10,6 +10,7 @@
 #include "services/cli/message_words.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/message/json.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -121,7 +122,7 @@ std::string AssetView::forecast_lines() const {
 std::string AssetView::advisory_lines(bool services_run) const {
   if (!advisory_) return {};
   std::string text =
-      "  advisory         " + upper(name_of(advisory_->priority)) + ", " + words(name_of(advisory_->action));
+      "  advisory         " + upper(name_of(advisory_->priority)) + ", " + text::in_words(name_of(advisory_->action));
   if (advisory_->latest_by_known) text += ", latest by " + date(advisory_->latest_by_ns);
   if (advisory_->state == AdvisoryState::acknowledged) text += ", acknowledged by " + advisory_->acknowledged_by;
   text += "\n                   " + wrapped(advisory_->recommendation, 100, 19) + "\n";

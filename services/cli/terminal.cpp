@@ -6,69 +6,11 @@
 #include <cmath>
 
 #include "sealwatch/core/time.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch::cli {
 
-std::string number(double value, int digits) {
-  char text[64];
-  if (value != 0.0 && std::isfinite(value)) {
-    const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value))));
-    if (exponent >= 6 || exponent < -3) {
-      std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
-      return text;
-    }
-    std::snprintf(text, sizeof text, "%.*f", std::max(digits - 1 - exponent, 0), value);
-    return text;
-  }
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
-std::string percent(double share, int decimals) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f %%", decimals, 100.0 * share);
-  return text;
-}
-
 std::string date(std::int64_t time_ns) { return format_date(UtcTime{time_ns}); }
-
-std::string count_of(std::size_t count, std::string_view thing) {
-  std::string text = std::to_string(count);
-  text.append(" ").append(thing);
-  return count == 1 ? text : text.append("s");
-}
-
-std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
-  std::string result;
-  std::size_t column = indent;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    if (column > indent && column + 1 + end > width) {
-      result += '\n';
-      result.append(indent, ' ');
-      column = indent;
-    } else if (column > indent) {
-      result += ' ';
-      ++column;
-    }
-    result += text.substr(0, end);
-    column += end;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return result;
-}
-
-std::size_t letters(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-std::string padded(std::string_view text, std::size_t width) {
-  std::string result(text);
-  const std::size_t length = letters(text);
-  if (length < width) result.append(width - length, ' ');
-  return result;
-}
 
 std::string bar(double share, std::size_t cells) {
   constexpr double kNothing = 0.0005;  // shown as 0.0 %
@@ -138,9 +80,7 @@ std::string chart(const std::vector<ChartPoint>& points, const ChartOptions& opt
   std::string text;
   for (int row = 0; row < options.height; ++row) {
     const double y = options.y_high - (options.y_high - options.y_low) * row / (options.height - 1);
-    char label[16];
-    std::snprintf(label, sizeof label, "%6.1f |", y);
-    text += label + rows[static_cast<std::size_t>(row)];
+    text += text::format("{:6.1f} |{}", y, rows[static_cast<std::size_t>(row)]);
     if (row == threshold_row) text.append("  ").append(options.threshold_label);
     text += '\n';
   }

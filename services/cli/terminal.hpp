@@ -8,25 +8,23 @@
 #include <string_view>
 #include <vector>
 
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
+
 namespace sealwatch::cli {
 
-/// `value` with `digits` significant digits, "1.23e+12" only where plain digits would be longer than ten characters.
-[[nodiscard]] std::string number(double value, int digits = 4);
-/// "12.34 %"
-[[nodiscard]] std::string percent(double share, int decimals = 1);
+using text::count_of;
+using text::joined;
+using text::letters;
+using text::padded;
+using text::percent;
+using text::wrapped;
+
+/// As columns show it.
+[[nodiscard]] inline std::string number(double value, int digits = 4) { return text::with_zeros(value, digits); }
 /// Date of a UTC time in nanoseconds, "2031-04-12".
 [[nodiscard]] std::string date(std::int64_t time_ns);
 
-/// "1 test", "2 tests".
-[[nodiscard]] std::string count_of(std::size_t count, std::string_view thing);
-
-/// Breaks `text` into lines of at most `width` characters at blanks, each later line behind `indent` blanks.
-[[nodiscard]] std::string wrapped(std::string_view text, std::size_t width, std::size_t indent);
-
-/// Characters of UTF-8 text.
-[[nodiscard]] std::size_t letters(std::string_view text);
-/// `text` and blanks up to `width` characters.
-[[nodiscard]] std::string padded(std::string_view text, std::size_t width);
 /// "|#####               |": a share of one, cut to 0 .. 1. What is too little for a whole mark, but not nothing, is a
 /// dot.
 [[nodiscard]] std::string bar(double share, std::size_t cells = 20);

@@ -3,7 +3,8 @@
 #include "services/cli/trace_words.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -14,9 +15,9 @@ using trace::ChannelComparison;
 
 report::Plot course(const trace::TraceComparison& comparison, const ChannelComparison& channel) {
   return {
-      .title = report::words_of(channel.name),
+      .title = text::in_words(channel.name),
       .x = {.label = "time", .unit = "s"},
-      .y = {.label = report::words_of(channel.name), .unit = channel.unit},
+      .y = {.label = text::in_words(channel.name), .unit = channel.unit},
       .marks =
           {report::Line{.x = comparison.time_s, .y = channel.recorded, .ink = Ink::foreground, .label = "recorded"},
            report::Line{
@@ -39,28 +40,28 @@ report::Plot difference(const trace::TraceComparison& comparison, const ChannelC
 std::string alteration_table(const std::vector<Alteration>& alterations) {
   report::Table table({"~alteration", ">removes of the misfit", "leaves noise only"});
   for (const Alteration& alteration : alterations)
-    table.row({alteration_text(alteration), report::percent_text(alteration.removed_share),
+    table.row({alteration_text(alteration), text::percent_text(alteration.removed_share),
                alteration.would_do ? "yes" : "no"});
   return table.html();
 }
 
 std::string channel_part(const trace::TraceComparison& comparison, const ChannelComparison& channel) {
   std::string body = report::paragraph((channel.differs ? "Differs beyond noise" : "No difference beyond noise") +
-                                       std::string(" (p ") + report::p_value_text(channel.p_value) +
-                                       "): root mean square " + report::readable(channel.rms, channel.unit) +
-                                       ", noise " + report::readable(channel.noise_std, channel.unit) + " with " +
-                                       report::number_text(channel.effective_samples) + " effective samples.");
+                                       std::string(" (p ") + text::p_value_text(channel.p_value) +
+                                       "): root mean square " + text::readable(channel.rms, channel.unit) + ", noise " +
+                                       text::readable(channel.noise_std, channel.unit) + " with " +
+                                       text::number_text(channel.effective_samples) + " effective samples.");
   body += "<div class=\"plots\">";
   for (const report::Plot& plot : {course(comparison, channel), difference(comparison, channel)})
     body.append("<div>").append(report::to_svg(plot)).append("</div>");
   body += "</div>";
   report::Table regimes({"regime", ">share of the time", ">rms of the difference", ">share of the misfit"});
   for (const trace::RegimeMisfit& regime : channel.regimes)
-    regimes.row({regime.name, report::percent_text(regime.time_share), report::readable(regime.rms, channel.unit),
-                 report::percent_text(regime.misfit_share)});
+    regimes.row({regime.name, text::percent_text(regime.time_share), text::readable(regime.rms, channel.unit),
+                 text::percent_text(regime.misfit_share)});
   body += regimes.html();
   if (!channel.alterations.empty()) body += alteration_table(channel.alterations);
-  return report::section(report::words_of(channel.name), body);
+  return report::section(text::in_words(channel.name), body);
 }
 
 }  // namespace

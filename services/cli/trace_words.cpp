@@ -3,7 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -16,9 +17,9 @@ using trace::ChannelComparison;
 std::string parameter_text(const AlteredParameter& parameter) {
   const std::string name = parameter.name + " ";
   if (parameter.std_error > 0.0)
-    return name + report::readable_with_error(parameter.value, parameter.std_error,
-                                              parameter.unit == "1" ? "" : parameter.unit);
-  return name + report::readable(parameter.value, parameter.unit);
+    return name +
+           text::readable_with_error(parameter.value, parameter.std_error, parameter.unit == "1" ? "" : parameter.unit);
+  return name + text::readable(parameter.value, parameter.unit);
 }
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -66,9 +67,9 @@ Json channel_json(const ChannelComparison& channel) {
 }  // namespace
 
 std::string alteration_text(const Alteration& alteration) {
-  std::string text = report::words_of(alteration.id);
+  std::string text = text::in_words(alteration.id);
   if (const std::size_t colon = alteration.where.find(':'); colon != std::string::npos)
-    text += " of " + report::words_of(alteration.where.substr(colon + 1));
+    text += " of " + text::in_words(alteration.where.substr(colon + 1));
   for (const AlteredParameter& parameter : alteration.parameters)
     text.append(&parameter == alteration.parameters.data() ? ": " : ", ").append(parameter_text(parameter));
   return text;
@@ -80,7 +81,7 @@ std::string trace_summary(const trace::TraceComparison& comparison) {
   std::string channels;
   std::size_t differing = 0;
   for (const ChannelComparison& channel : comparison.channels)
-    if (channel.differs) channels.append(differing++ == 0 ? "" : ", ").append(report::words_of(channel.name));
+    if (channel.differs) channels.append(differing++ == 0 ? "" : ", ").append(text::in_words(channel.name));
   std::string text = "They differ beyond noise in " + channels + ". ";
   if (comparison.answer.empty())
     return text + "No gain, offset, delay, clock rate or sign of a channel or of the input would do.";

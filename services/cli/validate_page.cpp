@@ -5,7 +5,8 @@
 
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -18,9 +19,9 @@ constexpr double kNormal97_5 = 1.959963984540054;
 Plot course(const RecordingValidation& recording, const ChannelValidation& channel) {
   return {
       .title =
-          report::words_of(channel.fit.channel) + ", NRMSE " + report::number_text(channel.fit.nrmse_percent, 4) + " %",
+          text::in_words(channel.fit.channel) + ", NRMSE " + text::number_text(channel.fit.nrmse_percent, 4) + " %",
       .x = {.label = "time", .unit = "s"},
-      .y = {.label = report::words_of(channel.fit.channel), .unit = channel.unit},
+      .y = {.label = text::in_words(channel.fit.channel), .unit = channel.unit},
       .marks =
           {report::Line{.x = recording.time_s, .y = channel.recorded, .ink = Ink::foreground, .label = "recorded"},
            report::Line{
@@ -62,10 +63,10 @@ std::string channel_table(const RecordingValidation& recording) {
       {"channel", ">NRMSE %", ">noise of one sample", ">residual rms / noise", ">whiteness p", ">independence p"});
   for (const ChannelValidation& channel : recording.channels) {
     const bool noise_known = channel.noise_std > 0.0;
-    table.row({report::words_of(channel.fit.channel), report::number_text(channel.fit.nrmse_percent, 4),
-               noise_known ? report::readable(channel.noise_std, channel.unit) : "not known",
-               noise_known ? report::number_text(channel.fit.noise_normalised_rms) : "–",
-               report::p_value_text(channel.fit.whiteness_p), report::p_value_text(channel.fit.independence_p)});
+    table.row({text::in_words(channel.fit.channel), text::number_text(channel.fit.nrmse_percent, 4),
+               noise_known ? text::readable(channel.noise_std, channel.unit) : "not known",
+               noise_known ? text::number_text(channel.fit.noise_normalised_rms) : "–",
+               text::p_value_text(channel.fit.whiteness_p), text::p_value_text(channel.fit.independence_p)});
   }
   return table.html();
 }
@@ -73,7 +74,7 @@ std::string channel_table(const RecordingValidation& recording) {
 std::string recording_part(const RecordingValidation& recording) {
   std::string plots;
   for (const ChannelValidation& channel : recording.channels) {
-    plots.append("<h3>").append(report::escaped(report::words_of(channel.fit.channel))).append("</h3>");
+    plots.append("<h3>").append(report::escaped(text::in_words(channel.fit.channel))).append("</h3>");
     plots += "<div class=\"plots\">";
     for (const Plot& plot : {course(recording, channel), residual(recording, channel), autocorrelation(channel)})
       plots.append("<div>").append(report::to_svg(plot)).append("</div>");
@@ -85,8 +86,8 @@ std::string recording_part(const RecordingValidation& recording) {
 std::string parameter_table(const ModelValidation& validation) {
   report::Table table({"parameter", ">value", ">standard error", "unit", "remark"});
   for (const EstimatedParameter& parameter : validation.parameters)
-    table.row({parameter.name, report::number_text(parameter.value, 4), report::number_text(parameter.std_error, 2),
-               report::unit_text(parameter.unit), parameter.at_bound ? "at its bound" : ""});
+    table.row({parameter.name, text::number_text(parameter.value, 4), text::number_text(parameter.std_error, 2),
+               text::unit_text(parameter.unit), parameter.at_bound ? "at its bound" : ""});
   return table.html();
 }
 

@@ -9,9 +9,10 @@
 #include "services/cli/terminal.hpp"
 #include "services/cli/trace_page.hpp"
 #include "services/cli/trace_words.hpp"
-#include "services/common/report/readable.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/channel_map_file.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -21,30 +22,30 @@ constexpr std::size_t kAlterationsShown = 6;
 
 void print_alterations(const std::vector<trace::Alteration>& alterations) {
   for (std::size_t k = 0; k < std::min(alterations.size(), kAlterationsShown); ++k)
-    std::printf("    %6s  %-12s %s\n", report::percent_text(alterations[k].removed_share).c_str(),
+    std::printf("    %6s  %-12s %s\n", text::percent_text(alterations[k].removed_share).c_str(),
                 alterations[k].would_do ? "would do" : "", alteration_text(alterations[k]).c_str());
 }
 
 void print_channel(const trace::ChannelComparison& channel) {
-  std::printf("\n  %s: %s (p %s)\n", report::words_of(channel.name).c_str(),
+  std::printf("\n  %s: %s (p %s)\n", text::in_words(channel.name).c_str(),
               channel.differs ? "differs beyond noise" : "no difference beyond noise",
-              report::p_value_text(channel.p_value).c_str());
+              text::p_value_text(channel.p_value).c_str());
   std::printf("    difference %s rms, noise %s, %s effective samples of %zu; NRMSE %.2f %%\n",
-              report::readable(channel.rms, channel.unit).c_str(),
-              report::readable(channel.noise_std, channel.unit).c_str(),
-              report::number_text(channel.effective_samples).c_str(), channel.recorded.size(), channel.nrmse_percent);
+              text::readable(channel.rms, channel.unit).c_str(),
+              text::readable(channel.noise_std, channel.unit).c_str(),
+              text::number_text(channel.effective_samples).c_str(), channel.recorded.size(), channel.nrmse_percent);
   if (!channel.differs) return;
   std::string by;
   for (const std::string& group : channel.by) by.append(by.empty() ? "" : "; ").append(group);
   std::printf("    it goes with: %s\n", wrapped(by, kWidth, 4).c_str());
   for (const trace::MisfitInterval& interval : channel.intervals)
-    std::printf("    %6s of it from %s to %s s\n", report::percent_text(interval.misfit_share).c_str(),
+    std::printf("    %6s of it from %s to %s s\n", text::percent_text(interval.misfit_share).c_str(),
                 number(interval.begin_s).c_str(), number(interval.end_s).c_str());
   for (const trace::RegimeMisfit& regime : channel.regimes)
-    std::printf("    %6s of it %s (%s of the time), %s rms\n", report::percent_text(regime.misfit_share).c_str(),
-                regime.name.c_str(), report::percent_text(regime.time_share).c_str(),
-                report::readable(regime.rms, channel.unit).c_str());
-  std::printf("  removes of the misfit of %s:\n", report::words_of(channel.name).c_str());
+    std::printf("    %6s of it %s (%s of the time), %s rms\n", text::percent_text(regime.misfit_share).c_str(),
+                regime.name.c_str(), text::percent_text(regime.time_share).c_str(),
+                text::readable(regime.rms, channel.unit).c_str());
+  std::printf("  removes of the misfit of %s:\n", text::in_words(channel.name).c_str());
   print_alterations(channel.alterations);
 }
 

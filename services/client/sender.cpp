@@ -1,10 +1,9 @@
 #include "sealwatch/client/sender.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <random>
 
+#include "services/common/text/format.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
 namespace sealwatch::client {
@@ -18,9 +17,7 @@ constexpr std::chrono::milliseconds kLook{20};
 
 std::string unique_writer_id(const std::string& name) {
   std::random_device random;
-  std::array<char, 18> bits{};
-  std::snprintf(bits.data(), bits.size(), "-%08x%08x", random(), random());
-  return name + bits.data();
+  return text::format("{}-{:08x}{:08x}", name, random(), random());
 }
 
 }  // namespace

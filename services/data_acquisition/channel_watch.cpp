@@ -1,8 +1,11 @@
 #include "services/data_acquisition/channel_watch.hpp"
 
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <numbers>
+#include <vector>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -26,39 +29,43 @@ std::array<bool, kWitnesses> witnesses_for(const ChannelDescription& channel) {
   return {true, true, false, false};
 }
 
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
+/// What each witness must have moved; those that say nothing of the channel, never.
+std::vector<double> least_moves(const ChannelDescription& channel, double stroke_m) {
+  const std::array<bool, kWitnesses> speaks = witnesses_for(channel);
+  std::vector<double> least = {kMovedShare * stroke_m, kMovedShare * stroke_m, kMovedAngle_rad, kMovedAngle_rad};
+  for (std::size_t i = 0; i < kWitnesses; ++i)
+    if (!speaks[i]) least[i] = std::numeric_limits<double>::infinity();
+  return least;
+}
+
+signal::StuckRule rule_for(const ChannelDescription& channel, const SensorSetting& sensor,
+                           const DataAcquisitionOptions& options) {
+  const double noise_std = sensor.noise_std > 0.0 ? sensor.noise_std : channel.noise_std;
+  return {.least_samples = options.least_frozen_samples,
+          .least_s = options.least_frozen_s,
+          .noise_shows = !is_kinematic(channel) && noise_std > 0.0 && sensor.quantisation <= kCoarseSteps * noise_std};
 }
 
 }  // namespace
 
-ChannelWatch::ChannelWatch(const ChannelDescription& channel, const SensorSetting& sensor, double stroke_m)
+ChannelWatch::ChannelWatch(const ChannelDescription& channel, const SensorSetting& sensor, double stroke_m,
+                           const DataAcquisitionOptions& options)
     : name_(channel.name),
       unit_(channel.unit),
       judged_(!channel.input && !is_slow(channel)),
-      witness_(witnesses_for(channel)),
-      stroke_m_(stroke_m) {
+      stuck_(rule_for(channel, sensor, options), least_moves(channel, stroke_m)) {
   const bool own_range = sensor.range_max > sensor.range_min;
   range_min_ = own_range ? sensor.range_min : channel.range_min;
   range_max_ = own_range ? sensor.range_max : channel.range_max;
-  const double noise_std = sensor.noise_std > 0.0 ? sensor.noise_std : channel.noise_std;
-  noise_rule_ = !is_kinematic(channel) && noise_std > 0.0 && sensor.quantisation <= kCoarseSteps * noise_std;
 }
 
-void ChannelWatch::add(double time_s, double value, const Travel& travel, const DataAcquisitionOptions& options) {
+void ChannelWatch::add(double time_s, double value, const Travel& travel) {
   ++count_;
-  if (!std::isfinite(value)) {
+  stuck_.add(time_s, value, travel);
+  if (std::isfinite(value))
+    check_range(time_s, value);
+  else
     ++not_a_number_;
-    interrupt();
-    return;
-  }
-  check_range(time_s, value);
-  extend_run(time_s, value, travel);
-  if (judged_ && run_.count > frozen_.count && frozen(time_s, options))
-    frozen_ = {.value = value, .begin_s = run_.begin_s, .end_s = time_s, .count = run_.count};
 }
 
 void ChannelWatch::check_range(double time_s, double value) {
@@ -68,40 +75,9 @@ void ChannelWatch::check_range(double time_s, double value) {
   ++out_of_range_;
 }
 
-void ChannelWatch::extend_run(double time_s, double value, const Travel& travel) {
-  if (run_.count == 0 || value != run_.value)
-    run_ = {.value = value, .begin_s = time_s, .count = 0, .least = travel, .most = travel};
-  ++run_.count;
-  for (std::size_t i = 0; i < kWitnesses; ++i) {
-    run_.least[i] = std::fmin(run_.least[i], travel[i]);  // fmin and fmax pass over NaN
-    run_.most[i] = std::fmax(run_.most[i], travel[i]);
-  }
-}
-
-bool ChannelWatch::moved() const {
-  for (std::size_t i = 0; i < kWitnesses; ++i) {
-    const bool angle =
-        i == static_cast<std::size_t>(Witness::pump_angle) || i == static_cast<std::size_t>(Witness::shaft_speed);
-    const double least = angle ? kMovedAngle_rad : kMovedShare * stroke_m_;
-    if (witness_[i] && run_.most[i] - run_.least[i] > least) return true;  // false for NaN
-  }
-  return false;
-}
-
-bool ChannelWatch::frozen(double time_s, const DataAcquisitionOptions& options) const {
-  if (run_.count < options.least_frozen_samples || time_s - run_.begin_s < options.least_frozen_s) return false;
-  return (noise_rule_ && run_.value != 0.0) || moved();
-}
-
-std::string ChannelWatch::frozen_reason() const {
-  return print("frozen at %.5g %s for %.2f s from %.2f s", frozen_.value, unit_.c_str(),
-               frozen_.end_s - frozen_.begin_s, frozen_.begin_s);
-}
-
 std::string ChannelWatch::range_reason() const {
-  return print("%llu of %llu samples out of range %.5g..%.5g %s, worst %.5g at %.2f s",
-               static_cast<unsigned long long>(out_of_range_), static_cast<unsigned long long>(count_), range_min_,
-               range_max_, unit_.c_str(), worst_, worst_s_);
+  return text::format("{} of {} samples out of range {:.5g}..{:.5g} {}, worst {:.5g} at {:.2f} s", out_of_range_,
+                      count_, range_min_, range_max_, unit_, worst_, worst_s_);
 }
 
 ChannelStatus ChannelWatch::status(const DataAcquisitionOptions& options) const {
@@ -113,11 +89,13 @@ ChannelStatus ChannelWatch::status(const DataAcquisitionOptions& options) const 
     if (!failed && status.state == ChannelState::OK) status.state = ChannelState::UNKNOWN;
   };
   const double least_failed = options.failed_share * static_cast<double>(count_);
-  if (frozen_.count > 0) note(frozen_reason(), true);
+  if (const auto run = stuck_.stuck(); judged_ && run)
+    note(text::format("frozen at {:.5g} {} for {:.2f} s from {:.2f} s", run->value, unit_, run->end_s - run->begin_s,
+                      run->begin_s),
+         true);
   if (out_of_range_ > 0) note(range_reason(), static_cast<double>(out_of_range_) > least_failed);
   if (not_a_number_ > 0)
-    note(print("%llu of %llu samples are not a number that a sensor gives",
-               static_cast<unsigned long long>(not_a_number_), static_cast<unsigned long long>(count_)),
+    note(text::format("{} of {} samples are not a number that a sensor gives", not_a_number_, count_),
          static_cast<double>(not_a_number_) > least_failed);
   return status;
 }

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdio>
 
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/data_acquisition/pst_id.hpp"
 
 namespace sealwatch {
@@ -54,7 +55,7 @@ BlockBoundary boundary_of(const RawSamples& raw) {
 Status DataAcquisitionOptions::validate() const {
   const auto check = [](bool good, const char* option, double value, const char* rule) -> Status {
     if (good) return {};
-    return fail(Error{.file = {}, .place = option, .value = std::to_string(value), .rule = rule, .advice = {}});
+    return fail(Error{.file = {}, .place = option, .value = text::general(value), .rule = rule, .advice = {}});
   };
   if (Status s = check(time_out_s > 0.0, "time_out_s", time_out_s, "must be positive"); !s) return s;
   if (Status s = check(least_frozen_s > 0.0, "least_frozen_s", least_frozen_s, "must be positive"); !s) return s;
@@ -188,8 +189,7 @@ Conclusion DataAcquisition::tick(UtcTime now) {
     running.silent_s += passed_s;
     if (running.silent_s >= options_.time_out_s) silent.push_back(place);
   }
-  char reason[80];
-  std::snprintf(reason, sizeof reason, "cut: no samples for %.0f s", options_.time_out_s);
+  const std::string reason = text::format("cut: no samples for {:.0f} s", options_.time_out_s);
   for (const std::string& place : silent) close(place, reason, conclusion);
   return conclusion;
 }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/units.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -52,7 +52,7 @@ OpenTest::OpenTest(std::string asset_id, const AssetConfig* asset, const PlantDe
   if (!plant_) return;
   const double stroke_m = stroke_of(asset, *plant_);
   for (const ChannelDescription& channel : plant_->channels)
-    watches_.emplace_back(channel.name, ChannelWatch(channel, sensor_of(asset, channel.name), stroke_m));
+    watches_.emplace_back(channel.name, ChannelWatch(channel, sensor_of(asset, channel.name), stroke_m, *options_));
 }
 
 /// Beyond the longest test a time is damaged, like one that goes back.
@@ -198,8 +198,7 @@ void OpenTest::take_rows(const SampleBlock& block) {
     advance(travel_[static_cast<std::size_t>(Witness::shaft_speed)],
             value_at(samples, plant_, ChannelRole::shaft_speed, row), step_s);
     for (auto& [name, watch] : watches_)
-      if (const Series* series = samples.find(name))
-        watch.add(samples.time_s[row], series->values[row], travel_, *options_);
+      if (const Series* series = samples.find(name)) watch.add(samples.time_s[row], series->values[row], travel_);
   }
   if (plant_) return;
   for (const Series& channel : samples.channels)
@@ -213,9 +212,9 @@ std::vector<ChannelStatus> OpenTest::status() const {
   for (const auto& [name, watch] : watches_) {
     ChannelStatus status = watch.status(*options_);
     if (status.state == ChannelState::OK && lost_share > options_->unknown_missing_share) {
-      char text[120];
-      std::snprintf(text, sizeof text, "%.0f %% of the samples are missing or out of time order", 100.0 * lost_share);
-      status = {.channel = name, .state = ChannelState::UNKNOWN, .reason = text};
+      status = {.channel = name,
+                .state = ChannelState::UNKNOWN,
+                .reason = text::percent(lost_share, 0) + " of the samples are missing or out of time order"};
     }
     const auto out = left_out_.find(name);
     if (out != left_out_.end() && status.state == ChannelState::NOT_USED)

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "sealwatch/signal/alignment.hpp"
 #include "sealwatch/signal/filters.hpp"
 #include "sealwatch/signal/statistics.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -88,10 +88,8 @@ void AlignmentCheck::note_offset(const std::string& channel, double offset_s, do
   one.time_offset_s = offset_s;
   one.time_offset_std_s = std_s;
   one.corrected = one.corrected || correct;
-  char text[80];
-  std::snprintf(text, sizeof text, "%.0f +- %.0f ms %s: ", 1e3 * std::abs(offset_s), 1e3 * std_s,
-                offset_s > 0.0 ? "late" : "early");
-  one.remark += (one.remark.empty() ? "" : "; ") + (text + why);
+  one.remark += text::format("{}{:.0f} +- {:.0f} ms {}: {}", one.remark.empty() ? "" : "; ", 1e3 * std::abs(offset_s),
+                             1e3 * std_s, offset_s > 0.0 ? "late" : "early", why);
   if (correct) alignment_.corrections[channel].shift_s = offset_s;
 }
 

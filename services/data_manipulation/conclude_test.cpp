@@ -1,11 +1,11 @@
 #include "services/data_manipulation/conclude_test.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "sealwatch/message/provenance.hpp"
 #include "sealwatch/signal/features.hpp"
 #include "sealwatch/signal/test_record.hpp"
+#include "services/common/text/format.hpp"
 #include "services/data_manipulation/alignment_check.hpp"
 #include "services/data_manipulation/window.hpp"
 
@@ -63,10 +63,8 @@ std::string cut_reason(const TestWindow& window, double duration_s, const AssetV
   const bool returned = count >= 2 && window.phases[count - 1].kind == PhaseKind::hold &&
                         window.phases[count - 2].kind == PhaseKind::back;
   if (returned || duration_s >= options.complete_share * expected_s) return {};
-  char reason[120];
-  std::snprintf(reason, sizeof reason, "cut after %.1f s of about %.0f s, in phase %s", duration_s, expected_s,
-                std::string(name_of(window.phases.back().kind)).c_str());
-  return reason;
+  return text::format("cut after {:.1f} s of about {:.0f} s, in phase {}", duration_s, expected_s,
+                      name_of(window.phases.back().kind));
 }
 
 /// A stroke test begins at rest. Without it neither the way that the piston went nor where it should come back to is

@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "services/common/text/numbers.hpp"
 #include "services/data_manipulation/conclude_test.hpp"
 
 namespace sealwatch {
@@ -19,7 +20,7 @@ bool ends(const SampleBlock& block) {
 Status DataManipulationOptions::validate() const {
   const auto check = [](bool good, const char* option, double value, const char* rule) -> Status {
     if (good) return {};
-    return fail(Error{.file = {}, .place = option, .value = std::to_string(value), .rule = rule, .advice = {}});
+    return fail(Error{.file = {}, .place = option, .value = text::general(value), .rule = rule, .advice = {}});
   };
   if (Status s = check(longest_gap_s > 0.0, "longest_gap_s", longest_gap_s, "must be positive"); !s) return s;
   if (Status s = check(least_samples >= 16, "least_samples", static_cast<double>(least_samples), "must be 16 or more");

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
-#include "sealwatch/signal/statistics.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -53,10 +53,8 @@ signal::Interpolation interpolation(const Series& channel, const AssetView& asse
 }
 
 double noise_std(const Series& channel, const AssetView& asset) {
-  if (channel.noise_std > 0.0) return channel.noise_std;
-  if (asset.is_input(channel.name) && is_discrete(channel)) return 0.0;
-  const double estimate = signal::estimate_noise_std(channel.values);
-  return estimate > 0.0 ? estimate : asset.noise_std(channel.name);
+  if (channel.noise_std <= 0.0 && asset.is_input(channel.name) && is_discrete(channel)) return 0.0;
+  return signal::believed_noise_std(channel, asset.noise_std(channel.name));
 }
 
 /// Grid without the ends that shifted channels do not reach.
@@ -105,8 +103,7 @@ std::string cut_at_gap(TimeSeries& recorded, double longest_gap_s) {
   const auto gap = std::adjacent_find(time_s.begin(), time_s.end(),
                                       [longest_gap_s](double a, double b) { return b - a > longest_gap_s; });
   if (gap == time_s.end()) return {};
-  char reason[120];
-  std::snprintf(reason, sizeof reason, "cut: nothing was recorded for %.1f s after %.1f s", *(gap + 1) - *gap, *gap);
+  std::string reason = text::format("cut: nothing was recorded for {:.1f} s after {:.1f} s", *(gap + 1) - *gap, *gap);
   const auto rows = static_cast<std::size_t>(gap - time_s.begin()) + 1;
   recorded.time_s.resize(rows);
   for (Series& channel : recorded.channels) channel.values.resize(rows);
@@ -120,12 +117,9 @@ std::optional<std::string> beyond_window(const TimeSeries& recorded, const TestL
   if (auto why = too_fast(grid.interval_s, limits)) return why;
   const auto rows = static_cast<double>(recorded.time_s.size());
   const auto window_rows = static_cast<double>(grid.count);
-  if (window_rows > limits.most_window_rows_per_row * rows) {
-    char why[160];
-    std::snprintf(why, sizeof why, "rows %.3g s apart but for gaps: %.0f rows would stand for the %.0f recorded",
-                  grid.interval_s, window_rows, rows);
-    return why;
-  }
+  if (window_rows > limits.most_window_rows_per_row * rows)
+    return text::format("rows {:.3g} s apart but for gaps: {:.0f} rows would stand for the {:.0f} recorded",
+                        grid.interval_s, window_rows, rows);
   return too_many_numbers(window_rows * static_cast<double>(channels + 1), limits);
 }
 

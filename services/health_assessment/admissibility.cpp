@@ -1,10 +1,10 @@
 #include "services/health_assessment/admissibility.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <initializer_list>
 
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -63,16 +63,12 @@ std::string missing_channels(const TestFeatures& features, bool of_seal) {
 }
 
 std::string quality_text(const RegionJudgement& judgement) {
-  char text[160];
   if (judgement.quantity == "fluid_temperature_deviation")
-    std::snprintf(text, sizeof text,
-                  "off temperature: the oil was %+.1f K from the 4 degC of the seabed, %.1f K are allowed",
-                  judgement.value, judgement.warning_limit);
-  else
-    std::snprintf(text, sizeof text, "%s: %.0f %% of the test, %.0f %% are allowed",
-                  judgement.quantity == "drive_saturation" ? "the drive was saturated" : "samples are missing",
-                  100.0 * judgement.value, 100.0 * judgement.warning_limit);
-  return text;
+    return text::format("off temperature: the oil was {:+.1f} K from the 4 degC of the seabed, {:.1f} K are allowed",
+                        judgement.value, judgement.warning_limit);
+  return text::format("{}: {:.0f} % of the test, {:.0f} % are allowed",
+                      judgement.quantity == "drive_saturation" ? "the drive was saturated" : "samples are missing",
+                      100.0 * judgement.value, 100.0 * judgement.warning_limit);
 }
 
 bool is_poor(const RegionJudgement& judgement) {

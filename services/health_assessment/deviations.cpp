@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -45,19 +48,10 @@ const Deviation* find_deviation(const std::vector<Deviation>& deviations, std::s
   return found == deviations.end() ? nullptr : &*found;
 }
 
-std::string in_words(std::string_view name) {
-  std::string text(name);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
 std::string in_words(const RegionJudgement& judgement) {
-  char text[200];
-  const std::string unit = judgement.unit == "1" ? "" : " " + judgement.unit;  // a plain number has none to name
-  std::snprintf(text, sizeof text, "%s %.3g%s, advisory %s %.3g", in_words(judgement.quantity).c_str(), judgement.value,
-                unit.c_str(), judgement.alarm_limit < judgement.advisory_limit ? "below" : "above",
-                judgement.advisory_limit);
-  return text;
+  return text::format("{} {}, advisory {} {:.3g}", text::in_words(judgement.quantity),
+                      text::with_unit(judgement.value, judgement.unit),
+                      judgement.alarm_limit < judgement.advisory_limit ? "below" : "above", judgement.advisory_limit);
 }
 
 }  // namespace sealwatch

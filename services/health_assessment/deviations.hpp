@@ -28,9 +28,7 @@ struct Deviation {
 
 [[nodiscard]] const Deviation* find_deviation(const std::vector<Deviation>& deviations, std::string_view quantity);
 
-/// "pump_slip 3.1e-14 m3/(s Pa), advisory above 2.6e-14"
+/// "pump slip 3.1e-14 m3/(s Pa), advisory above 2.6e-14"
 [[nodiscard]] std::string in_words(const RegionJudgement& judgement);
-/// "pump_slip" -> "pump slip".
-[[nodiscard]] std::string in_words(std::string_view name);
 
 }  // namespace sealwatch

@@ -1,12 +1,14 @@
 #include "services/health_assessment/discrepancy_watch.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <utility>
 
 #include "sealwatch/config/judged_quantities.hpp"
 #include "sealwatch/message/provenance.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 #include "services/health_assessment/deviations.hpp"
 
 namespace sealwatch {
@@ -32,13 +34,10 @@ void add_later(Conclusion& conclusion, Work work) {
 }
 
 std::string residual_words(const RegionJudgement& judgement) {
-  char figures[120];
-  const std::string unit = judgement.unit == "1" ? "" : " " + judgement.unit;
-  std::snprintf(figures, sizeof figures, " is %.3g%s, in region ", judgement.value, unit.c_str());
-  std::string text = "difference from the simulation in ";
-  text.append(in_words(std::string_view(judgement.quantity).substr(kResidualQuantity.size()))).append(figures);
-  text.append(name_of(judgement.raw_region)).append(" against ");
-  return text.append(in_words(name_of(judgement.reference)));
+  return text::format("difference from the simulation in {} is {}, in region {} against {}",
+                      text::in_words(std::string_view(judgement.quantity).substr(kResidualQuantity.size())),
+                      text::with_unit(judgement.value, judgement.unit), name_of(judgement.raw_region),
+                      text::in_words(name_of(judgement.reference)));
 }
 
 /// The test as the analysis takes it: channels that the test's own status calls OK.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -11,9 +13,8 @@ namespace {
 constexpr double kNoticeable = 0.5;
 
 std::string widths_text(const Deviation& deviation) {
-  char text[60];
-  std::snprintf(text, sizeof text, " (%.1f times the advisory deviation)", std::abs(deviation.value));
-  return in_words(deviation.judgement) + text;
+  return text::format("{} ({:.1f} times the advisory deviation)", in_words(deviation.judgement),
+                      std::abs(deviation.value));
 }
 
 /// Quantities at hand that one of the two faults moves and the other does not.
@@ -22,13 +23,13 @@ std::string separating(const Signature& one, const Signature& other, const std::
   for (const Deviation& deviation : deviations) {
     const std::string& quantity = deviation.judgement.quantity;
     if (!deviation.informative || one.moves.count(quantity) == other.moves.count(quantity)) continue;
-    names += (names.empty() ? "" : ", ") + in_words(quantity);
+    names += (names.empty() ? "" : ", ") + text::in_words(quantity);
   }
   return names;
 }
 
 std::string separation_text(const ProposedFault& other, const std::string& names) {
-  const std::string rival = in_words(name_of(other.kind)) + " (" + in_words(other.element) + ")";
+  const std::string rival = text::in_words(name_of(other.kind)) + " (" + text::in_words(other.element) + ")";
   if (names.empty()) return "cannot be told apart from " + rival + " by the recorded channels";
   return "told apart from " + rival + " by " + names;
 }

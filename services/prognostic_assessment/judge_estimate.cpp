@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "sealwatch/forecast/words.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::prognostic_assessment {
 namespace {
@@ -44,7 +44,7 @@ void take_value(LeakageEstimate& estimate, const FitReport& fit, const Estimated
   estimate.unit = worn.unit;
   if (!fit.admissible) append(estimate.reasons, fit.reasons, "the fit of model " + fit.model + " is not admissible");
   if (positive && worn.value <= 0.0)
-    estimate.reasons.push_back(worn.name + " = " + forecast::three_digits(worn.value) + " " + worn.unit +
+    estimate.reasons.push_back(worn.name + " = " + text::three_digits(worn.value) + " " + worn.unit +
                                " is not positive");
 }
 
@@ -63,8 +63,8 @@ void take_condition(LeakageEstimate& estimate, const AssetConfig& asset, const P
   estimate.condition_std = scale.condition_std(estimate.resistance_Pa_s_m3, estimate.resistance_std_Pa_s_m3);
   if (estimate.condition_std > largest_condition_std)
     estimate.reasons.push_back("the standard error of the " + std::string(plant.condition ? "seal " : "") +
-                               "condition, " + forecast::condition_in_percent(estimate.condition_std) + ", is above " +
-                               forecast::condition_in_percent(largest_condition_std));
+                               "condition, " + text::condition_in_percent(estimate.condition_std) + ", is above " +
+                               text::condition_in_percent(largest_condition_std));
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "sealwatch/forecast/decision.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "sealwatch/message/provenance.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/prognostic_assessment/judge_estimate.hpp"
 #include "services/prognostic_assessment/pst_request.hpp"
 #include "services/prognostic_assessment/self_scoring.hpp"
@@ -27,7 +27,7 @@ std::string dates_after(const std::vector<forecast::ConditionSample>& samples, U
   for (const forecast::ConditionSample& sample : samples)
     if (sample.time > begin)
       text += (text.empty() ? "" : ", ") + format_date(sample.time) + " (" +
-              forecast::condition_in_percent(sample.condition) + ")";
+              text::condition_in_percent(sample.condition) + ")";
   return text;
 }
 
@@ -47,7 +47,7 @@ void mark_unconfirmed(LeakageEstimate& estimate, const std::vector<forecast::Con
   if (!alone || !estimate.used_for_forecast) return;
   estimate.used_for_forecast = false;
   estimate.reasons.push_back(kUnconfirmed + std::string("the seal condition, ") +
-                             forecast::condition_in_percent(estimate.condition) +
+                             text::condition_in_percent(estimate.condition) +
                              ", is more than five robust standard deviations off its neighbours; it counts "
                              "once the next test confirms it");
 }
@@ -58,7 +58,7 @@ Status Options::validate() const {
   if (!(largest_condition_std > 0.0))
     return fail(Error{.file = {},
                       .place = "largest_condition_std",
-                      .value = std::to_string(largest_condition_std),
+                      .value = text::general(largest_condition_std),
                       .rule = "must be positive",
                       .advice = {}});
   if (const auto panel = forecast::ForecastPanel::make(forecasters); !panel) return fail(panel.error());

@@ -1,8 +1,7 @@
 #include "services/prognostic_assessment/pst_request.hpp"
+#include "services/common/text/numbers.hpp"
 
 #include <cassert>
-
-#include "sealwatch/forecast/words.hpp"
 
 namespace sealwatch::prognostic_assessment {
 
@@ -21,7 +20,7 @@ PstRequest next_test(const AssetConfig& asset, const LeakageEstimate& estimate) 
   } else {
     request.due_time_ns = add_months(tested, asset.pst.interval_months).nanoseconds;
     request.reason =
-        "regular test, " + forecast::in_months(asset.pst.interval_months) + " after that of " + format_date(tested);
+        "regular test, " + text::in_months(asset.pst.interval_months) + " after that of " + format_date(tested);
   }
   return request;
 }
@@ -30,7 +29,7 @@ PstRequest first_test(const AssetConfig& asset, UtcTime replaced, const std::str
   PstRequest request;
   request.asset_id = asset.asset_id;
   request.due_time_ns = add_months(replaced, asset.pst.interval_months).nanoseconds;
-  request.reason = what + ": first regular test " + forecast::in_months(asset.pst.interval_months) + " after it";
+  request.reason = what + ": first regular test " + text::in_months(asset.pst.interval_months) + " after it";
   return request;
 }
 

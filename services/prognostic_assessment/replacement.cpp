@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sealwatch/message/provenance.hpp"
+#include "services/common/text/words.hpp"
 #include "services/prognostic_assessment/prognostic_assessment.hpp"
 #include "services/prognostic_assessment/pst_request.hpp"
 
@@ -23,8 +24,7 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   conclusion.consumed.push_back(event.header.message_id);
   if (!event.header.event_time_known) return conclusion;  // without its time it cannot part the history
   const UtcTime time{event.header.event_time_ns};
-  std::string what = event.kind + " on " + format_date(time);
-  std::ranges::replace(what, '_', ' ');
+  const std::string what = text::in_words(event.kind) + " on " + format_date(time);
   AssetHistory& history = history_[event.asset_id];
   history.add_replacement(time);
   const UtcTime last = *history.last_replacement();

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <set>
 #include <utility>
 
 #include "sealwatch/message/retraction.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/state_detection/indicators.hpp"
 #include "services/state_detection/judgements.hpp"
 #include "services/state_detection/residual.hpp"
@@ -46,11 +47,7 @@ bool is_before(const MaintenanceEvent& event, const TestFeatures& test) {
   return event.header.event_time_ns <= test.header.event_time_ns;
 }
 
-std::string days_text(double days) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, "%.0f days", days);
-  return buffer;
-}
+std::string days_text(double days) { return text::format("{:.0f} days", days); }
 
 }  // namespace
 
@@ -60,7 +57,7 @@ Status StateDetectionOptions::validate() const {
   if (overdue_grace_share >= 0.0 && overdue_grace_share < 10.0) return {};
   return fail(Error{{},
                     "overdue_grace_share",
-                    std::to_string(overdue_grace_share),
+                    text::general(overdue_grace_share),
                     "must be in [0, 10)",
                     "it is a share of the test interval"});
 }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/text/format.hpp"
 #include "services/state_detection/indicators.hpp"
 #include "services/state_detection/rules.hpp"
 
@@ -18,13 +18,6 @@ namespace {
 constexpr double kStrokeTolerance = 0.05;
 /// A recording shorter than this share of a whole test has lost its end.
 constexpr double kWholeShare = 0.9;
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 bool has_phase(const TestFeatures& features, PhaseKind kind) {
   return std::any_of(features.phases.begin(), features.phases.end(),
@@ -110,8 +103,9 @@ std::string why_not_judged(const AssetConfig& asset, const TestFeatures& feature
     return "the recording begins inside the stroke";
   const double expected_s = asset.pst.expected_duration_s();
   if (!moved_as_a_test_does(features) && features.duration_s < kWholeShare * expected_s)
-    return text("the recording was cut after %.1f s of about %.0f s", features.duration_s, expected_s);
-  if (!features.complete) return text("the end of the test was not recorded (%.1f s were)", features.duration_s);
+    return text::format("the recording was cut after {:.1f} s of about {:.0f} s", features.duration_s, expected_s);
+  if (!features.complete)
+    return text::format("the end of the test was not recorded ({:.1f} s were)", features.duration_s);
   if (measure.series == nullptr)
     return "nothing measured the stroke: " + measure.position_fault + ", " + measure.velocity_fault;
   return {};
@@ -122,14 +116,15 @@ void judge_stroke(const AssetConfig& asset, const TestFeatures& features, double
   const double stroke_mm = 1e3 * required_stroke_m(asset, features);
   const double travel_mm = 1e3 * travel;
   if (travel_mm < (1.0 - kStrokeTolerance) * stroke_mm)
-    failures.push_back(text("the piston moved %.2f mm of the %.1f mm stroke", travel_mm, stroke_mm));
+    failures.push_back(text::format("the piston moved {:.2f} mm of the {:.1f} mm stroke", travel_mm, stroke_mm));
   if (is_full_stroke(features)) return;                  // it stays where it went
   if (travel_mm < kStrokeTolerance * stroke_mm) return;  // it never left
   const auto error = feature_of(features, "return_error");
   if (!error)
     failures.push_back("the piston did not come back to where it started");
   else if (1e3 * std::abs(*error) > kStrokeTolerance * std::max(stroke_mm, travel_mm))
-    failures.push_back(text("the piston came back %.2f mm away from where it started", 1e3 * std::abs(*error)));
+    failures.push_back(
+        text::format("the piston came back {:.2f} mm away from where it started", 1e3 * std::abs(*error)));
 }
 
 void judge_speed(const AssetConfig& asset, const std::vector<Quantity>& indicators, Verdict& verdict,
@@ -140,8 +135,9 @@ void judge_speed(const AssetConfig& asset, const std::vector<Quantity>& indicato
     verdict.reasons.push_back("how fast it closes was not measured");
     return;
   }
-  const std::string closing = text("at the speed of this test the full stroke closes in %.1f s, %.1f s are allowed",
-                                   indicator->value, longest_s);
+  const std::string closing =
+      text::format("at the speed of this test the full stroke closes in {:.1f} s, {:.1f} s are allowed",
+                   indicator->value, longest_s);
   (indicator->value > longest_s ? failures : verdict.reasons).push_back(closing);
 }
 
@@ -156,7 +152,8 @@ std::string judged_by(const StrokeMeasure& measure, const TestFeatures& features
 /// Of a plant that has no stroke, whether the test was recorded to its end; how it behaves its model says.
 Verdict judge_without_stroke(const TestFeatures& features) {
   if (!features.complete)
-    return {PstVerdict::not_judged, {text("the end of the test was not recorded (%.1f s were)", features.duration_s)}};
+    return {PstVerdict::not_judged,
+            {text::format("the end of the test was not recorded ({:.1f} s were)", features.duration_s)}};
   return {PstVerdict::passed, {"the plant has no stroke: by its model alone"}};
 }
 
@@ -166,7 +163,7 @@ Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const
                    const std::vector<Quantity>& indicators) {
   if (features.aborted) {
     const std::string why = features.abort_reason.empty() ? "no reason given" : features.abort_reason;
-    return {PstVerdict::aborted, {text("given up after %.1f s: ", features.duration_s) + why}};
+    return {PstVerdict::aborted, {text::format("given up after {:.1f} s: ", features.duration_s) + why}};
   }
   const StrokeMeasure measure = measure_of_stroke(asset, features, window);
   if (measure.none) return judge_without_stroke(features);
@@ -175,7 +172,7 @@ Verdict judge_test(const AssetConfig& asset, const TestFeatures& features, const
     return {PstVerdict::not_judged, {why}};
 
   Verdict verdict{PstVerdict::passed, {}};
-  verdict.reasons.push_back(text("the piston moved %.2f mm", 1e3 * *travel));
+  verdict.reasons.push_back(text::format("the piston moved {:.2f} mm", 1e3 * *travel));
   std::vector<std::string> failures;
   judge_stroke(asset, features, *travel, failures);
   judge_speed(asset, indicators, verdict, failures);

@@ -6,6 +6,7 @@
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/virtual_bench/closed_loop.hpp"
 
 namespace sealwatch::bench {
@@ -56,7 +57,7 @@ Status check(const EhaParameters<double>& p, const PlantDescription& plant, cons
         if (described != nullptr && status && (!std::isfinite(value) || (described->positive && value <= 0.0)))
           status = fail(Error{.file = {},
                               .place = "parameter " + std::string(name),
-                              .value = std::to_string(value),
+                              .value = text::general(value),
                               .rule = "must be a positive number",
                               .advice = {}});
       },

@@ -4,7 +4,6 @@
 
 #include "sealwatch/signal/test_record.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
 #include "tests/figures/figures.hpp"
 
 namespace sealwatch::figures {

@@ -42,7 +42,7 @@ headers() {
 rules() {
   local failed=0
   forbid '^include/' '^services/' 'headers in include/ know nothing of services/' || failed=1
-  forbid '^include/' '^(dds|yaml-cpp|soci|ceres|spdlog|nlohmann|CLI|matio|boost|sqlite3|zip|pugixml)' 'mathematics and plain types stand alone' || failed=1
+  forbid '^include/' '^(dds|yaml-cpp|soci|ceres|spdlog|fmt|nlohmann|CLI|matio|boost|sqlite3|zip|pugixml)' 'mathematics and plain types stand alone' || failed=1
   # From top to bottom, each may include itself and what stands beside it here.
   headers core ''
   headers config core
@@ -66,6 +66,7 @@ rules() {
   owner '^yaml-cpp/' services/common/runtime/ services/common/recording/ || failed=1
   owner '^(zip\.h|pugixml\.hpp|dlfcn\.h)' services/common/fmi/ || failed=1
   owner '^spdlog/' services/common/runtime/ || failed=1
+  owner '^fmt/' services/common/text/ || failed=1
   owner '^soci/' services/common/store/ || failed=1
   owner '^openssl/' services/common/store/ || failed=1
   owner '^matio' services/common/recording/ || failed=1
@@ -94,7 +95,8 @@ must_see include/sealwatch/message/bad.hpp '"sealwatch/estimation/actuator_fit.h
 must_see include/sealwatch/trace/bad.hpp '"sealwatch/model/physics.hpp"'
 must_see include/sealwatch/config/bad.hpp '"sealwatch/message/common.hpp"'
 must_see include/sealwatch/forecast/bad.hpp '"sealwatch/estimation/actuator_fit.hpp"'
-must_see include/sealwatch/signal/bad.hpp '"sealwatch/forecast/words.hpp"'
+must_see include/sealwatch/signal/bad.hpp '"sealwatch/forecast/forecast.hpp"'
+must_see services/cli/bad_format.cpp '<fmt/format.h>'
 must_see services/common/mismatch/bad.cpp '"services/cli/terminal.hpp"'
 must_see services/common/estimation/bad.cpp '"services/virtual_bench/sensors.hpp"'
 must_see services/cli/bad.cpp '"services/verification/trial/mismatch_trial.hpp"'

@@ -48,7 +48,7 @@ check_contents() {
 check_control() {
   local needed script
   # The second is loaded at run time: no linker knows of it.
-  for needed in libddsc libsoci-sqlite3-4.0 libyaml-cpp libspdlog libmatio; do
+  for needed in libddsc libsoci-sqlite3-4.0 libyaml-cpp libspdlog libfmt libmatio; do
     grep -q "^Depends:.*\b$needed" "$scratch/control/control" || fail "does not depend on $needed" "$scratch/control/control"
   done
   grep -q '^Recommends: libsoci-postgresql4.0' "$scratch/control/control" || fail "does not recommend PostgreSQL"

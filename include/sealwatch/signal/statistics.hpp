@@ -30,11 +30,4 @@ struct Estimate {
 /// Mean weighted by 1 / std_error^2.
 [[nodiscard]] Estimate weighted_mean(std::span<const Estimate> estimates);
 
-/// Standard deviation of the white noise on a smooth signal, in the unit of the values: median |Delta^4 y| / 0.6745 /
-/// sqrt(70). Fourth differences remove every cubic; 70 = 1 + 16 + 36 + 16 + 1 is what they make of a unit variance; the
-/// median keeps jumps out. Differences of exactly zero do not count: a sensor that rests on one step shows no noise. A
-/// sensor's step q (the smallest change found) limits it from below to q / sqrt(12). Not finite values are passed over;
-/// 0 for fewer than 16 values.
-[[nodiscard]] double estimate_noise_std(std::span<const double> values);
-
 }  // namespace sealwatch::signal

@@ -2,20 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
-namespace {
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-}  // namespace
-
 double largest_plausible(double range_min, double range_max) {
   const bool known = range_max > range_min && std::isfinite(range_min) && std::isfinite(range_max);
   const double largest = kImplausible * std::max(std::abs(range_min), std::abs(range_max));
@@ -30,26 +20,26 @@ std::optional<double> plausible(double value, double largest) {
 
 std::optional<std::string> too_many_numbers(double numbers, const TestLimits& limits) {
   if (numbers <= static_cast<double>(limits.most_numbers)) return std::nullopt;
-  return print("%.0f numbers (rows times channels), more than the %zu that one test may have", numbers,
-               limits.most_numbers);
+  return text::format("{:.0f} numbers (rows times channels), more than the {} that one test may have", numbers,
+                      limits.most_numbers);
 }
 
 std::optional<std::string> too_long(double duration_s, const TestLimits& limits) {
   if (duration_s <= limits.longest_s) return std::nullopt;
-  return print("%.4g s long, more than the %.0f s that one test may take", duration_s, limits.longest_s);
+  return text::format("{:.4g} s long, more than the {:.0f} s that one test may take", duration_s, limits.longest_s);
 }
 
 std::optional<std::string> too_fast(double interval_s, const TestLimits& limits) {
   if (interval_s >= limits.shortest_interval_s * (1.0 - 1e-6)) return std::nullopt;  // rounded when printed
-  return print("rows %.3g s apart, closer than the %.3g s that sealwatch takes", interval_s,
-               limits.shortest_interval_s);
+  return text::format("rows {:.3g} s apart, closer than the {:.3g} s that sealwatch takes", interval_s,
+                      limits.shortest_interval_s);
 }
 
 namespace {
 
 std::optional<std::string> too_many(std::size_t rows, std::size_t channels, const TestLimits& limits) {
   if (channels > limits.most_channels)
-    return print("%zu channels, more than the %zu that one test may have", channels, limits.most_channels);
+    return text::format("{} channels, more than the {} that one test may have", channels, limits.most_channels);
   return too_many_numbers(static_cast<double>(rows) * static_cast<double>(channels + 1), limits);
 }
 

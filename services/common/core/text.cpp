@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
-#include <cstdio>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -62,11 +63,7 @@ void ContentHasher::add(std::string_view bytes) {
   }
 }
 
-std::string ContentHasher::hex() const {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
-  return text;
-}
+std::string ContentHasher::hex() const { return text::format("{:016x}", hash_); }
 
 std::string content_hash(std::string_view bytes) {
   ContentHasher hasher;

@@ -3,7 +3,8 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -127,15 +128,11 @@ std::string format_utc(UtcTime time) {
   const auto midnight = std::chrono::floor<std::chrono::days>(moment);
   const std::chrono::year_month_day date{midnight};
   const std::chrono::hh_mm_ss clock{moment - midnight};
-  char text[80];
-  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02d", static_cast<int>(date.year()),
-                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-                static_cast<int>(clock.seconds().count()));
-  std::string result = text;
+  std::string result = text::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", static_cast<int>(date.year()),
+                                    static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                                    clock.hours().count(), clock.minutes().count(), clock.seconds().count());
   if (nanoseconds != 0) {
-    std::snprintf(text, sizeof text, ".%09lld", static_cast<long long>(nanoseconds));
-    result += text;
+    result += text::format(".{:09}", nanoseconds);
     while (result.back() == '0') result.pop_back();
   }
   return result + "Z";

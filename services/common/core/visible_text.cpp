@@ -4,7 +4,8 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
-#include <cstdio>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -67,11 +68,8 @@ std::string visible(std::string_view text, bool several_lines) {
       result.append(text.substr(0, letter.length));
       continue;
     }
-    for (const char byte : text.substr(0, letter.length)) {
-      std::array<char, 8> code{};
-      std::snprintf(code.data(), code.size(), "\\x%02X", static_cast<unsigned>(static_cast<unsigned char>(byte)));
-      result += code.data();
-    }
+    for (const char byte : text.substr(0, letter.length))
+      result += text::format("\\x{:02X}", static_cast<unsigned char>(byte));
   }
   return result;
 }

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/own_law.hpp"
 #include "services/common/equations/plant_names.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/equations/text_equations.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch::equations {
 namespace {
@@ -18,15 +18,8 @@ Error fault(std::string value, std::string rule, std::string advice = {}) {
 
 // "shaft_coulomb_friction has T_c = 0.02 N m".
 std::string usual_words(const NeededSize& size) {
-  std::array<char, 32> number{};
-  std::snprintf(number.data(), number.size(), "%g", size.parameter->start.front());
-  return std::string(size.law->id)
-      .append(" has ")
-      .append(size.parameter->name)
-      .append(" = ")
-      .append(number.data())
-      .append(" ")
-      .append(size.unit);
+  return text::format("{} has {} = {:g} {}", size.law->id, size.parameter->name, size.parameter->start.front(),
+                      size.unit);
 }
 
 class Builder {

@@ -3,12 +3,12 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 #include "sealwatch/core/text.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::equations {
 namespace {
@@ -203,11 +203,9 @@ std::string words_of(const Dimension& dimension) {
     std::string& side = power > 0.0 ? above : below;
     if (!side.empty()) side += ' ';
     side += kNames[k];
-    std::array<char, 32> number{};
-    std::snprintf(number.data(), number.size(), "%g", std::abs(power));
     if (std::abs(power) == 1.0) continue;
     if (std::abs(power) != std::floor(std::abs(power))) side += '^';
-    side += number.data();
+    side += text::significant(std::abs(power), 6);
   }
   if (below.empty()) return above.empty() ? "1" : above;
   const bool several = below.find(' ') != std::string::npos;

@@ -5,11 +5,12 @@
 #include <limits>
 
 #include "sealwatch/estimation/cylinder_circuit.hpp"
+#include "services/common/estimation/cannot_fit.hpp"
 #include "services/common/estimation/fit_report.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/estimation/pem_search.hpp"
-#include "services/common/estimation/words.hpp"
 #include "services/common/model/plants/eha_switched/estimation/closed_valves.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -112,14 +113,15 @@ Status ActuatorFitOptions::validate() const {
   if (maximum_iterations < 1)
     return fail("maximum_iterations must be at least 1, is " + std::to_string(maximum_iterations));
   if (threads < 1) return fail("threads must be at least 1, is " + std::to_string(threads));
-  if (!(cost_tolerance > 0.0)) return fail("cost_tolerance must be positive, is " + in_words(cost_tolerance));
+  if (!(cost_tolerance > 0.0)) return fail("cost_tolerance must be positive, is " + text::significant(cost_tolerance));
   if (!(relative_tolerance > 0.0 && relative_tolerance <= 1e-3))
-    return fail("relative_tolerance must be positive and at most 1e-3, is " + in_words(relative_tolerance));
+    return fail("relative_tolerance must be positive and at most 1e-3, is " + text::significant(relative_tolerance));
   if (!(hopeless_rms > admissibility.largest_noise_normalised_rms))
-    return fail("hopeless_rms must be above largest_noise_normalised_rms, is " + in_words(hopeless_rms));
-  if (!(steps_per_sample > 0.0)) return fail("steps_per_sample must be positive, is " + in_words(steps_per_sample));
+    return fail("hopeless_rms must be above largest_noise_normalised_rms, is " + text::significant(hopeless_rms));
+  if (!(steps_per_sample > 0.0))
+    return fail("steps_per_sample must be positive, is " + text::significant(steps_per_sample));
   for (const double factor : restart_factors)
-    if (!(factor > 0.0)) return fail("restart_factors must be positive, one is " + in_words(factor));
+    if (!(factor > 0.0)) return fail("restart_factors must be positive, one is " + text::significant(factor));
   return admissibility.validate();
 }
 

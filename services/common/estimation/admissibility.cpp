@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sealwatch/model/plant_description.hpp"
-#include "services/common/estimation/words.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -18,12 +18,12 @@ double attainable_nrmse_percent(const ChannelFit& channel) {
 
 void judge_channel(const ChannelFit& channel, const AdmissibilityOptions& options, std::vector<std::string>& reasons) {
   if (!(channel.noise_normalised_rms <= options.largest_noise_normalised_rms))
-    reasons.push_back("misfit of " + channel.channel + " is " + in_words(channel.noise_normalised_rms) +
-                      " times its noise (at most " + in_words(options.largest_noise_normalised_rms) + ")");
+    reasons.push_back("misfit of " + channel.channel + " is " + text::significant(channel.noise_normalised_rms) +
+                      " times its noise (at most " + text::significant(options.largest_noise_normalised_rms) + ")");
   if (channel.nrmse_percent < options.smallest_nrmse_percent &&
       attainable_nrmse_percent(channel) >= options.attainable_nrmse_percent)
-    reasons.push_back("only " + in_words(channel.nrmse_percent) + " % of the course of " + channel.channel +
-                      " is reproduced (at least " + in_words(options.smallest_nrmse_percent) + " %)");
+    reasons.push_back("only " + text::significant(channel.nrmse_percent) + " % of the course of " + channel.channel +
+                      " is reproduced (at least " + text::significant(options.smallest_nrmse_percent) + " %)");
 }
 
 void judge_resistance(const EstimatedParameter& parameter, const AdmissibilityOptions& options,
@@ -32,8 +32,9 @@ void judge_resistance(const EstimatedParameter& parameter, const AdmissibilityOp
   if (!std::isfinite(relative))
     reasons.push_back(parameter.name + " cannot be identified from this recording");
   else if (relative > options.largest_relative_std_error)
-    reasons.push_back("standard error of " + parameter.name + " is " + in_words(100.0 * relative) +
-                      " % of its value (at most " + in_words(100.0 * options.largest_relative_std_error) + " %)");
+    reasons.push_back("standard error of " + parameter.name + " is " + text::significant(100.0 * relative) +
+                      " % of its value (at most " + text::significant(100.0 * options.largest_relative_std_error) +
+                      " %)");
 }
 
 // A sample that is far beyond what the actuator can do, 1e300 Pa, makes infinities of the sums.
@@ -51,7 +52,7 @@ const std::optional<ConditionSetting>& seal_of(const std::string& model) { retur
 Status AdmissibilityOptions::validate() const {
   const auto check = [](bool good, const char* place, double value, const char* rule) -> Status {
     if (good) return {};
-    return fail(Error{.file = {}, .place = place, .value = in_words(value), .rule = rule, .advice = {}});
+    return fail(Error{.file = {}, .place = place, .value = text::significant(value), .rule = rule, .advice = {}});
   };
   return check(largest_noise_normalised_rms > 1.0, "largest_noise_normalised_rms", largest_noise_normalised_rms,
                "must be above 1, the noise floor")
@@ -78,7 +79,7 @@ void judge_admissibility(FitReport& report, const AdmissibilityOptions& options)
   bool has_resistance = false;
   for (const EstimatedParameter& parameter : report.parameters) {
     if (parameter.at_bound)
-      report.reasons.push_back(parameter.name + " ended at its bound " + in_words(parameter.value) + " " +
+      report.reasons.push_back(parameter.name + " ended at its bound " + text::significant(parameter.value) + " " +
                                parameter.unit);
     if (!seal || parameter.name != seal->parameter || !parameter.free) continue;
     has_resistance = true;

@@ -6,8 +6,7 @@
 
 namespace sealwatch {
 
-/// Standard deviation of one sample: what the recording says of itself, else what its data shows, but at least a
-/// tenth of the asset's sensor; 0 when nobody knows.
+/// Standard deviation of one sample (signal/noise_floor.hpp), with the asset's sensor as the usual one.
 [[nodiscard]] double noise_std_of(const AssetConfig& asset, const Series& channel);
 
 /// First-order lag of the channel's sensor [s]; 0 when none is known.

@@ -6,7 +6,7 @@
 
 #include "sealwatch/estimation/covariance.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
-#include "services/common/estimation/words.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -252,7 +252,7 @@ JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const P
     fit.report.load_factor = fit.recordings.front().load.value;
   if (uncertainty.inflation > 1.0)
     fit.report.termination +=
-        "; residuals are coloured, standard errors raised by up to " + in_words(uncertainty.inflation);
+        "; residuals are coloured, standard errors raised by up to " + text::significant(uncertainty.inflation);
   if (const std::string names = unidentified(fit.report.parameters); !names.empty())
     fit.report.termination += "; not identifiable from these channels: " + names;
   return fit;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
@@ -10,6 +9,8 @@
 #include "sealwatch/model/driving_channels.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 #include "services/common/model/model_simulator.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch {
 namespace {
@@ -117,17 +118,13 @@ struct Misfit {
 
 std::string remark_on(const Misfit& misfit) {
   std::vector<std::string> parts;
-  const auto add = [&](const char* form, auto... values) {
-    char text[160];
-    std::snprintf(text, sizeof text, form, values...);
-    parts.emplace_back(text);
-  };
-  if (misfit.largest > kMoreThanNoise) add("misfits by up to %.3g times its noise", misfit.largest);
-  if (misfit.coloured > 0) add("residuals are coloured in %d of %d recordings", misfit.coloured, misfit.recordings);
-  if (misfit.dependent > 0) add("follow the past input in %d of %d", misfit.dependent, misfit.recordings);
-  std::string remark;
-  for (const std::string& part : parts) remark.append(remark.empty() ? misfit.channel + ": " : ", ").append(part);
-  return remark;
+  if (misfit.largest > kMoreThanNoise)
+    parts.push_back(text::format("misfits by up to {:.3g} times its noise", misfit.largest));
+  if (misfit.coloured > 0)
+    parts.push_back(text::format("residuals are coloured in {} of {} recordings", misfit.coloured, misfit.recordings));
+  if (misfit.dependent > 0)
+    parts.push_back(text::format("follow the past input in {} of {}", misfit.dependent, misfit.recordings));
+  return parts.empty() ? "" : misfit.channel + ": " + text::joined(parts);
 }
 
 void judge(ModelValidation& validation) {
@@ -154,11 +151,9 @@ void judge(ModelValidation& validation) {
       if (std::string remark = remark_on(misfit); !remark.empty()) validation.remarks.push_back(std::move(remark));
       continue;
     }
-    char text[240];
-    std::snprintf(text, sizeof text,
-                  "%s misfits by more than %.3g noise standard deviations in %d of %d recordings, most by %.3g in ",
-                  misfit.channel.c_str(), limit, misfit.beyond, misfit.recordings, misfit.largest);
-    validation.reasons.push_back(text + misfit.worst);
+    validation.reasons.push_back(text::format(
+        "{} misfits by more than {:.3g} noise standard deviations in {} of {} recordings, most by {:.3g} in {}",
+        misfit.channel, limit, misfit.beyond, misfit.recordings, misfit.largest, misfit.worst));
   }
 }
 

@@ -1,8 +1,6 @@
 #include "services/common/fmi/import_fmu.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
@@ -12,6 +10,8 @@
 
 #include "services/common/fmi/fmu_plant.hpp"
 #include "services/common/fmi/fmu_process.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -19,23 +19,8 @@ namespace {
 constexpr std::size_t kMostParameters = 200;  ///< in force; further ones come as comments
 
 std::string number(double value) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  std::string result(text.data(), error == std::errc() ? end : text.data());
+  std::string result = text::exact(value);
   return result.find_first_of(".en") == std::string::npos ? result + ".0" : result;
-}
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (static_cast<unsigned char>(c) < 0x20) {
-      result += ' ';
-    } else {
-      if (c == '"' || c == '\\') result += '\\';
-      result += c;
-    }
-  }
-  return result + "\"";
 }
 
 std::string in_comment(std::string text) {
@@ -259,13 +244,15 @@ class Writer {
       out_ << "# It runs only where " << (fmu_.tool.empty() ? "the tool that made it" : in_comment(fmu_.tool))
            << " is installed (needsExecutionTool).\n";
     out_ << "\nname: " << name_for(fmu_.model_name, {}) << "\n"
-         << "meaning: " << quoted(fmu_.description.empty() ? "the FMU " + fmu_.model_name : fmu_.description) << "\n";
+         << "meaning: " << text::quoted(fmu_.description.empty() ? "the FMU " + fmu_.model_name : fmu_.description)
+         << "\n";
   }
 
   // What is no quantity that a fit could move: as it was set, and as a comment what else could be.
   void settings() {
     if (!file_.settings().empty()) out_ << "  settings:      # of the FMU, set once before a run\n";
-    for (const auto& [name, text] : file_.settings()) out_ << "    " << quoted(name) << ": " << quoted(text) << "\n";
+    for (const auto& [name, text] : file_.settings())
+      out_ << "    " << text::quoted(name) << ": " << text::quoted(text) << "\n";
     bool first = true;
     for (const Variable& variable : fmu_.variables) {
       const bool real = variable.type == FmiType::float64 || variable.type == FmiType::float32;
@@ -276,26 +263,28 @@ class Writer {
       if (first)
         out_ << "  # Parameters that can be set once, under `settings` (sizes of arrays: import with --set):\n";
       first = false;
-      out_ << "  #   " << in_comment(quoted(variable.name)) << ":";
+      out_ << "  #   " << in_comment(text::quoted(variable.name)) << ":";
       for (const double value : variable.start) out_ << " " << number(value);
       out_ << "\n";
     }
   }
 
   void fmu_section() {
-    out_ << "\nfmu:\n  file: " << quoted(path_) << "\n  interface: " << (file_.co_simulation() ? "cs" : "me") << "\n";
+    out_ << "\nfmu:\n  file: " << text::quoted(path_) << "\n  interface: " << (file_.co_simulation() ? "cs" : "me")
+         << "\n";
     settings();
     if (!inputs_.empty()) out_ << "  inputs:        # of the FMU, each an expression of the recorded inputs below\n";
-    for (const Row& row : inputs_) out_ << "    " << quoted(fmu_.name_of(row.element)) << ": " << row.name << "\n";
+    for (const Row& row : inputs_)
+      out_ << "    " << text::quoted(fmu_.name_of(row.element)) << ": " << row.name << "\n";
     if (!parameters_.empty()) out_ << "  parameters:    # of the FMU, each an expression of the parameters below\n";
     for (std::size_t k = 0; k < parameters_.size(); ++k)
-      out_ << (k < kMostParameters ? "    " : "    # ") << quoted(fmu_.name_of(parameters_[k].element)) << ": "
+      out_ << (k < kMostParameters ? "    " : "    # ") << text::quoted(fmu_.name_of(parameters_[k].element)) << ": "
            << parameters_[k].name << "\n";
     out_ << "  variables:     # of the FMU, by the names that expressions use; any of its variables may be added\n";
     for (const Row& row : outputs_)
       if (!row.name.empty())
-        out_ << "    " << row.name << ": {variable: " << quoted(fmu_.name_of(row.element))
-             << ", unit: " << quoted(row.unit) << "}\n";
+        out_ << "    " << row.name << ": {variable: " << text::quoted(fmu_.name_of(row.element))
+             << ", unit: " << text::quoted(row.unit) << "}\n";
   }
 
   void channels() {
@@ -305,15 +294,15 @@ class Writer {
               "# recorded: the FMU then keeps its own start value.\n"
               "inputs:\n";
     for (const Row& row : inputs_)
-      out_ << "  " << row.name << ": {unit: " << quoted(row.unit)
+      out_ << "  " << row.name << ": {unit: " << text::quoted(row.unit)
            << (changes_between_events(fmu_.variables[row.element.variable]) ? "" : ", course: held")
-           << ", meaning: " << quoted(row.meaning) << "}\n";
+           << ", meaning: " << text::quoted(row.meaning) << "}\n";
     out_ << "\n# Recorded outputs. Rename them to the recording's columns, delete those that are not recorded.\n"
             "# noise_std: what the sensor's noise is; without it the recordings tell.\n"
             "outputs:\n";
     for (const Row& row : outputs_)
-      out_ << "  " << row.channel << ": {unit: " << quoted(row.unit) << ", value: " << shown(row)
-           << ", meaning: " << quoted(row.meaning) << "}\n";
+      out_ << "  " << row.channel << ": {unit: " << text::quoted(row.unit) << ", value: " << shown(row)
+           << ", meaning: " << text::quoted(row.meaning) << "}\n";
     if (outputs_.empty())
       out_ << "  {}  # the FMU declares none: name variables of it in fmu.variables and use them here\n";
   }
@@ -346,9 +335,9 @@ class Writer {
       if (variable.max) max = std::min(max, row.scale.to_si(*variable.max));
       const bool sound = min <= value && value <= max && min < max;
       if (!sound) min = value - reach, max = value + reach;
-      out_ << (k < kMostParameters ? "  " : "  # ") << row.name << ": {unit: " << quoted(row.unit)
+      out_ << (k < kMostParameters ? "  " : "  # ") << row.name << ": {unit: " << text::quoted(row.unit)
            << ", value: " << number(value) << ", min: " << number(min) << ", max: " << number(max)
-           << ", estimate: false, meaning: " << quoted(row.meaning) << "}\n";
+           << ", estimate: false, meaning: " << text::quoted(row.meaning) << "}\n";
     }
   }
 
@@ -365,11 +354,11 @@ class Writer {
       const double start = row.scale.to_si(beginning_.states[k]);
       const double nominal = std::abs(row.scale.factor * beginning_.nominals[k]);
       const bool usual = std::isfinite(nominal) && nominal > 0.0;
-      out_ << "  " << row.name << ": {variable: " << quoted(fmu_.name_of(row.element)) << ", unit: " << quoted(row.unit)
-           << ", start: " << (linked_[k] ? kStartOfFmu : start_of(row, start))
+      out_ << "  " << row.name << ": {variable: " << text::quoted(fmu_.name_of(row.element))
+           << ", unit: " << text::quoted(row.unit) << ", start: " << (linked_[k] ? kStartOfFmu : start_of(row, start))
            << ", size: " << number(usual ? nominal : 1.0)
            << ", own: " << (!linked_[k] && shown_by_output(row) ? "true" : "false")
-           << ", meaning: " << quoted(row.meaning) << "}\n";
+           << ", meaning: " << text::quoted(row.meaning) << "}\n";
     }
   }
 
@@ -378,7 +367,7 @@ class Writer {
   }
 
   [[nodiscard]] std::string start_of(const Row& state, double value) const {
-    const std::string here = quoted(number(value) + "[" + state.unit + "]");
+    const std::string here = text::quoted(number(value) + "[" + state.unit + "]");
     for (const Row& output : outputs_)
       if (state_shown_by(output) == &state) return "[" + output.channel + ", " + here + "]";
     return here;

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/common/text/numbers.hpp"
+
 namespace sealwatch::forecast {
 namespace {
 
 Status not_negative(const char* place, double value) {
   if (value >= 0.0 && std::isfinite(value)) return {};
   return fail(
-      Error{.file = {}, .place = place, .value = std::to_string(value), .rule = "must not be negative", .advice = {}});
+      Error{.file = {}, .place = place, .value = text::general(value), .rule = "must not be negative", .advice = {}});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sealwatch/forecast/degradation_filter.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -138,7 +139,7 @@ double best_irregularity(const std::vector<FleetLife>& lives, const FleetPopulat
 Status FleetPopulation::validate() const {
   const auto check = [](bool good, const char* place, double value, const char* rule) -> Status {
     if (good) return {};
-    return fail(Error{.file = {}, .place = place, .value = std::to_string(value), .rule = rule, .advice = {}});
+    return fail(Error{.file = {}, .place = place, .value = text::general(value), .rule = rule, .advice = {}});
   };
   const std::pair<const char*, double> positive[] = {{"n_0", n_0},
                                                      {"initial_condition", initial_condition},

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "sealwatch/forecast/forecast_score.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "services/common/forecast/forecast_parts.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -137,7 +137,7 @@ PredictiveForecast AverageForecaster::answer(const ForecastRequest& request) con
     names += " ";
     names += std::to_string(settings_[m].window_months);
     names += " ";
-    names += in_percent(weight[m]);
+    names += text::in_percent(weight[m]);
   }
   if (silent && silent_weight >= speaking_weight) {
     if (silent->state == ForecastState::past_threshold)

@@ -1,8 +1,7 @@
 #include "services/common/forecast/forecast_parts.hpp"
+#include "services/common/text/numbers.hpp"
 
 #include <algorithm>
-
-#include "sealwatch/forecast/words.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -50,7 +49,7 @@ void fill_numbers(Forecast& forecast, const ForecastRequest& request, const Pred
 std::string age_of_last_test(const ForecastRequest& request) {
   const double age = months_between(request.history.back().time, request.now);
   if (age <= kJitterMonths) return {};
-  return "; the last usable test was " + in_months(age) + " ago";
+  return "; the last usable test was " + text::in_months(age) + " ago";
 }
 
 }  // namespace sealwatch::forecast

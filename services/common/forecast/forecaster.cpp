@@ -1,14 +1,16 @@
 #include "sealwatch/forecast/forecaster.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/forecast/forecast_average.hpp"
 #include "sealwatch/forecast/ols.hpp"
 #include "sealwatch/forecast/state_space.hpp"
-#include "sealwatch/forecast/words.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -43,9 +45,10 @@ std::vector<ConditionSample> take_unusable(std::vector<ConditionSample>& history
 }
 
 std::string describe(const Forecast& forecast) {
-  return "by its last " + std::to_string(forecast.window_months) + " months " + in_months(forecast.rul_p50_months) +
-         " are left (95 %: " + in_months(forecast.interval_95_low_months) + " to " +
-         in_months(forecast.interval_95_high_months) + ")";
+  return "by its last " + std::to_string(forecast.window_months) + " months " +
+         text::in_months(forecast.rul_p50_months) +
+         " are left (95 %: " + text::in_months(forecast.interval_95_low_months) + " to " +
+         text::in_months(forecast.interval_95_high_months) + ")";
 }
 
 bool apart(const Forecast& a, const Forecast& b) {
@@ -69,13 +72,70 @@ std::string disagreement(const std::vector<Forecast>& forecasts) {
          describe(*shortest) + ", " + describe(*longest);
 }
 
+using Made = Result<std::unique_ptr<const Forecaster>>;
+
+OlsOptions line_of(const ForecasterSettings& settings) {
+  return {.method = settings.method, .window_months = settings.window_months};
+}
+
+Made make_line(const ForecasterSettings& settings) { return OlsForecaster::make(line_of(settings)); }
+
+Made make_line_over_log_time(const ForecasterSettings& settings) {
+  OlsOptions options = line_of(settings);
+  options.time = DegradationTime::log_months;
+  return OlsForecaster::make(options);
+}
+
+Made make_drifting_line(const ForecasterSettings& settings) {
+  OlsOptions options = line_of(settings);
+  options.slope_drift = kSlopeDrift;
+  return OlsForecaster::make(options);
+}
+
+Made make_line_by_fieller(const ForecasterSettings& settings) {
+  OlsOptions options = line_of(settings);
+  options.whole_scatter = true;
+  return OlsForecaster::make(options);
+}
+
+StateSpaceOptions law_of(const ForecasterSettings& settings) {
+  return {.method = settings.method,
+          .window_months = settings.window_months,
+          .population = settings.population,
+          .change_per_month = settings.change_per_month};
+}
+
+Made make_law(const ForecasterSettings& settings) { return StateSpaceForecaster::make(law_of(settings)); }
+
+Made make_law_with_fleet(const ForecasterSettings& settings) {
+  StateSpaceOptions options = law_of(settings);
+  options.relative_share = 0.0;
+  options.fewest_tests = kFewestTestsWithFleet;
+  return StateSpaceForecaster::make(options);
+}
+
+/// All forecasters: whoever adds one adds its line here.
+struct Method {
+  std::string_view name;
+  Made (*make)(const ForecasterSettings&);
+};
+constexpr std::array kMethods = {
+    Method{kStraightLine, &make_line},
+    Method{"ols_log_time", &make_line_over_log_time},
+    Method{"ols_drift", &make_drifting_line},
+    Method{"ols_fieller", &make_line_by_fieller},
+    Method{"state_space", &make_law},
+    Method{"fleet", &make_law_with_fleet},
+    Method{"average", [](const ForecasterSettings& settings) -> Made { return AverageForecaster::make(settings); }},
+};
+
 }  // namespace
 
 Status ForecastRequest::validate() const {
   if (threshold > 0.0 && threshold <= 1.0) return {};
   return fail(Error{.file = {},
                     .place = "threshold",
-                    .value = std::to_string(threshold),
+                    .value = text::general(threshold),
                     .rule = "must be above 0, at most 1",
                     .advice = "0.6 for a seal that has failed at a condition of 60 %"});
 }
@@ -92,38 +152,22 @@ Result<Forecast> Forecaster::forecast(const ForecastRequest& request) const {
 }
 
 const std::vector<std::string>& forecast_methods() {
-  static const std::vector<std::string> methods{"ols",         "ols_log_time", "ols_drift", "ols_fieller",
-                                                "state_space", "fleet",        "average"};
+  static const std::vector<std::string> methods = [] {
+    std::vector<std::string> names;
+    for (const Method& method : kMethods) names.emplace_back(method.name);
+    return names;
+  }();
   return methods;
 }
 
 Result<std::unique_ptr<const Forecaster>> make_forecaster(const ForecasterSettings& settings) {
-  if (settings.method == "average") return AverageForecaster::make(settings);
-  if (settings.method == "state_space" || settings.method == "fleet") {
-    StateSpaceOptions options{.method = settings.method,
-                              .window_months = settings.window_months,
-                              .population = settings.population,
-                              .change_per_month = settings.change_per_month};
-    if (settings.method == "fleet") {
-      options.relative_share = 0.0;
-      options.fewest_tests = kFewestTestsWithFleet;
-    }
-    return StateSpaceForecaster::make(options);
-  }
-  OlsOptions options{.method = settings.method, .window_months = settings.window_months};
-  if (settings.method == "ols_log_time")
-    options.time = DegradationTime::log_months;
-  else if (settings.method == "ols_drift")
-    options.slope_drift = kSlopeDrift;
-  else if (settings.method == "ols_fieller")
-    options.whole_scatter = true;
-  else if (settings.method != "ols")
-    return fail(Error{.file = {},
-                      .place = "forecast method",
-                      .value = settings.method,
-                      .rule = "is not known",
-                      .advice = suggest(settings.method, forecast_methods())});
-  return OlsForecaster::make(options);
+  const auto* const method = std::ranges::find(kMethods, settings.method, &Method::name);
+  if (method != kMethods.end()) return method->make(settings);
+  return fail(Error{.file = {},
+                    .place = "forecast method",
+                    .value = settings.method,
+                    .rule = "is not known",
+                    .advice = suggest(settings.method, forecast_methods())});
 }
 
 std::vector<ForecasterSettings> default_forecasters() {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "sealwatch/forecast/degradation_line.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "services/common/forecast/forecast_parts.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -44,7 +44,7 @@ std::vector<ConditionSample> last_months(const std::vector<ConditionSample>& his
 std::string missing_history(const OlsOptions& options, const ForecastRequest& request, std::size_t tests) {
   const double reach = months_between(request.history.front().time, request.history.back().time);
   if (reach < options.window_months - kJitterMonths)
-    return "history reaches back " + in_months(reach) + " of the " + std::to_string(options.window_months) +
+    return "history reaches back " + text::in_months(reach) + " of the " + std::to_string(options.window_months) +
            " of this window (" + std::to_string(tests) + " usable " + (tests == 1 ? "test" : "tests") + " so far)";
   const int fewest =
       std::max(kFewestTests, static_cast<int>(std::ceil(options.fewest_tests_share * options.window_months)));
@@ -99,10 +99,10 @@ void fill_failure_probabilities(Forecast& forecast, const ForecastRequest& reque
 
 std::string describe_ok(const Forecast& forecast, const ForecastRequest& request, const DegradationLine& line) {
   std::string text = std::to_string(forecast.tests_used) + " tests that scatter by " +
-                     spread_in_percent(std::sqrt(line.scatter_variance)) + " about the line";
+                     text::spread_in_percent(std::sqrt(line.scatter_variance)) + " about the line";
   text += age_of_last_test(request);
   if (forecast.interval_95_high_months >= kLongestMonths)
-    text += "; upper limits are cut at " + in_months(kLongestMonths);
+    text += "; upper limits are cut at " + text::in_months(kLongestMonths);
   return text;
 }
 
@@ -111,7 +111,7 @@ std::string describe_ok(const Forecast& forecast, const ForecastRequest& request
 Status OlsOptions::validate() const {
   const auto check = [](bool good, const char* place, double value, const char* rule) -> Status {
     if (good) return {};
-    return fail(Error{.file = {}, .place = place, .value = std::to_string(value), .rule = rule, .advice = {}});
+    return fail(Error{.file = {}, .place = place, .value = text::general(value), .rule = rule, .advice = {}});
   };
   if (auto s = check(window_months >= 6 && window_months <= 240, "window_months", window_months, "must be 6 to 240");
       !s)
@@ -146,9 +146,9 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
   const double present = present_condition(request.history);
   if (present <= request.threshold)
     return {say_past_threshold(forecast, request,
-                               "the condition is " + condition_in_percent(present) +
+                               "the condition is " + text::condition_in_percent(present) +
                                    " (median of the last tests), the limit " +
-                                   condition_in_percent(request.threshold))};
+                                   text::condition_in_percent(request.threshold))};
   if (const std::string missing = missing_history(options_, request, window.size()); !missing.empty())
     return {say(forecast, ForecastState::insufficient_history, missing)};
 
@@ -160,16 +160,16 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
   auto remaining = crossing_distribution(*line, request.threshold, axis);
   if (p > options_.significance || !remaining)
     return {say(forecast, ForecastState::no_significant_trend,
-                "the condition does not fall significantly over these months (p = " + three_digits(p) + ")")};
+                "the condition does not fall significantly over these months (p = " + text::three_digits(p) + ")")};
   if (remaining->quantile(0.5) <= 0.0)
     return {say_past_threshold(forecast, request,
                                "the fitted line is at " +
-                                   condition_in_percent(line->condition_at(axis.y(axis.now_months))) +
-                                   " now, the limit is " + condition_in_percent(request.threshold))};
+                                   text::condition_in_percent(line->condition_at(axis.y(axis.now_months))) +
+                                   " now, the limit is " + text::condition_in_percent(request.threshold))};
   if (remaining->quantile(0.5) > options_.horizon_months)
-    return {say(
-        forecast, ForecastState::no_significant_trend,
-        "at this rate the end of life is more than " + in_months(options_.horizon_months) + " away: no date is given")};
+    return {say(forecast, ForecastState::no_significant_trend,
+                "at this rate the end of life is more than " + text::in_months(options_.horizon_months) +
+                    " away: no date is given")};
   fill_numbers(forecast, request, *remaining);
   fill_failure_probabilities(forecast, request, *line, axis);
   return {say(forecast, ForecastState::ok, describe_ok(forecast, request, *line)), std::move(remaining)};

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "services/common/text/numbers.hpp"
+
 namespace sealwatch::forecast {
 namespace {
 
 Status positive(const char* place, double value) {
   if (value > 0.0 && std::isfinite(value)) return {};
   return fail(
-      Error{.file = {}, .place = place, .value = std::to_string(value), .rule = "must be positive", .advice = {}});
+      Error{.file = {}, .place = place, .value = text::general(value), .rule = "must be positive", .advice = {}});
 }
 
 }  // namespace
@@ -22,7 +24,7 @@ Status ProofTesting::validate() const {
   if (!(partial_stroke_coverage >= 0.0 && partial_stroke_coverage <= 1.0))
     return fail(Error{.file = {},
                       .place = "partial_stroke_coverage",
-                      .value = std::to_string(partial_stroke_coverage),
+                      .value = text::general(partial_stroke_coverage),
                       .rule = "must be within 0 and 1",
                       .advice = "a share: 0.6 for 60 %"});
   return {};

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "sealwatch/forecast/normal.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "services/common/forecast/forecast_parts.hpp"
 #include "services/common/forecast/seal_hypotheses.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::forecast {
 namespace {
@@ -92,7 +92,7 @@ std::string describe_change(const SealOpinion& opinion, UtcTime first) {
         when += hypothesis.weight * hypothesis.changed_months;
       }
     if (probability > kWorthSaying)
-      return "with " + in_percent(probability) + " probability " + name_of_change(change) + " since about " +
+      return "with " + text::in_percent(probability) + " probability " + name_of_change(change) + " since about " +
              format_date(add_months(first, when / probability));
   }
   return {};
@@ -103,7 +103,7 @@ std::string describe_ok(const Forecast& forecast, const SealOpinion& opinion, co
   std::string text = std::to_string(opened.tests.size());
   text += " tests up to " + format_date(request.history.back().time) + ", condition now ";
   const ConditionForecast now = condition_of(opinion, request.now);
-  text += condition_with_std(now.condition, now.condition_std);
+  text += text::condition_with_std(now.condition, now.condition_std);
   const ConditionSample& last = request.history.back();
   text += last.time < request.now     ? " (carried on from then)"
           : last.condition_std == 0.0 ? " (by how the tests scatter)"
@@ -114,10 +114,10 @@ std::string describe_ok(const Forecast& forecast, const SealOpinion& opinion, co
   if (stranger > kWorthSaying) text += "; it ages unlike the population";
   if (const std::string change = describe_change(opinion, opened.first); !change.empty()) text += "; " + change;
   if (opinion.extra_std > 0.0)
-    text += "; tests scatter by " + spread_in_percent(opinion.extra_std) + " besides their errors";
+    text += "; tests scatter by " + text::spread_in_percent(opinion.extra_std) + " besides their errors";
   if (opinion.irregularity_scale > 1.0) text += "; it ages less regularly than the law says";
   if (forecast.interval_95_high_months >= kLongestMonths)
-    text += "; upper limits are cut at " + in_months(kLongestMonths);
+    text += "; upper limits are cut at " + text::in_months(kLongestMonths);
   return text + age_of_last_test(request);
 }
 
@@ -126,7 +126,7 @@ std::string describe_ok(const Forecast& forecast, const SealOpinion& opinion, co
 Status StateSpaceOptions::validate() const {
   const auto check = [](bool good, const char* place, double value, const char* rule) -> Status {
     if (good) return {};
-    return fail(Error{.file = {}, .place = place, .value = std::to_string(value), .rule = rule, .advice = {}});
+    return fail(Error{.file = {}, .place = place, .value = text::general(value), .rule = rule, .advice = {}});
   };
   if (auto s = check(window_months >= 6 && window_months <= 600, "window_months", window_months, "must be 6 to 600");
       !s)
@@ -162,9 +162,9 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
   if (forecast.tests_used < options_.fewest_tests) {
     if (const double present = present_condition(request.history); present <= request.threshold)
       return {say_past_threshold(forecast, request,
-                                 "the condition is " + condition_in_percent(present) +
+                                 "the condition is " + text::condition_in_percent(present) +
                                      " (median of the last tests), the limit " +
-                                     condition_in_percent(request.threshold))};
+                                     text::condition_in_percent(request.threshold))};
     return {say(forecast, ForecastState::insufficient_history,
                 std::to_string(forecast.tests_used) + (forecast.tests_used == 1 ? " usable test" : " usable tests") +
                     " so far, at least " + std::to_string(options_.fewest_tests) + " are needed")};
@@ -179,15 +179,16 @@ PredictiveForecast StateSpaceForecaster::answer(const ForecastRequest& request) 
   const ConditionForecast now = condition_of(opinion, request.now);
   if (remaining.cdf(0.0) >= 0.5)
     return {say_past_threshold(forecast, request,
-                               "the condition is " + condition_with_std(now.condition, now.condition_std) +
-                                   ", the limit " + condition_in_percent(request.threshold))};
+                               "the condition is " + text::condition_with_std(now.condition, now.condition_std) +
+                                   ", the limit " + text::condition_in_percent(request.threshold))};
   if (const double falls = fall_probability(opinion); falls < kSureOfFall)
-    return {say(forecast, ForecastState::no_significant_trend,
-                "the condition does not fall significantly (probability that it falls: " + in_percent(falls) + ")")};
+    return {
+        say(forecast, ForecastState::no_significant_trend,
+            "the condition does not fall significantly (probability that it falls: " + text::in_percent(falls) + ")")};
   if (remaining.quantile(0.5) > options_.horizon_months)
-    return {say(
-        forecast, ForecastState::no_significant_trend,
-        "at this rate the end of life is more than " + in_months(options_.horizon_months) + " away: no date is given")};
+    return {say(forecast, ForecastState::no_significant_trend,
+                "at this rate the end of life is more than " + text::in_months(options_.horizon_months) +
+                    " away: no date is given")};
   fill_numbers(forecast, request, remaining);
   return {say(forecast, ForecastState::ok, describe_ok(forecast, opinion, opened, request)), std::move(remaining)};
 }

@@ -7,13 +7,13 @@
 #include <map>
 
 #include "sealwatch/forecast/fleet_population.hpp"
-#include "sealwatch/forecast/words.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -333,7 +333,7 @@ std::vector<Location> locate_at_a_sensor(const PooledFit& fit) {
 Rejected describe(const Forbidden& forbidden) {
   const LawParameter& strength = forbidden.effect.law->parameters[strengths_of(*forbidden.effect.law).front()];
   std::string why = "The data would want ";
-  why.append(strength.name).append(" = ").append(forecast::with_unit(forbidden.strength, strength.unit));
+  why.append(strength.name).append(" = ").append(text::with_unit(forbidden.strength, strength.unit));
   why.append("; physics demands: ").append(forbidden.effect.law->energy).append(".");
   return {.what = law_at(forbidden.effect),
           .why = std::move(why),

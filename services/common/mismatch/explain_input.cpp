@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "sealwatch/estimation/noise_floor.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
+#include "sealwatch/signal/stuck.hpp"
 #include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/telling.hpp"
 
@@ -42,68 +44,48 @@ bool same_samples(const TimeSeries& a, const TimeSeries& b) {
   return shared;
 }
 
-// Samples from `begin` on in which a channel shows the same value.
-struct Run {
-  std::size_t begin = 0, samples = 0;
-};
-
-// The longest run, and how long the longest beside it is.
-std::pair<Run, std::size_t> longest_runs(const std::vector<double>& values) {
-  Run longest, run;
-  std::size_t second = 0;
-  for (std::size_t k = 0; k <= values.size(); ++k) {
-    if (k < values.size() && (k == 0 || values[k] == values[k - 1])) continue;
-    run.samples = k - run.begin;
-    second = std::max(second, std::min(run.samples, longest.samples));
-    if (run.samples > longest.samples) longest = run;
-    run.begin = k;
-  }
-  return {longest, second};
-}
-
-// A sensor at the end of its range shows its largest or smallest value, and shows it before and after too, where the
-// noise takes it there.
-bool at_its_end(const std::vector<double>& values, const Run& run) {
-  const double value = values[run.begin];
-  const auto [least, most] = std::ranges::minmax(values);
-  return (value == least || value == most) &&
-         std::ranges::count(values, value) > static_cast<std::ptrdiff_t>(run.samples);
-}
-
-// Whether a channel moves far beyond its noise in these samples.
-bool moves(const Series& channel, const Run& during) {
+// How far a channel must move to speak against one that does not: far beyond its noise.
+double moves_from(const Series& channel) {
   constexpr double kMoves = 50.0;
-  const auto begin = channel.values.begin() + static_cast<std::ptrdiff_t>(during.begin);
-  const auto [least, most] = std::minmax_element(begin, begin + static_cast<std::ptrdiff_t>(during.samples));
-  const double noise = estimate_noise_floor(channel.values).standard_deviation;
-  return noise > 0.0 && *most - *least > kMoves * noise;
+  const double noise = signal::estimate_noise_floor(channel.values).standard_deviation;
+  return noise > 0.0 ? kMoves * noise : std::numeric_limits<double>::infinity();
 }
 
 // An output that is one number for a tenth of the recording or more while another moves far beyond its noise: a dead
-// sensor, which gains and offsets of healthy ones would be bent to explain. Not one that rounds, and so stays for
-// nearly as long elsewhere, nor one at the end of its range; at rest every output may be.
-std::optional<Run> frozen_run(const PlantSimulation& simulation, const TimeSeries& samples, const Series& channel) {
-  constexpr double kLong = 0.1;
-  constexpr std::size_t kTimesTheNext = 10;
-  const auto [run, second] = longest_runs(channel.values);
-  if (static_cast<double>(run.samples) < kLong * static_cast<double>(channel.values.size())) return std::nullopt;
-  if (run.samples < kTimesTheNext * second || at_its_end(channel.values, run)) return std::nullopt;
-  for (const std::string& other : simulation.channels())
-    if (other != channel.name && moves(*samples.find(other), run)) return run;
-  return std::nullopt;
+// sensor, which gains and offsets of healthy ones would be bent to explain. `outputs`: all of them, with how far each
+// must move.
+std::optional<signal::ConstantRun> stuck_run(const std::vector<double>& time_s, const Series& channel,
+                                             const std::vector<std::pair<const Series*, double>>& outputs) {
+  constexpr double kLong = 0.1, kTimesTheNext = 10.0;
+  std::vector<double> least_moves, values(outputs.size());
+  for (const auto& [series, least] : outputs) least_moves.push_back(least);  // its own never moves while it is constant
+  signal::StuckWatch watch(
+      {.least_samples = static_cast<std::uint64_t>(std::ceil(kLong * static_cast<double>(time_s.size()))),
+       .times_the_next = kTimesTheNext,
+       .spare_ends = true},
+      std::move(least_moves));
+  for (std::size_t k = 0; k < time_s.size(); ++k) {
+    for (std::size_t c = 0; c < outputs.size(); ++c) values[c] = outputs[c].first->values[k];
+    watch.add(time_s[k], channel.values[k], values);
+  }
+  return watch.stuck();
 }
 
 Status check_sensors(const PlantSimulation& simulation, const Recording& recording) {
   const std::vector<double>& time_s = recording.samples.time_s;
+  std::vector<std::pair<const Series*, double>> outputs;
   for (const std::string& name : simulation.channels()) {
-    const auto run = frozen_run(simulation, recording.samples, *recording.samples.find(name));
+    const Series* series = recording.samples.find(name);
+    outputs.emplace_back(series, moves_from(*series));
+  }
+  for (const auto& [series, least] : outputs) {
+    const auto run = stuck_run(time_s, *series, outputs);
     if (!run) continue;
-    const std::string during = run->samples == time_s.size()
-                                   ? "never changes"
-                                   : "does not change from " + number(time_s[run->begin], 4) + " s to " +
-                                         number(time_s[run->begin + run->samples - 1], 4) + " s";
+    const std::string during = run->samples == time_s.size() ? "never changes"
+                                                             : "does not change from " + number(run->begin_s, 4) +
+                                                                   " s to " + number(run->end_s, 4) + " s";
     return fail(Error{.file = recording.file,
-                      .place = "column " + name,
+                      .place = "column " + series->name,
                       .value = {},
                       .rule = during + " while other channels of the recording do: the sensor is stuck",
                       .advice = "leave the column out of the recordings, or those with it"});

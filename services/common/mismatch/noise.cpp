@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
-#include "sealwatch/estimation/noise_floor.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -119,7 +120,7 @@ double pooled_floor(const Data& data, const std::string& channel) {
   double squares = 0.0, count = 0.0;
   for (const TimeSeries& recorded : data.samples)
     if (const Series* series = recorded.find(channel)) {
-      squares += std::pow(estimate_noise_floor(series->values).standard_deviation, 2);
+      squares += std::pow(signal::estimate_noise_floor(series->values).standard_deviation, 2);
       count += 1.0;
     }
   return std::sqrt(squares / std::max(count, 1.0));
@@ -160,15 +161,11 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
       data.colour[k][c] = colour;
       for (Series& series : data.samples[k].channels)
         if (series.name == channels[c] && series.noise_std <= 0.0)
-          series.noise_std = growth * estimate_noise_floor(series.values).standard_deviation;
+          series.noise_std = growth * signal::estimate_noise_floor(series.values).standard_deviation;
     }
-    std::string channel = channels[c];
-    std::ranges::replace(channel, '_', ' ');
-    char sentence[160];
-    std::snprintf(sentence, sizeof sentence,
-                  "The noise of %s is correlated from sample to sample (%.2f); it was whitened by an autoregression.",
-                  channel.c_str(), correlation);
-    sentences.emplace_back(sentence);
+    sentences.push_back(text::format(
+        "The noise of {} is correlated from sample to sample ({:.2f}); it was whitened by an autoregression.",
+        text::in_words(channels[c]), correlation));
   }
   return sentences;
 }

@@ -1,4 +1,4 @@
-// Noise of the recordings from the recordings alone: standard deviation per channel (estimation/noise_floor.hpp, unless
+// Noise of the recordings from the recordings alone: standard deviation per channel (signal/noise_floor.hpp, unless
 // the sidecar gives it) and its colour.
 //
 //   quiet pieces     the quarter of all pieces of 64 samples in which least moves (polynomials of degree 3 to 7);

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/site_words.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -35,10 +36,9 @@ std::string number_with_unit(double value, std::string_view unit) {
   if (unit == "m" || unit == "m/s") factor = 1e3, unit = unit == "m" ? "mm" : "mm/s";
   if (unit == "Pa") factor = 1e-5, unit = "bar";
   if (unit == "m3/s") factor = 6e4, unit = "L/min";
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), std::abs(value * factor) < 10.0 ? "%.2g" : "%.3g", value * factor);
-  if (std::abs(value * factor) >= 100.0) std::snprintf(text.data(), text.size(), "%.0f", value * factor);
-  return std::string(text.data()).append(" ").append(unit);
+  const double shown = value * factor, size = std::abs(shown);
+  if (size >= 100.0) return text::format("{:.0f} {}", shown, unit);
+  return text::format("{:.{}g} {}", shown, size < 10.0 ? 2 : 3, unit);
 }
 
 std::vector<Step> steps_of(std::span<const TermPath> recordings) {
@@ -227,7 +227,7 @@ void split_signal(const SignalWords& signal, std::size_t index, bool by_size, co
 
 std::string percent(double share) {
   if (share < 0.01) return "less than 1 %";
-  return std::to_string(std::lround(100.0 * share)).append(" %");
+  return text::percent(share, 0);
 }
 
 // Of the signals that the term's size goes by.

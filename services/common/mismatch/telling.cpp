@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -35,33 +34,6 @@ std::string separating_test(const FoundEffect& effect) {
 }
 
 }  // namespace
-
-// "pressure A", "chamber B": a chamber's letter is a capital.
-std::string in_words(std::string id) {
-  if (id.ends_with("_a") || id.ends_with("_b")) id.back() = static_cast<char>(std::toupper(id.back()));
-  std::ranges::replace(id, '_', ' ');
-  return id;
-}
-
-// An engineer reads 64400, not 6.44e+04.
-std::string number(double value, int digits) {
-  constexpr double kLargest = 1e7;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  if (std::abs(value) < kLargest && std::string_view(text).find('e') != std::string_view::npos &&
-      std::abs(value) >= 1.0)
-    std::snprintf(text, sizeof text, "%.0f", std::atof(text));
-  return text;
-}
-
-std::string joined(const std::vector<std::string>& words, const char* last) {
-  std::string text;
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    if (k > 0) text += k + 1 == words.size() ? last : ", ";
-    text += words[k];
-  }
-  return text;
-}
 
 std::string law_in_words(const LawAt& law) {
   return (law.id == "unlisted" ? "unlisted physics" : in_words(law.id))

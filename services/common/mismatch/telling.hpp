@@ -4,20 +4,21 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::mismatch {
+
+using text::in_words;
+using text::joined;
+using text::number;
 
 /// As probable as anything is said to be.
 inline constexpr double kNeverCertain = 0.999;
 
-[[nodiscard]] std::string number(double value, int digits = 3);
 [[nodiscard]] std::string element_in_words(const std::string& element);
-/// "coulomb friction" of "coulomb_friction"
-[[nodiscard]] std::string in_words(std::string id);
 /// "coulomb friction at the piston"
 [[nodiscard]] std::string law_in_words(const LawAt& law);
-/// "a, b and c", with `last` before the last one
-[[nodiscard]] std::string joined(const std::vector<std::string>& words, const char* last);
 /// What broke which rule where, without file and advice: for a remark within a sentence.
 [[nodiscard]] std::string reason_in_words(const Error& error);
 /// "the misfit of flow on recordings that took no part falls from 5 to 1.01 times the noise", where it falls most; ""

@@ -4,22 +4,16 @@
 
 #include <utility>
 
+#include "services/common/model/native_plant.hpp"
 #include "services/common/model/plant_physics.hpp"
-#include "services/common/model/simulation_plants.hpp"
-#include "services/common/model/start_values.hpp"
 
 namespace sealwatch {
 
 /// Model: plant_simulation.hpp.
 template <class Model>
 Status add_plant(PlantDescription description) {
-  PlantSimulator simulator{.model = description.name, .inputs = {}, .simulate = nullptr};
-  for (const ModelInput& input : Model::kInputs) simulator.inputs.emplace_back(input.name);
-  simulator.simulate = [](const PlantDescription& plant, const AssetConfig& asset, const TimeSeries& recorded,
-                          PhysicsTerms terms) -> std::unique_ptr<PlantSimulation> {
-    return std::make_unique<PlantSimulationOf<Model>>(plant, asset, recorded, std::move(terms));
-  };
-  return add_plant(std::move(description), std::move(simulator));
+  NativePlant plant = native_plant<Model>(std::move(description));
+  return add_plant(std::move(plant.description), std::move(plant.simulator));
 }
 
 }  // namespace sealwatch

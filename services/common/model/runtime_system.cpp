@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -153,9 +154,7 @@ std::string RuntimeSystem::trouble() const {
   }
   if (plant_states_ == 0) return {};
   const StateDescription& state = plant_.description.states[fastest];
-  std::array<char, 64> number{};
-  std::snprintf(number.data(), number.size(), "%.3g", last_rates_[fastest]);
-  return state.name + " moves fastest, by " + number.data() + " (" + state.unit + ")/s";
+  return text::format("{} moves fastest, by {:.3g} ({})/s", state.name, last_rates_[fastest], state.unit);
 }
 
 void RuntimeSystem::set_segment(std::size_t segment) {

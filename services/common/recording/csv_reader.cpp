@@ -1,14 +1,13 @@
 #include "services/common/recording/csv_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -88,10 +87,10 @@ class CsvReader {
     if (time.size() < 2 || time.back() > time[time.size() - 2]) return {};
     const double before = time[time.size() - 2];
     const bool repeats = time.back() == before;
-    std::array<char, 64> rule{};
-    std::snprintf(rule.data(), rule.size(), "time goes back: the row before is at %.9g s", before);
-    return fail(error_in("time", cells_[time_], repeats ? "time repeats" : rule.data(),
-                         "time must increase from row to row: sort the rows, or take the wrong one out"));
+    return fail(
+        error_in("time", cells_[time_],
+                 repeats ? "time repeats" : text::format("time goes back: the row before is at {:.9g} s", before),
+                 "time must increase from row to row: sort the rows, or take the wrong one out"));
   }
 
   /// Tells a cut-off number from a missing last line break (see the header).

@@ -1,26 +1,19 @@
 #include "services/common/recording/log_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "sealwatch/signal/statistics.hpp"
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
 
 constexpr std::size_t kHead_bytes = std::size_t{1} << 18U;
-
-std::string words(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", value);
-  return text.data();
-}
 
 class LogReader {
  public:
@@ -122,7 +115,8 @@ class LogReader {
       shift_s_ = time.back() + usual_step() - time_s;
     } else {
       return fail(error_in(
-          time_, repeats ? "time repeats" : "time goes back: the row before is at " + words(time.back()) + " s",
+          time_,
+          repeats ? "time repeats" : "time goes back: the row before is at " + text::significant(time.back(), 9) + " s",
           repeats ? "take one of the rows out, or log a finer time"
                   : "log: {time_resets: join} takes it as one test, split as another test"));
     }

@@ -14,6 +14,7 @@
 #include "services/common/recording/hdf5_child.hpp"
 #include "services/common/recording/mat_container.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -143,7 +144,7 @@ Result<std::vector<MatVariable>> read_container(const std::string& path,
 }
 
 Error sample_error(const std::string& name, std::size_t row, double value, std::string rule) {
-  return error_at("row " + std::to_string(row + 1) + ", column " + name, std::to_string(value), std::move(rule));
+  return error_at("row " + std::to_string(row + 1) + ", column " + name, text::exact(value), std::move(rule));
 }
 
 /// All samples finite, all vectors as long as time, time increasing.

@@ -1,28 +1,22 @@
 #include "services/common/recording/plausible_samples.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <span>
 
 #include "sealwatch/core/test_limits.hpp"
 #include "services/common/recording/columns.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
-
-std::string print(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 Status check_column(std::span<double> values, const std::string& name, const std::string& unit, double largest,
                     std::size_t first_row) {
   for (std::size_t row = 0; row < values.size(); ++row) {
     const auto number = plausible(values[row], largest);
     if (!number)
-      return fail(error_at("row " + std::to_string(first_row + row) + ", column " + name, print(values[row]),
-                           "is no " + unit + " that can be measured here: more than " + print(largest),
+      return fail(error_at("row " + std::to_string(first_row + row) + ", column " + name, text::general(values[row]),
+                           "is no " + unit + " that can be measured here: more than " + text::general(largest),
                            "take the row out, or mend what wrote it"));
     values[row] = *number;
   }

@@ -5,6 +5,7 @@
 
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/log_columns.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -21,7 +22,7 @@ std::vector<OfferedColumn> offered_by(const std::vector<MatVariable>& vectors, c
 }
 
 Error sample_error(const std::string& channel, std::size_t row, double value, std::string rule) {
-  return error_at("row " + std::to_string(row + 1) + ", channel " + channel, std::to_string(value), std::move(rule));
+  return error_at("row " + std::to_string(row + 1) + ", channel " + channel, text::exact(value), std::move(rule));
 }
 
 Result<std::vector<double>> in_seconds(const std::vector<double>& numbers, TimeFormat& format) {

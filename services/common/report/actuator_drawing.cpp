@@ -3,7 +3,8 @@
 #include "services/common/report/drawing_parts.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot_scale.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -39,17 +40,20 @@ bool Colouring::same_as_most_probable(std::string_view element) const {
 }
 
 std::string Colouring::filled(std::string_view element, std::string_view shape) const {
-  std::string title = words_of(element);
+  std::string title = text::in_words(element);
   for (const ElementDescription& description : plant_.elements)
     if (description.name == element) title.append(": ").append(description.meaning);
   const double share = probability(element);
-  if (share > 0.0) title.append(" (").append(percent_text(share)).append(")");
+  if (share > 0.0) title.append(" (").append(text::percent_text(share)).append(")");
   std::string svg = std::string("<g class=\"part\"><title>").append(escaped(title)).append("</title>");
   svg.append(shape).append("</g>\n");
   const bool same = same_as_most_probable(element);
   if (share >= kShown || same) {
     svg.append(same ? "<g class=\"hot same\" fill-opacity=\"" : "<g class=\"hot\" fill-opacity=\"");
-    svg.append(number_text(0.1 + 0.75 * std::clamp(share, 0.0, 1.0), 2)).append("\">").append(shape).append("</g>\n");
+    svg.append(text::number_text(0.1 + 0.75 * std::clamp(share, 0.0, 1.0), 2))
+        .append("\">")
+        .append(shape)
+        .append("</g>\n");
   }
   return svg;
 }
@@ -58,10 +62,10 @@ std::string Colouring::part(const Part& part) const {
   const double share = probability(part.element);
   std::string svg = filled(part.element, part.shape);
   svg.append("<g class=\"symbol\">").append(part.symbol).append("</g>\n");
-  svg += text_at(part.label_x, part.label_y, part.anchor, share >= kShown ? "title" : "", words_of(part.element));
+  svg += text_at(part.label_x, part.label_y, part.anchor, share >= kShown ? "title" : "", text::in_words(part.element));
   if (share >= kShown)
-    svg +=
-        text_at(part.label_x, part.label_y + 14.0, part.anchor, part.inside ? "title" : "share", percent_text(share));
+    svg += text_at(part.label_x, part.label_y + 14.0, part.anchor, part.inside ? "title" : "share",
+                   text::percent_text(share));
   return svg;
 }
 
@@ -73,7 +77,7 @@ std::string Colouring::sensor(std::string_view channel, std::string_view letters
   svg += filled(element, disc);
   svg += text_at(x, y + 4.0, "middle", "letters", letters);
   const double share = probability(element);
-  if (share >= kShown) svg += text_at(x + 16.0, y + 4.0, "start", "share", percent_text(share));
+  if (share >= kShown) svg += text_at(x + 16.0, y + 4.0, "start", "share", text::percent_text(share));
   return svg.append("</g>\n");
 }
 

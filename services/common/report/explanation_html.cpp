@@ -6,7 +6,8 @@
 
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -43,12 +44,6 @@ void add_figure(const std::string& value, const std::string& meaning, std::strin
       .append("</span></div>\n");
 }
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
-  return text;
-}
-
 /// What to look at for one effect, and how soon.
 std::string step_for(const mismatch::FoundEffect& effect) {
   const std::string& element = effect.what.element;
@@ -58,17 +53,17 @@ std::string step_for(const mismatch::FoundEffect& effect) {
   if (!effect.what.meaning.empty()) step += ": " + effect.what.meaning;
   step += ". ";
   if (effect.engineering_share >= 1.0)
-    step += "At " + number_text(effect.engineering_share, 2) +
-            " times the significance threshold, do this before you rely on the seal condition. If the effect is normal "
+    step += "At " + text::number_text(effect.engineering_share, 2) +
+            " times the size that matters, do this before you rely on the seal condition. If the effect is normal "
             "for this actuator, keep it in the asset file.";
   else if (effect.engineering_share > 0.0)
-    step += "At " + number_text(effect.engineering_share, 2) +
-            " of the significance threshold, it can wait for the next planned work. Follow it in the next tests.";
+    step += "At " + text::number_text(effect.engineering_share, 2) +
+            " of the size that matters, it can wait for the next planned work. Follow it in the next tests.";
   else
     step += "It is either normal for this actuator or a fault.";
   std::vector<std::string> others;
   for (const std::string& other : effect.same_elements) others.push_back(the_element(other));
-  if (!others.empty()) step += " These recordings fit equally well with it in: " + list_of(others) + ".";
+  if (!others.empty()) step += " These recordings fit equally well with it in: " + text::joined(others) + ".";
   return step;
 }
 
@@ -84,22 +79,22 @@ std::string steps_after(const Explanation& explanation) {
 }
 
 std::string arrow(double before, double after) {
-  return number_text(before, 3).append(" → ").append(number_text(after, 3));
+  return text::number_text(before, 3).append(" → ").append(text::number_text(after, 3));
 }
 
 std::string figures(const Explanation& explanation) {
   std::string html = "<div class=\"figures\">\n";
-  add_figure(p_value_text(explanation.p_value), "chance that noise alone explains it", html);
+  add_figure(text::p_value_text(explanation.p_value), "chance that noise alone explains it", html);
   const bool changed = explanation.changed();
   const auto add_misfit = [&html, changed](const mismatch::PooledFit& fit, const std::string& where) {
     const Misfit misfit = overall(fit);
     if (misfit.known)
-      add_figure(changed ? arrow(misfit.before, misfit.after) : number_text(misfit.before, 3),
+      add_figure(changed ? arrow(misfit.before, misfit.after) : text::number_text(misfit.before, 3),
                  std::string("misfit, ").append(where), html);
   };
   add_misfit(explanation.holdout, explanation.holdout_recordings.empty() ? "left out in turn" : "held out");
   add_misfit(explanation.fit, "fitted");
-  if (changed) add_figure(percent_text(explanation.explained_share), "of the misfit explained", html);
+  if (changed) add_figure(text::percent_text(explanation.explained_share), "of the misfit explained", html);
   return html.append("</div>\n")
       .append(
           paragraph("Misfit: rms of recording minus simulation, in multiples of the sensor noise. 1 means that only "
@@ -126,16 +121,17 @@ Misfit overall(const mismatch::PooledFit& fit) {
 }
 
 std::string law_name(const mismatch::LawAt& what) {
-  std::string name = words_of(what.id);
-  if (!what.form.empty()) name.append(" (").append(words_of(what.form)).append(")");
+  std::string name = text::in_words(what.id);
+  if (!what.form.empty()) name.append(" (").append(text::in_words(what.form)).append(")");
   return name;
 }
 
 std::string element_name(const std::string& element) {
   constexpr std::string_view kSensor = "sensor:";
   constexpr std::string_view kInput = "input:";
-  if (element.starts_with(kInput)) return "recorded input " + words_of(element.substr(kInput.size()));
-  return element.starts_with(kSensor) ? "sensor of " + words_of(element.substr(kSensor.size())) : words_of(element);
+  if (element.starts_with(kInput)) return "recorded input " + text::in_words(element.substr(kInput.size()));
+  return element.starts_with(kSensor) ? "sensor of " + text::in_words(element.substr(kSensor.size()))
+                                      : text::in_words(element);
 }
 
 std::string the_element(const std::string& element) {
@@ -172,9 +168,11 @@ std::string next_steps(const Explanation& explanation) {
 
 std::string notes_section(const Explanation& explanation) {
   std::string html = "<ul>\n<li>";
-  html.append(escaped("Fitted: " + list_of(explanation.fit_recordings) + ".")).append("</li>\n");
+  html.append(escaped("Fitted: " + text::joined(explanation.fit_recordings) + ".")).append("</li>\n");
   if (!explanation.holdout_recordings.empty())
-    html.append("<li>").append(escaped("Held out: " + list_of(explanation.holdout_recordings) + ".")).append("</li>\n");
+    html.append("<li>")
+        .append(escaped("Held out: " + text::joined(explanation.holdout_recordings) + "."))
+        .append("</li>\n");
   for (const std::string& note : explanation.notes) html.append("<li>").append(escaped(note)).append("</li>\n");
   html +=
       "<li>Misfit / noise: root mean square of (recording - simulation) / sensor noise; 1 is the floor. Fit: 100 % is "

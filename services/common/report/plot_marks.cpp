@@ -1,10 +1,10 @@
 // Each kind of mark as SVG elements.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot_scale.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -223,11 +223,7 @@ struct Draw {
 
 }  // namespace
 
-std::string pixel(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", std::abs(value) < 0.05 ? 0.0 : value);
-  return text;
-}
+std::string pixel(double value) { return text::format("{:.1f}", std::abs(value) < 0.05 ? 0.0 : value); }
 
 std::string svg_of_marks(const Plot& plot, const Scale& x, const Scale& y) {
   std::string svg;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "services/common/text/format.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -85,7 +87,7 @@ Scale scale_of(const Axis& axis, Extent extent, double margin) {
   }
   if (scale.empty) return scale;
   const bool plain = axis.unit.empty() || axis.unit == "1" || !axis.categories.empty();
-  if (!plain) scale.unit = display_unit(axis.unit, std::max(std::abs(extent.low), std::abs(extent.high)));
+  if (!plain) scale.unit = text::display_unit(axis.unit, std::max(std::abs(extent.low), std::abs(extent.high)));
   const auto place = [&scale](double si) {
     return scale.logarithmic ? std::log10(si * scale.unit.factor) : si * scale.unit.factor;
   };
@@ -104,12 +106,11 @@ Scale scale_of(const Axis& axis, Extent extent, double margin) {
 }
 
 std::string tick_label(double value, double step) {
-  char text[48];
   const double size = std::max(std::abs(value), step);
-  if (size >= 1e6 || size < 1e-4) return value == 0.0 ? "0" : number_text(value, 2);
+  if (size >= 1e6 || size < 1e-4) return value == 0.0 ? "0" : text::number_text(value, 2);
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
-  std::snprintf(text, sizeof text, "%.*f", decimals, value == 0.0 ? 0.0 : value);
-  return text[0] == '-' ? std::string("−").append(text + 1) : text;
+  const std::string text = text::format("{:.{}f}", value == 0.0 ? 0.0 : value, decimals);
+  return text.starts_with("-") ? std::string("−").append(text, 1) : text;
 }
 
 }  // namespace
@@ -174,7 +175,7 @@ std::vector<Tick> ticks_of(const Scale& scale, const Axis& axis, int about) {
       ticks.push_back({at(static_cast<double>(k)), axis.categories[k]});
   } else if (scale.logarithmic) {
     for (const double value : logarithmic_ticks(std::pow(10.0, scale.low), std::pow(10.0, scale.high)))
-      ticks.push_back({at(std::log10(value)), number_text(value, 1)});
+      ticks.push_back({at(std::log10(value)), text::number_text(value, 1)});
   } else {
     std::vector<double> values = nice_ticks(scale.low, scale.high, about);
     for (int more = about + 1; values.size() < 2 && more < 3 * about; ++more)  // one label says nothing of the scale

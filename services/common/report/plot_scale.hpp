@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::report {
 
 /// pixel = from + (place(si) - low) / (high - low) * (to - from), place(si) = si * factor or log10(si * factor).
 struct Scale {
-  DisplayUnit unit;
+  text::DisplayUnit unit;
   double low = 0.0, high = 1.0;  ///< shown unit; logarithms on a logarithmic axis
   double from = 0.0, to = 1.0;   ///< pixels
   bool logarithmic = false;

@@ -8,7 +8,7 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -31,7 +31,8 @@ double largest_of(const ParameterShift& shift) {
 
 /// "10.68 ± 0.41", as many decimals as the error's second digit; the error is left out where the data cannot tell it.
 std::string with_error(double value, double error) {
-  return error > 0.0 && std::isfinite(error) ? readable_with_error(value, error, "") : number_text(value, 4);
+  return error > 0.0 && std::isfinite(error) ? text::readable_with_error(value, error, "")
+                                             : text::number_text(value, 4);
 }
 
 /// The value with its error, or that it ended at a bound, or that the recordings do not identify it.
@@ -57,13 +58,13 @@ std::vector<const ParameterShift*> by_weight(const std::vector<ParameterShift>& 
 std::string change_text(double from, double to) {
   if (from == 0.0 || !std::isfinite(to / from)) return "–";
   const double percent = 100.0 * (to - from) / from;
-  return std::string(percent >= 0.0 ? "+" : "−").append(number_text(std::abs(percent), 2)).append(" %");
+  return std::string(percent >= 0.0 ? "+" : "−").append(text::number_text(std::abs(percent), 2)).append(" %");
 }
 
 /// "55 N", or in words where no size would be seen.
 std::string detectable(const Power& power) {
   if (!std::isfinite(power.minimum_detectable)) return "no size";
-  return readable(power.minimum_detectable, power.unit, 2);
+  return text::readable(power.minimum_detectable, power.unit, 2);
 }
 
 /// Whether an effect of a size that matters could be there unseen.
@@ -91,15 +92,15 @@ std::string parameters_section(const Explanation& explanation) {
   for (const ParameterShift* one : by_weight(explanation.parameters)) {
     const ParameterShift& shift = *one;
     const bool at_bound = shift.before_at_bound || shift.after_at_bound;
-    const DisplayUnit unit = display_unit(shift.unit, largest_of(shift));
+    const text::DisplayUnit unit = text::display_unit(shift.unit, largest_of(shift));
     std::vector<std::string> cells = {
-        shift.name, unit.text, number_text(shift.datasheet * unit.factor, 4),
+        shift.name, unit.text, text::number_text(shift.datasheet * unit.factor, 4),
         told(shift.before * unit.factor, shift.before_std * unit.factor, shift.before_at_bound)};
     const double errors = std::abs(shift_in_errors(shift));
     if (changed) {
       cells.push_back(told(shift.after * unit.factor, shift.after_std * unit.factor, shift.after_at_bound));
       cells.push_back(change_text(shift.before, shift.after));
-      cells.push_back(number_text(errors, 2));
+      cells.push_back(text::number_text(errors, 2));
     }
     const ParameterDescription* known = plant ? (*plant)->find_parameter(shift.name) : nullptr;
     cells.push_back(known == nullptr ? "" : known->meaning);
@@ -129,8 +130,8 @@ std::string asset_values_section(const Explanation& explanation) {
     std::string which = entry++ == 0 ? "" : "or";
     for (const mismatch::AssetValue& value : values) {
       const ParameterDescription* known = plant ? (*plant)->find_parameter(value.name) : nullptr;
-      table.row({which, value.name, readable(value.in_asset_file, value.unit, 4),
-                 readable_with_error(value.fitted, value.std_error, value.unit),
+      table.row({which, value.name, text::readable(value.in_asset_file, value.unit, 4),
+                 text::readable_with_error(value.fitted, value.std_error, value.unit),
                  change_text(value.in_asset_file, value.fitted), known == nullptr ? "" : known->meaning});
       which = "and";
     }
@@ -151,10 +152,11 @@ std::string prognosis_section(const Explanation& explanation) {
   const mismatch::PrognosisShift& prognosis = explanation.prognosis;
   if (!prognosis.known || !explanation.changed()) return {};
   Table table({"", ">before", ">after", ">change"});
-  table.row({"leakage resistance R_CL", readable(prognosis.R_CL_before, "Pa s/m3"),
-             readable(prognosis.R_CL_after, "Pa s/m3"), change_text(prognosis.R_CL_before, prognosis.R_CL_after)});
+  table.row({"leakage resistance R_CL", text::readable(prognosis.R_CL_before, "Pa s/m3"),
+             text::readable(prognosis.R_CL_after, "Pa s/m3"),
+             change_text(prognosis.R_CL_before, prognosis.R_CL_after)});
   const auto theta = [](double value) {
-    return std::isfinite(value) ? number_text(100.0 * value, 4).append(" %") : "–";
+    return std::isfinite(value) ? text::number_text(100.0 * value, 4).append(" %") : "–";
   };
   table.row({"seal condition", theta(prognosis.theta_before), theta(prognosis.theta_after),
              change_text(prognosis.theta_before, prognosis.theta_after)});
@@ -177,8 +179,8 @@ std::string power_section(const Explanation& explanation) {
     if (unseen) ++blind_count;
     (unseen ? blind : seen)
         .row({law_name(power.what), element_name(power.what.element), detectable(power),
-              power.significant > 0.0 ? readable(power.significant, power.unit, 2) : "–",
-              percent_text(power.absorbed_share), power_words(power)});
+              power.significant > 0.0 ? text::readable(power.significant, power.unit, 2) : "–",
+              text::percent_text(power.absorbed_share), power_words(power)});
   }
   const std::size_t seen_count = explanation.power.size() - blind_count;
   std::string words =

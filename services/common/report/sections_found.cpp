@@ -7,7 +7,7 @@
 #include "services/common/report/actuator_drawing.hpp"
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 using mismatch::Explanation;
 using mismatch::FoundEffect;
 
-std::string joined(const std::vector<std::string>& names) {
+std::string elements(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(element_name(name));
   return text;
@@ -47,7 +47,8 @@ std::string parameter_table(const FoundEffect& effect) {
     std::string meaning = meaning_of(effect.what, parameter.name);
     if (parameter.at_bound || !std::isfinite(parameter.std_error))
       meaning.append(meaning.empty() ? "" : "; ").append("not identifiable from these recordings");
-    table.row({parameter.name, readable_with_error(parameter.value, parameter.std_error, parameter.unit), meaning});
+    table.row(
+        {parameter.name, text::readable_with_error(parameter.value, parameter.std_error, parameter.unit), meaning});
   }
   return table.empty() ? std::string() : table.html();
 }
@@ -69,15 +70,15 @@ std::string same_laws(const FoundEffect& effect) {
 
 /// How large the effect is to an engineer, apart from how sure it is.
 std::string size_words(double share) {
-  if (std::isnan(share)) return "No significance threshold is defined for this law.";
+  if (std::isnan(share)) return "No size that matters is defined for this law.";
   if (!(share > 0.0)) return {};
   if (share < 1.0)
     return std::string("Its size is ")
-        .append(number_text(share, 2))
-        .append(" of the significance threshold: real, but small.");
+        .append(text::number_text(share, 2))
+        .append(" of the size that matters: real, but small.");
   return std::string("Its size is ")
-      .append(number_text(share, 2))
-      .append(" times the significance threshold (about 1 % of what the element carries).");
+      .append(text::number_text(share, 2))
+      .append(" times the size that matters (about 1 % of what the element carries).");
 }
 
 /// "External leakage (laminar) of chamber A"
@@ -92,10 +93,10 @@ std::string effect_in_short(const FoundEffect& effect) {
   std::string html = std::string("<h3>").append(escaped(title_of(effect))).append("</h3>\n");
   html += law_line(effect.what.law);
   for (const mismatch::FoundParameter& parameter : effect.parameters)
-    html +=
-        paragraph(parameter.name + " = " + readable_with_error(parameter.value, parameter.std_error, parameter.unit));
-  html += paragraph("Probability " + percent_text(effect.probability) + ", in this element " +
-                        percent_text(effect.element_probability) + ".",
+    html += paragraph(parameter.name + " = " +
+                      text::readable_with_error(parameter.value, parameter.std_error, parameter.unit));
+  html += paragraph("Probability " + text::percent_text(effect.probability) + ", in this element " +
+                        text::percent_text(effect.element_probability) + ".",
                     "small muted");
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
@@ -110,11 +111,11 @@ std::string effect_html(const FoundEffect& effect) {
   html += law_line(effect.what.law);
   html += parameter_table(effect);
   std::string sure =
-      std::string("Probability ").append(percent_text(effect.probability)).append(" among the laws tried; ");
-  sure.append(percent_text(effect.element_probability))
+      std::string("Probability ").append(text::percent_text(effect.probability)).append(" among the laws tried; ");
+  sure.append(text::percent_text(effect.element_probability))
       .append(
           " that it sits in this element. Without it, the BIC (squared misfit plus a penalty for each parameter) is ")
-      .append(number_text(-effect.delta_bic, 3))
+      .append(text::number_text(-effect.delta_bic, 3))
       .append(" higher; 12 is decisive. ")
       .append(size_words(effect.engineering_share));
   html += paragraph(sure);
@@ -122,8 +123,9 @@ std::string effect_html(const FoundEffect& effect) {
   if (!effect.evidence.empty()) html += paragraph(effect.evidence);
   html += same_laws(effect);
   if (!effect.same_elements.empty())
-    html += paragraph(
-        std::string("These recordings fit equally well with it in: ").append(joined(effect.same_elements)).append("."));
+    html += paragraph(std::string("These recordings fit equally well with it in: ")
+                          .append(elements(effect.same_elements))
+                          .append("."));
   return html;
 }
 
@@ -134,7 +136,7 @@ void add_alternative(const mismatch::Alternative& alternative, Table& table) {
                          .append(escaped(alternative.what.law))
                          .append("</code>"),
                      escaped(element_name(alternative.what.element)),
-                     escaped(number_text(alternative.misfit_above_best)), escaped(alternative.why_not)});
+                     escaped(text::number_text(alternative.misfit_above_best)), escaped(alternative.why_not)});
 }
 
 /// The nearest ones open, the rest folded.
@@ -159,7 +161,7 @@ std::string rejected_html(const std::vector<mismatch::Rejected>& list) {
       "and are not claimed. Most of them mimic what is really missing.";
   if (list.front().allowed_share > 0.0)
     words.append(" The best law with a possible value would have explained ")
-        .append(percent_text(list.front().allowed_share))
+        .append(text::percent_text(list.front().allowed_share))
         .append(" of the misfit beyond noise.");
   Table table({"law", "element", ">share of the misfit explained", "~why it is rejected"});
   for (const mismatch::Rejected& rejected : list)
@@ -168,7 +170,8 @@ std::string rejected_html(const std::vector<mismatch::Rejected>& list) {
                            .append(escaped(rejected.what.law))
                            .append("</code>"),
                        escaped(element_name(rejected.what.element)),
-                       escaped(rejected.share > 0.0 ? percent_text(rejected.share) : "–"), escaped(rejected.why)});
+                       escaped(rejected.share > 0.0 ? text::percent_text(rejected.share) : "–"),
+                       escaped(rejected.why)});
   return std::string("<h3>Better fits that physics forbids</h3>\n")
       .append(paragraph(words, "small muted"))
       .append(table.html());
@@ -183,7 +186,8 @@ std::string first_screen(const Explanation& explanation) {
   for (const FoundEffect& effect : explanation.effects) found += effect_in_short(effect);
   if (found.empty()) {
     for (const mismatch::Location& place : explanation.location)
-      found += paragraph(element_name(place.element) + ", " + percent_text(place.probability) + ": " + place.evidence);
+      found +=
+          paragraph(element_name(place.element) + ", " + text::percent_text(place.probability) + ": " + place.evidence);
     found += paragraph(explanation.location.empty() ? "No element stands out." : "No law is claimed for it.", "muted");
   }
   return std::string("<div class=\"screen\">\n<div>\n<h2>")
@@ -200,7 +204,7 @@ std::string where_section(const Explanation& explanation) {
   Table table({"element", ">probability", "indistinguishable from", "~evidence"});
   for (const mismatch::Location& place : explanation.location) {
     const std::string element = element_name(place.element);
-    table.row({element, percent_text(place.probability), joined(place.indistinguishable_from), place.evidence});
+    table.row({element, text::percent_text(place.probability), elements(place.indistinguishable_from), place.evidence});
   }
   return folded_section("Location", "probability and evidence for each element", table.html());
 }
@@ -216,8 +220,8 @@ std::string candidates_section(const Explanation& explanation) {
   if (explanation.candidates.empty()) return {};
   Table table({"law", "element", ">share of the excess misfit", ">probability"});
   for (const mismatch::CandidateCause& cause : explanation.candidates)
-    table.row({law_name(cause.what), element_name(cause.what.element), percent_text(cause.share),
-               percent_text(cause.probability)});
+    table.row({law_name(cause.what), element_name(cause.what.element), text::percent_text(cause.share),
+               text::percent_text(cause.probability)});
   return folded_section(
       "Other candidates", "seen beside the claimed effects, not claimed",
       paragraph("Share of the remaining misfit that each would explain alone, to first order.", "small muted")

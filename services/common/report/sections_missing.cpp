@@ -7,7 +7,7 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -173,7 +173,8 @@ double share_inside(const MissingTerm& term) {
 std::string agreement_of(const MissingTerm& term) {
   if (!has_law(term)) return {};
   const double inside = share_inside(term);
-  std::string words = "Where the law acts, it lies inside the band at " + percent_text(inside) + " of the points.";
+  std::string words =
+      "Where the law acts, it lies inside the band at " + text::percent_text(inside) + " of the points.";
   if (inside < kMostlyOutside)
     words +=
         " Elsewhere a further effect is missing, or the law itself responds to the missing term (overflow, end stop, "

@@ -5,7 +5,8 @@
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::report {
 namespace {
@@ -31,7 +32,7 @@ std::vector<const RecordingComparison*> kept_aside_first(const Explanation& expl
 }
 
 Plot overlay(const Series& recorded, const Series& before, const Series* after, const RecordingComparison& recording) {
-  Plot plot{.title = words_of(recorded.name),
+  Plot plot{.title = text::in_words(recorded.name),
             .x = {.unit = "s", .tick_labels = false},
             .y = {.unit = recorded.unit},
             .height = 178};
@@ -94,7 +95,8 @@ std::string change(const std::string& before, const std::string& after, bool cha
 
 /// "71.0 → 1.02", coloured where the change is more than 2 %.
 std::string misfit_cell(const ChannelComparison& channel, bool changed) {
-  const std::string text = escaped(change(number_text(channel.rms_before), number_text(channel.rms_after), changed));
+  const std::string text =
+      escaped(change(text::number_text(channel.rms_before), text::number_text(channel.rms_after), changed));
   const bool better = channel.rms_after < 0.98 * channel.rms_before;
   const bool worse = channel.rms_after > 1.02 * channel.rms_before;
   if (!changed || (!better && !worse)) return text;
@@ -106,14 +108,15 @@ void add_rows(const std::string& name, const std::string& kind, const std::vecto
   bool first = true;
   for (const ChannelComparison& channel : channels) {
     const auto p = [changed](double before, double after) {
-      return escaped(change(p_value_text(before), p_value_text(after), changed));
+      return escaped(change(text::p_value_text(before), text::p_value_text(after), changed));
     };
-    table.row_of_html(
-        {first ? std::string("<b>").append(escaped(name)).append("</b>") : std::string(),
-         first ? escaped(kind) : std::string(), escaped(words_of(channel.channel)), misfit_cell(channel, changed),
-         escaped(change(number_text(channel.nrmse_before, 4), number_text(channel.nrmse_after, 4), changed)),
-         p(channel.whiteness_before, channel.whiteness_after),
-         p(channel.independence_before, channel.independence_after)});
+    table.row_of_html({first ? std::string("<b>").append(escaped(name)).append("</b>") : std::string(),
+                       first ? escaped(kind) : std::string(), escaped(text::in_words(channel.channel)),
+                       misfit_cell(channel, changed),
+                       escaped(change(text::number_text(channel.nrmse_before, 4),
+                                      text::number_text(channel.nrmse_after, 4), changed)),
+                       p(channel.whiteness_before, channel.whiteness_after),
+                       p(channel.independence_before, channel.independence_after)});
     first = false;
   }
 }
@@ -123,8 +126,8 @@ std::string gains(const Explanation& explanation) {
   for (const RecordingComparison* one : kept_aside_first(explanation)) {
     const RecordingComparison& recording = *one;
     const bool sure = recording.gain_low > 0.0;
-    table.row({recording.recording, kind_of(recording), number_text(recording.likelihood_gain),
-               number_text(recording.gain_low).append(" to ").append(number_text(recording.gain_high)),
+    table.row({recording.recording, kind_of(recording), text::number_text(recording.likelihood_gain),
+               text::number_text(recording.gain_low).append(" to ").append(text::number_text(recording.gain_high)),
                sure                        ? "improves"
                : recording.gain_high < 0.0 ? "gets worse"
                                            : "no clear change"});

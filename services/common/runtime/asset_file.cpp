@@ -11,6 +11,7 @@
 #include "services/common/runtime/channel_map_file.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "services/common/runtime/yaml_map.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -128,8 +129,8 @@ void read_seal(YamlMap& asset, const PlantDescription& plant, AssetConfig& confi
   map->read("threshold", seal.threshold, kThreshold);
   map->finish();
   if (seal.at_60 >= seal.at_100)
-    map->fault("resistance_60", text_of(seal.at_60),
-               "must be below resistance_100, " + text_of(seal.at_100) + ": a worn seal leaks more");
+    map->fault("resistance_60", text::general(seal.at_60),
+               "must be below resistance_100, " + text::general(seal.at_100) + ": a worn seal leaks more");
   config.condition = seal;
 }
 
@@ -163,7 +164,8 @@ void read_condition(YamlMap& asset, const PlantDescription& plant, AssetConfig& 
     condition.part = plant.condition && plant.condition->parameter == condition.parameter
                          ? plant.condition->part
                          : "part whose " + condition.parameter + " wears";
-  if (condition.at_100 == condition.at_60) map->fault("at_60", text_of(condition.at_60), "must differ from at_100");
+  if (condition.at_100 == condition.at_60)
+    map->fault("at_60", text::general(condition.at_60), "must differ from at_100");
   if (!config.parameters.at(condition.parameter).estimate)
     map->fault("parameter", condition.parameter, "is not estimated, so that no test says what it has become",
                "set estimate: true under parameters");
@@ -192,12 +194,12 @@ void read_pst(YamlMap& asset, const PlantDescription& plant, AssetConfig& config
   const ParameterDescription* described = plant.find_parameter(ParameterRole::stroke);
   if (described == nullptr) return;
   const auto stroke = config.parameters.find(described->name);
-  const std::string rule = "must stay within the actuator's stroke, 0 to " + text_of(stroke->second.value) + " m";
+  const std::string rule = "must stay within the actuator's stroke, 0 to " + text::general(stroke->second.value) + " m";
   const double end_m = pst.start_m + pst.stroke_m;
   if (pst.start_m > stroke->second.value)
-    map->fault("start", text_of(pst.start_m), rule);
+    map->fault("start", text::general(pst.start_m), rule);
   else if (end_m < 0.0 || end_m > stroke->second.value)
-    map->fault("stroke", text_of(pst.stroke_m), "start + stroke is " + text_of(end_m) + " m: " + rule);
+    map->fault("stroke", text::general(pst.stroke_m), "start + stroke is " + text::general(end_m) + " m: " + rule);
 }
 
 }  // namespace

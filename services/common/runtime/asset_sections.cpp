@@ -1,13 +1,13 @@
 #include "services/common/runtime/asset_sections.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 
 #include "sealwatch/config/judged_quantities.hpp"
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "sealwatch/model/physics.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -44,8 +44,8 @@ void check_bounds(const YamlMap& parameters, const ParameterDescription& row, co
   for (const double number : {setting.value, setting.min, setting.max}) {
     if (number >= row.min && number <= row.max) continue;
     std::string rule = "must stay within the law's bounds, ";
-    rule.append(text_of(row.min)).append(" to ").append(text_of(row.max)).append(" ").append(row.unit);
-    parameters.fault(row.name, text_of(number), std::move(rule));
+    rule.append(text::general(row.min)).append(" to ").append(text::general(row.max)).append(" ").append(row.unit);
+    parameters.fault(row.name, text::general(number), std::move(rule));
     return;
   }
 }
@@ -81,12 +81,6 @@ std::vector<std::string> quantities_of(const PlantDescription& plant) {
 
 }  // namespace
 
-std::string text_of(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", number);
-  return text;
-}
-
 void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting) {
   const std::string& name = description.name;
   const NumberRule& rule = description.positive ? kPositive : kAnyNumber;
@@ -107,11 +101,12 @@ void read_parameter(YamlMap& parameters, const ParameterDescription& description
   if (!sound) return;
   if (!has_bounds) widen(setting, description);
   if (setting.min > setting.max)
-    map.fault(map.has("min") ? "min" : "max", text_of(map.has("min") ? setting.min : setting.max),
-              "min must not be above max, which are " + text_of(setting.min) + " and " + text_of(setting.max));
+    map.fault(
+        map.has("min") ? "min" : "max", text::general(map.has("min") ? setting.min : setting.max),
+        "min must not be above max, which are " + text::general(setting.min) + " and " + text::general(setting.max));
   else if (setting.value < setting.min || setting.value > setting.max)
-    map.fault("value", text_of(setting.value),
-              "must lie between min and max, " + text_of(setting.min) + " and " + text_of(setting.max));
+    map.fault("value", text::general(setting.value),
+              "must lie between min and max, " + text::general(setting.min) + " and " + text::general(setting.max));
 }
 
 void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
@@ -156,8 +151,9 @@ void read_alert_limits(YamlMap& asset, const PlantDescription& plant, AssetConfi
     const bool rising = limits.advisory <= limits.warning && limits.warning <= limits.alarm;
     const bool falling = limits.advisory >= limits.warning && limits.warning >= limits.alarm;
     if (complete && !rising && !falling)
-      map->fault("warning", text_of(limits.warning),
-                 "must lie between advisory and alarm, " + text_of(limits.advisory) + " and " + text_of(limits.alarm));
+      map->fault("warning", text::general(limits.warning),
+                 "must lie between advisory and alarm, " + text::general(limits.advisory) + " and " +
+                     text::general(limits.alarm));
     config.alert_limits[quantity] = limits;
   }
 }

@@ -10,9 +10,6 @@
 
 namespace sealwatch {
 
-/// "%g"
-[[nodiscard]] std::string text_of(double number);
-
 /// A number, or {value, min, max, estimate}; a value outside the description's bounds brings its own.
 void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting);
 

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cmath>
 #include <fstream>
 
@@ -6,16 +5,10 @@
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/channel_map_file.hpp"
 #include "services/common/runtime/yaml_map.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
-
-/// Shortest text that reads back as the same number.
-std::string exact(double number) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, number).ptr;
-  return {text, end};
-}
 
 /// The plant's file where it has one, as the asset may be written anywhere.
 std::string model_of(const AssetConfig& asset) {
@@ -32,11 +25,11 @@ void write_flow(YAML::Emitter& out, const std::string& key, const Entries& entri
 }
 
 void write_setting(YAML::Emitter& out, const std::string& name, const ParameterSetting& setting) {
-  Entries entries = {{"value", exact(setting.value)},
-                     {"min", exact(setting.min)},
-                     {"max", exact(setting.max)},
+  Entries entries = {{"value", text::exact(setting.value)},
+                     {"min", text::exact(setting.min)},
+                     {"max", text::exact(setting.max)},
                      {"estimate", setting.estimate ? "true" : "false"}};
-  if (setting.tolerance > 0.0) entries.emplace_back("tolerance", exact(setting.tolerance));
+  if (setting.tolerance > 0.0) entries.emplace_back("tolerance", text::exact(setting.tolerance));
   write_flow(out, name, entries);
 }
 
@@ -50,17 +43,17 @@ void write_sensors(YAML::Emitter& out, const AssetConfig& asset) {
   out << YAML::Key << "sensors" << YAML::Value << YAML::BeginMap;
   for (const auto& [channel, sensor] : asset.sensors) {
     out << YAML::Key << channel << YAML::Value << YAML::Flow << YAML::BeginMap;
-    out << YAML::Key << "noise_std" << YAML::Value << exact(sensor.noise_std);
-    out << YAML::Key << "time_constant" << YAML::Value << exact(sensor.time_constant_s);
-    out << YAML::Key << "quantisation" << YAML::Value << exact(sensor.quantisation);
+    out << YAML::Key << "noise_std" << YAML::Value << text::exact(sensor.noise_std);
+    out << YAML::Key << "time_constant" << YAML::Value << text::exact(sensor.time_constant_s);
+    out << YAML::Key << "quantisation" << YAML::Value << text::exact(sensor.quantisation);
     for (const auto& [key, value] : {std::pair{"gain_tolerance", sensor.gain_tolerance},
                                      {"offset_tolerance", sensor.offset_tolerance},
                                      {"gain_error", sensor.gain_error},
                                      {"offset_error", sensor.offset_error}})
-      if (value != 0.0) out << YAML::Key << key << YAML::Value << exact(value);
+      if (value != 0.0) out << YAML::Key << key << YAML::Value << text::exact(value);
     if (sensor.range_max > sensor.range_min)
-      out << YAML::Key << "range" << YAML::Value << YAML::BeginSeq << exact(sensor.range_min) << exact(sensor.range_max)
-          << YAML::EndSeq;
+      out << YAML::Key << "range" << YAML::Value << YAML::BeginSeq << text::exact(sensor.range_min)
+          << text::exact(sensor.range_max) << YAML::EndSeq;
     out << YAML::EndMap;
   }
   out << YAML::EndMap;
@@ -77,14 +70,14 @@ void write_condition(YAML::Emitter& out, const AssetConfig& asset) {
   const ConditionSetting& condition = *asset.condition;
   if (of_plant && condition.parameter == of_plant->parameter && condition.logarithmic == of_plant->logarithmic)
     return write_flow(out, "seal",
-                      {{"resistance_100", exact(condition.at_100)},
-                       {"resistance_60", exact(condition.at_60)},
-                       {"threshold", exact(condition.threshold)}});
+                      {{"resistance_100", text::exact(condition.at_100)},
+                       {"resistance_60", text::exact(condition.at_60)},
+                       {"threshold", text::exact(condition.threshold)}});
   write_flow(out, "condition",
              {{"parameter", condition.parameter},
-              {"at_100", exact(condition.at_100)},
-              {"at_60", exact(condition.at_60)},
-              {"threshold", exact(condition.threshold)},
+              {"at_100", text::exact(condition.at_100)},
+              {"at_60", text::exact(condition.at_60)},
+              {"threshold", text::exact(condition.threshold)},
               {"scale", condition.logarithmic ? "logarithmic" : "linear"},
               {"part", condition.part}});
 }
@@ -93,9 +86,10 @@ void write_limits(YAML::Emitter& out, const AssetConfig& asset) {
   if (asset.alert_limits.empty()) return;
   out << YAML::Key << "alert_limits" << YAML::Value << YAML::BeginMap;
   for (const auto& [quantity, limits] : asset.alert_limits)
-    write_flow(
-        out, quantity,
-        {{"advisory", exact(limits.advisory)}, {"warning", exact(limits.warning)}, {"alarm", exact(limits.alarm)}});
+    write_flow(out, quantity,
+               {{"advisory", text::exact(limits.advisory)},
+                {"warning", text::exact(limits.warning)},
+                {"alarm", text::exact(limits.alarm)}});
   out << YAML::EndMap;
 }
 
@@ -127,11 +121,11 @@ std::string asset_to_yaml(const AssetConfig& asset) {
   write_sensors(out, asset);
   write_condition(out, asset);
   write_flow(out, "pst",
-             {{"start", exact(asset.pst.start_m)},
-              {"stroke", exact(asset.pst.stroke_m)},
-              {"speed", exact(asset.pst.speed_m_s)},
-              {"hold", exact(asset.pst.hold_s)},
-              {"interval_months", exact(asset.pst.interval_months)}});
+             {{"start", text::exact(asset.pst.start_m)},
+              {"stroke", text::exact(asset.pst.stroke_m)},
+              {"speed", text::exact(asset.pst.speed_m_s)},
+              {"hold", text::exact(asset.pst.hold_s)},
+              {"interval_months", text::exact(asset.pst.interval_months)}});
   write_limits(out, asset);
   write_physics(out, asset);
   out << YAML::EndMap;

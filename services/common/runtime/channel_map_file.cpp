@@ -1,8 +1,7 @@
 #include "services/common/runtime/channel_map_file.hpp"
 
-#include <charconv>
-
 #include "services/common/runtime/asset_sections.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -73,11 +72,6 @@ void read_columns(YamlMap& map, const PlantDescription* plant, ChannelMap& targe
   channels->finish();
 }
 
-std::string exact(double number) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
-}
-
 void write_columns(YAML::Emitter& out, const ChannelMap& map) {
   if (map.columns.empty()) return;
   out << YAML::Key << "channels" << YAML::Value << YAML::BeginMap;
@@ -85,8 +79,8 @@ void write_columns(YAML::Emitter& out, const ChannelMap& map) {
     out << YAML::Key << channel << YAML::Value << YAML::Flow << YAML::BeginMap;
     out << YAML::Key << "column" << YAML::Value << YAML::DoubleQuoted << mapping.column;
     if (!mapping.unit.empty()) out << YAML::Key << "unit" << YAML::Value << YAML::DoubleQuoted << mapping.unit;
-    if (mapping.scale != 1.0) out << YAML::Key << "scale" << YAML::Value << exact(mapping.scale);
-    if (mapping.offset != 0.0) out << YAML::Key << "offset" << YAML::Value << exact(mapping.offset);
+    if (mapping.scale != 1.0) out << YAML::Key << "scale" << YAML::Value << text::exact(mapping.scale);
+    if (mapping.offset != 0.0) out << YAML::Key << "offset" << YAML::Value << text::exact(mapping.offset);
     out << YAML::EndMap;
   }
   out << YAML::EndMap;

@@ -11,6 +11,7 @@
 #include "services/common/runtime/asset_sections.hpp"
 #include "services/common/runtime/fmu_section.hpp"
 #include "services/common/runtime/plant_sections.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -87,8 +88,9 @@ void read_parameters(YamlMap& root, TextPlant& plant) {
     if (map.has("value") && size == 0.0 && !(map.has("min") && map.has("max")))
       map.fault("value", "0", "has no range that follows from it", "give min and max");
     else if (!(parameter.min <= parameter.value && parameter.value <= parameter.max) || parameter.min == parameter.max)
-      map.fault("value", text_of(parameter.value),
-                "must lie between min and max, " + text_of(parameter.min) + " and " + text_of(parameter.max));
+      map.fault(
+          "value", text::general(parameter.value),
+          "must lie between min and max, " + text::general(parameter.min) + " and " + text::general(parameter.max));
     parameter.positive = parameter.min > 0.0;
     plant.parameters.push_back(std::move(parameter));
   });

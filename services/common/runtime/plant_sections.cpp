@@ -5,6 +5,7 @@
 
 #include "services/common/equations/site_table.hpp"
 #include "services/common/runtime/asset_sections.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -113,7 +114,7 @@ void read_law_parameters(YamlMap& map, equations::TextLaw& law) {
     if (parameter.strength && !row.read("matters", parameter.significant, kPositive) && !row.has("matters"))
       row.fault("matters", {}, "must be given: the size of a strength from which an engineer would care");
     if (!(parameter.min <= usual && usual <= parameter.max))
-      row.fault("usual", text_of(usual), "must lie between min and max");
+      row.fault("usual", text::general(usual), "must lie between min and max");
     law.parameters.push_back(std::move(parameter));
   });
 }

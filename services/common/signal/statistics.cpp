@@ -8,18 +8,7 @@
 namespace sealwatch::signal {
 namespace {
 
-constexpr double kQuartileOfNormal = 0.6745;  // |z| of a standard normal has this median
 constexpr double kLargestCorrelation = 0.99;  // a drifting signal still counts as a few independent values
-
-double smallest_step(std::span<const double> values) {
-  double step = 0.0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double change = std::abs(values[i] - values[i - 1]);
-    // Steps of the last bits come from the arithmetic, not from the sensor.
-    if (change > 1e-12 * std::abs(values[i]) && (step == 0.0 || change < step)) step = change;
-  }
-  return step;
-}
 
 }  // namespace
 
@@ -93,23 +82,6 @@ Estimate weighted_mean(std::span<const Estimate> estimates) {
     sum += weight * estimate.value;
   }
   return {sum / weights, 1.0 / std::sqrt(weights)};
-}
-
-double estimate_noise_std(std::span<const double> values) {
-  std::vector<double> finite;
-  finite.reserve(values.size());
-  std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
-  if (finite.size() < 16) return 0.0;
-  std::vector<double> differences;
-  differences.reserve(finite.size());
-  for (std::size_t i = 2; i + 2 < finite.size(); ++i) {
-    const double difference =
-        finite[i - 2] - 4.0 * finite[i - 1] + 6.0 * finite[i] - 4.0 * finite[i + 1] + finite[i + 2];
-    if (difference != 0.0) differences.push_back(std::abs(difference));
-  }
-  if (differences.empty()) return 0.0;
-  const double white = median(std::move(differences)) / kQuartileOfNormal / std::sqrt(70.0);
-  return std::max(white, smallest_step(finite) / std::sqrt(12.0));
 }
 
 }  // namespace sealwatch::signal

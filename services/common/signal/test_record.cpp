@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 
 #include "sealwatch/signal/statistics.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch::signal {
 namespace {
@@ -50,12 +50,10 @@ TestRecord::TestRecord(const TimeSeries& samples, Cylinder cylinder, const Plant
       interval_s_((samples.time_s.back() - samples.time_s.front()) / static_cast<double>(samples.time_s.size() - 1)),
       filter_(LowPass::butterworth(2, cutoff_Hz(interval_s_), 1.0 / interval_s_)) {
   assert(samples.time_s.size() >= 8);
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "phases and features: 2nd-order Butterworth low-pass at %.3g Hz forward and backward, zero phase; the "
-                "window itself is not filtered",
-                cutoff_Hz(interval_s_));
-  filter_description_ = text;
+  filter_description_ = text::format(
+      "phases and features: 2nd-order Butterworth low-pass at {:.3g} Hz forward and backward, zero phase; the window "
+      "itself is not filtered",
+      cutoff_Hz(interval_s_));
   smooth_channels();
   find_load_pressure();
   find_motion();

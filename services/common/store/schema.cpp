@@ -1,12 +1,12 @@
 // The tables of a journal: made, brought from an older version to this one, or refused.
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <random>
 
 #include "services/common/store/audit_rows.hpp"
 #include "services/common/store/database.hpp"
 #include "services/common/store/row_checksum.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -55,9 +55,7 @@ constexpr const char* kQuarantine =
 std::string make_writer_id(const std::string& service) {
   std::random_device random;
   const std::uint64_t bits = static_cast<std::uint64_t>(random()) << 32U | random();
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(bits));
-  return service + "-" + text.data();
+  return text::format("{}-{:016x}", service, bits);
 }
 
 int number_of(const std::string& text) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sealwatch/signal/statistics.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 
 namespace sealwatch::trace {
 
@@ -35,7 +35,8 @@ std::pair<double, double> Course::at(double time_s) const {
 
 VectorXd smooth_slope(const VectorXd& values, double interval_s) {
   constexpr double kNoiseShare = 0.1;
-  const double noise = signal::estimate_noise_std({values.data(), static_cast<std::size_t>(values.size())});
+  const double noise =
+      signal::estimate_noise_floor({values.data(), static_cast<std::size_t>(values.size())}).standard_deviation;
   const Index n = values.size();
   VectorXd slope(n);
   for (Index k = 1;; k *= 2) {

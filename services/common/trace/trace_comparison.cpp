@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 
-#include "sealwatch/estimation/noise_floor.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 #include "sealwatch/signal/resampling.hpp"
-#include "sealwatch/signal/statistics.hpp"
 #include "sealwatch/trace/smooth_course.hpp"
+#include "services/common/text/numbers.hpp"
 #include "services/common/trace/alterations.hpp"
 #include "services/common/trace/difference_tests.hpp"
 #include "services/common/trace/regimes.hpp"
@@ -80,9 +80,9 @@ class Comparison {
     while (last > first && grid.time_s(last - 1) > simulated_.time_s.back() + rounding) --last;
     if (last - first < std::max(kFewestSamples, grid.count / 4))
       return fail("the simulation covers less than a quarter of the recording: from " +
-                      std::to_string(simulated_.time_s.front()) + " to " + std::to_string(simulated_.time_s.back()) +
-                      " s, the recording from " + std::to_string(recorded_.time_s.front()) + " to " +
-                      std::to_string(recorded_.time_s.back()) + " s",
+                      text::general(simulated_.time_s.front()) + " to " + text::general(simulated_.time_s.back()) +
+                      " s, the recording from " + text::general(recorded_.time_s.front()) + " to " +
+                      text::general(recorded_.time_s.back()) + " s",
                   "both times must count from the same moment");
     for (std::size_t k = first; k < last; ++k) out_.time_s.push_back(grid.time_s(k));
     for (const Series& channel : recorded_.channels) take(channel, grid, first, last - first);
@@ -114,9 +114,10 @@ class Comparison {
       pair.simulated(k) = pair.course.at(out_.time_s[static_cast<std::size_t>(k)]).first;
     const double spread = std::sqrt((values.array() - values.mean()).square().mean());
     pair.least_variance = std::max(std::pow(kLeastOfTheSpread * spread, 2), 1e-300);
-    pair.white_variance = std::max(pair.least_variance, std::pow(signal::estimate_noise_std(channel.values), 2));
+    pair.white_variance =
+        std::max(pair.least_variance, std::pow(signal::estimate_noise_floor(channel.values).standard_deviation, 2));
     for (const std::vector<double>* series : {&channel.values, &simulated->values})
-      pair.step_variance += std::pow(estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
+      pair.step_variance += std::pow(signal::estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
     if (input) drives_.push_back(values);
     pairs_.push_back(std::move(pair));
   }

@@ -5,6 +5,7 @@
 #include "services/cli/terminal.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
+#include "services/common/text/words.hpp"
 #include "services/verification/command/verify_results.hpp"
 #include "services/verification/command/verify_tables.hpp"
 
@@ -109,8 +110,7 @@ std::string short_label(std::string label) {
   if (label.starts_with("ols_log_time")) return "log" + label.substr(12);
   if (label.starts_with("ols_")) return label.substr(4);
   if (const std::size_t whole_life = label.find(" 240"); whole_life != std::string::npos) label.resize(whole_life);
-  std::replace(label.begin(), label.end(), '_', ' ');
-  return label;
+  return text::in_words(label);
 }
 
 std::vector<std::string> labels_of(const Summary& summary) {

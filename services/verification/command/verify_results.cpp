@@ -1,7 +1,8 @@
 #include "services/verification/command/verify_results.hpp"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -106,16 +107,14 @@ Json setting_json(const std::string& text) {
 }
 
 std::string cell(const Share& share) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%5.1f (%.0f-%.0f)", 100.0 * share.value(), 100.0 * share.interval.low,
-                100.0 * share.interval.high);
-  return share.of > 0 ? text : "-";
+  if (share.of <= 0) return "-";
+  return text::format("{:5.1f} ({:.0f}-{:.0f})", 100.0 * share.value(), 100.0 * share.interval.low,
+                      100.0 * share.interval.high);
 }
 
 std::string cell(const Mean& mean, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f +-%.*f", decimals, mean.value, decimals, kNormal97_5 * mean.standard_error);
-  return mean.known ? text : "-";
+  if (!mean.known) return "-";
+  return text::format("{0:.{2}f} +-{1:.{2}f}", mean.value, kNormal97_5 * mean.standard_error, decimals);
 }
 
 }  // namespace
@@ -142,25 +141,20 @@ std::string verification_json(const verification::LifeCollection& lives, const S
 }
 
 std::string verification_table(const Summary& summary) {
-  char line[320];
-  std::snprintf(
-      line, sizeof line,
-      "%d lives (%d outlast the months of service), %lld tests; failure after %.1f, %.1f, %.1f years (5, 50, 95 %%)\n"
-      "shares in %% of the lives that failed, months otherwise; 95 %% intervals in brackets or behind +-\n",
-      summary.lives, summary.censored, static_cast<long long>(summary.tests), summary.lifetime_years.at[0],
-      summary.lifetime_years.at[2], summary.lifetime_years.at[4]);
-  std::string text = line;
-  constexpr const char* kRow = "%-17s %14s %14s %14s %13s %12s %12s %13s %13s %13s %13s\n";
-  std::snprintf(line, sizeof line, kRow, "method", "converged", "reliable", "timely", "lead time", "error", "last year",
-                "95% width", "false pos.", "false neg.", "a-l mass");
-  text += line;
+  std::string text = text::format(
+      "{} lives ({} outlast the months of service), {} tests; failure after {:.1f}, {:.1f}, {:.1f} years (5, 50, 95 "
+      "%)\n"
+      "shares in % of the lives that failed, months otherwise; 95 % intervals in brackets or behind +-\n",
+      summary.lives, summary.censored, summary.tests, summary.lifetime_years.at[0], summary.lifetime_years.at[2],
+      summary.lifetime_years.at[4]);
+  static constexpr const char* kRow = "{:17} {:>14} {:>14} {:>14} {:>13} {:>12} {:>12} {:>13} {:>13} {:>13} {:>13}\n";
+  text += text::format(kRow, "method", "converged", "reliable", "timely", "lead time", "error", "last year",
+                       "95% width", "false pos.", "false neg.", "a-l mass");
   for (const MethodSummary& method : summary.methods) {
-    std::snprintf(line, sizeof line, kRow, method.label.c_str(), cell(method.converged).c_str(),
-                  cell(method.reliable).c_str(), cell(method.timely).c_str(), cell(method.antecedence, 1).c_str(),
-                  cell(method.error, 2).c_str(), cell(method.last_year_error, 2).c_str(),
-                  cell(method.last_year_width, 1).c_str(), cell(method.false_positive, 3).c_str(),
-                  cell(method.false_negative, 3).c_str(), cell(method.alpha_lambda_mass, 2).c_str());
-    text += line;
+    text += text::format(kRow, method.label, cell(method.converged), cell(method.reliable), cell(method.timely),
+                         cell(method.antecedence, 1), cell(method.error, 2), cell(method.last_year_error, 2),
+                         cell(method.last_year_width, 1), cell(method.false_positive, 3),
+                         cell(method.false_negative, 3), cell(method.alpha_lambda_mass, 2));
   }
   return text;
 }

@@ -1,14 +1,13 @@
 #include "services/verification/command/verify_scenarios.hpp"
 
-#include <array>
-#include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
 
 #include "services/cli/terminal.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
-#include "services/common/report/readable.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/words.hpp"
 #include "services/verification/command/verify_results.hpp"
 
 namespace sealwatch::cli {
@@ -63,10 +62,7 @@ const std::vector<Column>& columns() {
 std::string cell(const Column& column, const MethodSummary& method) {
   const Figure f = column.figure(method);
   if (!f.known) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f (%.*f to %.*f)", column.decimals, f.value, column.decimals, f.low,
-                column.decimals, f.high);
-  return text;
+  return text::format("{0:.{3}f} ({1:.{3}f} to {2:.{3}f})", f.value, f.low, f.high, column.decimals);
 }
 
 /// "240" says nothing of a forecaster that takes the whole life.
@@ -90,7 +86,7 @@ report::Plot last_year_plot(const std::vector<ScenarioSummary>& scenarios, std::
   for (const ScenarioSummary& one : scenarios) {
     const Figure f = figure(one.summary.methods[method].last_year_error);
     const auto place = static_cast<double>(plot.x.categories.size());
-    plot.x.categories.push_back(report::words_of(one.scenario));
+    plot.x.categories.push_back(text::in_words(one.scenario));
     if (!f.known) continue;
     marks.x.push_back(place);
     marks.y.push_back(f.value);
@@ -113,25 +109,17 @@ constexpr const char* kLegend =
 }  // namespace
 
 std::string scenario_table(const std::vector<ScenarioSummary>& scenarios) {
-  constexpr const char* kRow = "%-14s %5s %-16s";
-  char line[120];
-  std::snprintf(line, sizeof line, kRow, "scenario", "lives", "method");
-  std::string text = line;
-  for (const Column& column : columns()) {
-    std::snprintf(line, sizeof line, " %20s", column.heading);
-    text += line;
-  }
+  static constexpr const char* kRow = "{:14} {:>5} {:16}";
+  static constexpr const char* kCell = " {:>20}";
+  std::string text = text::format(kRow, "scenario", "lives", "method");
+  for (const Column& column : columns()) text += text::format(kCell, column.heading);
   text += "\n";
   for (const ScenarioSummary& one : scenarios)
     for (const MethodSummary& method : one.summary.methods) {
       const bool first = &method == &one.summary.methods.front();
-      std::snprintf(line, sizeof line, kRow, first ? one.scenario.c_str() : "",
-                    first ? std::to_string(failed_lives(one.summary)).c_str() : "", label_of(method).c_str());
-      text += line;
-      for (const Column& column : columns()) {
-        std::snprintf(line, sizeof line, " %20s", cell(column, method).c_str());
-        text += line;
-      }
+      text += text::format(kRow, first ? one.scenario : "", first ? std::to_string(failed_lives(one.summary)) : "",
+                           label_of(method));
+      for (const Column& column : columns()) text += text::format(kCell, cell(column, method));
       text += "\n";
     }
   return text + wrapped(kLegend, 110, 0) + "\n";
@@ -144,7 +132,7 @@ std::string scenario_page(const std::vector<ScenarioSummary>& scenarios) {
   for (const ScenarioSummary& one : scenarios)
     for (const MethodSummary& method : one.summary.methods) {
       const bool first = &method == &one.summary.methods.front();
-      std::vector<std::string> cells{first ? report::words_of(one.scenario) : "",
+      std::vector<std::string> cells{first ? text::in_words(one.scenario) : "",
                                      first ? std::to_string(failed_lives(one.summary)) : "", label_of(method)};
       for (const Column& column : columns()) cells.push_back(cell(column, method));
       table.row(cells);

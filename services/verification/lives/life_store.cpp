@@ -1,12 +1,13 @@
 #include "services/verification/lives/life_store.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <thread>
 #include <utility>
+
+#include "services/common/text/format.hpp"
 
 namespace sealwatch::verification {
 namespace {
@@ -91,9 +92,7 @@ Result<LifeStore> LifeStore::open(const std::string& folder) {
 }
 
 std::string LifeStore::file_of(std::uint32_t life) const {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06u%s", life, kSuffix.data());
-  return (fs::path(folder_) / kLives / name).string();
+  return (fs::path(folder_) / kLives / text::format("{:06}{}", life, kSuffix)).string();
 }
 
 Status LifeStore::write(const LifeRecord& record) const { return write_whole(file_of(record.life), to_bytes(record)); }

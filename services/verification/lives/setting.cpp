@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "sealwatch/core/text.hpp"
 #include "services/common/runtime/asset_file.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::verification {
 namespace {
@@ -29,11 +29,8 @@ auto constants(Degradation& d) {
                     std::pair{"irregularity_max", &d.irregularity.max}};
 }
 
-std::string exact(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+/// As settings of earlier versions have it: all 17 digits.
+std::string exact(double value) { return text::significant(value, 17); }
 
 Error wrong(std::string place, std::string value, std::string rule, std::string advice = {}) {
   return {.file = {},

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include "sealwatch/forecast/proper_scores.hpp"
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::verification {
 namespace {
@@ -220,10 +221,7 @@ Records those(std::span<const MismatchRecord> records, const Test& test) {
 
 std::string cell(const CountedShare& share) {
   if (share.of == 0) return "-";
-  char text[48];
-  std::snprintf(text, sizeof text, "%d/%d (%.0f-%.0f %%)", share.count, share.of, 100.0 * share.low,
-                100.0 * share.high);
-  return text;
+  return text::format("{}/{} ({:.0f}-{:.0f} %)", share.count, share.of, 100.0 * share.low, 100.0 * share.high);
 }
 
 std::string law_list(const std::vector<LawRecord>& laws) {
@@ -237,14 +235,9 @@ std::string law_list(const std::vector<LawRecord>& laws) {
 }
 
 std::string hidden_text(const MismatchRecord& r) {
-  char text[64];
-  if (!r.wrong_value.empty()) {
-    std::snprintf(text, sizeof text, " wrong by %+.0f %%", 100.0 * r.wrong_share);
-    return r.wrong_value + text;
-  }
-  std::snprintf(text, sizeof text, " (%.1f x barely, %.1f x detectable)",
-                r.hidden.empty() ? 0.0 : r.hidden.front().times_barely, times_detectable(r));
-  return law_list(r.hidden) + text;
+  if (!r.wrong_value.empty()) return text::format("{} wrong by {:+.0f} %", r.wrong_value, 100.0 * r.wrong_share);
+  return text::format("{} ({:.1f} x barely, {:.1f} x detectable)", law_list(r.hidden),
+                      r.hidden.empty() ? 0.0 : r.hidden.front().times_barely, times_detectable(r));
 }
 
 std::string found_text(const AnswerRecord& answer) {
@@ -299,15 +292,9 @@ std::vector<TrialTally> summarise_trials(std::span<const MismatchRecord> records
 std::string trial_table(std::span<const TrialTally> tallies) {
   std::string text;
   const auto line = [&text](const char* words, const std::string& value) {
-    char row[160];
-    std::snprintf(row, sizeof row, "  %-42s %s\n", words, value.c_str());
-    if (value != "-") text += row;
+    if (value != "-") text += text::format("  {:42} {}\n", words, value);
   };
-  const auto figure = [](double value) {
-    char cell[32];
-    std::snprintf(cell, sizeof cell, "%.3g", value);
-    return value > 0.0 ? std::string(cell) : std::string("-");
-  };
+  const auto figure = [](double value) { return value > 0.0 ? text::significant(value) : std::string("-"); };
   for (const TrialTally& t : tallies) {
     if (t.sets == 0) continue;
     text.append(t.name).append(": ").append(std::to_string(t.sets)).append(" sets\n");
@@ -354,11 +341,9 @@ std::string trial_failures(std::span<const MismatchRecord> records) {
     const bool wrong =
         !r.error.empty() || (null_set && detected(r)) || value_missed || (!r.hidden.empty() && !law_first(r));
     if (!wrong) continue;
-    char line[800];
-    std::snprintf(line, sizeof line, "%s %llu: hidden %s; %s, p %.2g, found %s%s%s\n", r.stratum.c_str(),
-                  static_cast<unsigned long long>(r.seed), hidden_text(r).c_str(), r.answer.verdict.c_str(),
-                  r.answer.p_value, found_text(r.answer).c_str(), r.error.empty() ? "" : "; error: ", r.error.c_str());
-    text += line;
+    text += text::format("{} {}: hidden {}; {}, p {:.2g}, found {}{}{}\n", r.stratum, r.seed, hidden_text(r),
+                         r.answer.verdict, r.answer.p_value, found_text(r.answer),
+                         r.error.empty() ? "" : "; error: ", r.error);
   }
   return text;
 }

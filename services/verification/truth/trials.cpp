@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "sealwatch/core/text.hpp"
+#include "services/common/text/format.hpp"
 #include "services/verification/truth/conditions.hpp"
 #include "services/virtual_bench/random.hpp"
 
@@ -263,26 +263,20 @@ std::vector<TrialTruth> TrialPlan::truths() const {
 }
 
 std::string TrialPlan::label() const {
-  std::string line(name_of(stratum));
-  const auto add = [&line](const char* format, auto... values) {
-    char text[160];
-    std::snprintf(text, sizeof text, format, values...);
-    line += text;
-  };
-  add(" %llu", static_cast<unsigned long long>(seed));
+  std::string line = text::format("{} {}", name_of(stratum), seed);
   for (const HiddenEffect& e : effects)
-    add(" | %s %s at %s %.6g %s [%.6g %.6g %.6g]", std::string(e.form->id).c_str(), std::string(e.form->form).c_str(),
-        e.element.c_str(), e.size, std::string(e.form->unit).c_str(), e.shape[0], e.shape[1], e.shape[2]);
-  for (const SensorFault& f : faults) add(" | %s of %s %.6g", f.kind.c_str(), f.channel.c_str(), f.size);
-  if (!wrong_value.name.empty()) add(" | %s %+.3g", wrong_value.name.c_str(), wrong_value.share);
-  if (tolerance > 0.0) add(" | tolerance %.3g", tolerance);
-  add(" | R_CL %.6g f_C %.6g R_PL %.6g f_M %.6g beta %.6g R_M %.6g phi %.6g", parameters.seal_resistance,
-      parameters.piston_viscosity, parameters.pump_resistance, parameters.motor_viscosity, parameters.oil_modulus,
-      parameters.winding_resistance, parameters.load);
-  add(" | jitter %.3g", jitter);
+    line += text::format(" | {} {} at {} {:.6g} {} [{:.6g} {:.6g} {:.6g}]", e.form->id, e.form->form, e.element, e.size,
+                         e.form->unit, e.shape[0], e.shape[1], e.shape[2]);
+  for (const SensorFault& f : faults) line += text::format(" | {} of {} {:.6g}", f.kind, f.channel, f.size);
+  if (!wrong_value.name.empty()) line += text::format(" | {} {:+.3g}", wrong_value.name, wrong_value.share);
+  if (tolerance > 0.0) line += text::format(" | tolerance {:.3g}", tolerance);
+  line += text::format(
+      " | R_CL {:.6g} f_C {:.6g} R_PL {:.6g} f_M {:.6g} beta {:.6g} R_M {:.6g} phi {:.6g} | jitter {:.3g}",
+      parameters.seal_resistance, parameters.piston_viscosity, parameters.pump_resistance, parameters.motor_viscosity,
+      parameters.oil_modulus, parameters.winding_resistance, parameters.load, jitter);
   for (const auto& [channel, own] : noise)
     if (own.correlation > 0.0 || own.quantum > 0.0)
-      add(" | %s %.3g %.6g", channel.c_str(), own.correlation, own.quantum);
+      line += text::format(" | {} {:.3g} {:.6g}", channel, own.correlation, own.quantum);
   return line;
 }
 

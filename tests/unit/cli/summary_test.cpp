@@ -266,7 +266,7 @@ TEST(OneLine, NamesTheSensorAndCountsInTheSingular) {
   fault.element = "sensor:pressure_a";
   fault.likelihood = 0.51;
   health.ambiguity_group = {fault};
-  EXPECT_THAT(one_line(Message(health)), HasSubstr("most likely sensor pressure a (51 %)"));
+  EXPECT_THAT(one_line(Message(health)), HasSubstr("most likely sensor pressure A (51 %)"));
   ServiceStatus status;
   status.pending_inputs = 1;
   status.written = {{.topic = "advisory", .writer_id = "w", .sequence = 1}};

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "sealwatch/estimation/covariance.hpp"
-#include "sealwatch/estimation/noise_floor.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
 
 namespace sealwatch {
@@ -26,39 +25,6 @@ std::vector<double> coloured_noise(std::size_t size, double rho, unsigned seed) 
   std::vector<double> values = white_noise(size, 1.0, seed);
   for (std::size_t k = 1; k < size; ++k) values[k] += rho * values[k - 1];
   return values;
-}
-
-// The median absolute deviation of 4000 third differences scatters by about 2.5 %: three standard errors.
-constexpr double kNoiseFloorTolerance = 0.075;
-
-TEST(NoiseFloor, SeesTheNoiseUnderAMovingSignal) {
-  std::vector<double> values = white_noise(4000, 0.02, 1);
-  for (std::size_t k = 0; k < values.size(); ++k)
-    values[k] += 5.0 * std::sin(0.01 * static_cast<double>(k)) + (k > 2000 ? 3.0 : 0.0);
-  EXPECT_NEAR(estimate_noise_floor(values).standard_deviation, 0.02, kNoiseFloorTolerance * 0.02);
-}
-
-// Eight samples a period: third differences show 0.1 of the signal, ten times the noise.
-TEST(NoiseFloor, SeesTheNoiseUnderAFastSignal) {
-  std::vector<double> values = white_noise(4000, 0.01, 2);
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] += std::sin(0.785 * static_cast<double>(k));
-  EXPECT_NEAR(estimate_noise_floor(values).standard_deviation, 0.01, 0.1 * 0.01);
-}
-
-TEST(NoiseFloor, IsAtLeastWhatQuantisationMakes) {
-  std::vector<double> values;
-  for (int k = 0; k < 1000; ++k) values.push_back(0.25 * std::round(2.0 * std::sin(0.002 * k)));
-  const NoiseFloor floor = estimate_noise_floor(values);
-  EXPECT_DOUBLE_EQ(floor.quantisation_step, 0.25);
-  EXPECT_DOUBLE_EQ(floor.standard_deviation, 0.25 / std::sqrt(12.0));
-}
-
-TEST(NoiseFloor, SaysNothingWhereNothingCanBeSaid) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(estimate_noise_floor({}).standard_deviation, 0.0);
-  EXPECT_EQ(estimate_noise_floor(std::vector<double>{1.0, 2.0}).standard_deviation, 0.0);
-  EXPECT_EQ(estimate_noise_floor(std::vector<double>(100, 7.0)).standard_deviation, 0.0);
-  EXPECT_EQ(estimate_noise_floor(std::vector<double>(100, nan)).standard_deviation, 0.0);
 }
 
 TEST(ResidualStatistics, NrmseIsHundredForPerfectAndZeroForTheMean) {

@@ -43,13 +43,6 @@ TEST(Summary, ShowsTheChannelThatImproved) {
       << summary_of(found);
 }
 
-TEST(Number, IsPlainWhereAnEngineerReadsIt) {
-  EXPECT_EQ(number(64447.0), "64400");
-  EXPECT_EQ(number(1.02), "1.02");
-  EXPECT_EQ(number(7.98e12), "7.98e+12");
-  EXPECT_EQ(number(-2.05e-12), "-2.05e-12");
-}
-
 TEST(Location, OfAnElementIsWhereItComesNearest) {
   FoundEffect overflow, saturation;
   overflow.what.element = "upper_outlet";

@@ -65,23 +65,5 @@ TEST(Statistics, PreciseEstimatesWeighMore) {
   EXPECT_DOUBLE_EQ(result.std_error, 1.0 / std::sqrt(5.0));
 }
 
-TEST(Statistics, NoiseIsFoundUnderACourseWithJumps) {
-  std::vector<double> values = noise(2000, 0.0, 7);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double t = static_cast<double>(i) / 100.0;
-    values[i] = 3.0 * values[i] + 500.0 * std::sin(t) + 10.0 * t * t + (i > 1000 ? 1e4 : 0.0);
-  }
-  // The median of 2000 correlated differences is known to about 3 %; four of these.
-  EXPECT_NEAR(estimate_noise_std(values), 3.0, 0.36);
-}
-
-TEST(Statistics, ASensorThatRestsOnItsStepHasItsStepsNoise) {
-  std::vector<double> values;
-  for (int i = 0; i < 400; ++i) values.push_back(i < 300 ? 0.0 : 0.5 * std::round((i - 300) * 0.37));
-  EXPECT_GE(estimate_noise_std(values), 0.5 / std::sqrt(12.0) - 1e-12);
-  EXPECT_LT(estimate_noise_std(values), 0.5);
-  EXPECT_EQ(estimate_noise_std(std::vector<double>(100, 4.0)), 0.0);
-}
-
 }  // namespace
 }  // namespace sealwatch::signal

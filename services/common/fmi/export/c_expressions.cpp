@@ -1,9 +1,9 @@
 #include "services/common/fmi/export/c_expressions.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <vector>
+
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -89,9 +89,7 @@ const char* pattern_of(Operation operation) {
 }  // namespace
 
 std::string c_number(double value) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  std::string result(text.data(), error == std::errc() ? end : text.data());
+  std::string result = text::exact(value);
   return result.find_first_of(".en") == std::string::npos ? result.append(".0") : result;
 }
 

@@ -1,21 +1,14 @@
 #include "services/common/fmi/export/law_code.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/fmi/export/law_formulas.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::fmi {
 namespace {
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), error == std::errc() ? end : text.data()};
-}
 
 std::string name_of_function(const PhysicsTerm& term) {
   std::string name = term.element + "_" + term.id;
@@ -45,12 +38,12 @@ std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term, cons
     if (setting == term.parameters.end()) continue;
     arguments.push_back({"p" + std::to_string(k + 1), std::string(parameter.unit),
                          std::string(parameter.name) + ": " + std::string(parameter.meaning),
-                         number(setting->second.value)});
+                         text::exact(setting->second.value)});
   }
   const Roundings widths = roundings_of(plant, law);
   for (std::size_t k = 0; k < law.roundings.size(); ++k)
     arguments.push_back({"r" + std::to_string(k + 1), std::string(law.roundings[k].unit),
-                         "width over which a corner is rounded", number(widths[k])});
+                         "width over which a corner is rounded", text::exact(widths[k])});
   return arguments;
 }
 

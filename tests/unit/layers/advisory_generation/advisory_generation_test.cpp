@@ -115,7 +115,7 @@ TEST_F(AdvisoryGenerationTest, ReasonsNameTheTestAndSpeakToPeople) {
                                          "this actuator's first tests)"));
   EXPECT_THAT(
       advisory.reasons,
-      Contains("difference from the simulation in pressure a in region warning: 310 % (warning above 300, alarm "
+      Contains("difference from the simulation in pressure A in region warning: 310 % (warning above 300, alarm "
                "above 1e+03; by the model of the asset file)"));
 }
 

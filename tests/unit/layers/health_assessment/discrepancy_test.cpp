@@ -103,7 +103,7 @@ TEST(Discrepancy, ThirdSixthAndTwelfthDeviatingTestInARowAreAnalysed) {
   EXPECT_THAT(found[0].fit_tests, ElementsAre("A1-0", "A1-1"));
   EXPECT_THAT(found[0].holdout_tests, ElementsAre("A1-2"));
   EXPECT_THAT(found[0].reasons,
-              ElementsAre(HasSubstr("difference from the simulation in pressure a is 7, in region warning against ")));
+              ElementsAre(HasSubstr("difference from the simulation in pressure A is 7, in region warning against ")));
   EXPECT_EQ(found[0].header.event_time_ns, synthetic::month(2).nanoseconds);
   EXPECT_EQ(found[1].summary, "A1 fit A1-0 A1-1 A1-2 A1-3 aside A1-4 A1-5");
   EXPECT_EQ(found[2].summary, "A1 fit A1-6 A1-7 A1-8 A1-9 aside A1-10 A1-11");

@@ -9,9 +9,10 @@
 
 #include "sealwatch/estimation/covariance.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
-#include "services/common/estimation/words.hpp"
+#include "services/common/estimation/cannot_fit.hpp"
 #include "services/common/model/plants/eha/estimation/chamber_pressure.hpp"
 #include "services/common/model/plants/eha/estimation/volume_balance.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -149,8 +150,8 @@ void control_by_holds(const VolumeBalance& balance, const CylinderSignals& signa
   const double difference = std::abs(fit.coefficients(0) - 1.0 / whole.value);
   if (difference > options.hold_control_sigmas * std::hypot(conductance_std, whole_std) &&
       difference > options.hold_control_share / whole.value)
-    report.reasons.push_back("the hold phases alone give R_CL = " + in_words(1.0 / fit.coefficients(0)) +
-                             " Pa s/m3, the whole test " + in_words(whole.value));
+    report.reasons.push_back("the hold phases alone give R_CL = " + text::significant(1.0 / fit.coefficients(0)) +
+                             " Pa s/m3, the whole test " + text::significant(whole.value));
 }
 
 EstimatedParameter reciprocal_parameter(const char* name, const char* unit, const BalanceFit& fit, Eigen::Index j,
@@ -242,7 +243,8 @@ FitReport fit_signals(const AssetConfig& asset, const TimeSeries& samples, std::
   if (!both_pressures)
     report.termination += "; steady runs and holds only, as the chambers' mean pressure is not recorded";
   if (fit.inflation > 1.0)
-    report.termination += "; residuals are coloured, standard errors raised by up to " + in_words(fit.inflation);
+    report.termination +=
+        "; residuals are coloured, standard errors raised by up to " + text::significant(fit.inflation);
   report_parameters(fit, asset, report);
   report_channels(samples, signals, balance, fit, report);
   control_by_holds(balance, signals, transient, phases, asset, options, report);

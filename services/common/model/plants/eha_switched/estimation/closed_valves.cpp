@@ -5,7 +5,7 @@
 #include <span>
 
 #include "sealwatch/model/eha_switched.hpp"
-#include "services/common/estimation/words.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -103,17 +103,17 @@ std::optional<ClosedValveLeakage> closed_valve_leakage(const AssetConfig& asset,
 
 std::string in_words(const ClosedValveLeakage& leakage) {
   std::string text = "while the valves were closed (";
-  text.append(in_words(leakage.duration_s)).append(" s, pressures up to ");
-  text.append(in_words(leakage.largest_difference_Pa)).append(" Pa apart) ");
+  text.append(text::significant(leakage.duration_s)).append(" s, pressures up to ");
+  text.append(text::significant(leakage.largest_difference_Pa)).append(" Pa apart) ");
   const double G = leakage.conductance, error = leakage.conductance_std;
   if (G > kSeen * error)
     return text.append("R_CL was ")
-        .append(in_words(1.0 / G))
+        .append(text::significant(1.0 / G))
         .append(" +- ")
-        .append(in_words(error / (G * G)))
+        .append(text::significant(error / (G * G)))
         .append(" Pa s/m3, with the asset's own compliance of the chambers");
   return text.append("no internal leakage was seen: with the asset's own compliance of the chambers R_CL is above ")
-      .append(in_words(1.0 / (std::max(G, 0.0) + kOneSided95 * error)))
+      .append(text::significant(1.0 / (std::max(G, 0.0) + kOneSided95 * error)))
       .append(" Pa s/m3 (95 %)");
 }
 

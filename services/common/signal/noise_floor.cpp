@@ -1,10 +1,11 @@
-#include "sealwatch/estimation/noise_floor.hpp"
+#include "sealwatch/signal/noise_floor.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
-namespace sealwatch {
+namespace sealwatch::signal {
 namespace {
 
 constexpr std::size_t kFewestSamples = 8;
@@ -12,12 +13,14 @@ constexpr double kGaussianStdOverMad = 1.4826;     // standard deviation over me
 constexpr double kThirdDifferenceVariance = 20.0;  // 1 + 9 + 9 + 1
 constexpr int kHighOrder = 12;
 constexpr double kHighOrderVariance = 2704156.0;  // 24 over 12
+constexpr std::size_t kEnoughForHighOrder = 120;
 constexpr double kClearly = 1.5;                  // noise of a first-order sensor shows within 1.1 in both orders
 constexpr double kCoarse = 0.2;                   // a step larger than this share of the noise shows in the median
 constexpr double kLargestShareOffTheGrid = 0.01;  // of steps that are no multiple of the smallest
 constexpr double kGridTolerance = 1e-3;           // of a step: rounding of decimal numbers
 
-double median(std::vector<double> values) {
+// The upper of the two in the middle of an even number.
+double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -67,22 +70,31 @@ double from_high_order(std::span<const double> values) {
 
 }  // namespace
 
-NoiseFloor estimate_noise_floor(std::span<const double> values) {
+NoiseFloor estimate_noise_floor(std::span<const double> samples) {
+  std::vector<double> values;
+  values.reserve(samples.size());
+  std::ranges::copy_if(samples, std::back_inserter(values), [](double value) { return std::isfinite(value); });
   if (values.size() < kFewestSamples) return {};
-  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) return {};
   std::vector<double> difference(values.size() - 3);
   for (std::size_t k = 0; k < difference.size(); ++k)
     difference[k] = std::abs(values[k + 3] - 3.0 * values[k + 2] + 3.0 * values[k + 1] - values[k]);
   const double step = find_quantisation_step(values);
-  double from_differences = kGaussianStdOverMad * median(difference) / std::sqrt(kThirdDifferenceVariance);
+  double from_differences = kGaussianStdOverMad * middle_of(difference) / std::sqrt(kThirdDifferenceVariance);
   if (step > kCoarse * from_differences)
     from_differences = trimmed_standard_deviation(std::move(difference)) / std::sqrt(kThirdDifferenceVariance);
   const double least = step / std::sqrt(12.0);
-  const bool enough = values.size() >= 10 * kHighOrder;
+  const bool enough = values.size() >= kEnoughForHighOrder;
   const double high_order = enough ? std::max(from_high_order(values), least) : from_differences;
   const bool signal_shows = high_order * kClearly < from_differences;
   return {.standard_deviation = std::max(signal_shows ? high_order : from_differences, least),
           .quantisation_step = step};
 }
 
-}  // namespace sealwatch
+double believed_noise_std(const Series& channel, double usual_noise_std) {
+  constexpr double kLeastShareOfUsual = 0.1;
+  if (channel.noise_std > 0.0) return channel.noise_std;
+  const double shown = estimate_noise_floor(channel.values).standard_deviation;
+  return shown > 0.0 ? std::max(shown, kLeastShareOfUsual * usual_noise_std) : usual_noise_std;
+}
+
+}  // namespace sealwatch::signal

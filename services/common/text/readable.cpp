@@ -1,13 +1,15 @@
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
-namespace sealwatch::report {
+#include "services/common/text/format.hpp"
+#include "services/common/text/numbers.hpp"
+
+namespace sealwatch::text {
 namespace {
 
 /// From `least` (absolute, SI) on, a quantity of `si_unit` is shown in `text`. Largest first within a unit.
@@ -80,16 +82,14 @@ DisplayUnit display_unit(std::string_view si_unit, double magnitude) {
 
 std::string number_text(double value, int digits) {
   if (!std::isfinite(value)) return "–";
-  char buffer[64];
   if (value == 0.0) return "0";
-  std::snprintf(buffer, sizeof buffer, "%.*e", digits - 1, value);
-  const std::string scientific = buffer;  // rounding may carry into the next decade: the exponent is taken afterwards
+  // Rounding may carry into the next decade: the exponent is taken afterwards.
+  const std::string scientific = format("{:.{}e}", value, digits - 1);
   const std::size_t split = scientific.find('e');
   const int exponent = std::atoi(scientific.c_str() + split + 1);
   if (exponent < -3 || exponent >= 5)
     return with_minus(scientific.substr(0, split)).append("·").append(power_of_ten(exponent));
-  std::snprintf(buffer, sizeof buffer, "%.*f", std::max(digits - 1 - exponent, 0), value);
-  return with_minus(buffer);
+  return with_minus(format("{:.{}f}", value, std::max(digits - 1 - exponent, 0)));
 }
 
 std::string readable(double value, std::string_view si_unit, int digits) {
@@ -106,22 +106,15 @@ std::string readable_with_error(double value, double error, std::string_view si_
   const DisplayUnit unit = si_unit.empty() ? DisplayUnit{} : display_unit(si_unit, value);
   const double shown_error = error * unit.factor;
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(shown_error))), 0, 6);
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, "%.*f ± %.*f", decimals, value * unit.factor, decimals, shown_error);
-  std::string text = with_minus(buffer);
+  std::string text = with_minus(format("{:.{}f} ± {:.{}f}", value * unit.factor, decimals, shown_error, decimals));
   if (unit.text.starts_with("10")) return std::string("(").append(text).append(")·").append(unit.text);
   return unit.text.empty() ? text : text.append(" ").append(unit.text);
 }
 
 std::string percent_text(double share) {
   if (!std::isfinite(share)) return "–";
-  const double percent = 100.0 * share;
-  if (percent > 0.0 && percent < 0.1) return "under 0.1 %";
-  if (percent < 100.0 && percent > 99.9) return "over 99.9 %";
-  const bool whole = percent == 0.0 || percent == 100.0 || (percent >= 10.0 && percent <= 99.0);
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.*f %%", whole ? 0 : 1, percent);
-  return buffer;
+  if (share == 0.0 || share == 1.0) return percent(share, 0);
+  return share < 0.0 || share > 1.0 ? percent(share) : in_percent(share);
 }
 
 std::string p_value_text(double p) {
@@ -131,19 +124,4 @@ std::string p_value_text(double p) {
   return number_text(p, 2);
 }
 
-std::string words_of(std::string_view identifier) {
-  std::string text;
-  for (const char letter : identifier) {
-    if (letter == '_')
-      text += ' ';
-    else if (letter == ':')
-      text += ": ";
-    else
-      text += letter;
-  }
-  if (identifier.ends_with("_a") || identifier.ends_with("_b"))  // "pressure A", "chamber B"
-    text.back() = static_cast<char>(std::toupper(text.back()));
-  return text;
-}
-
-}  // namespace sealwatch::report
+}  // namespace sealwatch::text

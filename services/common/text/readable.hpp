@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace sealwatch::report {
+namespace sealwatch::text {
 
 /// shown = SI value * factor, in `text`.
 struct DisplayUnit {
@@ -35,7 +35,4 @@ struct DisplayUnit {
 /// A p-value: "0.23", "< 10⁻⁹" at the least.
 [[nodiscard]] std::string p_value_text(double p);
 
-/// "line_resistance" as "line resistance", "sensor:flow" as "sensor: flow".
-[[nodiscard]] std::string words_of(std::string_view identifier);
-
-}  // namespace sealwatch::report
+}  // namespace sealwatch::text

@@ -1,10 +1,10 @@
-#include "services/common/report/readable.hpp"
+#include "services/common/text/readable.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-namespace sealwatch::report {
+namespace sealwatch::text {
 namespace {
 
 TEST(Readable, EverydayUnits) {
@@ -45,6 +45,9 @@ TEST(Readable, ASharePretendsNoCertainty) {
   EXPECT_EQ(percent_text(1e-9), "under 0.1 %");
   EXPECT_EQ(percent_text(1.0), "100 %");
   EXPECT_EQ(percent_text(0.004), "0.4 %");
+  EXPECT_EQ(percent_text(0.0997), "10 %");
+  EXPECT_EQ(percent_text(0.0), "0 %");
+  EXPECT_EQ(percent_text(1.25), "125.0 %");
 }
 
 TEST(Readable, PValues) {
@@ -53,13 +56,11 @@ TEST(Readable, PValues) {
   EXPECT_EQ(p_value_text(0.0), "< 10⁻⁹");
 }
 
-TEST(Readable, Identifiers) {
-  EXPECT_EQ(words_of("line_resistance"), "line resistance");
-  EXPECT_EQ(words_of("sensor:pressure_a"), "sensor: pressure A");
+TEST(Readable, Units) {
   EXPECT_EQ(unit_text("Pa s/m3"), "Pa·s/m³");
   EXPECT_EQ(unit_text("Pa s2/m6"), "Pa·s²/m⁶");
   EXPECT_EQ(unit_text("1"), "");
 }
 
 }  // namespace
-}  // namespace sealwatch::report
+}  // namespace sealwatch::text

@@ -1,16 +1,8 @@
-#include "services/common/estimation/words.hpp"
+#include "services/common/estimation/cannot_fit.hpp"
 
-#include <array>
-#include <cstdio>
 #include <utility>
 
 namespace sealwatch {
-
-std::string in_words(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
 
 FitReport cannot_fit(std::string model, std::string reason) {
   FitReport report;

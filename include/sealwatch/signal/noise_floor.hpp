@@ -10,19 +10,27 @@
 //   quantisation in steps of Delta adds Delta^2 / 12, the least that the noise can be.
 //
 // Noise that is correlated from sample to sample is underestimated: whoever uses the figure must test its residual for
-// whiteness (residual_statistics.hpp).
+// whiteness (estimation/residual_statistics.hpp).
 #pragma once
 
 #include <span>
 
-namespace sealwatch {
+#include "sealwatch/core/time_series.hpp"
+
+namespace sealwatch::signal {
 
 struct NoiseFloor {
   double standard_deviation = 0.0;  ///< in the channel's unit; 0 when the data cannot tell
   double quantisation_step = 0.0;   ///< in the channel's unit; 0 when none was seen
 };
 
-/// Uniform or slightly jittered samples. Fewer than 8 samples, or a constant channel, tell nothing.
+/// Uniform or slightly jittered samples. What is no number is passed over; fewer than 8 samples, or a constant channel,
+/// tell nothing.
 [[nodiscard]] NoiseFloor estimate_noise_floor(std::span<const double> values);
 
-}  // namespace sealwatch
+/// The standard deviation to believe of a channel: what the recording says of itself, else what its samples show, but at
+/// least a tenth of the sensor's usual one (a counter that stands still for most of the test shows no noise; it has some
+/// when it turns); where they show nothing, the usual one. 0 when nobody knows.
+[[nodiscard]] double believed_noise_std(const Series& channel, double usual_noise_std);
+
+}  // namespace sealwatch::signal

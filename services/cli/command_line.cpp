@@ -1,0 +1,89 @@
+#include "services/cli/command_line.hpp"
+
+#include <algorithm>
+
+#include "sealwatch/core/text.hpp"
+#include "services/cli/arguments.hpp"
+#include "services/cli/build_version.hpp"
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+std::string footer_of(const std::string& example) { return "Example:\n  " + example + "\n" + kExitStatus; }
+
+}  // namespace
+
+CommandLine::CommandLine()
+    : app_("sealwatch: condition monitoring of electro-hydrostatic subsea valve actuators", "sealwatch"),
+      chosen_([] { return kBadInput; }) {
+  app_.set_version_flag("--version",
+                        std::string("sealwatch " SEALWATCH_VERSION " (").append(build_version()).append(")"));
+  app_.require_subcommand(1);
+  app_.footer(std::string("First steps: sealwatch replay --with-services RECORDING.csv...\n") + kExitStatus);
+  for (const auto add : {&add_analysis, &add_services, &add_operation, &add_maintenance}) add(*this);
+}
+
+int CommandLine::run(int argc, char** argv) {
+  const std::vector<std::string> known = commands();
+  if (argc > 1 && argv[1][0] != '-' && std::ranges::find(known, argv[1]) == known.end()) return unknown(argv[1]);
+  arguments_.assign(argv + 1, argv + argc + 1);
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app_.exit(error) == 0 ? kOk : kBadInput;
+  }
+  return chosen_();
+}
+
+CLI::App* CommandLine::command(const std::string& name, const std::string& meaning, const std::string& example,
+                               std::function<int()> run) {
+  CLI::App* subcommand = nested(app_, name, meaning, example, std::move(run));
+  subcommand->group(group_);
+  return subcommand;
+}
+
+CLI::App* CommandLine::holder(const std::string& name, const std::string& meaning, const std::string& example) {
+  CLI::App* subcommand = app_.add_subcommand(name, meaning);
+  subcommand->require_subcommand(1);
+  subcommand->footer(footer_of(example));
+  subcommand->group(group_);
+  return subcommand;
+}
+
+CLI::App* CommandLine::nested(CLI::App& holder, const std::string& name, const std::string& meaning,
+                              const std::string& example, std::function<int()> run) {
+  CLI::App* subcommand = holder.add_subcommand(name, meaning);
+  subcommand->footer(footer_of(example));
+  subcommand->callback([this, run = std::move(run)] { chosen_ = run; });
+  return subcommand;
+}
+
+void CommandLine::add_config(CLI::App* subcommand, std::string& config) {
+  config = default_config();
+  subcommand->add_option("--config", config, "configuration file or directory ($SEALWATCH_CONFIG)")
+      ->capture_default_str();
+}
+
+void CommandLine::add_map(CLI::App* subcommand, std::string& map_file) {
+  subcommand
+      ->add_option(
+          "--map", map_file,
+          "YAML file with channels: (columns and units of your own log, docs/logs.md); replaces the asset file's")
+      ->check(CLI::ExistingFile);
+}
+
+std::vector<std::string> CommandLine::commands() const {
+  std::vector<std::string> names;
+  for (const CLI::App* subcommand : app_.get_subcommands(nullptr)) names.push_back(subcommand->get_name());
+  return names;
+}
+
+int CommandLine::unknown(const std::string& name) const {
+  complain(
+      Error{.file = {}, .place = {}, .value = name, .rule = "is not a command", .advice = suggest(name, commands())});
+  return kBadInput;
+}
+
+}  // namespace sealwatch::cli

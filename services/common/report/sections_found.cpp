@@ -95,8 +95,8 @@ std::string effect_in_short(const FoundEffect& effect) {
   for (const mismatch::FoundParameter& parameter : effect.parameters)
     html += paragraph(parameter.name + " = " +
                       text::readable_with_error(parameter.value, parameter.std_error, parameter.unit));
-  html += paragraph("Probability " + text::percent_text(effect.probability) + ", in this element " +
-                        text::percent_text(effect.element_probability) + ".",
+  html += paragraph("Probability of this law: " + text::percent_text(effect.probability) +
+                        "; of this element: " + text::percent_text(effect.element_probability) + ".",
                     "small muted");
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)

@@ -1,6 +1,7 @@
 # Helpers by which each folder declares what it builds.
 #
 #   sealwatch_library(sealwatch_core SOURCES a.cpp LINK tl::expected PRIVATE_LINK Ceres::ceres)
+#   sealwatch_library(sealwatch_cli WORDS ...)   reads and writes text, computes nothing: optimised little, compiled fast
 #   sealwatch_executable(sealwatch-state-detection SOURCES main.cpp LINK sealwatch_runtime)
 #   sealwatch_test(core_test SOURCES core_test.cpp LINK sealwatch_core LABELS unit)
 #   sealwatch_waits(campaign_kills)
@@ -29,19 +30,28 @@ endif()
 include(${CMAKE_CURRENT_LIST_DIR}/unity.cmake)
 
 function(sealwatch_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINK;PRIVATE_LINK")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "WORDS" "" "SOURCES;LINK;PRIVATE_LINK")
   add_library(${name} STATIC ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK} $<BUILD_INTERFACE:sealwatch_flags>)
+  if(ARG_WORDS)
+    sealwatch_words(${name})
+  endif()
   sealwatch_unity(${name})
+endfunction()
+
+# A third of the time that compiling takes is the optimiser's, which words do not need.
+function(sealwatch_words name)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 function(sealwatch_executable name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINK")
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} sealwatch_flags)
+  sealwatch_words(${name})  # main() alone
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 endfunction()
 
@@ -58,8 +68,7 @@ function(sealwatch_test name)
   target_compile_definitions(${name} PRIVATE
     SEALWATCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SEALWATCH_BINARY_DIR="${PROJECT_BINARY_DIR}"
     SEALWATCH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
-  # What takes time when a test runs is the libraries; optimising the test's own lines takes a third of compiling it.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  sealwatch_words(${name})  # what takes time when a test runs is the libraries
   sealwatch_unity(${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)

@@ -34,7 +34,8 @@ class RunningBlock {
   [[nodiscard]] bool has_events() const;
   [[nodiscard]] double next_event_s() const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    return ended_s_ < kNever ? kNever : beginning_.outcome.next_time_s;
+    if (ended_s_ < kNever) return kNever;
+    return beginning_.outcome.next_time_s;
   }
   /// Whether an indicator has another sign than when accept() or pass_event() was called last.
   [[nodiscard]] bool event_before(double time_s, std::span<const double> states, std::span<const double> inputs);

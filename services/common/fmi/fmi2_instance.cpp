@@ -117,7 +117,8 @@ class Fmi2Instance final : public FmiInstance {
         const int value = values[k] != 0.0 ? 1 : 0;
         check(f_.set_boolean(instance_, &handle.reference, 1, &value), "fmi2SetBoolean");
       } else {
-        const int value = static_cast<int>(std::lround(values[k]));
+        constexpr double kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
+        const int value = static_cast<int>(std::clamp(std::round(values[k]), kLeast, kMost));
         check(f_.set_integer(instance_, &handle.reference, 1, &value), "fmi2SetInteger");
       }
     }

@@ -62,12 +62,23 @@ void get_as(const Library& library, Instance instance, const char* name, const H
   std::ranges::copy(typed, values);
 }
 
+/// The nearest number of the type: the largest of 64 bits has a double beside it that is larger.
+template <class T>
+T rounded(double value) {
+  constexpr T kLeast = std::numeric_limits<T>::min(), kMost = std::numeric_limits<T>::max();
+  const double whole = std::round(value);
+  if (!(whole > static_cast<double>(kLeast))) return kLeast;
+  return whole >= static_cast<double>(kMost) ? kMost : static_cast<T>(whole);
+}
+
 template <class T>
 void set_as(const Library& library, Instance instance, const char* name, const Handle& handle, const double* values) {
   std::vector<T> typed(handle.size);
   for (std::size_t k = 0; k < handle.size; ++k) {
-    if constexpr (std::is_integral_v<T>)
-      typed[k] = static_cast<T>(std::llround(values[k]));
+    if (handle.type == FmiType::boolean)
+      typed[k] = values[k] != 0.0 ? 1 : 0;
+    else if constexpr (std::is_integral_v<T>)
+      typed[k] = rounded<T>(values[k]);
     else
       typed[k] = static_cast<T>(values[k]);
   }

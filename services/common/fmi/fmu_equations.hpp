@@ -69,7 +69,10 @@ class FmuEquations final : public RuntimeEquations {
   [[nodiscard]] bool outputs_see_added() const override { return outputs_see_added_; }
   [[nodiscard]] bool runs_elsewhere() const override;
   [[nodiscard]] Result<SimulatedOutputs> run(const RuntimeRun& run) const override { return runs_->run(run); }
+  // For those who write the plant in another language.
   [[nodiscard]] const FmuBlock& block() const { return block_; }
+  [[nodiscard]] const RuntimeEquations& frame() const { return *frame_; }
+  [[nodiscard]] const Counts& counts() const { return counts_; }
 
  private:
   FmuBlock block_;

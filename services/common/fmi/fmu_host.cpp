@@ -213,12 +213,18 @@ void FmuHost::completed_step(Unpacker request, Packer answer) {
 void FmuHost::do_step(Unpacker request, Packer answer) {
   const auto time = request.get<double>(), step = request.get<double>();
   copy(request.numbers(inputs_.size), input_);
+  const std::span<const double> last = request.numbers(inputs_.size);
+  const std::vector<double> input_at_end(last.begin(), last.end());
   std::span<double> end = answer.room(2);  // whether it ended, and when
   end[0] = 0.0, end[1] = time + step;
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
-    slots_[slot]->set(inputs_, input_);
-    const CoStep done = step > 0.0 ? slots_[slot]->do_step(time, step) : CoStep{.terminate = false, .reached_s = time};
+    CoStep done{.terminate = false, .reached_s = time};
+    if (step > 0.0) {
+      slots_[slot]->set(inputs_, input_);
+      done = slots_[slot]->do_step(time, step);
+    }
     if (slot == 0) end[0] = done.terminate ? 1.0 : 0.0, end[1] = done.reached_s;
+    if (!done.terminate) slots_[slot]->set(inputs_, input_at_end);
     slots_[slot]->get(outputs_, answer.room(outputs_.size));
   }
 }

@@ -139,11 +139,13 @@ Result<StepEnd> FmuProcess::completed_step(double time_s, std::span<const double
   return end;
 }
 
-Result<CoStepEnd> FmuProcess::do_step(double time_s, double step_s, std::span<const double> inputs) {
+Result<CoStepEnd> FmuProcess::do_step(double time_s, double step_s, std::span<const double> during,
+                                      std::span<const double> end_inputs) {
   Packer packer = this->packer();
   packer.put(time_s);
   packer.put(step_s);
-  packer.put_numbers(inputs);
+  packer.put_numbers(during);
+  packer.put_numbers(end_inputs);
   const Status status = request(Operation::do_step, "a step", limits().call_s, time_s);
   if (!status) return fail(status.error());
   Unpacker answer = unpacker();

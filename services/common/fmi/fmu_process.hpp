@@ -64,8 +64,10 @@ class FmuProcess : public HostProcess {
   [[nodiscard]] Result<Outcome> event(double time_s, std::span<double> states, std::span<const double> inputs);
   [[nodiscard]] Result<StepEnd> completed_step(double time_s, std::span<const double> states,
                                                std::span<const double> inputs);
-  /// A Co-Simulation unit does a step of all slots. A step of 0 reads the outputs.
-  [[nodiscard]] Result<CoStepEnd> do_step(double time_s, double step_s, std::span<const double> inputs);
+  /// A Co-Simulation unit does a step of all slots, with inputs `during` it; outputs are read with those at its `end`,
+  /// which some follow at once. A step of 0 reads alone.
+  [[nodiscard]] Result<CoStepEnd> do_step(double time_s, double step_s, std::span<const double> during,
+                                          std::span<const double> end);
 
   [[nodiscard]] const Setup& setup() const { return setup_; }
   [[nodiscard]] std::size_t most_slots() const { return most_slots_; }

@@ -195,7 +195,7 @@ class Writer {
     if (variables.empty()) return {};
     std::span<const double> values;
     if (file_.co_simulation()) {
-      const auto step = process.do_step(fmu_.start_time_s.value_or(0.0), 0.0, inputs);
+      const auto step = process.do_step(fmu_.start_time_s.value_or(0.0), 0.0, inputs, inputs);
       if (!step) return fail(step.error());
       values = step->outputs;
     } else {

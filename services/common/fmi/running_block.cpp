@@ -123,7 +123,7 @@ const BlockValues* RunningBlock::step_to(double time_s) {
   std::size_t slot = 0;
   for (auto& process : processes_) {
     const auto end = process->do_step(block_.start_time_s + known_time_s_ - first_time_s_,
-                                      std::max(0.0, time_s - known_time_s_), during);
+                                      std::max(0.0, time_s - known_time_s_), during, inputs_);
     if (!end) return in_trouble(end.error().describe());
     if (slot == 0 && end->terminate) end_at(first_time_s_ + end->reached_s - block_.start_time_s);
     const std::span<const double> values = end->outputs;

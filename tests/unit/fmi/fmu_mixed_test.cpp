@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/fmi/import_fmu.hpp"
@@ -73,6 +74,35 @@ TimeSeries samples(int count, double step_s, const std::vector<std::string>& out
     }
   }
   return series;
+}
+
+TEST(FmuInputs, ASampleOfCoSimulationShowsItsOwnInput) {
+  for (const char* binary : kBinaries) {
+    const ImportedUnit unit(mixed(binary), {}, Choice::co_simulation);
+    const TimeSeries recorded =
+        samples(6, 0.1, {"y_real", "y_discrete", "y_integer", "y_boolean"}, [](int row) { return 5.0 - row; });
+    const auto simulation = unit.simulation(recorded);
+    ASSERT_NE(simulation, nullptr);
+    const auto outputs = simulation->run(simulation->start(), {});
+    ASSERT_TRUE(outputs) << outputs.error().describe();
+    for (int row = 0; row < 6; ++row)
+      for (int channel = 0; channel < 4; ++channel)
+        EXPECT_EQ(outputs->values(row, channel), recorded.channels[channel].values[row])
+            << binary << ", sample " << row << ", " << simulation->channels()[channel];
+  }
+}
+
+TEST(FmuInputs, AWholeNumberBeyondItsTypeIsTheTypesLast) {
+  for (const char* binary : kBinaries) {
+    const ImportedUnit unit(mixed(binary));
+    const auto simulation =
+        unit.simulation(samples(2, 0.1, {"y_integer"}, [](int row) { return row > 0 ? 1e12 : -1e12; }));
+    ASSERT_NE(simulation, nullptr);
+    const auto outputs = simulation->run(simulation->start(), {});
+    ASSERT_TRUE(outputs) << outputs.error().describe();
+    EXPECT_EQ(outputs->values(0, 0), std::numeric_limits<int>::min()) << binary;
+    EXPECT_EQ(outputs->values(1, 0), std::numeric_limits<int>::max()) << binary;
+  }
 }
 
 TEST(FmuInputs, ASampleWhereAnInputJumpsShowsTheNewInput) {

@@ -7,7 +7,9 @@
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/dimension.hpp"
 #include "services/common/fmi/export/c_expressions.hpp"
+#include "services/common/fmi/export/export_wrapper.hpp"
 #include "services/common/fmi/export/law_formulas.hpp"
+#include "services/common/fmi/export/laws_function.hpp"
 #include "services/common/fmi/export/shell_text.hpp"
 #include "services/common/model/physics_terms.hpp"
 
@@ -48,13 +50,17 @@ class Exporter {
                         .place = {},
                         .value = plant_.description.name,
                         .rule = "is not written as text, so that its equations cannot be written in C",
-                        .advice = "an FMU stays with its tool: add the laws there (laws.c and laws.mo of explain)"});
+                        .advice = "write it as text (docs/tutorial-plant.md)"});
     parts_ = &text->parts();
     auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);
     if (!terms) return fail(terms.error());
     terms_ = std::move(*terms);
     if (const Status rows = collect(*text); !rows) return fail(rows.error());
-    ExportedModel model{.identifier = plant_.description.name, .source = {}, .description = {}, .left_out = left_out_};
+    ExportedModel model{.identifier = plant_.description.name,
+                        .source = {},
+                        .description = {},
+                        .left_out = left_out(terms_),
+                        .carried = {}};
     std::ranges::replace_if(
         model.identifier, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
     const auto equations = source();
@@ -97,10 +103,6 @@ class Exporter {
       const ChannelDescription* channel = plant.find_channel(output.channel);
       outputs_.push_back({channel->name, channel->unit, channel->meaning, 0.0});
     }
-    for (const RecordingTerm& term : terms_.recording)
-      left_out_.push_back(term.input.empty() ? "the rate of the recording's clock"
-                                             : "the law of the recorded input " + term.input);
-    for (const SensorTerm& term : terms_.sensors) left_out_.push_back("the law of the sensor of " + term.channel);
     return {};
   }
 
@@ -149,7 +151,14 @@ class Exporter {
                           .advice = function.error().advice});
       text += *function + "\n";
     }
-    const auto laws = laws_function();
+    const auto laws = laws_function(
+        plant_.description, terms_,
+        {.head = "static void model_laws(double t, const double* x, const double* u, const double* p, double* e,\n"
+                 "                       double* hidden_rates) {\n",
+         .signals = "  plant_signals(t, x, u, p, e, s);\n",
+         .end = "}\n",
+         .first_site = 0,
+         .signals_see_added = parts_->signals_see_added});
     if (!laws) return fail(laws.error());
     return text + helper_functions_c() + "\n" + *laws + R"c(
 static void model_derivatives(double t, const double* x, const double* u, const double* p, double* dx) {
@@ -164,53 +173,6 @@ static void model_outputs(double t, const double* x, const double* u, const doub
 }
 
 )c";
-  }
-
-  // What the laws add at each site, and the rates of their hidden states; as RuntimeSystem::add_laws.
-  Result<std::string> laws_function() {
-    std::ostringstream out;
-    out << "#define SITES " << plant_.description.sites.size() << "\n#define PLANT_STATES "
-        << plant_.description.states.size()
-        << "\n/* What laws add at the sites, e, and the rates of their hidden states. */\n"
-           "static void model_laws(double t, const double* x, const double* u, const double* p, double* e,\n"
-           "                       double* hidden_rates) {\n"
-           "  double s[4 * SITES + 1];\n  memset(e, 0, (SITES + 1) * sizeof *e);\n  (void)hidden_rates;\n"
-           "  plant_signals(t, x, u, p, e, s);\n";
-    for (std::size_t site = 0; site < plant_.description.sites.size(); ++site) {
-      bool first = true;
-      for (const ActiveTerm& term : terms_.active) {
-        if (std::ranges::find(term.sites, site) == term.sites.end()) continue;
-        const auto formula = written(*term.law);
-        if (!formula)
-          return fail(Error{.file = plant_.description.file,
-                            .place = {},
-                            .value = std::string(term.law->id),
-                            .rule = "is a law that is not written in C",
-                            .advice = "leave it out of the asset's physics"});
-        if (first && parts_->signals_see_added) out << "  plant_signals(t, x, u, p, e, s);\n";
-        first = false;
-        out << "  { /* " << term.law->id << " at " << plant_.description.sites[site].element << ": "
-            << term.law->equation << " */\n";
-        for (std::size_t k = 0; k < kSiteSignals; ++k)
-          out << "    const double s" << k + 1 << " = s[" << 4 * site + k << "];\n";
-        out << "    const double h = "
-            << (term.hidden < 0 ? "0.0" : "x[PLANT_STATES + " + std::to_string(term.hidden) + "]") << ";\n";
-        for (std::size_t k = 0; k < kLawParameters; ++k)
-          out << "    const double p" << k + 1 << " = "
-              << (k < term.law->parameters.size() ? "p[" + std::to_string(term.first_parameter + k) + "]" : "0.0")
-              << ";\n";
-        for (std::size_t k = 0; k < kLawRoundings; ++k)
-          out << "    const double r" << k + 1 << " = " << c_number(term.roundings[k]) << ";\n";
-        out << "    (void)s1, (void)s2, (void)s3, (void)s4, (void)h, (void)p1, (void)p2, (void)p3, (void)p4, (void)r1, "
-               "(void)r2;\n"
-            << "    e[" << site << "] += " << in_c(formula->contribution) << ";\n";
-        if (term.hidden >= 0 && site == term.sites.back())
-          out << "    hidden_rates[" << term.hidden << "] = " << in_c(formula->rate) << ";\n";
-        out << "  }\n";
-      }
-    }
-    out << "}\n";
-    return out.str();
   }
 
   [[nodiscard]] std::string description(const std::string& identifier) const {
@@ -252,14 +214,9 @@ static void model_outputs(double t, const double* x, const double* u, const doub
     out << "<UnitDefinitions>\n";
     for (const std::string& name : names) {
       out << "<Unit name=\"" << escaped(name) << "\">";
-      const auto dimension = equations::find_dimension(name);
-      const bool whole =
-          dimension && std::ranges::all_of(dimension->power, [](double p) { return p == std::round(p); });
-      if (whole) {
-        constexpr std::array kBase = {"m", "kg", "s", "A", "K", "mol", "cd"};
+      if (const auto powers = whole_powers(name)) {
         out << "<BaseUnit";
-        for (std::size_t k = 0; k < kBase.size(); ++k)
-          if (dimension->power[k] != 0.0) out << " " << kBase[k] << "=\"" << std::lround(dimension->power[k]) << "\"";
+        for (const auto& [base, power] : *powers) out << " " << base << "=\"" << power << "\"";
         out << "/>";
       }
       out << "</Unit>\n";
@@ -284,13 +241,14 @@ static void model_outputs(double t, const double* x, const double* u, const doub
   PhysicsTerms terms_;
   std::vector<Row> states_, inputs_, parameters_, outputs_;
   std::vector<std::size_t> rates_;
-  std::vector<std::string> left_out_;
   std::string token_;
 };
 
 }  // namespace
 
 Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset) {
+  if (const auto* unit = dynamic_cast<const FmuEquations*>(plant.equations.get()))
+    return export_wrapper(plant, *unit, asset);
   return Exporter(plant, asset).write();
 }
 

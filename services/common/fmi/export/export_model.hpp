@@ -1,5 +1,5 @@
 // A plant that is written as text, with the laws of an asset in it, as a model in C and its modelDescription.xml: an FMU
-// of FMI 2.0 for Model Exchange once it is packed (fmu_writer.hpp).
+// of FMI 2.0 for Model Exchange once it is packed (fmu_writer.hpp). A plant whose equations are an FMU's: export_wrapper.hpp.
 //
 //   states      the plant's, then the laws' hidden states       parameters  the plant's, then the laws'
 //   inputs      the plant's; where equations or laws need the rate of an input, that rate is an input of its own
@@ -21,6 +21,7 @@ struct ExportedModel {
   std::string source;       ///< model.c, whole
   std::string description;  ///< modelDescription.xml
   std::vector<std::string> left_out;
+  std::string carried;  ///< an FMU that goes into resources/inner; "": none
 };
 
 /// An Error where something cannot be written in C: tables.

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <memory>
 
+#include "services/common/fmi/fmu_archive.hpp"
 #include "services/common/fmi/temporary_folder.hpp"
 
 namespace sealwatch::fmi {
@@ -23,9 +24,9 @@ tl::unexpected<Error> refuse(const std::string& file, std::string rule, std::str
 
 /// Runs `cc`; returns what went wrong, "" where nothing did.
 std::string compiled(const std::filesystem::path& source, const std::filesystem::path& binary) {
-  std::array<std::string, 9> words = {"cc", "-O2",           "-fPIC",         "-shared", "-fvisibility=hidden",
-                                      "-o", binary.string(), source.string(), "-lm"};
-  std::array<char*, 10> arguments{};
+  std::array<std::string, 10> words = {"cc", "-O2",           "-fPIC",         "-shared", "-fvisibility=hidden",
+                                       "-o", binary.string(), source.string(), "-lm",     "-ldl"};
+  std::array<char*, 11> arguments{};
   for (std::size_t k = 0; k < words.size(); ++k) arguments[k] = words[k].data();
   pid_t child = -1;
   const int error = posix_spawnp(&child, "cc", nullptr, nullptr, arguments.data(), environ);
@@ -34,6 +35,25 @@ std::string compiled(const std::filesystem::path& source, const std::filesystem:
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? "" : "the C compiler cc failed";
+}
+
+using Archive = std::unique_ptr<zip_t, decltype([](zip_t* archive) { zip_discard(archive); })>;
+
+/// What the unit that is carried needs to run, member by member into resources/inner.
+bool carry(zip_t* from, zip_t* to) {
+  const zip_int64_t count = zip_get_num_entries(from, 0);
+  for (zip_int64_t index = 0; index < count; ++index) {
+    const auto number = static_cast<zip_uint64_t>(index);
+    const char* name = zip_get_name(from, number, 0);
+    const std::string_view member(name == nullptr ? "" : name);
+    const bool needed = member == kDescriptionName || member.starts_with("binaries/") ||
+                        member.starts_with("resources/") || member.starts_with("licenses/");
+    if (!needed || member.ends_with('/')) continue;
+    zip_source_t* content = zip_source_zip(to, from, number, 0, 0, -1);
+    const std::string target = "resources/inner/" + std::string(member);
+    if (content == nullptr || zip_file_add(to, target.c_str(), content, ZIP_FL_ENC_UTF_8) < 0) return false;
+  }
+  return zip_dir_add(to, "resources/inner/resources", ZIP_FL_ENC_UTF_8) >= 0;
 }
 
 }  // namespace
@@ -57,6 +77,8 @@ Result<WrittenFmu> write_fmu(const std::string& file, const ExportedModel& model
   add("sources/model.c", zip_source_buffer(archive, model.source.data(), model.source.size(), 0));
   if (written.binary)
     add("binaries/linux64/" + model.identifier + ".so", zip_source_file(archive, binary.c_str(), 0, -1));
+  const Archive carried(model.carried.empty() ? nullptr : zip_open(model.carried.c_str(), ZIP_RDONLY, &code));
+  if (!model.carried.empty()) sound = sound && carried && carry(carried.get(), archive);
   if (sound && zip_close(archive) == 0) return written;
   zip_discard(archive);
   return refuse(file, "cannot be written", "look whether the disk is full");

@@ -1,4 +1,5 @@
-// The text of fmi2_shell.c, which goes into every exported FMU (made by CMake from shell_text.cpp.in).
+// The texts of fmi2_shell.c and fmi2_wrapper.c, one of which goes into every exported FMU (made by CMake from
+// shell_text.cpp.in).
 #pragma once
 
 #include <string_view>
@@ -6,5 +7,6 @@
 namespace sealwatch::fmi {
 
 [[nodiscard]] std::string_view fmi2_shell_text();
+[[nodiscard]] std::string_view fmi2_wrapper_text();
 
 }  // namespace sealwatch::fmi

@@ -1,0 +1,184 @@
+#include "services/common/fmi/export/wrapper_description.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <pugixml.hpp>
+#include <set>
+#include <sstream>
+
+#include "services/common/fmi/export/c_expressions.hpp"
+#include "services/common/fmi/export/laws_function.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using pugi::xml_node;
+
+void set(xml_node node, const char* name, const std::string& value) {
+  if (!node.attribute(name)) node.append_attribute(name);
+  node.attribute(name).set_value(value.c_str());
+}
+
+xml_node child_behind(xml_node parent, const char* name, const char* before) {
+  if (xml_node child = parent.child(name)) return child;
+  const xml_node other = parent.child(before);
+  return other ? parent.insert_child_after(name, other) : parent.prepend_child(name);
+}
+
+class Rewriter {
+ public:
+  Rewriter(const FmuFile& inner, const WrapperVariables& own) : inner_(inner), own_(own) {}
+
+  Result<std::string> write() {
+    std::ifstream stream(inner_.unpacked().path_of(kDescriptionName), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    pugi::xml_document document;
+    if (!document.load_buffer(text.data(), text.size(), pugi::parse_full))
+      return fail(
+          Error{.file = inner_.name(), .place = kDescriptionName, .value = {}, .rule = "is no XML", .advice = {}});
+    root_ = document.child("fmiModelDescription");
+    for (xml_node& node : variables_of(root_)) variables_.push_back(node);
+    for (const xml_node& node : variables_) names_.insert(node.attribute("name").value());
+    head();
+    units();
+    change_variables();
+    add_variables();
+    std::ostringstream out;
+    document.save(out, "  ");
+    return out.str();
+  }
+
+ private:
+  static std::vector<xml_node> variables_of(const xml_node& root) {
+    const auto range = root.child("ModelVariables").children("ScalarVariable");
+    return {range.begin(), range.end()};
+  }
+
+  void head() {
+    set(root_, "guid", own_.token);
+    set(root_, "modelName", std::string(root_.attribute("modelName").value()) + "_explained");
+    const std::string tool = inner_.description().tool;
+    set(root_, "generationTool", (tool.empty() ? "" : tool + ", ") + "laws added by sealwatch");
+    root_.remove_child("CoSimulation");
+    xml_node exchange = root_.child("ModelExchange");
+    set(exchange, "modelIdentifier", own_.identifier);
+    for (const char* name : {"providesDirectionalDerivative", "canGetAndSetFMUstate", "canSerializeFMUstate"})
+      exchange.remove_attribute(name);
+    exchange.remove_child("SourceFiles");
+    exchange.prepend_child("SourceFiles").append_child("File").append_attribute("name").set_value("model.c");
+  }
+
+  void units() {
+    for (const auto* list : {&own_.hidden, &own_.inputs, &own_.parameters, &own_.outputs})
+      for (const OwnVariable& row : *list) {
+        if (row.unit.empty()) continue;
+        xml_node definitions = root_.child("UnitDefinitions");
+        if (!definitions) definitions = root_.insert_child_after("UnitDefinitions", root_.child("ModelExchange"));
+        if (definitions.find_child_by_attribute("Unit", "name", row.unit.c_str())) continue;
+        xml_node unit = definitions.append_child("Unit");
+        unit.append_attribute("name").set_value(row.unit.c_str());
+        const auto powers = whole_powers(row.unit);
+        xml_node base = powers ? unit.append_child("BaseUnit") : xml_node();
+        for (const auto& [name, power] : powers.value_or(std::vector<std::pair<std::string, int>>()))
+          base.append_attribute(name.c_str()).set_value(power);
+      }
+  }
+
+  void change_variables() {
+    for (const auto& [place, value] : own_.starts) set(variables_[place].first_child(), "start", c_number(value));
+    for (const std::size_t place : own_.local_inputs) {
+      set(variables_[place], "causality", "local");
+      variables_[place].first_child().remove_attribute("start");
+    }
+    for (const std::size_t place : own_.calculated) {
+      set(variables_[place], "causality", "calculatedParameter");
+      set(variables_[place], "initial", "calculated");
+      variables_[place].first_child().remove_attribute("start");
+    }
+    for (const auto& [name, text] : inner_.settings()) {
+      const auto place =
+          static_cast<std::size_t>(inner_.description().find(name) - inner_.description().variables.data());
+      set(variables_[place].first_child(), "start", text);
+    }
+  }
+
+  /// Returns its index, which counts from 1.
+  std::size_t add(const OwnVariable& row, const char* causality, const char* variability, const char* initial,
+                  bool with_start) {
+    std::string name = row.name;
+    while (!names_.insert(name).second) name += "_";
+    xml_node variable = root_.child("ModelVariables").append_child("ScalarVariable");
+    variable.append_attribute("name").set_value(name.c_str());
+    variable.append_attribute("valueReference").set_value(row.reference);
+    variable.append_attribute("description").set_value(row.meaning.c_str());
+    variable.append_attribute("causality").set_value(causality);
+    variable.append_attribute("variability").set_value(variability);
+    if (initial != nullptr) variable.append_attribute("initial").set_value(initial);
+    xml_node real = variable.append_child("Real");
+    if (!row.unit.empty()) real.append_attribute("unit").set_value(row.unit.c_str());
+    if (with_start) real.append_attribute("start").set_value(c_number(row.start).c_str());
+    variables_.push_back(variable);
+    return variables_.size();
+  }
+
+  // Unknowns stand in the order of their indices. What they depend on is no longer what the FMU says.
+  static void add_unknown(xml_node list, std::size_t index) {
+    xml_node next = list.first_child();
+    while (next && next.attribute("index").as_ullong() < index) next = next.next_sibling();
+    if (next && next.attribute("index").as_ullong() == index) return;
+    xml_node unknown = next ? list.insert_child_before("Unknown", next) : list.append_child("Unknown");
+    unknown.append_attribute("index").set_value(static_cast<unsigned long long>(index));
+  }
+
+  void add_variables() {
+    xml_node structure = root_.child("ModelStructure");
+    for (xml_node& list : children(structure))
+      for (xml_node& unknown : children(list))
+        unknown.remove_attribute("dependencies"), unknown.remove_attribute("dependenciesKind");
+    std::vector<std::size_t> states, rates, outputs;
+    for (const OwnVariable& row : own_.hidden) states.push_back(add(row, "local", "continuous", "exact", true));
+    for (std::size_t k = 0; k < own_.hidden_rates.size(); ++k) {
+      rates.push_back(add(own_.hidden_rates[k], "local", "continuous", "calculated", false));
+      variables_.back()
+          .first_child()
+          .append_attribute("derivative")
+          .set_value(static_cast<unsigned long long>(states[k]));
+    }
+    for (const OwnVariable& row : own_.inputs) add(row, "input", "continuous", nullptr, true);
+    for (const OwnVariable& row : own_.parameters) add(row, "parameter", "tunable", "exact", true);
+    for (const OwnVariable& row : own_.outputs)
+      outputs.push_back(add(row, "output", "continuous", "calculated", false));
+    if (!outputs.empty()) {
+      xml_node list = structure.child("Outputs");
+      if (!list) list = structure.prepend_child("Outputs");
+      for (const std::size_t index : outputs) add_unknown(list, index);
+    }
+    if (!rates.empty()) {
+      xml_node list = child_behind(structure, "Derivatives", "Outputs");
+      for (const std::size_t index : rates)
+        list.append_child("Unknown").append_attribute("index").set_value(static_cast<unsigned long long>(index));
+    }
+    xml_node initial = structure.child("InitialUnknowns");
+    if (!initial) initial = structure.append_child("InitialUnknowns");
+    for (const auto* list : {&rates, &outputs})
+      for (const std::size_t index : *list) add_unknown(initial, index);
+    for (const std::size_t place : own_.calculated) add_unknown(initial, place + 1);
+    if (!initial.first_child()) structure.remove_child(initial);
+  }
+
+  static std::vector<xml_node> children(const xml_node& node) { return {node.begin(), node.end()}; }
+
+  const FmuFile& inner_;
+  const WrapperVariables& own_;
+  xml_node root_;
+  std::vector<xml_node> variables_;
+  std::set<std::string> names_;
+};
+
+}  // namespace
+
+Result<std::string> wrapper_description(const FmuFile& inner, const WrapperVariables& own) {
+  return Rewriter(inner, own).write();
+}
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,28 @@
+// The modelDescription.xml of an FMU with laws around it: that of the FMU, changed where the wrapper is another.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/common/fmi/fmu_file.hpp"
+
+namespace sealwatch::fmi {
+
+/// A variable that the FMU does not have.
+struct OwnVariable {
+  std::string name, unit, meaning;
+  double start = 0.0;
+  std::uint32_t reference = 0;
+};
+
+struct WrapperVariables {
+  std::string token, identifier;
+  std::vector<OwnVariable> hidden, hidden_rates, inputs, parameters, outputs;
+  std::vector<std::pair<std::size_t, double>> starts;  ///< of the FMU's parameters, by place in its description
+  std::vector<std::size_t> local_inputs, calculated;   ///< of the FMU: inputs and parameters that follow from others
+};
+
+[[nodiscard]] Result<std::string> wrapper_description(const FmuFile& inner, const WrapperVariables& own);
+
+}  // namespace sealwatch::fmi

@@ -1,0 +1,276 @@
+// An imported FMU with laws in it, handed back as an FMU: imported again, it simulates what the explained asset does.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/fmi/export/export_model.hpp"
+#include "services/common/fmi/export/fmu_writer.hpp"
+#include "services/common/fmi/import_fmu.hpp"
+#include "services/common/runtime/plant_file.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
+#include "tests/unit/model/recording_for_tests.hpp"
+
+namespace sealwatch::fmi {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* kSpring = R"yaml(
+meaning: valve positioner with a return spring
+fmu:
+  file: model.fmu
+  inputs: {u: INPUT}
+  parameters: {M: M, F_v: F_v, k_s: STIFFNESS, k_F: k_F}
+  variables: {push: {variable: der(v), unit: Pa}}
+inputs:
+  drive_voltage: {unit: V}
+outputs:
+  position: {value: x, unit: m}
+  height: {value: 2 * x, unit: m}
+parameters:
+  M: {value: 20.0, unit: kg}
+  F_v: {value: 2.0e3, unit: N s/m}
+  k_s: {value: 1.0e4, unit: N/m}
+  k_F: {value: 100.0, unit: N/V}
+states:
+  v: {unit: m/s, start: "0[m/s]", own: false, size: 0.1}
+  x: {unit: m, start: "0[m]", own: false, size: 0.02}
+elements:
+  driver:
+    sites:
+      - {kind: voltage_command, symbol: u_lost, signals: {command: drive_voltage, command_rate: rate(drive_voltage)}}
+  piston:
+    sites:
+      - {kind: piston_force, adds_to: {v: -1/M}, signals: {speed: v, position: x, pressure_a: push}}
+law_sizes: {N: 0.02, m: 1.0, m/s: 10.0, N/m: 0.02, N/m2: 0.02, N s/m: 0.01, N s2/m2: 1.0e-3, V: 1.0, A: 1.0, s: 1.0,
+            Pa: 1.0e-6, m2: 1.0e-3, N/Pa: 1.0, 1: 1.0}
+)yaml";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+PhysicsTerm term(const std::string& id, const std::string& element,
+                 const std::vector<std::pair<std::string, double>>& values) {
+  PhysicsTerm result{.id = id, .element = element, .parameters = {}};
+  for (const auto& [name, value] : values) result.parameters[name] = {value, 0.0, 1e6, false};
+  return result;
+}
+
+/// A plant around a unit, the unit with an asset's laws in it that was exported of them, and the plant around that.
+class Exported {
+ public:
+  Exported(const TestUnit& unit, const std::string& plant, const std::function<void(AssetConfig&)>& explain) {
+    static int count = 0;
+    name_ = "exported_" + std::to_string(++count);
+    static_cast<void>(folder_.build(unit));
+    const std::string file = (folder_ / "plant.yaml").string();
+    std::ofstream(file) << "name: " << name_ << plant;
+    asset_ = nominal_asset(loaded(file));
+    explain(asset_);
+    if (const auto read = read_plant_file(file)) export_and_import(read->built.plant);
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  /// What both simulate of a channel, where `course` is each recorded input's.
+  [[nodiscard]] RowMatrix simulated(const std::string& channel, double (*course)(double)) const {
+    return run(asset_, channel, course);
+  }
+  [[nodiscard]] RowMatrix simulated_again(const std::string& channel, double (*course)(double)) const {
+    return run(again_, channel, course);
+  }
+
+ private:
+  void export_and_import(const RuntimePlant& plant) {
+    const auto model = export_model(plant, asset_);
+    if (!model) {
+      refusal_ = model.error().describe();
+      return;
+    }
+    const std::string file = (folder_ / "explained.fmu").string();
+    const auto written = write_fmu(file, *model);
+    EXPECT_TRUE(written && written->binary) << (written ? written->without_binary : written.error().describe());
+    const auto fmu = FmuFile::open(file);
+    ASSERT_TRUE(fmu) << fmu.error().describe();
+    const auto text = plant_file_of(**fmu, "explained.fmu");
+    ASSERT_TRUE(text) << text.error().describe();
+    text_ = replaced(*text, "name: test_explained", "name: again_" + name_);
+    std::ofstream(folder_ / "again.yaml") << text_;
+    again_ = nominal_asset(loaded((folder_ / "again.yaml").string()));
+  }
+  static std::string loaded(const std::string& file) {
+    const auto plant = load_plant(file);
+    if (!plant) ADD_FAILURE() << plant.error().front().describe();
+    return plant ? (*plant)->name : "";
+  }
+  static RowMatrix run(const AssetConfig& asset, const std::string& channel, double (*course)(double)) {
+    TimeSeries recorded;
+    for (int row = 0; row <= 300; ++row) recorded.time_s.push_back(0.01 * row);
+    for (const ChannelDescription& row : (*find_plant(asset.model))->channels) {
+      if (!row.input && row.name != channel) continue;
+      Series& series = recorded.channels.emplace_back(Series{row.name, row.unit, 0.0, {}});
+      for (const double t : recorded.time_s) series.values.push_back(row.input ? course(t) : 0.0);
+      const bool slope = row.name.ends_with("_rate");
+      for (std::size_t k = 0; slope && k < recorded.time_s.size(); ++k)
+        series.values[k] = (course(recorded.time_s[k] + 1e-6) - course(recorded.time_s[k] - 1e-6)) / 2e-6;
+    }
+    const auto simulation = PlantSimulation::create(asset, recorded);
+    EXPECT_TRUE(simulation) << simulation.error().describe();
+    if (!simulation) return {};
+    const auto outputs = (*simulation)->run((*simulation)->start(), {}, {.relative_tolerance = 1e-8});
+    EXPECT_TRUE(outputs) << outputs.error().describe();
+    return outputs ? outputs->values : RowMatrix();
+  }
+
+  TestFolder folder_;
+  AssetConfig asset_, again_;
+  std::string name_, text_, refusal_;
+};
+
+/// Whole ramps between samples, so that a held rate between samples is no other course.
+double ramps(double t) { return t < 1.0 ? 4.0 * t : t < 2.0 ? 4.0 : 12.0 - 4.0 * t; }
+
+void expect_same(const Exported& exported, const std::string& channel, const std::string& again, double close) {
+  const RowMatrix one = exported.simulated(channel, &ramps), other = exported.simulated_again(again, &ramps);
+  ASSERT_EQ(one.rows(), 301);
+  ASSERT_EQ(other.rows(), 301);
+  for (int row = 0; row <= 300; ++row) ASSERT_NEAR(one(row, 0), other(row, 0), close) << channel << " " << row;
+}
+
+std::string spring(const std::string& input, const std::string& stiffness) {
+  return replaced(replaced(kSpring, "INPUT", input), "STIFFNESS", stiffness);
+}
+
+TEST(ExplainedFmu, HasTheLawsAtDerivativesAndInputs) {
+  const Exported exported(spring_return("fmu_spring_return2"), spring("drive_voltage - u_lost", "k_s"),
+                          [](AssetConfig& asset) {
+                            asset.parameters["M"].value = 23.0;
+                            asset.physics = {term("coulomb_friction", "piston", {{"F_c", 60.0}, {"v_s", 1e-3}}),
+                                             term("driver_dead_time", "driver", {{"V_z", 0.4}, {"u_s", 0.3}})};
+                          });
+  EXPECT_THAT(exported.text(), AllOf(HasSubstr("\"u\": u"), HasSubstr("\"M\": M"), HasSubstr("value: 23.0"),
+                                     HasSubstr("piston.coulomb_friction.F_c"), HasSubstr("value: 60.0")));
+  expect_same(exported, "position", "position", 1e-8);
+  expect_same(exported, "height", "height", 2e-8);
+  const Exported plain(spring_return("fmu_spring_return2"), spring("drive_voltage - u_lost", "k_s"),
+                       [](AssetConfig& asset) { asset.parameters["M"].value = 23.0; });
+  EXPECT_GT(
+      std::abs(exported.simulated_again("position", &ramps)(100, 0) - plain.simulated("position", &ramps)(100, 0)),
+      1e-3)
+      << "the laws do something";
+}
+
+TEST(ExplainedFmu, HasHiddenStatesAndLawsThatSeeTheUnitsVariables) {
+  const Exported exported(
+      spring_return("fmu_spring_directional2"), spring("drive_voltage - u_lost", "k_s"), [](AssetConfig& asset) {
+        asset.physics = {term("presliding_friction", "piston", {{"F_c", 40.0}, {"delta", 1e-4}}),
+                         term("pressure_dependent_friction", "piston", {{"k_d", 5.0}, {"v_s", 1e-2}})};
+      });
+  EXPECT_THAT(exported.text(), HasSubstr("piston.presliding_friction.bristle"));
+  expect_same(exported, "position", "position", 1e-7);
+}
+
+TEST(ExplainedFmu, HasThePlantsInputsAndParametersWhereTheUnitsFollowFromThem) {
+  const Exported exported(spring_return("fmu_spring_return2"), spring("2 * drive_voltage - u_lost", "k_s / 2"),
+                          [](AssetConfig& asset) {
+                            asset.parameters["k_s"].value = 3e4;
+                            asset.physics = {term("driver_dead_time", "driver", {{"tau_d", 0.05}})};
+                          });
+  EXPECT_THAT(exported.text(), AllOf(HasSubstr("\"drive_voltage\": drive_voltage"),
+                                     HasSubstr("\"drive_voltage_rate\": drive_voltage_rate"),
+                                     HasSubstr("\"k_s_\": k_s\n"), testing::Not(HasSubstr("\"u\":"))));
+  expect_same(exported, "position", "position", 1e-4);  // the recorded rate is linear between samples where it jumps
+}
+
+TEST(ExplainedFmu, PassesEventsOn) {
+  const Exported exported(bouncing("fmu_bouncing2"), R"yaml(
+meaning: a ball
+fmu:
+  file: model.fmu
+  parameters: {g: g}
+inputs: {}
+outputs:
+  height: {value: h, unit: m}
+parameters:
+  g: {value: 9.81, unit: m/s2}
+states:
+  h: {unit: m, start: "1[m]", own: false, size: 1.0}
+  v: {unit: m/s, start: "0[m/s]", own: false, size: 1.0}
+elements:
+  air:
+    sites:
+      - {kind: piston_force, adds_to: {v: "-1[1/kg]"}, signals: {speed: v, position: h}}
+law_sizes: {N: 1.0, m: 1.0, m/s: 1.0, N/m: 1.0, N/m2: 1.0, N s/m: 1.0, N s2/m2: 1.0}
+)yaml",
+                          [](AssetConfig& asset) {
+                            asset.physics = {term("quadratic_drag", "air", {{"k", 0.1}})};
+                          });
+  expect_same(exported, "height", "height", 1e-6);
+}
+
+TEST(ExplainedFmu, PassesTypedInputsAndSettingsOn) {
+  const std::string plant = R"yaml(
+meaning: a unit of all types
+fmu:
+  file: model.fmu
+  settings: {text: "seven\"7", last: 500}
+  inputs: {u_real: u_real, u_discrete: u_discrete, u_integer: u_integer, u_boolean: u_boolean}
+  parameters: {k: k, x0: x0}
+  variables: {y_integer: {variable: y_integer, unit: "1"}, length: {variable: length, unit: "1"}}
+inputs:
+  u_real: {unit: "1", course: held}
+  u_discrete: {unit: "1", course: held}
+  u_integer: {unit: "1", course: held}
+  u_boolean: {unit: "1", course: held}
+outputs:
+  x: {value: x, unit: "1"}
+  y_integer: {value: y_integer, unit: "1"}
+  length: {value: length, unit: "1"}
+parameters:
+  k: {value: 1.0, unit: 1/s}
+  x0: {value: 2.0, unit: "1"}
+states:
+  x: {unit: "1", start: fmu, size: 1.0}
+elements: {}
+law_sizes: {}
+)yaml";
+  const Exported exported(mixed("fmu_mixed2"), plant, [](AssetConfig& asset) { asset.parameters["x0"].value = 3.0; });
+  const auto whole = [](double t) { return std::floor(3.0 * t); };
+  const RowMatrix x = exported.simulated_again("x", whole);
+  ASSERT_EQ(x.rows(), 301);
+  EXPECT_NEAR(x(100, 0), 3.0 * std::exp(-1.0), 1e-7);
+  EXPECT_EQ(exported.simulated_again("y_integer", whole), exported.simulated("y_integer", whole));
+  EXPECT_EQ(exported.simulated_again("length", whole)(5, 0), 7.0);
+}
+
+TEST(ExplainedFmu, AUnitThatCannotBeWrappedIsRefusedByName) {
+  const auto refusal = [](const TestUnit& unit, const std::string& plant) {
+    return Exported(unit, plant, [](AssetConfig&) {}).refusal();
+  };
+  EXPECT_THAT(refusal(gain(), R"yaml(
+meaning: a gain
+fmu:
+  file: model.fmu
+  inputs: {u: u}
+  parameters: {k: k}
+  variables: {x: {variable: x, unit: "1"}}
+inputs:
+  u: {unit: "1"}
+outputs:
+  x: {value: x, unit: "1"}
+parameters:
+  k: {value: 2.0, unit: "1"}
+)yaml"),
+              AllOf(HasSubstr("model.fmu"), HasSubstr("Co-Simulation"), HasSubstr("no law can be added")));
+  EXPECT_THAT(refusal(spring_return("fmu_spring_return3"), spring("drive_voltage - u_lost", "k_s")),
+              HasSubstr("FMI 3.0"));
+}
+
+}  // namespace
+}  // namespace sealwatch::fmi

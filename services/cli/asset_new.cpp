@@ -148,6 +148,22 @@ std::string model_name(const PlantDescription& plant, const fs::path& folder) {
   return fs::relative(plant.file, folder.empty() ? "." : folder, ignored).string();
 }
 
+std::string columns_text(const Understood& log, const std::vector<std::size_t>& columns) {
+  std::string text;
+  for (const std::size_t column : columns) text.append(text.empty() ? "" : ", ").append(log.offer.columns[column].text);
+  return text;
+}
+
+/// What to write for a channel that was not found, and the columns that may be it.
+std::string by_hand(const Understood& log, const ChannelDescription& channel) {
+  const std::vector<std::size_t> columns =
+      columns_of_unit(log.offer, channel, log.map.columns.at("time").column, log.guesses);
+  if (columns.empty()) return "{column: NAME, scale: 1, unit: " + text::quoted(channel.unit) + "}";
+  return mapping_text(
+             {.column = log.offer.columns[columns.front()].text, .unit = unit_of(log.offer.columns[columns.front()])}) +
+         (columns.size() > 1 ? "; of that unit: " + columns_text(log, columns) : "");
+}
+
 std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
   const std::string model = model_name(*log.plant, fs::path(options.file).parent_path());
   std::string out = "# From " + fs::path(options.log).filename().string() +
@@ -165,13 +181,13 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
   for (const ChannelDescription& channel : log.plant->channels) {
     const auto mapping = log.map.columns.find(channel.name);
     if (mapping == log.map.columns.end()) {
-      out += "  # " + channel.name + ": not found in the log; " + channel.meaning +
-             "; as {column: NAME, scale: 1, unit: " + text::quoted(channel.unit) + "}\n";
+      out +=
+          "  # " + channel.name + ": not found in the log; " + channel.meaning + "; as " + by_hand(log, channel) + "\n";
       continue;
     }
     const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
     out += "  " + channel.name + ": " + mapping_text(mapping->second) + "  # " + range_text(log.tests, channel.name);
-    out += guess != log.guesses.end() && !guess->sure ? "; uncertain, another channel would fit as well\n" : "\n";
+    out += guess != log.guesses.end() && !guess->sure ? "; uncertain, check it\n" : "\n";
   }
   const LogLayout& layout = log.map.log;
   if (log.offer.text) {
@@ -278,14 +294,16 @@ Result<Understood> understand(const AssetNewOptions& options) {
   set_layout(log);
   set_columns(log);
   if (log.guesses.empty()) {
-    std::vector<std::string> names;
+    std::vector<std::string> names, columns;
     for (const ChannelDescription& channel : log.plant->channels) names.push_back(channel.name);
+    for (const OfferedColumn& column : log.offer.columns) columns.push_back(column.text);
     return fail(Error{
         .file = options.log,
         .place = {},
         .value = {},
         .rule = "no column looks like a channel of plant " + log.plant->name,
-        .advice = "write the map by hand (docs/logs.md), or name another plant with --model; " + suggest("", names)});
+        .advice = "write the map by hand (docs/logs.md), or name another plant with --model; the log's columns are " +
+                  text::separated(columns, ", ") + "; " + suggest("", names)});
   }
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
   return log;

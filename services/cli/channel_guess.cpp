@@ -80,16 +80,19 @@ bool within_range(const Offer& offer, std::size_t column, const ChannelDescripti
   });
 }
 
+bool has_numbers(const Offer& offer, std::size_t column) {
+  return std::ranges::all_of(offer.cells[column], [&](const std::string& cell) {
+    return parse_number(cell, offer.layout.decimal).has_value();
+  });
+}
+
 /// How much speaks for it; 0: nothing, or its unit speaks against it.
 double score_of(const Offer& offer, std::size_t column, const ChannelDescription& channel) {
   constexpr double kUnit = 1.0, kName = 2.0, kQuantity = 1.0, kRange = 0.25;
   const std::string si = channel.unit.empty() ? "1" : channel.unit, unit = unit_of(offer.columns[column]);
   const Result<UnitConversion> to_si = convert_unit(unit, si);
   if (!to_si) return 0.0;
-  const bool numbers = std::ranges::all_of(offer.cells[column], [&](const std::string& cell) {
-    return parse_number(cell, offer.layout.decimal).has_value();
-  });
-  if (!numbers) return 0.0;
+  if (!has_numbers(offer, column)) return 0.0;
   const std::vector<std::string> words = tokens_of(split_header_cell(offer.columns[column].text).name);
   double score = kName * likeness(words, tokens_of(channel.name));
   if (const auto known = vocabulary().find(si); known != vocabulary().end())
@@ -103,7 +106,39 @@ double score_of(const Offer& offer, std::size_t column, const ChannelDescription
 
 constexpr double kEnough = 1.2;  // more than a unit, or than a word in passing
 
+bool is_taken(const std::vector<ChannelGuess>& guesses, std::size_t column) {
+  return std::ranges::find(guesses, column, &ChannelGuess::column) != guesses.end();
+}
+
+/// Whatever a column is called: its unit says which channel it is where no other column and no other channel has such.
+void add_by_unit_alone(const Offer& offer, const PlantDescription& plant, const std::string& time_column,
+                       std::vector<ChannelGuess>& guesses) {
+  std::map<std::size_t, std::vector<std::string>> channels_of;  // column
+  std::vector<ChannelGuess> only;
+  for (const ChannelDescription& channel : plant.channels) {
+    if (std::ranges::find(guesses, channel.name, &ChannelGuess::channel) != guesses.end()) continue;
+    const std::vector<std::size_t> columns = columns_of_unit(offer, channel, time_column, guesses);
+    for (const std::size_t column : columns) channels_of[column].push_back(channel.name);
+    if (columns.size() == 1)
+      only.push_back({channel.name, columns.front(), unit_of(offer.columns[columns.front()]), 0.0, false});
+  }
+  for (const ChannelGuess& guess : only)
+    if (channels_of.at(guess.column).size() == 1) guesses.push_back(guess);
+}
+
 }  // namespace
+
+std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel,
+                                         const std::string& time_column, const std::vector<ChannelGuess>& guesses) {
+  std::vector<std::size_t> columns;
+  for (std::size_t column = 0; column < offer.columns.size(); ++column) {
+    const std::string unit = unit_of(offer.columns[column]);
+    if (offer.columns[column].text == time_column || is_taken(guesses, column) || unit.empty() || unit == "1") continue;
+    if (convert_unit(unit, channel.unit.empty() ? "1" : channel.unit) && has_numbers(offer, column))
+      columns.push_back(column);
+  }
+  return columns;
+}
 
 std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant,
                                          const std::string& time_column) {
@@ -126,6 +161,7 @@ std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescript
       return other.score == guess.score && (other.channel == guess.channel) != (other.column == guess.column);
     });
   }
+  add_by_unit_alone(offer, plant, time_column, taken);
   return taken;
 }
 
@@ -134,7 +170,8 @@ const PlantDescription& guess_plant(const Offer& offer, const std::string& time_
   double most = 0.0;
   for (const PlantDescription& plant : all_plants()) {
     double score = 0.0;
-    const std::vector<ChannelGuess> guesses = guess_channels(offer, plant, time_column);
+    std::vector<ChannelGuess> guesses = guess_channels(offer, plant, time_column);
+    std::erase_if(guesses, [](const ChannelGuess& guess) { return guess.score <= 0.0; });
     for (const ChannelGuess& guess : guesses) score += guess.score;
     for (const ChannelDescription& channel :
          plant.channels)  // what a plant wants and the log has not, its input above all

@@ -14,10 +14,16 @@ struct ChannelGuess {
   std::size_t column = 0;  ///< of the offer
   std::string unit;        ///< for the map
   double score = 0.0;      ///< how much speaks for it
-  bool sure = true;        ///< false: another channel would fit this column as well
+  bool sure = true;        ///< false: another channel would fit this column as well, or its unit alone tells
 };
 
-/// Each channel and each column at most once, the most likely first taken; without `time_column`.
+/// Columns in a unit of the channel that no guess has taken, whatever they are called; without `time_column`.
+[[nodiscard]] std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescription& channel,
+                                                       const std::string& time_column,
+                                                       const std::vector<ChannelGuess>& guesses);
+
+/// Each channel and each column at most once, the most likely first taken; then those that only their unit tells, with
+/// score 0. Without `time_column`.
 [[nodiscard]] std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant,
                                                        const std::string& time_column);
 

@@ -22,7 +22,8 @@ void add_simulate(CommandLine& line) {
   CLI::App* simulate =
       line.command("simulate", "simulate tests on the virtual bench, or any plant's outputs",
                    "sealwatch simulate --asset config/assets/xt03-mv2.yaml --ageing --months 108 --out recordings\n"
-                   "  sealwatch simulate --asset valve-7.yaml --input inputs.csv --out simulated",
+                   "  sealwatch simulate --asset valve-7.yaml --input inputs.csv --out simulated\n"
+                   "  sealwatch simulate --asset valve-7.yaml --input test.csv --noise --ageing --months 60 --out life",
                    [options] { return run_simulate(*options); });
   simulate->add_option("--asset", options->asset_file, "asset file")->required()->check(an_asset_file, "FILE");
   simulate->add_option("--out", options->directory, "directory for the recordings (created if absent)")->required();
@@ -38,12 +39,12 @@ void add_simulate(CommandLine& line) {
       ->check(CLI::Range(10.0, 5000.0))
       ->check(a_number)
       ->capture_default_str();
-  simulate->add_option("--condition", options->condition, "seal condition theta at the first test")
+  simulate->add_option("--condition", options->condition, "condition theta at the first test")
       ->check(CLI::Range(0.05, 1.2))
       ->check(a_number)
       ->capture_default_str();
   simulate->add_flag("--ageing", options->ageing,
-                     "let the seal age month by month until it fails or the months are over");
+                     "let what wears age month by month until it fails or the months are over");
   simulate->add_option("--missing", options->missing_share, "share of months without a test")
       ->check(CLI::Range(0.0, 0.9))
       ->check(a_number)

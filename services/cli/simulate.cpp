@@ -1,5 +1,6 @@
 // `sealwatch simulate`: recordings of the virtual bench, with the truth beside them.
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,15 +9,17 @@
 
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
+#include "services/cli/simulated_life.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/recording/recording_file.hpp"
-#include "services/virtual_bench/simulate_life.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
 /// Digits of a written sample: two more than the sensors' noise needs.
 constexpr int kSignificantDigits = 9;
+
+}  // namespace
 
 std::optional<bench::LifeSetting> life_of(const SimulateOptions& options) {
   Result<UtcTime> start = parse_utc(options.start);
@@ -49,17 +52,42 @@ std::optional<bench::LifeSetting> life_of(const SimulateOptions& options) {
   return life;
 }
 
-/// What was true of one test: for whoever wants to judge an estimate by it.
-std::string truth_line(const bench::PlannedTest& test, const std::string& recording) {
-  const nlohmann::ordered_json truth = {{"recording", recording},
-                                        {"month", test.month},
-                                        {"start_time", format_utc(test.start_time)},
-                                        {"theta", test.condition},
-                                        {"R_CL_Pa_s_m3", test.resistance_Pa_s_m3},
-                                        {"load_factor", test.load_factor},
-                                        {"recorded_share", test.recorded_share}};
+std::string truth_line(const ConditionSetting& condition, const bench::PlannedTest& test,
+                       const std::string& recording) {
+  nlohmann::ordered_json truth = {{"recording", recording},
+                                  {"month", test.month},
+                                  {"start_time", format_utc(test.start_time)},
+                                  {"theta", test.condition}};
+  std::string key = condition.parameter + "_" + condition.unit;  // R_CL_Pa_s_m3
+  std::ranges::replace_if(
+      key, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  truth[key] = test.resistance_Pa_s_m3;
+  truth["load_factor"] = test.load_factor;
+  truth["recorded_share"] = test.recorded_share;
   return truth.dump();
 }
+
+std::vector<bench::PlannedTest> plan_of(const AssetConfig& asset, const bench::LifeSetting& life) {
+  const Result<std::vector<bench::PlannedTest>> plan = bench::plan_life(asset, life);
+  if (!plan) return complain(plan.error()), std::vector<bench::PlannedTest>{};
+  if (plan->empty())  // a life ends at the threshold
+    complain(Error{.file = {},
+                   .place = "--condition",
+                   .value = number(life.degradation.initial_condition, 3),
+                   .rule = "is not above the asset's threshold " + number(asset.condition->threshold, 3) +
+                           ": what wears has failed before its first test",
+                   .advice = {}});
+  return *plan;
+}
+
+void say_life(const std::vector<bench::PlannedTest>& plan, const std::string& directory) {
+  const bench::PlannedTest& last = plan.back();
+  std::printf("%s in %s, %s to %s; condition %s at the last (the truth is in truth.jsonl)\n",
+              count_of(plan.size(), "month").c_str(), directory.c_str(), format_date(plan.front().start_time).c_str(),
+              format_date(last.start_time).c_str(), percent(last.condition).c_str());
+}
+
+namespace {
 
 Status write_life(const AssetConfig& asset, const bench::LifeSetting& life, const SimulateOptions& options,
                   const std::vector<bench::PlannedTest>& plan) {
@@ -75,7 +103,7 @@ Status write_life(const AssetConfig& asset, const bench::LifeSetting& life, cons
   for (std::size_t k = 0; k < plan.size(); ++k) {
     progress.show(k, format_date(plan[k].start_time));
     if (plan[k].recorded_share <= 0.0) {
-      truth << truth_line(plan[k], "") << "\n";
+      truth << truth_line(*asset.condition, plan[k], "") << "\n";
       continue;
     }
     const Result<Recording> recording = bench::simulate_planned(asset, life, plan[k], setting);
@@ -84,7 +112,7 @@ Status write_life(const AssetConfig& asset, const bench::LifeSetting& life, cons
     std::ranges::replace(name, '/', '_');  // of an asset's id, like XT03/MV2
     const std::string file = (folder / (name + ".csv")).string();
     if (Status written = write_recording_csv(*recording, file, kSignificantDigits); !written) return written;
-    truth << truth_line(plan[k], name) << "\n";
+    truth << truth_line(*asset.condition, plan[k], name) << "\n";
   }
   if (!truth.flush())
     return fail(Error{.file = (folder / "truth.jsonl").string(),
@@ -107,32 +135,16 @@ int run_simulate(const SimulateOptions& options) {
                    .place = "model",
                    .value = asset->model,
                    .rule = "is a plant of your own, for which there is no virtual bench",
-                   .advice = "give recordings or files of its inputs alone with --input"});
+                   .advice = "give a file with the inputs of its test with --input"});
     return kBadInput;
   }
-  const Result<std::vector<bench::PlannedTest>> plan = bench::plan_life(*asset, *life);
-  if (!plan) {
-    complain(plan.error());
-    return kBadInput;
-  }
-  if (plan->empty()) {  // a life ends at the threshold
-    complain(Error{.file = {},
-                   .place = "--condition",
-                   .value = number(options.condition, 3),
-                   .rule = "is not above the asset's threshold " + number(asset->condition->threshold, 3) +
-                           ": such a seal has failed before its first test",
-                   .advice = {}});
-    return kBadInput;
-  }
-  if (const Status written = write_life(*asset, *life, options, *plan); !written) {
+  const std::vector<bench::PlannedTest> plan = plan_of(*asset, *life);
+  if (plan.empty()) return kBadInput;
+  if (const Status written = write_life(*asset, *life, options, plan); !written) {
     complain(written.error());
     return kBadInput;
   }
-  const bench::PlannedTest& last = plan->back();
-  std::printf("%s in %s, %s to %s; seal condition %s at the last (the truth is in truth.jsonl)\n",
-              count_of(plan->size(), "month").c_str(), options.directory.c_str(),
-              format_date(plan->front().start_time).c_str(), format_date(last.start_time).c_str(),
-              percent(last.condition).c_str());
+  say_life(plan, options.directory);
   return kOk;
 }
 

@@ -23,10 +23,6 @@ constexpr double kLargestCosine = 0.95;
 
 using Key = std::pair<FaultKind, std::string>;  // kind and element
 
-bool can_fail_a_test(const Signature& signature) {
-  return signature.kind != FaultKind::sensor || signature.element == "sensor:position";
-}
-
 /// One fault, or two at once.
 struct Hypothesis {
   std::size_t first = 0;
@@ -107,7 +103,7 @@ class Matcher {
   [[nodiscard]] Hypothesis single(std::size_t h) const {
     const double amplitude = dot(z_, scaled_[h]);
     const double gain = allowed(h, amplitude) ? 0.5 * kKappa * kKappa * amplitude * amplitude : 0.0;
-    return {h, std::nullopt, gain + bonus(h) + log_prior(h) + unexplained(can_fail_a_test(signatures_[h])), 1.0};
+    return {h, std::nullopt, gain + bonus(h) + log_prior(h) + unexplained(signatures_[h].can_fail_a_test), 1.0};
   }
 
   /// Least squares of z on two unit signatures; nothing where one of them has the wrong sign or they are nearly one.
@@ -125,7 +121,7 @@ class Matcher {
     const double weight_h = kKappa * kKappa * a * a + bonus(h);
     const double weight_k = kKappa * kKappa * b * b + bonus(k);
     if (!(weight_h > 0.0) || !(weight_k > 0.0)) return std::nullopt;
-    const bool explains = can_fail_a_test(signatures_[h]) || can_fail_a_test(signatures_[k]);
+    const bool explains = signatures_[h].can_fail_a_test || signatures_[k].can_fail_a_test;
     return Hypothesis{h, k, gain + bonus(h) + bonus(k) + log_prior(h) + log_prior(k) + unexplained(explains),
                       weight_h / (weight_h + weight_k)};
   }

@@ -1,8 +1,9 @@
 // Health grade of the actuator: 1 as new, 0 failed.
 //
-//   seal      g_s = (theta - theta_max) / (1 - theta_max), theta from leakage_resistance (ConditionSetting), within [0, 1];
+//   wear      g_s = (theta - theta_max) / (1 - theta_max), theta from leakage_resistance (ConditionSetting), within [0, 1];
 //             without seal resistances 1 - d/3, d the advisory widths by which the leakage (or the hold's decay) is
-//             off; where this test could not measure the leakage, the last grade; not known before a test has
+//             off; where this test could not measure the leakage, the last grade; not known before a test has.
+//             Of assets whose condition goes by another parameter: theta of the indicator `condition`
 //   rest      g_r = 1, 0.75, 0.5, 0.25 for the worst region normal .. alarm of friction, breakaway, current, pump,
 //             shaft, drive and closing time
 //   grade     min(g_s, g_r), not known without g_s; 0 for a test with the verdict failed

@@ -22,7 +22,8 @@
 //   sensor:velocity           velocity_gain +-1
 //
 // Leakage, friction, pump and driver faults have one sign; a load and a sensor may be off either way. motor_voltage is
-// the command to the driver, not a measurement: what it does not deliver is the driver's fault.
+// the command to the driver, not a measurement: what it does not deliver is the driver's fault. Channels are found by
+// role, elements by the plant's sites: a fault for which a plant has neither is not proposed.
 #pragma once
 
 #include <map>
@@ -41,6 +42,7 @@ struct Signature {
   std::string element;  ///< of the plant: sealwatch plant show
   bool either_sign = false;
   std::map<std::string, double> moves;  ///< quantity -> change in its unit
+  bool can_fail_a_test = false;         ///< what stops the stroke, or its sensor
 };
 
 /// Signatures of all faults that can show in the quantities at hand, those of sensors that are in `channels`, and one

@@ -15,6 +15,8 @@
 //   velocity_gain       (velocity_+ - velocity_-) / (v_+ - v_-)                       velocity sensor against position
 //   closing_time        x_C / |v_-|, v_- the velocity's mean where the position is not OK   [s]
 //                       extrapolated to the full stroke
+//   condition           theta by the value of what wears with which the simulation comes nearest to the recording [1],
+//                       of assets whose condition does not go by their seal's leakage (residual.hpp)
 //   fluid_temperature_deviation   fluid_temperature - 277.15 K                        [K]           the recording
 //   drive_saturation, missing_share   features                                        [1]           the recording
 //

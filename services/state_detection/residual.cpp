@@ -62,13 +62,19 @@ std::optional<double> nearest_wear(const AssetConfig& asset, const TimeSeries& r
 
 /// The asset as worn as it is: by the seal's leakage where the test measured it, else by what comes nearest; nothing
 /// where neither is known.
-std::optional<AssetConfig> as_worn(const AssetConfig& asset, const TimeSeries& recorded,
-                                   std::optional<double> leakage_resistance, const Simulator& simulator) {
+std::optional<AssetConfig> as_worn(const AssetConfig& asset, std::optional<double> leakage_resistance,
+                                   std::optional<double> nearest) {
   const std::optional<ConditionSetting>& seal = plant_or_default(asset.model).condition;
   if (leakage_resistance && seal) return with_value(asset, seal->parameter, *leakage_resistance);
-  const std::optional<double> nearest = nearest_wear(asset, recorded, simulator);
   if (!nearest) return std::nullopt;
   return with_value(asset, asset.condition->parameter, *nearest);
+}
+
+/// Not asked where the seal's leakage was measured.
+std::optional<double> nearest_if_needed(const AssetConfig& asset, const TimeSeries& recorded,
+                                        std::optional<double> leakage_resistance, const Simulator& simulator) {
+  if (leakage_resistance && plant_or_default(asset.model).condition) return std::nullopt;
+  return nearest_wear(asset, recorded, simulator);
 }
 
 }  // namespace
@@ -95,18 +101,18 @@ std::vector<ResidualSummary> summarise_residuals(const AssetConfig& asset, const
   return summaries;
 }
 
-Result<std::vector<ResidualSummary>> residuals_of(const AssetConfig& asset, const TestWindow& window,
-                                                  std::optional<double> leakage_resistance,
-                                                  const Simulator& simulator) {
+Result<Residuals> residuals_of(const AssetConfig& asset, const TestWindow& window,
+                               std::optional<double> leakage_resistance, const Simulator& simulator) {
   const TimeSeries recorded = usable_channels(window);
   const Result<TimeSeries> nominal = simulator.simulate(asset, recorded);
   if (!nominal) return tl::unexpected(nominal.error());
-  std::vector<ResidualSummary> all = summarise_residuals(asset, recorded, *nominal, Reference::nominal_model);
-  const std::optional<AssetConfig> worn = as_worn(asset, recorded, leakage_resistance, simulator);
+  Residuals all{.summaries = summarise_residuals(asset, recorded, *nominal, Reference::nominal_model),
+                .nearest_wear = nearest_if_needed(asset, recorded, leakage_resistance, simulator)};
+  const std::optional<AssetConfig> worn = as_worn(asset, leakage_resistance, all.nearest_wear);
   const Result<TimeSeries> own = worn ? simulator.simulate(*worn, recorded) : nominal;
   if (!own) return tl::unexpected(own.error());
   for (ResidualSummary& summary : summarise_residuals(asset, recorded, *own, Reference::own_baseline))
-    all.push_back(std::move(summary));
+    all.summaries.push_back(std::move(summary));
   return all;
 }
 
@@ -114,7 +120,8 @@ Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& ac
                                                            std::optional<double> leakage_resistance,
                                                            const Simulator& simulator) {
   const TimeSeries recorded = usable_channels(window);
-  const std::optional<AssetConfig> worn = as_worn(accepted, recorded, leakage_resistance, simulator);
+  const std::optional<AssetConfig> worn =
+      as_worn(accepted, leakage_resistance, nearest_if_needed(accepted, recorded, leakage_resistance, simulator));
   const Result<TimeSeries> simulated = simulator.simulate(worn.value_or(accepted), recorded);
   if (!simulated) return tl::unexpected(simulated.error());
   return summarise_residuals(accepted, recorded, *simulated, Reference::accepted_model);

@@ -25,10 +25,14 @@ namespace sealwatch {
 [[nodiscard]] std::vector<ResidualSummary> summarise_residuals(const AssetConfig& asset, const TimeSeries& recorded,
                                                                const TimeSeries& simulated, Reference reference);
 
+struct Residuals {
+  std::vector<ResidualSummary> summaries;
+  std::optional<double> nearest_wear;  ///< value of what wears with which the simulation comes nearest, where asked
+};
+
 /// Both references; an Error when the test cannot be simulated.
-[[nodiscard]] Result<std::vector<ResidualSummary>> residuals_of(const AssetConfig& asset, const TestWindow& window,
-                                                                std::optional<double> leakage_resistance,
-                                                                const Simulator& simulator);
+[[nodiscard]] Result<Residuals> residuals_of(const AssetConfig& asset, const TestWindow& window,
+                                             std::optional<double> leakage_resistance, const Simulator& simulator);
 
 /// Of the model that an operator accepted, with the piston seal's resistance as measured.
 [[nodiscard]] Result<std::vector<ResidualSummary>> residuals_of_accepted(const AssetConfig& accepted,

@@ -58,18 +58,22 @@ constexpr std::array kRules = {
 /// A residual must grow by half before it means anything: it also carries the load's noise.
 constexpr BaselineRule kResidualRule{0.5, 0.5, Side::above};
 
-/// Whether the asset's condition goes by its seal's leakage.
-bool goes_by_leakage(const AssetConfig& asset) {
-  const std::optional<ConditionSetting>& seal = plant_or_default(asset.model).condition;
-  return asset.condition && seal && asset.condition->parameter == seal->parameter;
-}
-
 std::optional<AlertLimits> seal_limits(const ConditionSetting& seal) {
   const auto resistance = [&](double left) { return seal.value(seal.threshold + left * (1.0 - seal.threshold)); };
   return AlertLimits{resistance(kLeftAdvisory), resistance(kLeftWarning), resistance(0.0)};
 }
 
+AlertLimits condition_limits(double threshold) {
+  const auto theta = [&](double left) { return threshold + left * (1.0 - threshold); };
+  return {theta(kLeftAdvisory), theta(kLeftWarning), theta(0.0)};
+}
+
 }  // namespace
+
+bool goes_by_leakage(const AssetConfig& asset) {
+  const std::optional<ConditionSetting>& seal = plant_or_default(asset.model).condition;
+  return asset.condition && seal && asset.condition->parameter == seal->parameter;
+}
 
 std::optional<double> whole_stroke_m(const AssetConfig& asset) {
   const ParameterDescription* described = plant_or_default(asset.model).find_parameter(ParameterRole::stroke);
@@ -86,6 +90,7 @@ double longest_closing_time_s(const AssetConfig& asset) {
 std::optional<AlertLimits> fixed_limits(const AssetConfig& asset, const std::string& quantity) {
   if (const auto own = asset.alert_limits.find(quantity); own != asset.alert_limits.end()) return own->second;
   if (quantity == "leakage_resistance" && goes_by_leakage(asset)) return seal_limits(*asset.condition);
+  if (quantity == "condition" && asset.condition) return condition_limits(asset.condition->threshold);
   if (quantity == "closing_time") {
     const double longest = longest_closing_time_s(asset);
     return AlertLimits{0.98 * longest, longest, 1.1 * longest};

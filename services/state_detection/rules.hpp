@@ -26,6 +26,9 @@ struct BaselineRule {
 /// Nothing when the quantity is not judged against the baseline.
 [[nodiscard]] std::optional<BaselineRule> baseline_rule(const AssetConfig& asset, std::string_view quantity);
 
+/// Whether the asset's condition goes by its seal's leakage, which the test's standstills show.
+[[nodiscard]] bool goes_by_leakage(const AssetConfig& asset);
+
 /// Of the asset, by the parameter of that role; nothing where its plant has none.
 [[nodiscard]] std::optional<double> whole_stroke_m(const AssetConfig& asset);
 

@@ -11,6 +11,7 @@
 #include "services/state_detection/indicators.hpp"
 #include "services/state_detection/judgements.hpp"
 #include "services/state_detection/residual.hpp"
+#include "services/state_detection/rules.hpp"
 #include "services/state_detection/verdict.hpp"
 
 namespace sealwatch {
@@ -210,7 +211,7 @@ void StateDetection::conclude(AssetState& state, const TestFeatures& features, c
 void StateDetection::judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features,
                            const TestWindow& window, StateReport& report) const {
   AssetHistory& history = state.history;
-  const std::vector<Quantity> indicators = condition_indicators(asset, features, window);
+  std::vector<Quantity> indicators = condition_indicators(asset, features, window);
   Verdict verdict = judge_test(asset, features, window, indicators);
   report.verdict = verdict.verdict;
   report.verdict_reasons = std::move(verdict.reasons);
@@ -227,8 +228,10 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
     report.verdict_reasons.push_back(std::move(text));
   }
   if (!is_judged(report.verdict)) return;
+  const std::optional<double> worn = add_residuals(state, asset, features, window, report);
+  if (worn && !goes_by_leakage(asset))
+    indicators.push_back({"condition", "1", asset.condition->condition(*worn), false, 0.0});
   report.judgements = judge_indicators(asset, indicators, history.baseline());
-  add_residuals(state, asset, features, window, report);
   for (RegionJudgement& judgement :
        judge_residuals(asset, report.residuals, history.baseline(), history.accepted_baseline()))
     report.judgements.push_back(std::move(judgement));
@@ -237,20 +240,27 @@ void StateDetection::judge(AssetState& state, const AssetConfig& asset, const Te
   history.judge(report.judgements);
 }
 
-void StateDetection::add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
-                                   const TestWindow& window, StateReport& report) const {
-  if (simulator_ == nullptr) return;
+std::optional<double> StateDetection::add_residuals(const AssetState& state, const AssetConfig& asset,
+                                                    const TestFeatures& features, const TestWindow& window,
+                                                    StateReport& report) const {
+  if (simulator_ == nullptr) return std::nullopt;
   const std::optional<double> leakage = feature_of(features, "leakage_resistance");
-  const auto add = [&](const char* what, Result<std::vector<ResidualSummary>> residuals) {
-    if (residuals)
-      report.residuals.insert(report.residuals.end(), residuals->begin(), residuals->end());
-    else
-      report.verdict_reasons.push_back(what + residuals.error().describe());
+  const auto cannot = [&](const char* what, const Error& why) {
+    report.verdict_reasons.push_back(what + why.describe());
   };
-  add("no simulation residual: ", residuals_of(asset, window, leakage, *simulator_));
-  if (state.accepted.in_force())
-    add("no residual of the accepted model: ",
-        residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_));
+  Result<Residuals> residuals = residuals_of(asset, window, leakage, *simulator_);
+  if (residuals)
+    report.residuals = std::move(residuals->summaries);
+  else
+    cannot("no simulation residual: ", residuals.error());
+  if (state.accepted.in_force()) {
+    const auto accepted = residuals_of_accepted(state.accepted.applied_to(asset), window, leakage, *simulator_);
+    if (accepted)
+      report.residuals.insert(report.residuals.end(), accepted->begin(), accepted->end());
+    else
+      cannot("no residual of the accepted model: ", accepted.error());
+  }
+  return residuals ? residuals->nearest_wear : std::nullopt;
 }
 
 // An accepted model with what it was accepted from, and a replacement until a test of the new actuator is judged.

@@ -68,8 +68,9 @@ class StateDetection final : public Layer {
   std::optional<StateReport> judge_anew(const std::string& asset_id, AssetState& state) const;
   void judge(AssetState& state, const AssetConfig& asset, const TestFeatures& features, const TestWindow& window,
              StateReport& report) const;
-  void add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
-                     const TestWindow& window, StateReport& report) const;
+  /// Value of what wears with which the simulation comes nearest to the recording, where it was asked.
+  std::optional<double> add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
+                                      const TestWindow& window, StateReport& report) const;
   void note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const;
   [[nodiscard]] std::optional<StateReport> overdue_report(const std::string& asset_id, const AssetState& state,
                                                           UtcTime now) const;

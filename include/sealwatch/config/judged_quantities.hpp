@@ -17,6 +17,7 @@ struct JudgedIndicator {
 
 inline constexpr std::array kJudgedIndicators = {
     JudgedIndicator{"leakage_resistance", "Pa s/m3"},
+    JudgedIndicator{"condition", "1"},
     JudgedIndicator{"friction_pressure", "Pa"},
     JudgedIndicator{"breakaway_pressure", "Pa"},
     JudgedIndicator{"load_pressure", "Pa"},

@@ -45,7 +45,8 @@ struct ActuatorFitOptions {
   /// Where the first search ends badly, the shared parameters are started again at these multiples of the asset's
   /// values.
   std::vector<double> restart_factors = {0.5, 2.0};
-  int threads = 1;  ///< recordings that are simulated at once
+  bool cut_into_pieces = true;  ///< for a start, where the search from the asset's values does not converge
+  int threads = 1;              ///< recordings that are simulated at once
   AdmissibilityOptions admissibility;
 
   [[nodiscard]] Status validate() const;

@@ -12,8 +12,9 @@ SEALWATCH_ENUM(ChannelRole, none, stroke, speed, reference, drive, current, shaf
                pressure_down, pressure_difference, flow, force, temperature)
 
 /// The whole stroke; the cylinder's areas, pushing up and down or the second over the first; its dead volume and oil; the
-/// pump's displacement; resistance and torque constant of the motor.
-SEALWATCH_ENUM(ParameterRole, none, stroke, area_up, area_down, area_ratio, dead_volume, bulk_modulus, displacement,
-               motor_resistance, torque_constant)
+/// leakage resistances of its seal and of the pump; the pump's displacement and viscous friction; resistance, torque
+/// constant, voltage per speed and viscous friction of the motor.
+SEALWATCH_ENUM(ParameterRole, none, stroke, area_up, area_down, area_ratio, dead_volume, bulk_modulus, seal_leakage,
+               pump_leakage, displacement, pump_friction, motor_resistance, torque_constant, back_emf, motor_friction)
 
 }  // namespace sealwatch

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sealwatch/core/text.hpp"
+#include "services/common/equations/derived_sizes.hpp"
 #include "services/common/equations/own_law.hpp"
 #include "services/common/equations/plant_names.hpp"
 #include "services/common/equations/site_table.hpp"
@@ -174,14 +175,21 @@ class Builder {
 
   void check_sizes() {
     std::string missing, there;
-    for (const NeededSize& size : needed_sizes(text_)) {
+    const std::vector<NeededSize> needed = needed_sizes(text_);
+    const auto can_be_given = [&](const std::string& unit) {
+      return text_.law_sizes.contains(unit) || std::ranges::find(needed, unit, &NeededSize::unit) != needed.end();
+    };
+    for (const NeededSize& size : needed) {
       if (text_.law_sizes.contains(size.unit)) continue;
+      const std::vector<std::string> sources = sources_of_size(size.unit);
+      if (!sources.empty() && std::ranges::all_of(sources, can_be_given)) continue;  // those are named
       missing.append(missing.empty() ? "" : ", ").append(size.unit);
       there.append(there.empty() ? "" : "; ").append(usual_words(size));
     }
     if (!missing.empty())
       faults_("law_sizes", fault(missing, "is missing: units of laws that fit the plant's sites",
-                                 "say how many times larger each is here than on the 60 kN actuator, where " + there));
+                                 "say how many times larger each is here than on the 60 kN actuator, where " + there +
+                                     "; begin with 1, 'sealwatch plant check' then shows what that means here"));
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       if (!(scale_of(k) > 0.0))
         faults_("states." + text_.states[k].description.name,

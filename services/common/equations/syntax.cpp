@@ -19,7 +19,10 @@ class Parser {
 
   Result<Syntax> parse() {
     Syntax all = sum();
-    if (!failed_ && peek() != '\0') fault("is not expected here", "an operator (+ - * / ^) may be missing before it");
+    if (!failed_ && peek() != '\0')
+      fault("is not expected here", peek() == ')'
+                                        ? "it closes no bracket: one may be missing before, or this is too much"
+                                        : "an operator (+ - * / ^) may be missing before it");
     if (failed_) return fail(error_);
     return all;
   }

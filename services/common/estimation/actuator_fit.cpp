@@ -9,6 +9,7 @@
 #include "services/common/estimation/fit_report.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/estimation/pem_search.hpp"
+#include "services/common/estimation/piecewise_start.hpp"
 #include "services/common/model/plants/eha_switched/estimation/closed_valves.hpp"
 #include "services/common/text/numbers.hpp"
 
@@ -68,16 +69,35 @@ void start_from_best_leakage(PemProblem& problem, const PlantDescription& plant)
   leakage->start = best;
 }
 
-// From the asset's values; from others only where that does not converge.
-Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const ActuatorFitOptions& options) {
+// From the asset's values; where nothing can be simulated with them, or the search does not converge, from those of the
+// recordings' pieces, then from multiples of the asset's.
+Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const AssetConfig& asset,
+                                              std::span<const TimeSeries> recordings,
+                                              const ActuatorFitOptions& options) {
   Result<PemOptimum> best = search(problem, start_point(problem, 1.0), options);
   if (problem.shared.empty() || (best && (best->converged || best->hopeless))) return best;
-  for (const double factor : options.restart_factors) {
-    Result<PemOptimum> other = search(problem, start_point(problem, factor), options);
+  const auto take_better = [&](Result<PemOptimum> other) {
     if (other && (!best || better(*other, *best))) best = std::move(other);
+  };
+  if (options.cut_into_pieces)
+    if (auto start = piecewise_start(problem, asset, recordings, options))
+      take_better(search(problem, std::move(*start), options));
+  for (const double factor : options.restart_factors) {
     if (best && best->converged) break;
+    take_better(search(problem, start_point(problem, factor), options));
   }
   return best;
+}
+
+// Mean distance of samples, of the recording where it is shortest. An event of the input lasts that long at least: of a
+// temperature that is read every five seconds no shorter step is needed.
+double shortest_sampling_s(std::span<const TimeSeries> recordings) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const TimeSeries& recorded : recordings)
+    if (recorded.time_s.size() > 1)
+      shortest = std::min(shortest, (recorded.time_s.back() - recorded.time_s.front()) /
+                                        static_cast<double>(recorded.time_s.size() - 1));
+  return std::isfinite(shortest) ? shortest : 0.0;
 }
 
 }  // namespace
@@ -87,12 +107,14 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
   SimulationOptions simulation;
   std::size_t samples = 0;
   double fewest_steps = kFewestSteps;
+  const double longest_step_s = std::max(simulation.maximum_step_s, shortest_sampling_s(recordings));
   for (const TimeSeries& recorded : recordings) {
     samples = std::max(samples, recorded.time_s.size());
     if (recorded.time_s.empty()) continue;
     const double duration_s = recorded.time_s.back() - recorded.time_s.front();
-    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / simulation.maximum_step_s);
+    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / longest_step_s);
   }
+  simulation.maximum_step_s = longest_step_s;
   simulation.relative_tolerance = options.relative_tolerance;
   simulation.maximum_steps =
       static_cast<std::size_t>(fewest_steps + options.steps_per_sample * static_cast<double>(samples));
@@ -106,7 +128,7 @@ Result<PemOptimum> search_from_asset(PemProblem& problem, const AssetConfig& ass
   if (std::ranges::none_of(recordings,
                            [&](const TimeSeries& one) { return find_series(one, plant, ChannelRole::flow); }))
     start_from_best_leakage(problem, plant);
-  return search_from_several_starts(problem, options);
+  return search_from_several_starts(problem, asset, recordings, options);
 }
 
 Status ActuatorFitOptions::validate() const {

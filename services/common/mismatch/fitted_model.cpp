@@ -98,11 +98,12 @@ bool at_bound(const Unknown& unknown, double at) {
 
 Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
                               int iterations) {
-  const ActuatorFitOptions options = search_options(threads, iterations);
+  ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(asset, data, options);
   if (!problem) return fail(problem.error());
   Result<PemOptimum> optimum = fail("not searched");
   if (start == nullptr) {
+    options.cut_into_pieces = data.groups.empty();  // else they are pieces already
     optimum = search_from_asset(*problem, asset, data.samples, options);
   } else {
     PemPoint point = start_point(*problem, 1.0);

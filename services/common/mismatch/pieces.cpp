@@ -5,6 +5,7 @@
 #include <numeric>
 #include <ranges>
 
+#include "services/common/estimation/rows_of.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/windows.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "sealwatch/model/driving_channels.hpp"
 #include "services/common/estimation/channel_noise.hpp"
+#include "services/common/estimation/rows_of.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -27,17 +28,6 @@ TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt
 }
 
 }  // namespace
-
-TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end) {
-  const auto cut = [&](const std::vector<double>& values) {
-    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                               values.begin() + static_cast<std::ptrdiff_t>(end));
-  };
-  TimeSeries piece{.time_s = cut(samples.time_s), .channels = {}, .input_hold = samples.input_hold};
-  for (const Series& channel : samples.channels)
-    piece.channels.push_back({channel.name, channel.unit, channel.noise_std, cut(channel.values)});
-  return piece;
-}
 
 double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
   if (!measured_inputs(asset, recorded).empty()) return kFlowWindow_s;

@@ -22,9 +22,6 @@ inline constexpr double kMeasuredInputResolution = 0.1;
 /// so in its table. 0: none.
 [[nodiscard]] double window_of(const AssetConfig& asset, const TimeSeries& recorded);
 
-/// Samples begin, begin + 1, ... before end.
-[[nodiscard]] TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end);
-
 [[nodiscard]] Data cut_into_windows(const Data& data, double window_s);
 
 /// Raises noise_std of `data`'s output channels by what the noise of its inputs makes of them.

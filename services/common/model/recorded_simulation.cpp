@@ -181,7 +181,8 @@ void RecordedSimulation::select_channels(std::span<const OutputName> outputs, co
       recorded_.col(static_cast<Eigen::Index>(c)) = Eigen::Map<const Eigen::VectorXd>(values.data(), rows);
 }
 
-void RecordedSimulation::set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start) {
+void RecordedSimulation::set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start,
+                                    const std::vector<std::string>& at_rest) {
   state_names_ = std::move(names);
   slow_state_names_ = std::move(slow);
   start_ = std::move(start);
@@ -193,6 +194,8 @@ void RecordedSimulation::set_states(std::vector<std::string> names, std::vector<
   for (const ActiveTerm& term : terms_.active)
     if (term.hidden >= 0 && term.law->hidden->free_initial)
       slow_state_names_.push_back(terms_.hidden_names[static_cast<std::size_t>(term.hidden)]);
+  free_state_names_ = slow_state_names_;
+  free_state_names_.insert(free_state_names_.end(), at_rest.begin(), at_rest.end());
 }
 
 }  // namespace sealwatch

@@ -31,6 +31,7 @@ class RecordedSimulation : public PlantSimulation {
   [[nodiscard]] std::span<const std::string> channels() const override { return channel_names_; }
   [[nodiscard]] std::span<const std::string> state_names() const override { return state_names_; }
   [[nodiscard]] std::span<const std::string> slow_state_names() const override { return slow_state_names_; }
+  [[nodiscard]] std::span<const std::string> free_state_names() const override { return free_state_names_; }
   [[nodiscard]] const ModelValues& start() const override { return start_; }
   [[nodiscard]] const RowMatrix& recorded() const override { return recorded_; }
   [[nodiscard]] std::span<const PhysicsParameter> physics_parameters() const override { return terms_.parameters; }
@@ -53,8 +54,9 @@ class RecordedSimulation : public PlantSimulation {
                                                                InjectedColumns* injected) const = 0;
   /// Takes the outputs that are recorded.
   void select_channels(std::span<const OutputName> outputs, const AssetConfig& asset, const TimeSeries& recorded);
-  /// The plant's states and start, to which those of the laws are added.
-  void set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start);
+  /// The plant's states and start, to which those of the laws are added. `at_rest`: known at the beginning alone.
+  void set_states(std::vector<std::string> names, std::vector<std::string> slow, ModelValues start,
+                  const std::vector<std::string>& at_rest = {});
 
  private:
   /// With exact sensors.
@@ -69,7 +71,7 @@ class RecordedSimulation : public PlantSimulation {
   PhysicsTerms terms_;
   std::vector<std::string> input_names_;
   RecordedInput input_;
-  std::vector<std::string> state_names_, slow_state_names_, channel_names_;
+  std::vector<std::string> state_names_, slow_state_names_, free_state_names_, channel_names_;
   std::vector<SimulatedChannel> channels_;
   std::vector<double> sensor_gain_, sensor_offset_;  ///< the asset's, per channel
   RowMatrix recorded_;

@@ -31,6 +31,9 @@ namespace sealwatch {
 /// Where sensors have a low-pass or a lag, coarser recordings are simulated at points between their samples too,
 /// because these filters take the signal as linear from point to point.
 inline constexpr double kLongestPointDistance_s = 0.0051;
+/// After a jump of the input the integration starts anew, from the first order and a small step.
+inline constexpr std::size_t kStepsOfARestart = 30;
+inline constexpr std::size_t kManyJumps = 100;
 
 template <class System>
 class RecordingRun {
@@ -48,10 +51,10 @@ class RecordingRun {
         system_(std::move(system)),
         scale_(system_.scale(options.relative_tolerance)),
         deadline_(options.deadline),
-        most_steps_(options.maximum_steps),
+        most_steps_(options.maximum_steps + kStepsOfARestart * (std::max<std::size_t>(input.segment_count(), 1) - 1)),
         integrator_(system_, static_cast<int>(columns_) - 1, scale_,
                     {.maximum_step = options.maximum_step_s,
-                     .maximum_steps = options.maximum_steps,
+                     .maximum_steps = most_steps_,
                      .maximum_order = system_.maximum_order()}),
         point_(integrator_.size(), 0.0),
         signal_(columns_, 0.0) {
@@ -104,8 +107,11 @@ class RecordingRun {
           .place = "t = " + std::to_string(time) + " s",
           .value = system_.trouble(),
           .rule = "the simulation was given up after " + std::to_string(most_steps_) + " steps",
-          .advice = "something explodes, swings fast or is integrated too finely: check the parameters' values and "
-                    "the sizes of the states"});
+          .advice = std::string("something explodes, swings fast or is integrated too finely: check the parameters' "
+                                "values and the sizes of the states") +
+                    (input_.segment_count() > kManyJumps ? "; an input that is held jumps at every sample: 'course: "
+                                                           "averaged' in the plant's file takes fewer steps"
+                                                         : "")});
     return fail(Error{.file = {},
                       .place = "t = " + std::to_string(time) + " s",
                       .value = system_.trouble(),

@@ -78,12 +78,15 @@ Result<std::unique_ptr<PlantSimulation>> RuntimePlantSimulation::create(std::sha
   Result<std::vector<double>> state = plant->equations->initial_state(start.parameters, recorded);
   if (!state) return fail(state.error());
   start.initial_state = std::move(*state);
-  std::vector<std::string> names, slow;
+  std::vector<std::string> names, slow, at_rest;
   for (std::size_t k = 0; k < description.states.size(); ++k) {
     names.push_back(description.states[k].name);
-    if (plant->states[k].slow) slow.push_back(description.states[k].name);
+    if (plant->states[k].slow)
+      slow.push_back(description.states[k].name);
+    else if (!plant->states[k].settles)
+      at_rest.push_back(description.states[k].name);
   }
-  simulation->set_states(std::move(names), std::move(slow), std::move(start));
+  simulation->set_states(std::move(names), std::move(slow), std::move(start), at_rest);
   static std::atomic<std::uint64_t> count = 0;
   if (plant->equations->runs_elsewhere())
     simulation->told_ = std::make_unique<const Told>(Told{.asset = asset, .recorded = recorded, .number = ++count});

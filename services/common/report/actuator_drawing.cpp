@@ -84,7 +84,8 @@ std::string Colouring::sensor(std::string_view channel, std::string_view letters
 std::string actuator_drawing(const PlantDescription& plant, std::span<const mismatch::Location> location,
                              const std::vector<std::string>& recorded) {
   const Colouring colouring(plant, location, recorded);
-  return plant.name == "eha" ? eha_drawing(colouring) : chain_drawing(colouring);
+  const std::optional<std::string> own = own_drawing(colouring);
+  return own ? *own : chain_drawing(colouring);
 }
 
 }  // namespace sealwatch::report

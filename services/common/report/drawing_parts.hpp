@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -36,7 +37,7 @@ class Colouring {
   /// outputs and counts as recorded.
   [[nodiscard]] bool is_recorded(std::string_view channel) const {
     const ChannelDescription* description = plant_.find_channel(channel);
-    const bool may_drive = channel == "flow" || (description != nullptr && description->input);
+    const bool may_drive = description != nullptr && (description->input || description->role == ChannelRole::flow);
     return may_drive || std::ranges::find(recorded_, channel) != recorded_.end();
   }
   [[nodiscard]] const PlantDescription& plant() const { return plant_; }
@@ -52,8 +53,8 @@ class Colouring {
   const std::vector<std::string>& recorded_;
 };
 
-/// Drawing of plant `eha`.
-[[nodiscard]] std::string eha_drawing(const Colouring& colouring);
+/// Of a plant whose folder has a drawing; nothing: it has none.
+[[nodiscard]] std::optional<std::string> own_drawing(const Colouring& colouring);
 /// Drawing of any plant.
 [[nodiscard]] std::string chain_drawing(const Colouring& colouring);
 

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "sealwatch/core/text.hpp"
+#include "services/common/equations/derived_sizes.hpp"
 #include "services/common/runtime/asset_sections.hpp"
 #include "services/common/runtime/fmu_section.hpp"
 #include "services/common/runtime/plant_sections.hpp"
@@ -148,6 +149,7 @@ void read_rest(YamlMap& root, TextPlant& plant) {
       double factor = 1.0;
       if (sizes->read(unit, factor, kPositive)) plant.law_sizes[unit] = factor;
     }
+    equations::add_derived_sizes(plant.law_sizes);
     sizes->finish();
   }
   root.read("window_s", plant.window_s, kNotNegative);

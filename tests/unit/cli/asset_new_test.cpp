@@ -85,6 +85,33 @@ law_sizes: {N m: 1, N m s/rad: 1, rad/s: 1}
   EXPECT_EQ(recording->samples.find("torque")->values.back(), 1.6);
 }
 
+// Whatever columns are called: a unit that only one of them and only one channel has says which is which; where several
+// have it, the file names them.
+TEST_F(AssetNew, UnitsTellColumnsThatNamesDoNot) {
+  std::ofstream(path("cabinet.yaml")) << R"(name: cabinet_of_asset_new
+meaning: a heated plate
+inputs: {heater: {unit: W}, fan: {unit: Hz}, ambient: {unit: K}}
+outputs: {plate: {value: T, unit: K, noise_std: 0.1}}
+parameters: {C: {value: 900, unit: J/K}, G: {value: 1, unit: J/K}}
+states: {T: {der: "(heater - G*fan*(T - ambient))/C", unit: K, start: plate}}
+elements: {}
+law_sizes: {}
+)";
+  constexpr const char* kLog =
+      "Zeit [s];Leistung [kW];Luefter [1/min];Aussen [degC];Blech [degC]\n"
+      "0;1,5;600;20;30\n1;1,5;600;20;31\n2;1,6;600;20;32\n";
+  ASSERT_EQ(make(kLog, path("cabinet.yaml")), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("heater").column, "Leistung [kW]");
+  EXPECT_EQ(asset->channel_map.columns.at("fan").column, "Luefter [1/min]");
+  EXPECT_FALSE(asset->channel_map.columns.contains("plate")) << "two columns are temperatures";
+  std::ifstream written(path("a.yaml"));
+  const std::string text{std::istreambuf_iterator<char>(written), {}};
+  EXPECT_THAT(text, ::testing::HasSubstr("of that unit: Aussen [degC], Blech [degC]"));
+  EXPECT_THAT(text, ::testing::HasSubstr("uncertain"));
+}
+
 TEST_F(AssetNew, NothingIsWrittenOverAndNothingIsMadeUp) {
   ASSERT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kOk);
   EXPECT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kBadInput) << "the file is there already";

@@ -128,6 +128,16 @@ TEST(OwnPlantLife, MonthlyTestsBecomeAConditionAndARemainingLife) {
     const double truth = 1.0 - 0.4 * kGrowth * month / std::log(2.0);
     EXPECT_NEAR(estimate.condition, truth, 5.0 * estimate.condition_std + 1e-3) << month;
   }
+  ASSERT_EQ(all.health.size(), static_cast<std::size_t>(kMonths));
+  for (int month = 0; month < kMonths; ++month) {
+    const HealthReport& health = all.health[static_cast<std::size_t>(month)];
+    const double truth = 1.0 - 0.4 * kGrowth * month / std::log(2.0);
+    ASSERT_TRUE(health.health_grade_known) << month;
+    EXPECT_NEAR(health.health_grade, (truth - 0.6) / 0.4, 0.01) << "between new and the threshold, month " << month;
+  }
+  const auto& last = all.states.back().judgements;
+  EXPECT_NE(std::ranges::find(last, "condition", &RegionJudgement::quantity), last.end());
+
   const RemainingLife& life = all.lives.back();
   ASSERT_TRUE(life.condition_known);
   ASSERT_FALSE(life.forecasts.empty());

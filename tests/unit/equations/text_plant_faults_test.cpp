@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/runtime/plant_file.hpp"
@@ -76,7 +77,8 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"unit: N s/m", "unit: N q/m", {"line 10", "'q'"}},
       {"c*v\n", "k*v*1[s]\n", {"line 10, key parameters.c", "stands in no equation"}},
       {"- lost", "", {"line 20, key elements.mass.sites[0]", "adds to no equation"}},
-      {"N/m: 1e-3, ", "", {"line 21, key law_sizes", "'N/m'", "is missing"}},
+      {"N s/m: 1e-3, N s2/m2: 1e-3", "", {"line 21, key law_sizes", "'N s/m'", "is missing", "begin with 1"}},
+      {"u - k*x - c*v", "u - k*x) - c*v", {"line 12", "closes no bracket"}},
       {"start: position", "start: velocity", {"line 14, key states.x.start", "neither a parameter nor a channel"}},
       {", start: 0, size", ", size", {"key states.v", "has no start"}},
       {", size: 1.0", "", {"key states.v", "has no size"}},
@@ -90,7 +92,7 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"unit: N s/m", "unit: kg rpm", {"is not the SI unit", "here kg/s"}},
       {"c: {value: 4.0", "c: {value: 0", {"line 10", "give min and max"}},
       {"NAME", "eha #NAME", {"line 1, key name", "is the name of a plant that is built in"}},
-      {"N/m: 1e-3, ", "", {"where", "spring_load", "N/m"}},
+      {"N: 1e-3, ", "", {"where", "backlash", "N"}},
       {"meaning: a mass", "meening: a mass", {"did you mean 'meaning'"}},
       {"outputs:\n", "output:\n", {"line 5, key output", "did you mean 'outputs'"}},
   };
@@ -100,6 +102,21 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       EXPECT_NE(told.find(words), std::string::npos) << one.what << " -> " << one.instead << ":\n" << told;
     EXPECT_NE(told.find("faulty.yaml"), std::string::npos) << told;
   }
+}
+
+// Stiffnesses follow from forces and ways, drags by the square of the speed from frictions and forces.
+TEST(PlantFile, SizesOfLawsThatFollowFromOthersNeedNotBeGiven) {
+  const auto plant = read_plant_file(
+      written("derived", with(kSound, "{N: 1e-3, m: 1, m/s: 1, N/m: 1e-3, N/m2: 1e-3, ", "{N: 0.1, m: 4, m/s: 20, ")));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const std::map<std::string, double>& sizes = plant->text.law_sizes;
+  EXPECT_NEAR(sizes.at("N/m"), 0.1 / 4.0, 1e-12);
+  EXPECT_NEAR(sizes.at("N/m2"), 0.1 / 16.0, 1e-12);
+  EXPECT_NEAR(sizes.at("N s2/m2"), 1e-3, 1e-12) << "as given";
+  const auto hydraulic = faults_of(
+      with(with(kSound, "signals: {speed: v,", "signals: {pressure_a: \"k*x/1[m2]\", pressure_b: \"0[Pa]\", speed: v,"),
+           "N/m: 1e-3, N/m2: 1e-3, ", ""));
+  EXPECT_NE(hydraulic.find("'m2'"), std::string::npos) << "nothing says what a pressure is: " << hydraulic;
 }
 
 std::size_t count_of_faults(const std::string& text) {

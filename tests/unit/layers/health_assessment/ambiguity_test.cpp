@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "sealwatch/model/plant_description.hpp"
 #include "tests/unit/layers/state_detection/synthetic_test.hpp"
 
 namespace sealwatch {
@@ -86,6 +87,27 @@ TEST(Ambiguity, AFailedChannelIsASuspectWithoutAnySignature) {
   ASSERT_EQ(group.faults.size(), 1U);
   EXPECT_NEAR(group.faults[0].likelihood, 1.0 / (1.0 + std::exp(-2.0)), 1e-12);
   EXPECT_EQ(group.faults[0].iso14224_code, "AIR");
+}
+
+// By roles and sites: no plant is told of a pump that it does not have.
+TEST(Ambiguity, FaultsAreThoseOfThePlant) {
+  for (const PlantDescription& plant : all_plants()) {
+    AssetConfig asset;
+    asset.model = plant.name;
+    std::set<std::string> channels, kinds;
+    for (const ChannelDescription& channel : plant.channels) channels.insert(channel.name);
+    for (const Signature& signature : fault_signatures(asset, {}, channels, {}, true)) {
+      EXPECT_NE(std::ranges::find(plant.elements, signature.element, &ElementDescription::name), plant.elements.end())
+          << plant.name << " has no " << signature.element;
+      kinds.insert(std::string(name_of(signature.kind)));
+    }
+    if (plant.name == "eha") {
+      EXPECT_EQ(kinds, (std::set<std::string>{"internal_leakage", "friction", "pump", "load", "driver"}));
+    }
+    if (plant.name == "cascaded_tanks") {
+      EXPECT_TRUE(kinds.empty() || kinds == std::set<std::string>{"driver"});
+    }
+  }
 }
 
 TEST(Deviation, CentreAndWidthComeFromTheLimits) {

@@ -51,6 +51,19 @@ TEST(Grade, WhereTheLeakageIsNotMeasuredTheLastGradeStays) {
   EXPECT_FALSE(health_grade(synthetic::asset(), report, {}, std::nullopt)) << "never measured is not as new";
 }
 
+TEST(Grade, OfWhatElseWearsFollowsItsCondition) {
+  AssetConfig packing = synthetic::asset();
+  packing.condition = ConditionSetting{.parameter = "f_C", .at_100 = 2e6, .at_60 = 4e6, .threshold = 0.6};
+  StateReport report = with_seal_at(0.95);  // a seal that the condition does not speak of
+  report.judgements.push_back(
+      {"condition", Reference::limit, "1", 0.7, 0.7, 0.65, 0.6, AlertRegion::normal, AlertRegion::normal, 1});
+  const auto grade_of = [&] { return health_grade(packing, report, deviations_of(report), 1.0).value(); };
+  EXPECT_NEAR(grade_of(), 0.25, 1e-12);
+  report.judgements.push_back({"friction_pressure", Reference::own_baseline, "Pa", 5e5, 4.5e5, 5e5, 5.5e5,
+                               AlertRegion::alarm, AlertRegion::alarm, 2});
+  EXPECT_NEAR(grade_of(), 0.25, 1e-12) << "the lower of both";
+}
+
 TEST(Grade, AFailedTestIsZero) {
   StateReport report = with_seal_at(0.95);
   report.verdict = PstVerdict::failed;

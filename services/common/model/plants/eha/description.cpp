@@ -193,6 +193,11 @@ PlantDescription describe_eha() {
   set_role(plant, "alpha_P", ParameterRole::displacement);
   set_role(plant, "R_M", ParameterRole::motor_resistance);
   set_role(plant, "T_M", ParameterRole::torque_constant);
+  set_role(plant, "R_CL", ParameterRole::seal_leakage);
+  set_role(plant, "R_PL", ParameterRole::pump_leakage);
+  set_role(plant, "d_P", ParameterRole::pump_friction);
+  set_role(plant, "Omega_M", ParameterRole::back_emf);
+  set_role(plant, "f_M", ParameterRole::motor_friction);
   add_sensor_elements(plant);
   return plant;
 }

@@ -162,6 +162,10 @@ PlantDescription describe_eha_switched() {
   set_role(plant, "beta", ParameterRole::bulk_modulus);
   set_role(plant, "alpha_P", ParameterRole::displacement);
   set_role(plant, "R_M", ParameterRole::motor_resistance);
+  set_role(plant, "R_CL", ParameterRole::seal_leakage);
+  set_role(plant, "R_PL", ParameterRole::pump_leakage);
+  set_role(plant, "Omega_M", ParameterRole::back_emf);
+  set_role(plant, "f_M", ParameterRole::motor_friction);
   add_sensor_elements(plant);
   return plant;
 }

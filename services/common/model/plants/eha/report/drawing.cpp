@@ -57,7 +57,8 @@ constexpr auto kSensors = std::to_array<SensorPlace>({
 
 }  // namespace
 
-std::string eha_drawing(const Colouring& colouring) {
+std::optional<std::string> own_drawing(const Colouring& colouring) {
+  if (colouring.plant().name != "eha") return std::nullopt;
   std::string svg =
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" class=\"drawing\" width=\"960\" height=\"376\" "
       "viewBox=\"12 20 940 368\">\n<title>Where the mismatch sits in the actuator</title>\n";

@@ -1,0 +1,18 @@
+// Sizes of laws that follow from others: where forces are a tenth and ways four times as large, stiffnesses are a
+// fortieth. Frictions per speed do not follow: speeds at which friction changes do not grow with the speed of travel.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sealwatch::equations {
+
+/// Units from which the size of this one follows; empty: from none.
+[[nodiscard]] std::vector<std::string> sources_of_size(std::string_view unit);
+
+/// Adds what follows from the sizes that are there and is not given itself.
+void add_derived_sizes(std::map<std::string, double>& sizes);
+
+}  // namespace sealwatch::equations

@@ -1,0 +1,13 @@
+// A piece of a recording.
+#pragma once
+
+#include <cstddef>
+
+#include "sealwatch/core/time_series.hpp"
+
+namespace sealwatch {
+
+/// Samples begin, begin + 1, ... before end.
+[[nodiscard]] TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end);
+
+}  // namespace sealwatch

@@ -1,0 +1,223 @@
+// Commands around a user's own model, as scripts use them: a trace beside a recording, an exported FMU, a life of a plant
+// as text, a fleet's constants from its histories.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/integration/six_services.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kPlant = R"yaml(name: worn_packing
+meaning: valve positioner with a return spring and a packing
+inputs:
+  command: {unit: V, role: drive, meaning: command to the drive}
+outputs:
+  stem: {value: x, unit: m, noise_std: 1.0e-5, role: stroke, meaning: stem position}
+parameters:
+  M:   {value: 20.0,  unit: kg,    meaning: moved mass}
+  F_v: {value: 2.0e3, unit: N s/m, min: 500, max: 5.0e4, meaning: friction of the packing, estimate: true}
+  k_s: {value: 1.0e4, unit: N/m,   meaning: stiffness of the return spring}
+  k_F: {value: 100.0, unit: N/V,   meaning: force of the drive per voltage}
+states:
+  x: {der: v, unit: m, start: stem, meaning: stem position}
+  v: {der: (k_F*command - F_v*v - k_s*x - F_missing) / M, unit: m/s, start: "0[m/s]", own: false, size: 0.1}
+elements:
+  piston:
+    meaning: force on the stem
+    sites:
+      - {kind: piston_force, symbol: F_missing, signals: {speed: v, position: x}}
+law_sizes: {N: 0.02, m: 1.0, m/s: 10.0, N/m: 0.02, N/m2: 0.02, N s/m: 0.01, N s2/m2: 1.0e-3}
+wears: F_v
+)yaml";
+constexpr const char* kAsset = R"yaml(asset_id: V-9
+model: worn_packing.yaml
+condition: {at_100: 2.0e3, at_60: 4.0e3, scale: logarithmic, part: stem packing}
+pst: {start: 0.01, stroke: 0.02, speed: 0.01, hold: 3.0, interval_months: 1}
+)yaml";
+
+class OwnPlantCommands : public SixServices {
+ protected:
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    const std::string file = (folder_ / name).string();
+    std::ofstream(file) << text;
+    return file;
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string asset(const std::string& text = kAsset) const {
+    write("worn_packing.yaml", kPlant);
+    return write("asset.yaml", text);
+  }
+  /// A test's inputs, with the stem's first place.
+  [[nodiscard]] std::string inputs() const {
+    std::ostringstream text;
+    text << "time,command[V],stem[mm]\n";
+    for (int k = 0; k <= 1100; ++k) {
+      const double t = 0.01 * k, way = std::clamp((t - 1.0) / 2.0, 0.0, 1.0) - std::clamp((t - 6.0) / 2.0, 0.0, 1.0);
+      text << t << "," << 1.0 + 2.0 * way << ",10\n";
+    }
+    return write("inputs.csv", text.str());
+  }
+};
+
+// A slow wave and a little noise that is the same in every run.
+std::string trace(double gain, unsigned seed) {
+  std::ostringstream text;
+  text << "time,position[mm]\n";
+  std::uint64_t state = seed;
+  for (int k = 0; k < 800; ++k) {
+    double noise = -6.0;
+    for (int n = 0; n < 12; ++n) {
+      state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+      noise += static_cast<double>(state >> 11U) * 0x1p-53;
+    }
+    text << 0.01 * k << "," << 20.0 + gain * 10.0 * std::sin(0.02 * k) + (seed > 0 ? 0.05 * noise : 0.0) << "\n";
+  }
+  return text.str();
+}
+
+TEST_F(OwnPlantCommands, ATraceThatAgreesIsConsistentAndOneWithAGainSaysWhatWouldDo) {
+  const std::string recorded = write("recorded.csv", trace(1.0, 7));
+  const Finished same =
+      run({"sealwatch", "validate", "--simulated", write("same.csv", trace(1.0, 0)), recorded, "--json"});
+  EXPECT_EQ(same.status, 0) << same.output;
+  EXPECT_EQ(json::parse(same.output)["schema"], "sealwatch.trace/1");
+  const std::string page = path("trace.html");
+  const Finished other =
+      run({"sealwatch", "validate", "--simulated", write("other.csv", trace(1.1, 0)), recorded, "--page", page});
+  EXPECT_EQ(other.status, 1) << "the answer is no";
+  EXPECT_THAT(other.output, HasSubstr("would do"));
+  EXPECT_THAT(other.output, HasSubstr("gain"));
+  std::ostringstream text;
+  text << std::ifstream(page).rdbuf();
+  EXPECT_THAT(text.str(), HasSubstr("<svg"));
+}
+
+TEST_F(OwnPlantCommands, ATraceNeedsOneRecordingWithAChannelInCommon) {
+  const std::string recorded = write("recorded.csv", trace(1.0, 7));
+  const std::string simulated = write("simulated.csv", trace(1.0, 0));
+  EXPECT_EQ(run({"sealwatch", "validate", "--simulated", simulated, recorded, recorded}).status, 2);
+  const Finished foreign =
+      run({"sealwatch", "validate", "--simulated", write("foreign.csv", "time,level[m]\n0,1\n1,2\n2,3\n"), recorded});
+  EXPECT_EQ(foreign.status, 2);
+  EXPECT_THAT(foreign.output, HasSubstr("foreign.csv"));
+}
+
+TEST_F(OwnPlantCommands, ALifeOfAPlantAsTextAgesWhatTheAssetSaysWears) {
+  const Finished made = run({"sealwatch", "simulate", "--asset", asset(), "--input", inputs(), "--noise", "--ageing",
+                             "--months", "6", "--seed", "3", "--out", path("life")});
+  ASSERT_EQ(made.status, 0) << made.output;
+  EXPECT_THAT(made.output, HasSubstr("6 months"));
+  std::ifstream truth(path("life/truth.jsonl"));
+  std::vector<json> lines;
+  for (std::string line; std::getline(truth, line);) lines.push_back(json::parse(line));
+  ASSERT_EQ(lines.size(), 6U);
+  EXPECT_GT(lines.back()["F_v_N_s_m"].get<double>(), lines.front()["F_v_N_s_m"].get<double>()) << "friction grows";
+  const double theta = lines.back()["theta"], value = lines.back()["F_v_N_s_m"];
+  EXPECT_NEAR(value, 2e3 * std::pow(2.0, (1.0 - theta) / 0.4), 1e-6 * value) << "by the asset's line";
+  // The recordings tell it back.
+  const Finished fit = run({"sealwatch", "fit", "--asset", path("asset.yaml"),
+                            path("life/" + lines.back()["recording"].get<std::string>() + ".csv"), "--json"});
+  ASSERT_EQ(fit.status, 0) << fit.output;
+  const json friction = json::parse(fit.output)["parameters"].front();
+  EXPECT_EQ(friction["name"], "F_v");
+  EXPECT_NEAR(friction["value"].get<double>(), value, 4.0 * friction["std_error"].get<double>());
+}
+
+TEST_F(OwnPlantCommands, ALifeNeedsToKnowWhatWearsAndOneTest) {
+  const std::string bare = asset("asset_id: V-9\nmodel: worn_packing.yaml\n");
+  const Finished unknown =
+      run({"sealwatch", "simulate", "--asset", bare, "--input", inputs(), "--ageing", "--out", path("a")});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.output, HasSubstr("condition"));
+  const std::string file = inputs();
+  const Finished two =
+      run({"sealwatch", "simulate", "--asset", asset(), "--input", file, file, "--months", "3", "--out", path("b")});
+  EXPECT_EQ(two.status, 2);
+  EXPECT_THAT(two.output, HasSubstr("2 files"));
+}
+
+TEST_F(OwnPlantCommands, AnExportedUnitIsImportedAgainAndABadPlaceIsNamed) {
+  const std::string fmu = path("valve.fmu");
+  const Finished exported = run({"sealwatch", "plant", "export", "--asset", asset(), "--fmu", fmu});
+  ASSERT_EQ(exported.status, 0) << exported.output;
+  EXPECT_THAT(exported.output, HasSubstr("FMI 2.0"));
+  const Finished imported = run({"sealwatch", "plant", "import", fmu, "--out", path("again.yaml")});
+  EXPECT_EQ(imported.status, 0) << imported.output;
+  std::ostringstream text;
+  text << std::ifstream(path("again.yaml")).rdbuf();
+  for (const char* name : {"F_v", "command", "stem"}) EXPECT_THAT(text.str(), HasSubstr(name));
+  const Finished nowhere =
+      run({"sealwatch", "plant", "export", "--asset", path("asset.yaml"), "--fmu", path("no such folder/valve.fmu")});
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_THAT(nowhere.output, HasSubstr("no such folder"));
+  const Finished built_in = run({"sealwatch", "plant", "export", "--asset",
+                                 std::string(SEALWATCH_SOURCE_DIR) + "/config/assets/xt03-mv2.yaml", "--fmu", fmu});
+  EXPECT_EQ(built_in.status, 2);
+  EXPECT_THAT(built_in.output, HasSubstr("built in"));
+}
+
+// Lives that fall from 1 as 0.995 - 0.003 m - steepening, with a month missing here and there.
+std::string life(double rate, int tests) {
+  std::ostringstream text;
+  text << "time[iso8601],theta[1],theta_std[1]\n";
+  for (int k = 0; k < tests; ++k) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%d-%02d-10T00:00:00Z,%.6f,0.001\n", 2020 + k / 12, k % 12 + 1,
+                  1.0 - rate * (k + 1) * (1.0 + 0.004 * k) + 0.0007 * ((k * 7) % 5 - 2));
+    text << line;
+  }
+  return text.str();
+}
+
+TEST_F(OwnPlantCommands, AFleetsHistoriesGiveConstantsThatTheConfigurationTakes) {
+  const std::vector<std::string> histories = {write("1.csv", life(0.0030, 80)), write("2.csv", life(0.0040, 70)),
+                                              write("3.csv", life(0.0035, 60)), write("short.csv", life(0.003, 5))};
+  std::vector<std::string> command = {"sealwatch", "fleet", "fit"};
+  command.insert(command.end(), histories.begin(), histories.end());
+  const Finished text = run(command);
+  ASSERT_EQ(text.status, 0) << text.output;
+  EXPECT_THAT(text.output, HasSubstr("3 lives"));
+  EXPECT_THAT(text.output, HasSubstr("fewer than 12 tests: 1"));
+  const std::size_t begin = text.output.find("services:");
+  ASSERT_NE(begin, std::string::npos);
+  // What it prints is a configuration, and another fleet would give another one.
+  std::filesystem::create_directories(folder_ / "configuration/assets");
+  const std::string configuration = write("configuration/sealwatch.yaml", text.output.substr(begin));
+  const Finished checked = run({"sealwatch", "config", "check", "--config", configuration});
+  EXPECT_THAT(checked.output, Not(HasSubstr("initial_rate")));
+  command.emplace_back("--json");
+  const Finished machine = run(command);
+  ASSERT_EQ(machine.status, 0) << machine.output;
+  const json result = json::parse(machine.output);
+  EXPECT_EQ(result["schema"], "sealwatch.fleet/1");
+  EXPECT_EQ(result["lives"], 3);
+  EXPECT_EQ(result["passed_over"], 1);
+  EXPECT_GT(result["std_errors"]["initial_rate"].get<double>(), 0.0);
+  EXPECT_GT(result["constants"]["initial_rate"].get<double>(), 0.0);
+}
+
+TEST_F(OwnPlantCommands, AFleetWithoutALongLifeOrWithTooFewDatesIsRefused) {
+  const std::string brief = write("short.csv", life(0.003, 5)), whole = write("long.csv", life(0.003, 40));
+  const Finished none = run({"sealwatch", "fleet", "fit", brief});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.output, HasSubstr("at least 12"));
+  const Finished dates = run({"sealwatch", "fleet", "fit", whole, whole, "--installed", "2019-12-01"});
+  EXPECT_EQ(dates.status, 2);
+  EXPECT_THAT(dates.output, HasSubstr("--installed"));
+  const Finished bad = run({"sealwatch", "fleet", "fit", write("bad.csv", "time[iso8601],theta[1]\n2020-01-01,x\n")});
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.output, HasSubstr("bad.csv"));
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

@@ -1,0 +1,179 @@
+// Plants as a user writes them at first: values with which nothing can be simulated, an input that a controller holds, readings every few
+// seconds.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+#include "sealwatch/estimation/actuator_fit.hpp"
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/estimation/pem_search.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/runtime/yaml_place.hpp"
+
+namespace sealwatch::cli {
+namespace {
+
+AssetConfig asset_of(const testing::YamlPlace& place, const std::string& plant, const std::string& asset) {
+  place.write("plant.yaml", plant);
+  auto loaded = load_asset(place.write("asset.yaml", "asset_id: U-1\nmodel: plant.yaml\n" + asset));
+  EXPECT_TRUE(loaded) << loaded.error().describe();
+  return std::move(*loaded);
+}
+
+/// Noise of the channels on what the asset gives.
+TimeSeries recorded_by(const AssetConfig& truth, TimeSeries samples, unsigned seed) {
+  const auto simulation = PlantSimulation::create(truth, samples).value();
+  const auto outputs = simulation->run(simulation->start(), {}, {.maximum_steps = 10000000}).value();
+  std::mt19937 random(seed);
+  for (std::size_t c = 0; c < simulation->channels().size(); ++c)
+    for (Series& channel : samples.channels)
+      if (channel.name == simulation->channels()[c]) {
+        std::normal_distribution<double> noise(0.0, channel.noise_std);
+        for (std::size_t k = 0; k < channel.values.size(); ++k)
+          channel.values[k] =
+              outputs.values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)) + noise(random);
+      }
+  return samples;
+}
+
+double value_of(const FitReport& report, const std::string& name) {
+  const auto found = std::ranges::find(report.parameters, name, &EstimatedParameter::name);
+  return found == report.parameters.end() ? 0.0 : found->value;
+}
+
+constexpr const char* kMass = R"yaml(name: swinging_mass
+meaning: a mass on a spring that is hardly damped
+inputs:
+  u: {unit: N, meaning: force}
+outputs:
+  position: {value: x, unit: m, noise_std: 1.0e-4, meaning: where it is}
+parameters:
+  M: {value: 2.0, unit: kg, meaning: mass}
+  k: {value: 50.0, unit: N/m, min: -1.0e4, max: 1.0e4, meaning: stiffness, estimate: true}
+  c: {value: 0.5, unit: N s/m, min: 0.01, max: 50, meaning: damping, estimate: true}
+states:
+  x: {der: v, unit: m, start: position}
+  v: {der: (u - k*x - c*v - lost)/M, unit: m/s, start: 0, own: false, size: 1.0}
+elements:
+  mass:
+    meaning: forces on the mass
+    sites:
+      - {kind: piston_force, symbol: lost, signals: {speed: v, position: x}}
+law_sizes: {N: 1e-3, m: 1, m/s: 1, N s/m: 1e-3}
+)yaml";
+
+TimeSeries pushes() {
+  TimeSeries samples;
+  Series force{"u", "N", 0.0, {}}, position{"position", "m", 1e-4, {}};
+  for (int k = 0; k < 1500; ++k) {
+    const double t = 0.02 * k;
+    samples.time_s.push_back(t);
+    force.values.push_back(2.0 * std::sin(0.8 * t) + std::sin(2.9 * t) + (k > 700 ? 1.0 : 0.0));
+    position.values.push_back(0.0);
+  }
+  samples.channels = {force, position};
+  return samples;
+}
+
+// With a stiffness of the wrong sign the mass runs away within a second: no slope leads back from there.
+TEST(OwnModel, AModelThatExplodesAtItsFirstValuesIsFittedFromPieces) {
+  const testing::YamlPlace place;
+  const AssetConfig truth = asset_of(place, kMass, "");
+  const TimeSeries recorded = recorded_by(truth, pushes(), 3);
+  AssetConfig guess = truth;
+  guess.parameters.at("k") = {.value = -3000.0, .min = -1e4, .max = 1e4, .estimate = true};
+  guess.parameters.at("c").value = 2.0;
+  ActuatorFitOptions options;
+  const JointFit fit = fit_actuator(guess, std::span(&recorded, 1), options);
+  EXPECT_TRUE(fit.report.admissible) << (fit.report.reasons.empty() ? "" : fit.report.reasons.front());
+  EXPECT_NEAR(value_of(fit.report, "k"), 50.0, 0.05);
+  EXPECT_NEAR(value_of(fit.report, "c"), 0.5, 0.01);
+  options.cut_into_pieces = false;
+  EXPECT_FALSE(fit_actuator(guess, std::span(&recorded, 1), options).report.admissible) << "or this tells nothing";
+}
+
+// Every jump of a held input starts the integration anew: that is no explosion.
+TEST(OwnModel, AnInputThatIsHeldFromSampleToSampleMayTakeManySteps) {
+  const testing::YamlPlace place;
+  std::string motor = R"yaml(name: held_motor
+meaning: DC motor and a drum on a flexible shaft
+inputs:
+  u: {unit: V, course: held, meaning: armature voltage}
+outputs:
+  current: {value: i, unit: A, noise_std: 0.01, meaning: armature current}
+  speed:   {value: w, unit: rad/s, noise_std: 0.2, meaning: speed of the motor}
+parameters:
+  R: {value: 1.2, unit: ohm, meaning: resistance, estimate: true}
+  L: {value: 2.0e-3, unit: H, meaning: inductance}
+  K: {value: 0.06, unit: V s/rad, meaning: motor constant}
+  J: {value: 8.0e-5, unit: kg m2, meaning: inertia of the motor}
+  k: {value: 0.6, unit: N m/rad, meaning: stiffness of the shaft}
+  d: {value: 5.0e-4, unit: N m s/rad, meaning: damping of the shaft}
+  D: {value: 2.0e-4, unit: kg m2, meaning: inertia of the drum}
+states:
+  i: {der: (u - R*i - K*w)/L, unit: A, start: current}
+  w: {der: (K*i - k*twist - d*(w - w_d))/J, unit: rad/s, start: speed}
+  twist: {der: w - w_d, unit: rad, start: 0, size: 0.1, own: false}
+  w_d: {der: (k*twist + d*(w - w_d))/D, unit: rad/s, start: speed, size: 10, own: false}
+elements: {}
+law_sizes: {}
+)yaml";
+  const AssetConfig asset = asset_of(place, motor, "");
+  TimeSeries samples;
+  Series voltage{"u", "V", 0.0, {}}, current{"current", "A", 0.01, {}}, speed{"speed", "rad/s", 0.2, {}};
+  for (int k = 0; k < 3000; ++k) {
+    const double t = 0.002 * k;
+    samples.time_s.push_back(t);
+    voltage.values.push_back(10.0 * std::sin(3.0 * t) + 5.0 * std::sin(14.0 * t));
+    current.values.push_back(0.0);
+    speed.values.push_back(0.0);
+  }
+  samples.channels = {voltage, current, speed};
+  const TimeSeries recorded = recorded_by(asset, samples, 5);
+  AssetConfig guess = asset;
+  guess.parameters.at("R").value = 1.5;
+  const JointFit fit = fit_actuator(guess, std::span(&recorded, 1), {});
+  EXPECT_TRUE(fit.report.admissible) << (fit.report.reasons.empty() ? "" : fit.report.reasons.front());
+  EXPECT_NEAR(value_of(fit.report, "R"), 1.2, 2e-3);
+}
+
+// Two hours of a cabinet that is read every five seconds: steps of a quarter of a second are none of its business.
+TEST(OwnModel, ASlowRecordingTakesNoMoreStepsThanItHasSamples) {
+  const testing::YamlPlace place;
+  const AssetConfig asset = asset_of(place, R"yaml(name: slow_cabinet
+meaning: a heated plate
+inputs:
+  heater: {unit: W, meaning: power}
+outputs:
+  plate: {value: T, unit: K, noise_std: 0.05, meaning: temperature}
+parameters:
+  C: {value: 900, unit: J/K, meaning: heat capacity, estimate: true}
+  G: {value: 2.0, unit: W/K, meaning: to the air, estimate: true}
+  T_0: {value: 293, unit: K, meaning: temperature of the air}
+states:
+  T: {der: (heater - G*(T - T_0))/C, unit: K, start: plate}
+elements: {}
+law_sizes: {}
+)yaml",
+                                     "");
+  TimeSeries samples;
+  Series heater{"heater", "W", 0.0, {}}, plate{"plate", "K", 0.05, {}};
+  for (int k = 0; k < 1440; ++k) {
+    samples.time_s.push_back(5.0 * k);
+    heater.values.push_back(k / 120 % 2 == 0 ? 100.0 : 20.0);
+    plate.values.push_back(300.0);
+  }
+  samples.channels = {heater, plate};
+  const TimeSeries recorded = recorded_by(asset, samples, 7);
+  const JointFit fit = fit_actuator(asset, std::span(&recorded, 1), {});
+  EXPECT_TRUE(fit.report.admissible);
+  EXPECT_NEAR(value_of(fit.report, "G"), 2.0, 0.01);
+  const auto simulation = PlantSimulation::create(asset, recorded).value();
+  const auto outputs =
+      simulation->run(simulation->start(), {}, simulation_options(std::span(&recorded, 1), {})).value();
+  EXPECT_LT(outputs.steps, 2U * samples.time_s.size()) << "7200 s in quarters of a second are 28800";
+}
+
+}  // namespace
+}  // namespace sealwatch::cli

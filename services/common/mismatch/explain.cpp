@@ -177,17 +177,21 @@ class Analysis {
   [[nodiscard]] Result<Naming> beside_inexact_sensors(const Naming& found, const ExplainOptions& options) const {
     Data inexact = fit_;
     std::ranges::copy(known_sensors(asset_, baseline_->problem), std::back_inserter(inexact.known));
-    Result<FittedModel> baseline = fit_model(baseline_->asset, prepared(inexact), baseline_.get(), options_.threads);
     const Trial& laws = found.best;
-    Result<FittedModel> with_laws = fit_model(laws.model->asset, prepared(inexact), laws.model.get(), options_.threads);
-    if (!baseline) return fail(baseline.error());
+    // What the search compared the laws with is one of the two models already.
+    const auto fitted = [&](const FittedModel& from) -> Result<std::shared_ptr<const FittedModel>> {
+      if (found.with_sensors && &from == laws.model.get()) return found.with_sensors;
+      Result<FittedModel> model = fit_model(from.asset, prepared(inexact), &from, options_.threads);
+      if (!model) return fail(model.error());
+      return std::make_shared<const FittedModel>(std::move(*model));
+    };
+    const auto with_sensors = fitted(*baseline_);
+    if (!with_sensors) return fail(with_sensors.error());
+    const auto with_laws = laws.effects.empty() ? with_sensors : fitted(*laws.model);
     if (!with_laws) return fail(with_laws.error());
-    auto with_sensors = std::make_shared<const FittedModel>(std::move(*baseline));
-    const Trial from{laws.effects, std::make_shared<const FittedModel>(std::move(*with_laws))};
+    const Trial from{laws.effects, *with_laws};
     tell("looking again, with sensors within their tolerances", 0.5);
-    Result<Naming> again = name_effects(with_sensors, prepared(inexact), options, progress_,
-                                        laws.effects.empty() ? Trial{{}, with_sensors} : from);
-    return again;
+    return name_effects(*with_sensors, prepared(inexact), options, progress_, from);
   }
 
   // With the laws that were found beside inexact sensors, one value of the asset file does what all sensors did.

@@ -11,31 +11,37 @@ namespace sealwatch::mismatch {
 /// Added to a normal matrix with unit diagonal: directions that the data do not show.
 inline constexpr double kRidge = 1e-10;
 
-// X (X'X)^-1 X'Y taken off Y, in place.
-class Projection {
+// (X'X)^-1, of columns of any size; directions that X does not show give nothing.
+class NormalMatrix {
  public:
-  explicit Projection(const RowMatrix& x) : x_(x), gram_(x.transpose() * x) { prepare(); }
-  Projection(const RowMatrix& x, Eigen::MatrixXd gram) : x_(x), gram_(std::move(gram)) { prepare(); }
-  template <class Y>
-  [[nodiscard]] Eigen::MatrixXd coefficients(const Y& cross) const {
-    return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * cross);
-  }
-  template <class Y>
-  void remove_from(Y& y) const {
-    if (x_.cols() > 0) y.noalias() -= x_ * coefficients(x_.transpose() * y);
-  }
-
- private:
-  void prepare() {
-    scale_ = gram_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd scaled = scale_.asDiagonal() * gram_ * scale_.asDiagonal();
+  explicit NormalMatrix(const Eigen::MatrixXd& gram)
+      : scale_(gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
+    Eigen::MatrixXd scaled = scale_.asDiagonal() * gram * scale_.asDiagonal();
     scaled.diagonal().array() += kRidge;
     factor_.compute(scaled);
   }
-  const RowMatrix& x_;
-  Eigen::MatrixXd gram_;
+  template <class Y>
+  [[nodiscard]] Eigen::MatrixXd solve(const Y& right) const {
+    return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * right);
+  }
+
+ private:
   Eigen::VectorXd scale_;
   Eigen::LDLT<Eigen::MatrixXd> factor_;
+};
+
+// X (X'X)^-1 X'Y taken off Y, in place.
+class Projection {
+ public:
+  explicit Projection(const RowMatrix& x) : x_(x), normal_(x.transpose() * x) {}
+  template <class Y>
+  void remove_from(Y& y) const {
+    if (x_.cols() > 0) y.noalias() -= x_ * normal_.solve(x_.transpose() * y);
+  }
+
+ private:
+  const RowMatrix& x_;
+  NormalMatrix normal_;
 };
 
 struct LinearStep {

@@ -163,17 +163,19 @@ std::optional<FittedModel> with_inexact_sensors(const FittedModel& exact, const 
 // Whether sensors that are not exact explain more, beside what was found before, than the best law tried now. What the
 // recordings tell of the sensors is paid for (occam_factor): else they could imitate much of what small effects do. Not
 // asked beside a law whose other forms were not: sensors would bend to what its form lacks.
-bool sensors_are_inexact(const Naming& naming, const std::vector<Trial>& trials, const Data& data, int threads) {
+bool sensors_are_inexact(Naming& naming, const std::vector<Trial>& trials, const Data& data, int threads) {
   if (data.sensors.empty()) return false;
   const FittedModel& best = *naming.best.model;
-  const std::optional<FittedModel> inexact = with_inexact_sensors(best, data, threads);
+  std::optional<FittedModel> inexact = with_inexact_sensors(best, data, threads);
   if (!inexact) return false;
   const double phi = std::min(smallest_dispersion(trials, best), dispersion(*inexact));
   const Trial* law = best_of(trials, phi);
   const double known = criterion(best, phi),
                with_law = law == nullptr ? known : std::min(known, criterion(*law->model, phi));
   const double score = known - (best.misfit - inexact->misfit) / phi + occam_factor(*inexact, data.sensors, phi);
-  return score < with_law - kWorthAnother && !a_value_explains(best, score, phi, data, threads);
+  if (score >= with_law - kWorthAnother || a_value_explains(best, score, phi, data, threads)) return false;
+  naming.with_sensors = std::make_shared<const FittedModel>(std::move(*inexact));
+  return true;
 }
 
 // A sensor's gain or offset that is no further off than its tolerance lets it be is no fault.

@@ -35,6 +35,7 @@ struct Naming {
   /// Sensors that are off by what they may be (Data::sensors) explain more than any law: the search ended there, and
   /// `best` is to be asked beside them.
   bool sensors_are_inexact = false;
+  std::shared_ptr<const FittedModel> with_sensors = {};  ///< `best` beside them, where it was fitted
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
 };
 

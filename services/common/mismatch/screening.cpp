@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "services/common/mismatch/gram.hpp"
 #include "services/common/mismatch/in_parallel.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/screening_scores.hpp"
@@ -13,61 +14,9 @@
 namespace sealwatch::mismatch {
 namespace {
 
-// One recording with its own unknowns taken off.
-struct Reduced {
-  RowMatrix shared, laws;
-  Eigen::VectorXd residual;
-  Eigen::VectorXd raw_norm;  ///< |s_j|^2 before anything was taken off
-  Eigen::Index rows_per_block = 1;
-};
-
 Eigen::Index rows_per_block(const std::vector<double>& time_s, Eigen::Index channels, double block_s) {
   const double rate = static_cast<double>(time_s.size()) / (time_s.back() - time_s.front());
   return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(block_s * rate)) * channels;
-}
-
-Result<Reduced> reduce(const FittedModel& model, std::size_t recording, const std::vector<Candidate>& candidates,
-                       const std::vector<PassColumn>& columns, double block_s) {
-  Result<Pass> pass = sensitivity_pass(model, recording, candidates, columns);
-  if (!pass) return fail(pass.error());
-  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  const RowMatrix own = pass->free.rightCols(pass->free.cols() - shared);
-  Reduced reduced{
-      .shared = pass->free.leftCols(shared),
-      .laws = std::move(pass->laws),
-      .residual = std::move(pass->residual),
-      .raw_norm = {},
-      .rows_per_block = rows_per_block(model.problem.recordings[recording].time_s, pass->channels, block_s)};
-  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {  // what is held at a bound does not swallow anything
-    const Unknown& unknown = model.problem.shared[k];
-    const double at = model.optimum.point.shared[k];
-    if (at - unknown.to_unknown(unknown.min) < 1e-6 || unknown.to_unknown(unknown.max) - at < 1e-6)
-      reduced.shared.col(static_cast<Eigen::Index>(k)).setZero();
-  }
-  reduced.raw_norm = reduced.laws.colwise().squaredNorm();
-  const Projection projection(own);
-  projection.remove_from(reduced.shared);
-  projection.remove_from(reduced.laws);
-  projection.remove_from(reduced.residual);
-  return reduced;
-}
-
-// What is known beforehand of shared unknowns, as rows of their own: no law acts on them.
-Reduced known_beforehand(const FittedModel& model, Eigen::Index laws) {
-  const std::vector<Unknown>& unknowns = model.problem.shared;
-  const Eigen::Index rows = std::ranges::count_if(unknowns, &Unknown::is_known);
-  Reduced known{.shared = RowMatrix::Zero(rows, static_cast<Eigen::Index>(unknowns.size())),
-                .laws = RowMatrix::Zero(rows, laws),
-                .residual = Eigen::VectorXd(rows),
-                .raw_norm = Eigen::VectorXd::Zero(laws),
-                .rows_per_block = std::max<Eigen::Index>(rows, 1)};
-  Eigen::Index row = 0;
-  for (std::size_t k = 0; k < unknowns.size(); ++k) {
-    if (!unknowns[k].is_known()) continue;
-    known.shared(row, static_cast<Eigen::Index>(k)) = -1.0 / unknowns[k].prior_std;
-    known.residual(row++) = unknowns[k].prior_residual(model.optimum.point.shared[k]);
-  }
-  return known;
 }
 
 // Columns of all recordings: those of a recording's own come once for each.
@@ -85,45 +34,6 @@ Layout lay_out(const std::vector<PassColumn>& columns, std::size_t recordings) {
   return layout;
 }
 
-RowMatrix spread(const RowMatrix& laws, const Layout& layout, std::size_t recording) {
-  RowMatrix wide = RowMatrix::Zero(laws.rows(), layout.size);
-  for (std::size_t k = 0; k < layout.of_pass.size(); ++k) {
-    const auto& of = layout.of_pass[k];
-    wide.col(of.size() == 1 ? of.front() : of[recording]) = laws.col(static_cast<Eigen::Index>(k));
-  }
-  return wide;
-}
-
-Eigen::MatrixXd block_sums(const RowMatrix& laws, const Eigen::VectorXd& residual, Eigen::Index rows_per_block) {
-  const Eigen::Index blocks = std::max<Eigen::Index>(1, laws.rows() / rows_per_block);
-  Eigen::MatrixXd sums(blocks, laws.cols());
-  for (Eigen::Index b = 0; b < blocks; ++b) {
-    const Eigen::Index begin = b * rows_per_block;
-    const Eigen::Index count = b + 1 == blocks ? laws.rows() - begin : rows_per_block;
-    sums.row(b) = laws.middleRows(begin, count).transpose() * residual.segment(begin, count);
-  }
-  return sums;
-}
-
-// s~_b' s~_b of each variant per block, its entries one after the other: what a law itself adds to its blocks' scores.
-Eigen::MatrixXd block_grams(const RowMatrix& laws, const std::vector<Variant>& variants, Eigen::Index rows_per_block) {
-  const Eigen::Index blocks = std::max<Eigen::Index>(1, laws.rows() / rows_per_block);
-  Eigen::Index entries = 0;
-  for (const Variant& variant : variants)
-    entries += static_cast<Eigen::Index>(variant.columns.size() * variant.columns.size());
-  Eigen::MatrixXd grams(blocks, entries);
-  for (Eigen::Index b = 0; b < blocks; ++b) {
-    const Eigen::Index begin = b * rows_per_block;
-    const Eigen::Index count = b + 1 == blocks ? laws.rows() - begin : rows_per_block;
-    const RowMatrix block = laws.middleRows(begin, count);
-    Eigen::Index entry = 0;
-    for (const Variant& variant : variants)
-      for (const Eigen::Index j : variant.columns)
-        for (const Eigen::Index k : variant.columns) grams(b, entry++) = block.col(j).dot(block.col(k));
-  }
-  return grams;
-}
-
 std::vector<Variant> make_variants(const std::vector<PassColumn>& columns, const Layout& layout) {
   std::vector<Variant> variants;
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -135,70 +45,208 @@ std::vector<Variant> make_variants(const std::vector<PassColumn>& columns, const
   return variants;
 }
 
-Eigen::MatrixXd stacked(const std::vector<Eigen::MatrixXd>& parts, Eigen::Index rows) {
-  Eigen::MatrixXd all(rows, parts.front().cols());
-  Eigen::Index at = 0;
-  for (const Eigen::MatrixXd& part : parts) {
-    all.middleRows(at, part.rows()) = part;
-    at += part.rows();
-  }
-  return all;
+// One recording: products of its free columns Z, its residual r and its laws' columns L, where Z = Q R with about
+// orthonormal Q. All that is asked of what is left of r and L, once combinations of Z are taken off them, comes from
+// these products: no column is kept. Z itself would not do, since its columns may nearly depend on each other, and large
+// multiples of them would leave rounding. Columns of L are those of all recordings (Layout); other recordings' are zero.
+struct Products {
+  Eigen::Index free = 0;               ///< columns of Q
+  Eigen::MatrixXd all;                 ///< [Q r L]'[Q r L]
+  std::vector<Eigen::MatrixXd> block;  ///< its rows of Q and r, per block of time
+  Eigen::MatrixXd variant;             ///< L_b'L_b of each variant, its entries one after the other; blocks x entries
+  Eigen::MatrixXd shared_in_q, own_in_q;   ///< R
+  Eigen::MatrixXd shared_left, own_taken;  ///< in Q: shared columns without own ones; what own ones take off [r L]
+};
+
+Eigen::Index entries_of(const std::vector<Variant>& variants) {
+  Eigen::Index entries = 0;
+  for (const Variant& variant : variants)
+    entries += static_cast<Eigen::Index>(variant.columns.size() * variant.columns.size());
+  return entries;
 }
 
-Result<std::vector<Reduced>> reduce_all(const FittedModel& model, const std::vector<Candidate>& candidates,
-                                        const std::vector<PassColumn>& columns, const ScreeningOptions& options) {
-  using Part = std::optional<Result<Reduced>>;
-  std::vector<Part> parts = in_parallel<Part>(model.problem.recordings.size(), options.threads, [&](std::size_t k) {
-    return reduce(model, k, candidates, columns, options.block_s);
-  });
-  std::vector<Reduced> all;
-  for (Part& part : parts) {
-    if (!*part) return fail(part->error());
-    all.push_back(std::move(**part));
-  }
-  return all;
+// f(j, k) for each entry of each variant.
+template <class F>
+void for_each_entry(const std::vector<Variant>& variants, const F& f) {
+  for (const Variant& variant : variants)
+    for (const Eigen::Index j : variant.columns)
+      for (const Eigen::Index k : variant.columns) f(j, k);
 }
 
-// What one recording adds to the normal equations of the shared unknowns, S, and the laws, L:  S'S, S'L, S'r.
+// What is held at a bound does not swallow anything.
+void leave_out_held(const FittedModel& model, RowMatrix& free) {
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k)
+    if (at_bound(model.problem.shared[k], model.optimum.point.shared[k]))
+      free.col(static_cast<Eigen::Index>(k)).setZero();
+}
+
+// Z becomes Q; R.
+Eigen::MatrixXd orthonormalise(RowMatrix& z) {
+  const Eigen::MatrixXd gram = z.transpose() * z;
+  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * gram * scale.cwiseInverse().asDiagonal();
+  scaled.diagonal().array() += kRidge;
+  const Eigen::MatrixXd upper = scaled.llt().matrixU();
+  z = z * scale.cwiseInverse().asDiagonal();
+  upper.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(z);
+  return upper * scale.asDiagonal();
+}
+
+// The products of one recording, block by block of time.
+void multiply(const Pass& pass, const RowMatrix& q, const std::vector<Eigen::Index>& place, Eigen::Index block_rows,
+              const std::vector<Variant>& variants, Products& products) {
+  constexpr Eigen::Index kAtOnce = 128;  // rows: their panels stay in the nearest cache
+  const Eigen::Index laws = static_cast<Eigen::Index>(place.size()) - q.cols() - 1, rows = q.rows(),
+                     blocks = std::max<Eigen::Index>(1, rows / block_rows), size = products.all.rows();
+  products.variant.resize(blocks, entries_of(variants));
+  RowBlock together(std::ssize(place), kAtOnce);
+  std::vector<double> row(place.size());
+  for (Eigen::Index b = 0; b < blocks; ++b) {
+    const Eigen::Index end = b + 1 == blocks ? rows : (b + 1) * block_rows;
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(std::ssize(place), std::ssize(place));
+    for (Eigen::Index at = b * block_rows; at < end; ++at) {
+      std::copy_n(q.data() + at * q.cols(), q.cols(), row.data());
+      row[static_cast<std::size_t>(q.cols())] = pass.residual(at);
+      pass.law_row(at, laws, row.data() + q.cols() + 1);
+      together.add(row.data());
+      if (!together.full() && at + 1 < end) continue;
+      together.add_gram_to(gram);
+      together.clear();
+    }
+    Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(size, size);
+    wide(place, place) = gram;
+    Eigen::Index entry = 0;
+    const Eigen::Index first = q.cols() + 1;
+    for_each_entry(variants,
+                   [&](Eigen::Index j, Eigen::Index k) { products.variant(b, entry++) = wide(first + j, first + k); });
+    products.block.emplace_back(wide.topRows(first));
+    products.all += wide;
+  }
+}
+
+Result<Products> products_of(const FittedModel& model, std::size_t recording, const std::vector<Candidate>& candidates,
+                             const std::vector<PassColumn>& columns, const Layout& layout,
+                             const std::vector<Variant>& variants, double block_s) {
+  Result<Pass> pass = sensitivity_pass(model, recording, candidates, columns);
+  if (!pass) return fail(pass.error());
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  RowMatrix q = std::move(pass->free);
+  leave_out_held(model, q);
+  const Eigen::MatrixXd r = orthonormalise(q);
+  Products products;
+  products.free = q.cols();
+  products.all = Eigen::MatrixXd::Zero(q.cols() + 1 + layout.size, q.cols() + 1 + layout.size);
+  products.shared_in_q = r.leftCols(shared);
+  products.own_in_q = r.rightCols(q.cols() - shared);
+  std::vector<Eigen::Index> place;
+  for (Eigen::Index k = 0; k <= q.cols(); ++k) place.push_back(k);
+  for (const auto& of : layout.of_pass) place.push_back(q.cols() + 1 + (of.size() == 1 ? of.front() : of[recording]));
+  multiply(*pass, q, place, rows_per_block(model.problem.recordings[recording].time_s, pass->channels, block_s),
+           variants, products);
+  return products;
+}
+
+// What one recording adds to the normal equations of the shared unknowns, S, and [r L], its own unknowns taken off.
 struct Normal {
   Eigen::MatrixXd gram, cross;
-  Eigen::VectorXd right;
 };
 
-// And to what is left of laws and residual once the shared unknowns are taken off them.
-struct Left {
-  Eigen::MatrixXd gram, sums, grams;
-};
-
-Left without_shared(Reduced& part, const Normal& all, const std::vector<Variant>& variants) {
-  if (part.shared.cols() > 0) {
-    const Projection projection(part.shared, all.gram);
-    part.laws.noalias() -= part.shared * projection.coefficients(all.cross);
-    part.residual.noalias() -= part.shared * projection.coefficients(all.right);
+Normal without_own(Products& products) {
+  const Eigen::MatrixXd inner = products.all.topLeftCorner(products.free, products.free),
+                        outer = products.all.topRows(products.free).rightCols(products.all.cols() - products.free);
+  products.shared_left = products.shared_in_q;
+  products.own_taken = Eigen::MatrixXd::Zero(products.free, outer.cols());
+  if (const Eigen::MatrixXd& own = products.own_in_q; own.cols() > 0) {
+    const NormalMatrix normal(own.transpose() * inner * own);
+    products.shared_left -= own * normal.solve(own.transpose() * inner * products.shared_in_q);
+    products.own_taken = own * normal.solve(own.transpose() * outer);
   }
-  Left left{.gram = Eigen::MatrixXd::Zero(part.laws.cols(), part.laws.cols()),
-            .sums = block_sums(part.laws, part.residual, part.rows_per_block),
-            .grams = block_grams(part.laws, variants, part.rows_per_block)};
-  left.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.laws.transpose());
-  part.laws.resize(0, 0);
+  const Eigen::MatrixXd left = inner * products.shared_left;
+  return {.gram = products.shared_left.transpose() * left,
+          .cross = products.shared_left.transpose() * outer - left.transpose() * products.own_taken};
+}
+
+// What is known beforehand of shared unknowns, as rows of their own, the residual last: no law acts on them.
+RowMatrix known_beforehand(const FittedModel& model) {
+  const std::vector<Unknown>& unknowns = model.problem.shared;
+  const auto shared = static_cast<Eigen::Index>(unknowns.size());
+  RowMatrix known = RowMatrix::Zero(std::ranges::count_if(unknowns, &Unknown::is_known), shared + 1);
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < unknowns.size(); ++k) {
+    if (!unknowns[k].is_known()) continue;
+    known(row, static_cast<Eigen::Index>(k)) = -1.0 / unknowns[k].prior_std;
+    known(row++, shared) = unknowns[k].prior_residual(model.optimum.point.shared[k]);
+  }
+  return known;
+}
+
+// What is left of laws and residual once all unknowns are taken off them.
+struct Left {
+  Eigen::MatrixXd gram;   ///< s~'s~
+  Eigen::MatrixXd sums;   ///< s~_b' r_b per block
+  Eigen::MatrixXd grams;  ///< s~_b' s~_b of each variant per block: what a law itself adds to its blocks' scores
+};
+
+// With T = Q M taken off [r L]:  (L - T_L)'(L - T_L) = L'L - (Q'L)'M_L - M_L'(Q'L - Q'Q M_L), and so in each block.
+Left left_of(const Products& products, const Eigen::MatrixXd& coefficients, const std::vector<Variant>& variants) {
+  const Eigen::Index free = products.free, laws = products.all.cols() - free - 1;
+  const Eigen::MatrixXd taken = products.own_taken + products.shared_left * coefficients;
+  const auto of_laws = taken.rightCols(laws);
+  Left left{.gram = products.all.bottomRightCorner(laws, laws),
+            .sums = Eigen::MatrixXd(std::ssize(products.block), laws),
+            .grams = products.variant};
+  const auto rest_of = [&](const auto& rows) -> Eigen::MatrixXd {
+    return rows.topRows(free).rightCols(laws + 1) - rows.topLeftCorner(free, free) * taken;
+  };
+  left.gram.noalias() -= products.all.topRows(free).rightCols(laws).transpose() * of_laws;
+  left.gram.noalias() -= of_laws.transpose() * rest_of(products.all).rightCols(laws);
+  for (std::size_t b = 0; b < products.block.size(); ++b) {
+    const Eigen::MatrixXd& rows = products.block[b];
+    const auto across = rows.topRows(free).rightCols(laws);
+    const Eigen::MatrixXd rest = rest_of(rows);
+    const auto at = static_cast<Eigen::Index>(b);
+    left.sums.row(at) =
+        rows.row(free).tail(laws) - taken.col(0).transpose() * across - rest.col(0).transpose() * of_laws;
+    Eigen::Index entry = 0;
+    for_each_entry(variants, [&](Eigen::Index j, Eigen::Index k) {
+      left.grams(at, entry++) -= across.col(j).dot(of_laws.col(k)) + of_laws.col(j).dot(rest.col(1 + k));
+    });
+  }
   return left;
 }
 
-// Of all recordings, whose laws are laid out in columns of all; `recordings` of the parts are such, the last may be what
-// is known beforehand.
-Normal normal_equations_of(std::vector<Reduced>& parts, std::size_t recordings, const Layout& layout, int threads) {
-  const std::vector<Normal> normals = in_parallel<Normal>(parts.size(), threads, [&](std::size_t k) {
-    Reduced& part = parts[k];
-    part.laws = k < recordings ? spread(part.laws, layout, k) : RowMatrix::Zero(part.laws.rows(), layout.size);
-    return Normal{.gram = part.shared.transpose() * part.shared,
-                  .cross = part.shared.transpose() * part.laws,
-                  .right = part.shared.transpose() * part.residual};
-  });
-  Normal all = normals.front();
-  for (std::size_t k = 1; k < normals.size(); ++k) {
-    all.gram += normals[k].gram;
-    all.cross += normals[k].cross;
-    all.right += normals[k].right;
+Left left_of_known(const RowMatrix& known, const Eigen::MatrixXd& coefficients, const std::vector<Variant>& variants) {
+  RowMatrix taken = -known.leftCols(known.cols() - 1) * coefficients;
+  taken.col(0) += known.col(known.cols() - 1);
+  const RowMatrix laws = taken.rightCols(taken.cols() - 1);
+  Left left{.gram = laws.transpose() * laws,
+            .sums = taken.col(0).transpose() * laws,
+            .grams = Eigen::MatrixXd(1, entries_of(variants))};
+  Eigen::Index entry = 0;
+  for_each_entry(variants, [&](Eigen::Index j, Eigen::Index k) { left.grams(0, entry++) = left.gram(j, k); });
+  return left;
+}
+
+// Laws of which nothing but rounding is left, as unknowns do all that they do, ask for nothing.
+void leave_out_rounding(Screening& screening, const Eigen::VectorXd& raw_norm) {
+  constexpr double kRounding = 1e-12;
+  for (Eigen::Index k = 0; k < raw_norm.size(); ++k) {
+    if (!(screening.gram(k, k) < kRounding * raw_norm(k))) continue;
+    screening.gram.row(k).setZero();
+    screening.gram.col(k).setZero();
+    screening.gram(k, k) = kRounding * raw_norm(k);
+    screening.block_scores.col(k).setZero();
+  }
+}
+
+Eigen::MatrixXd stacked(const std::vector<Left>& parts, Eigen::MatrixXd Left::*what) {
+  Eigen::Index rows = 0;
+  for (const Left& part : parts) rows += (part.*what).rows();
+  Eigen::MatrixXd all(rows, (parts.front().*what).cols());
+  Eigen::Index at = 0;
+  for (const Left& part : parts) {
+    all.middleRows(at, (part.*what).rows()) = part.*what;
+    at += (part.*what).rows();
   }
   return all;
 }
@@ -209,43 +257,46 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
   Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
                                                     options.closed_forms)};
   const std::vector<PassColumn> columns = pass_columns(screening.candidates);
-  const Layout layout = lay_out(columns, data.samples.size());
+  const std::size_t recordings = data.samples.size();
+  const Layout layout = lay_out(columns, recordings);
   screening.variants = make_variants(columns, layout);
   screening.unit.resize(static_cast<std::size_t>(layout.size));
   for (std::size_t k = 0; k < columns.size(); ++k)
     for (const Eigen::Index index : layout.of_pass[k])
       screening.unit[static_cast<std::size_t>(index)] = columns[k].unit;
-  Result<std::vector<Reduced>> parts = reduce_all(model, screening.candidates, columns, options);
-  if (!parts) return fail(parts.error());
-  const std::size_t recordings = parts->size();
-  if (std::ranges::any_of(model.problem.shared, &Unknown::is_known))
-    parts->push_back(known_beforehand(model, static_cast<Eigen::Index>(columns.size())));
-
-  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  const Normal all = normal_equations_of(*parts, recordings, layout, options.threads);
-  Eigen::VectorXd raw_norm = Eigen::VectorXd::Zero(layout.size);
-  for (std::size_t k = 0; k < parts->size(); ++k)
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      for (std::size_t j = 0; j < layout.of_pass[c].size(); ++j)
-        if (layout.of_pass[c].size() == 1 || j == k)
-          raw_norm(layout.of_pass[c][j]) += (*parts)[k].raw_norm(static_cast<Eigen::Index>(c));
-  std::vector<Left> left = in_parallel<Left>(parts->size(), options.threads, [&](std::size_t k) {
-    return without_shared((*parts)[k], all, screening.variants);
+  using Part = std::optional<Result<Products>>;
+  std::vector<Part> parts = in_parallel<Part>(recordings, options.threads, [&](std::size_t k) {
+    return products_of(model, k, screening.candidates, columns, layout, screening.variants, options.block_s);
   });
-  screening.gram = Eigen::MatrixXd::Zero(layout.size, layout.size);
-  std::vector<Eigen::MatrixXd> sums, grams;
-  Eigen::Index blocks = 0;
-  for (Left& part : left) {
-    screening.gram += part.gram;
-    blocks += part.sums.rows();
-    sums.push_back(std::move(part.sums));
-    grams.push_back(std::move(part.grams));
+  for (const Part& part : parts)
+    if (!*part) return fail(part->error());
+
+  const RowMatrix known = known_beforehand(model);
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  Normal all{.gram = known.leftCols(shared).transpose() * known.leftCols(shared),
+             .cross = Eigen::MatrixXd::Zero(shared, layout.size + 1)};
+  all.cross.col(0) = known.leftCols(shared).transpose() * known.col(shared);
+  Eigen::VectorXd raw_norm = Eigen::VectorXd::Zero(layout.size);
+  for (Part& part : parts) {
+    const Normal normal = without_own(**part);
+    all.gram += normal.gram;
+    all.cross += normal.cross;
+    raw_norm += (*part)->all.diagonal().tail(layout.size);
   }
+  const Eigen::MatrixXd coefficients =
+      shared > 0 ? NormalMatrix(all.gram).solve(all.cross) : Eigen::MatrixXd::Zero(0, layout.size + 1);
+  std::vector<Left> left = in_parallel<Left>(recordings, options.threads, [&](std::size_t k) {
+    return left_of(**parts[k], coefficients, screening.variants);
+  });
+  if (known.rows() > 0) left.push_back(left_of_known(known, coefficients, screening.variants));
+  screening.gram = Eigen::MatrixXd::Zero(layout.size, layout.size);
+  for (const Left& part : left) screening.gram += part.gram;
   screening.gram.triangularView<Eigen::StrictlyUpper>() = screening.gram.transpose();
-  screening.block_scores = stacked(sums, blocks);
+  screening.block_scores = stacked(left, &Left::sums);
+  leave_out_rounding(screening, raw_norm);
   screening.gradient = screening.block_scores.colwise().sum();
-  if (shared > 0) find_leakage_shifts(screening, model, all.gram, all.cross);
-  evaluate(screening, raw_norm, stacked(grams, blocks),
+  if (shared > 0) find_leakage_shifts(screening, model, all.gram, all.cross.rightCols(layout.size));
+  evaluate(screening, raw_norm, stacked(left, &Left::grams),
            resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);
   return screening;

@@ -142,10 +142,7 @@ void find_leakage_shifts(Screening& screening, const FittedModel& model, const E
   const auto leakage = std::ranges::find(model.problem.shared, wears, parameter_of);
   if (leakage == model.problem.shared.end()) return;
   const auto row = static_cast<Eigen::Index>(leakage - model.problem.shared.begin());
-  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
-  scaled.diagonal().array() += kRidge;
-  const Eigen::MatrixXd swallowed = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * cross);
+  const Eigen::MatrixXd swallowed = NormalMatrix(gram).solve(cross);
   for (Variant& variant : screening.variants) {
     const Eigen::Index column = variant.columns.front();
     const double size = screening.gram(column, column);

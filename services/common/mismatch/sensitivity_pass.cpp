@@ -95,51 +95,84 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
 
   const Eigen::Index samples = outputs->values.rows(), channels = outputs->values.cols();
   const auto unknowns = static_cast<Eigen::Index>(shared.size() + own.size()),
-             laws = static_cast<Eigen::Index>(columns.size());
-  Linearisation all{.simulated = outputs->values,
-                    .residual = Eigen::VectorXd(samples * channels),
-                    .jacobian = RowMatrix::Zero(samples * channels, unknowns + laws)};
+             frees = static_cast<Eigen::Index>(free.slope.size());
+  Linearisation known{.simulated = std::move(outputs->values),
+                      .residual = Eigen::VectorXd(samples * channels),
+                      .jacobian = RowMatrix::Zero(samples * channels, unknowns)};
   for (Eigen::Index row = 0; row < samples * channels; ++row) {
     const Eigen::Index channel = row % channels, sample = row / channels;
     const double weight = 1.0 / part.noise_std(channel);
-    all.residual(row) = weight * (part.simulation->recorded()(sample, channel) - outputs->values(sample, channel));
+    known.residual(row) = weight * (part.simulation->recorded()(sample, channel) - known.simulated(sample, channel));
     for (std::size_t k = 0; k < free.slope.size(); ++k)
-      all.jacobian(row, free.column[k]) =
+      known.jacobian(row, free.column[k]) =
           weight * free.slope[k] * outputs->sensitivities(row, static_cast<Eigen::Index>(k));
-    auto site_column = static_cast<Eigen::Index>(free.slope.size());
-    for (Eigen::Index k = 0; k < laws; ++k)
-      all.jacobian(row, unknowns + k) = candidates[columns[static_cast<std::size_t>(k)].candidate].sites.empty()
-                                            ? 0.0
-                                            : weight * outputs->sensitivities(row, site_column++);
   }
-  outputs->sensitivities.resize(0, 0);
-  const std::vector<double>& time_s = part.time_s;
+  Pass pass;
+  pass.part_ = &part;
+  pass.channels = channels;
+  const auto other_laws = std::ranges::count_if(
+      columns, [&](const PassColumn& column) { return candidates[column.candidate].sites.empty(); });
+  auto others = std::make_shared<RowMatrix>(RowMatrix::Zero(samples * channels, other_laws));
+  pass.simulated_ = std::make_shared<const RowMatrix>(std::move(outputs->sensitivities));
+  pass.others_ = others;
+  Eigen::Index next_simulated = frees, next_other = 0;
   Eigen::VectorXd values(samples);
-  for (Eigen::Index k = 0; k < laws; ++k) {
-    const PassColumn& column = columns[static_cast<std::size_t>(k)];
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const PassColumn& column = columns[k];
     const Candidate& candidate = candidates[column.candidate];
-    if (!candidate.sites.empty()) continue;
+    const bool in_plant = !candidate.sites.empty();
+    pass.add_column(in_plant ? *pass.simulated_ : *others, in_plant ? next_simulated++ : next_other++, k);
+    if (in_plant) continue;
+    const Eigen::Index other = next_other - 1;
     const auto inputs = part.simulation->inputs();
     if (is_of_recording(candidate.law->kind) || std::ranges::find(inputs, candidate.channel) != inputs.end()) {
       const RowMatrix change =
           recording_column(part, values_at(model.problem, recording, shared, own), candidate, options);
-      for (Eigen::Index row = 0; row < samples * channels; ++row)
-        all.jacobian(row, unknowns + k) = column.unit * change.data()[row] / part.noise_std(row % channels);
+      others->col(other) = column.unit * change.reshaped<Eigen::RowMajor>();
       continue;
     }
     for (Eigen::Index c = 0; c < channels; ++c) {
       if (part.simulation->channels()[static_cast<std::size_t>(c)] != candidate.channel) continue;
-      fill_sensor_column(candidate, column, all.simulated, time_s, c, values);
+      fill_sensor_column(candidate, column, known.simulated, part.time_s, c, values);
       for (Eigen::Index sample = 0; sample < samples; ++sample)
-        all.jacobian(sample * channels + c, unknowns + k) = values(sample) / part.noise_std(c);
+        (*others)(sample * channels + c, other) = values(sample);
     }
   }
-  whiten(part.colour, all);
-  weigh(part.weight, all);
-  return Pass{.free = all.jacobian.leftCols(unknowns),
-              .laws = all.jacobian.rightCols(laws),
-              .residual = std::move(all.residual),
-              .channels = channels};
+  whiten(part.colour, known);
+  weigh(part.weight, known);
+  pass.free = std::move(known.jacobian);
+  pass.residual = std::move(known.residual);
+  return pass;
+}
+
+void Pass::add_column(const RowMatrix& from, Eigen::Index column, std::size_t place) {
+  if (!runs_.empty() && runs_.back().from == &from && runs_.back().first + runs_.back().count == column)
+    ++runs_.back().count;
+  else
+    runs_.push_back({&from, column, static_cast<Eigen::Index>(place), 1});
+}
+
+void Pass::add_law_row(Eigen::Index row, double factor, double* columns) const {
+  for (const Run& run : runs_) {
+    const double* from = run.from->data() + row * run.from->cols() + run.first;
+    double* to = columns + run.place;
+    for (Eigen::Index k = 0; k < run.count; ++k) to[k] += factor * from[k];
+  }
+}
+
+void Pass::law_row(Eigen::Index row, Eigen::Index columns, double* values) const {
+  const Eigen::Index channel = row % channels, sample = row / channels;
+  double scale = 1.0 / part_->noise_std(channel);
+  if (part_->weight.size() > 0) scale *= part_->weight(row);
+  std::fill_n(values, columns, 0.0);
+  if (scale == 0.0) return;
+  const ChannelColour white, &colour = part_->colour.empty() ? white : part_->colour[static_cast<std::size_t>(channel)];
+  const auto order = static_cast<Eigen::Index>(colour.coefficients.size());
+  if (order == 0 || sample < order) return add_law_row(row, scale, values);
+  scale /= colour.innovation_std;
+  add_law_row(row, scale, values);
+  for (Eigen::Index j = 1; j <= order; ++j)
+    add_law_row(row - j * channels, -scale * colour.coefficients[static_cast<std::size_t>(j - 1)], values);
 }
 
 }  // namespace sealwatch::mismatch

@@ -1,5 +1,8 @@
-// The whitened sensitivities of one recording: free quantities, candidate laws, residual.
+// The whitened sensitivities of one recording: free quantities, candidate laws, residual. A recording has hundreds of
+// megabytes of them, so that the laws' are kept once, as the simulation leaves them.
 #pragma once
+
+#include <memory>
 
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
@@ -18,12 +21,33 @@ struct PassColumn {
 
 [[nodiscard]] std::vector<PassColumn> pass_columns(const std::vector<Candidate>& candidates);
 
-/// d(simulated)/d(...) whitened: residual = recorded - simulated.
-struct Pass {
+/// d(simulated)/d(...) of one recording: residual = recorded - simulated. All whitened and weighed but the laws, whose
+/// rows are so as they are asked for.
+class Pass {
+ public:
   RowMatrix free;  ///< rows x (shared + own unknowns)
-  RowMatrix laws;  ///< rows x columns
   Eigen::VectorXd residual;
   Eigen::Index channels = 0;
+
+  /// The laws' columns in one row (sample * channels + channel).
+  void law_row(Eigen::Index row, Eigen::Index columns, double* values) const;
+
+ private:
+  friend Result<Pass> sensitivity_pass(const FittedModel&, std::size_t, const std::vector<Candidate>&,
+                                       const std::vector<PassColumn>&);
+
+  /// Consecutive columns that come from one matrix.
+  struct Run {
+    const RowMatrix* from;
+    Eigen::Index first, place, count;
+  };
+  void add_column(const RowMatrix& from, Eigen::Index column, std::size_t place);
+  void add_law_row(Eigen::Index row, double factor, double* columns) const;
+
+  const PemRecording* part_ = nullptr;
+  std::shared_ptr<const RowMatrix> simulated_;  ///< laws that act in the plant, unwhitened
+  std::shared_ptr<const RowMatrix> others_;     ///< and those of sensors and of the recording
+  std::vector<Run> runs_;
 };
 
 [[nodiscard]] Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording,

@@ -1,0 +1,57 @@
+#include "services/common/mismatch/gram.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace sealwatch::mismatch {
+namespace {
+
+Eigen::MatrixXd random_rows(Eigen::Index rows, Eigen::Index columns) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+}
+
+void add(RowBlock& block, const Eigen::MatrixXd& rows) {
+  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+    const Eigen::RowVectorXd row = rows.row(k);
+    block.add(row.data());
+  }
+}
+
+// Entry by entry in the order of the rows: the same number, not nearly the same.
+TEST(RowBlock, SumsProductsInTheOrderOfTheRows) {
+  for (const Eigen::Index columns : {1, 7, 8, 29}) {
+    const Eigen::MatrixXd rows = random_rows(37, columns);
+    RowBlock block(columns, 64);
+    add(block, rows);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns, columns);
+    block.add_gram_to(gram);
+    for (Eigen::Index i = 0; i < columns; ++i)
+      for (Eigen::Index j = 0; j < columns; ++j) {
+        volatile double sum = 0.0;
+        for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+          const volatile double product = rows(k, i) * rows(k, j);
+          sum = sum + product;
+        }
+        EXPECT_EQ(gram(i, j), sum) << columns << ' ' << i << ' ' << j;
+      }
+  }
+}
+
+TEST(RowBlock, AddsBlockAfterBlock) {
+  const Eigen::MatrixXd rows = random_rows(21, 11);
+  RowBlock block(11, 8);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(11, 11);
+  for (Eigen::Index begin = 0; begin < rows.rows(); begin += 8) {
+    block.clear();
+    add(block, rows.middleRows(begin, std::min<Eigen::Index>(8, rows.rows() - begin)));
+    EXPECT_EQ(block.full(), begin + 8 <= rows.rows());
+    block.add_gram_to(gram);
+  }
+  EXPECT_LT((gram - rows.transpose() * rows).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

@@ -1,0 +1,130 @@
+// The screening against the plain way: every column of all recordings is kept, and the unknowns' columns are taken off.
+#include "services/common/mismatch/screening.hpp"
+
+#include <gtest/gtest.h>
+
+#include "services/common/mismatch/linear_algebra.hpp"
+#include "services/common/mismatch/sensitivity_pass.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+AssetConfig with_free_parameters() {
+  AssetConfig asset = nominal_asset("eha");
+  for (const char* name : {"R_PL", "f_M", "R_CL"}) asset.parameters.at(name).estimate = true;
+  return asset;
+}
+
+// Two loads, coloured noise, weights, one value known within its tolerance.
+Data two_recordings(const AssetConfig& asset) {
+  Data data;
+  for (const double load : {0.8, 1.2}) {
+    AssetConfig loaded = asset;
+    loaded.parameters.at("phi").value *= load;
+    data.names.push_back(number(load));
+    data.samples.push_back(simulated(loaded, standard_pst(loaded, 20.0), 1.0));
+    const auto rows =
+        static_cast<Eigen::Index>(data.samples.back().time_s.size() * data.samples.back().channels.size());
+    data.colour.push_back(
+        NoiseColour(data.samples.back().channels.size(), {.coefficients = {0.5, 0.1}, .innovation_std = 0.8}));
+    data.weight.push_back(Eigen::VectorXd::LinSpaced(rows, 0.5, 1.0));
+  }
+  const double area = asset.parameters.at("A_C").value;
+  data.known = {{.name = "A_C", .value = area, .standard_deviation = 0.005 * area}};
+  return data;
+}
+
+// [shared unknowns, laws, residual] of all recordings one below the other, without what the recordings' own unknowns do;
+// what is known last.
+struct Rows {
+  RowMatrix shared, laws;
+  Eigen::VectorXd residual;
+};
+
+// `laws`: columns of all recordings.
+Rows rows_of(const FittedModel& model, std::size_t recording, const Screening& screening) {
+  const std::vector<PassColumn> columns = pass_columns(screening.candidates);
+  const std::size_t recordings = model.problem.recordings.size();
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  const Result<Pass> pass = sensitivity_pass(model, recording, screening.candidates, columns);
+  EXPECT_TRUE(pass);
+  Rows rows{.shared = pass->free.leftCols(shared),
+            .laws = RowMatrix::Zero(pass->free.rows(), screening.gram.cols()),
+            .residual = pass->residual};
+  std::vector<double> row(columns.size());
+  for (Eigen::Index r = 0; r < rows.laws.rows(); ++r) {
+    pass->law_row(r, std::ssize(columns), row.data());
+    Eigen::Index at = 0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      rows.laws(r, at + (columns[c].own ? static_cast<Eigen::Index>(recording) : 0)) = row[c];
+      at += columns[c].own ? static_cast<Eigen::Index>(recordings) : 1;
+    }
+  }
+  const RowMatrix own = pass->free.rightCols(pass->free.cols() - shared);
+  const Projection projection(own);
+  projection.remove_from(rows.shared);
+  projection.remove_from(rows.laws);
+  projection.remove_from(rows.residual);
+  return rows;
+}
+
+Rows known_rows(const FittedModel& model, Eigen::Index laws) {
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  Rows rows{.shared = RowMatrix::Zero(shared, shared),
+            .laws = RowMatrix::Zero(shared, laws),
+            .residual = Eigen::VectorXd::Zero(shared)};
+  for (Eigen::Index k = 0; k < shared; ++k) {
+    const Unknown& unknown = model.problem.shared[static_cast<std::size_t>(k)];
+    if (!unknown.is_known()) continue;
+    rows.shared(k, k) = -1.0 / unknown.prior_std;
+    rows.residual(k) = unknown.prior_residual(model.optimum.point.shared[static_cast<std::size_t>(k)]);
+  }
+  return rows;
+}
+
+TEST(Screening, TakesOffWhatTheUnknownsDo) {
+  constexpr double kRounding = 1e-9;  // of the sizes before
+  const AssetConfig asset = with_free_parameters();
+  const Data data = two_recordings(asset);
+  const Result<FittedModel> model = fit_model(asset, data, nullptr, 2);
+  ASSERT_TRUE(model) << model.error().describe();
+  const Result<Screening> screening = screen(*model, data, {});
+  ASSERT_TRUE(screening) << screening.error().describe();
+  std::vector<Rows> parts = {rows_of(*model, 0, *screening), rows_of(*model, 1, *screening),
+                             known_rows(*model, screening->gram.cols())};
+  const auto sum = [&](const auto& product) {
+    Eigen::MatrixXd all = product(parts.front());
+    for (std::size_t k = 1; k < parts.size(); ++k) all += product(parts[k]);
+    return all;
+  };
+  const NormalMatrix normal(
+      sum([](const Rows& rows) -> Eigen::MatrixXd { return rows.shared.transpose() * rows.shared; }));
+  const Eigen::MatrixXd of_laws =
+      normal.solve(sum([](const Rows& rows) -> Eigen::MatrixXd { return rows.shared.transpose() * rows.laws; }));
+  const Eigen::MatrixXd of_residual =
+      normal.solve(sum([](const Rows& rows) -> Eigen::MatrixXd { return rows.shared.transpose() * rows.residual; }));
+  const auto squares = [](const Rows& rows) -> Eigen::MatrixXd {
+    return rows.laws.colwise().squaredNorm().transpose();
+  };
+  const Eigen::VectorXd size = sum(squares).cwiseMax(1e-300).cwiseSqrt();
+  for (Rows& rows : parts) {
+    rows.laws -= rows.shared * of_laws;
+    rows.residual -= rows.shared * of_residual;
+  }
+  const Eigen::MatrixXd gram =
+      sum([](const Rows& rows) -> Eigen::MatrixXd { return rows.laws.transpose() * rows.laws; });
+  const Eigen::VectorXd gradient =
+      sum([](const Rows& rows) -> Eigen::MatrixXd { return rows.laws.transpose() * rows.residual; });
+  const double left = std::sqrt(model->misfit);
+  ASSERT_GT(size.size(), 100);
+  for (Eigen::Index j = 0; j < size.size(); ++j) {
+    EXPECT_NEAR(screening->gradient(j) / (size(j) * left), gradient(j) / (size(j) * left), kRounding) << j;
+    for (Eigen::Index k = 0; k < size.size(); ++k)
+      EXPECT_NEAR(screening->gram(j, k) / (size(j) * size(k)), gram(j, k) / (size(j) * size(k)), kRounding)
+          << j << ' ' << k;
+  }
+}
+
+}  // namespace
+}  // namespace sealwatch::mismatch

@@ -246,9 +246,9 @@ class LayerRunner {
   LatestOutputs latest_;
   std::set<std::string> forgotten_;  ///< assets whose past was not recalled yet
   std::deque<std::string> to_recall_;
-  std::map<std::string, std::vector<PastAct>> past_acts_;  ///< of forgotten assets
-  bool all_checked_ = false;                               ///< of the journal's outputs
-  std::chrono::steady_clock::time_point looked_back_{};
+  std::map<std::string, std::vector<PastAct>> past_acts_;   ///< of forgotten assets
+  bool all_checked_ = false;                                ///< of the journal's outputs
+  std::chrono::steady_clock::time_point look_back_next_{};  ///< under load, not before
   ResendQueue resends_;
   Admission admission_;
   bool took_local_ = false;  ///< of the running batch: inputs that came from no bus

@@ -12,6 +12,8 @@ using std::chrono::steady_clock;
 
 /// Under load an asset is recalled so often, and what was not read is looked at.
 constexpr std::chrono::milliseconds kPause{100};
+/// So many times as long as it takes, others are served in between.
+constexpr int kShare = 9;
 /// For how long that is looked at, at once: another asset's samples wait for no longer.
 constexpr std::chrono::milliseconds kInPassing{5};
 
@@ -103,9 +105,11 @@ Status LayerRunner::look_back(std::chrono::milliseconds at_most) {
 Status LayerRunner::look_back_in_passing(bool is_idle) {
   if (all_checked_) return {};
   const bool recalls = !to_recall_.empty();
-  if (steady_clock::now() - looked_back_ < kPause && !(is_idle && recalls)) return {};
+  const auto begin = steady_clock::now();
+  if (begin < look_back_next_ && !(is_idle && recalls)) return {};
   const Status looked = recalls ? look_back() : look_back(kInPassing);
-  looked_back_ = steady_clock::now();
+  const auto end = steady_clock::now();
+  look_back_next_ = end + std::max<steady_clock::duration>(kPause, kShare * (end - begin));
   return looked;
 }
 

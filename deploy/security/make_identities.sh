@@ -18,7 +18,8 @@ Every identity gets a folder DIRECTORY/NAME; DIRECTORY/ca holds the authorities'
 
 options:
   --days N           how long identities and permissions hold (397, at most until the authorities expire)
-  --may RIGHTS       with commas: read, raw_samples, resend_request, acknowledgement, maintenance_event, model_acceptance
+  --may RIGHTS       with commas: read, raw_samples, resend_request, acknowledgement, maintenance_event, retraction,
+                     model_acceptance
 when the authorities are made, kept from then on:
   --authority-days N how long the authorities hold (7300)
   --domain N         DDS domain (0)
@@ -40,31 +41,31 @@ fail() { echo "$me: $1" >&2; exit 2; }
 # ---- who may what --------------------------------------------------------------------------------------------------------------
 
 layers=(data-acquisition data-manipulation state-detection health-assessment prognostic-assessment advisory-generation)
-roles=(sender replay operator maintenance engineer subscriber)
+roles=(sender replay operator maintenance reviewer engineer subscriber)
 conclusions='test_features state_report health_report leakage_estimate remaining_life pst_request advisory acknowledgement
-  maintenance_event model_discrepancy model_acceptance'
-rights=(read raw_samples resend_request acknowledgement maintenance_event model_acceptance)
+  maintenance_event retraction model_discrepancy model_acceptance'
+rights=(read raw_samples resend_request acknowledgement maintenance_event retraction model_acceptance)
 
 # Sets `writes` and `reads`: the topics of a layer (docs/topics.md), or of somebody with these rights.
 topics_of() {  # NAME RIGHTS
   local right
   writes='' reads='service_status resend_request'
   case $1 in
-    data-acquisition) writes='sample_block' reads+=' raw_samples maintenance_event' ;;
+    data-acquisition) writes='sample_block' reads+=' raw_samples maintenance_event retraction' ;;
     data-manipulation) writes='test_window test_features' reads+=' sample_block' ;;
-    state-detection) writes='state_report' reads+=' test_window test_features maintenance_event model_acceptance model_discrepancy' ;;
+    state-detection) writes='state_report' reads+=' test_window test_features maintenance_event retraction model_acceptance model_discrepancy' ;;
     health-assessment) writes='health_report model_discrepancy' reads+=' test_window test_features state_report' ;;
     prognostic-assessment)
       writes='leakage_estimate remaining_life pst_request'
-      reads+=' test_window health_report maintenance_event model_acceptance model_discrepancy' ;;
+      reads+=' test_window health_report maintenance_event retraction model_acceptance model_discrepancy' ;;
     advisory-generation)
       writes='advisory'
-      reads+=' state_report health_report leakage_estimate remaining_life acknowledgement maintenance_event' ;;
+      reads+=' state_report health_report leakage_estimate remaining_life acknowledgement maintenance_event retraction' ;;
     *)
       for right in ${2//,/ }; do
         case $right in
           read) reads+=" $conclusions" ;;
-          raw_samples) writes+=" raw_samples" reads+=' pst_request maintenance_event' ;;
+          raw_samples) writes+=" raw_samples" reads+=' pst_request maintenance_event retraction' ;;
           *) writes+=" $right" ;;
         esac
       done
@@ -79,6 +80,7 @@ rights_of_role() {
     replay) echo read,raw_samples,resend_request ;;
     operator) echo read,acknowledgement ;;
     maintenance) echo read,maintenance_event ;;
+    reviewer) echo read,retraction ;;
     engineer) echo read,model_acceptance ;;
     subscriber) echo read ;;
   esac

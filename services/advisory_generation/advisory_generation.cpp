@@ -33,11 +33,14 @@ void AdvisoryGeneration::restore(const Message& own_output) {
   asset.current = *advisory;
   const Header& header = advisory->header;
   if (is_answer_to_replacement(*advisory)) {
-    asset.memory = {};
-    asset.judged.clear();
-    asset.replaced = UtcTime{header.event_time_ns};
+    note_replacement(header.source_ids.front(), UtcTime{header.event_time_ns}, asset);
+  } else if (const auto renewed = retraction_of_renewed(*advisory)) {
+    learn(*renewed, asset);
+    const auto record = advisory->reasons.empty() ? std::nullopt : from_words(advisory->reasons.back());
+    if (record) revise_last(record->verdict, asset);
+    judge_anew(asset);
   } else if (const auto retraction = answered_retraction(*advisory)) {
-    apply(*retraction, asset);
+    learn(*retraction, asset);
   } else if (header.message_id == "advisory/" + header.pst_id && !advisory->reasons.empty()) {
     std::optional<UtcTime> time;
     if (header.event_time_known) time = UtcTime{header.event_time_ns};
@@ -54,7 +57,8 @@ Conclusion AdvisoryGeneration::receive(const Message& input) {
   if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health);
   if (const auto* leakage = std::get_if<LeakageEstimate>(&input)) return join(*leakage, &Pending::leakage);
   if (const auto* state = std::get_if<StateReport>(&input))
-    return state->header.pst_id.empty() ? overdue(*state) : join(*state, &Pending::state);
+    return state->header.pst_id.empty() && !retraction_answered(state->header) ? overdue(*state)
+                                                                               : join(*state, &Pending::state);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input))
     return is_replacement(*event) ? replaced(*event) : retracted(*event);
   if (const auto* seen = std::get_if<Acknowledgement>(&input)) return acknowledged(*seen);
@@ -63,6 +67,7 @@ Conclusion AdvisoryGeneration::receive(const Message& input) {
 
 template <class Input>
 Conclusion AdvisoryGeneration::join(const Input& input, std::optional<Input> Pending::*slot) {
+  if (retraction_answered(input.header)) return take_answer(input, slot);
   const std::string& pst_id = input.header.pst_id;
   const auto& concluded = assets_[input.asset_id].concluded;
   const bool known = std::find(concluded.begin(), concluded.end(), "advisory/" + pst_id) != concluded.end();
@@ -96,9 +101,16 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   const Assessment assessment = assess(evidence, site, options_);
   const InForce& in_force = asset.memory.judge(assessment.verdict, now, options_);
   remember({cause.pst_id, now, assessment.verdict}, asset);
-  const Recommendation recommendation = recommend(evidence, assessment, in_force, site, part_of(asset_id));
+  put_out(evidence, cause, assessment, in_force, conclusion);
+  return conclusion;
+}
 
-  Advisory advisory = revision_of(asset.current, asset_id, recommendation, cause);
+void AdvisoryGeneration::put_out(const Evidence& evidence, const Header& cause, const Assessment& assessment,
+                                 const InForce& in_force, Conclusion& conclusion) {
+  const std::string& asset_id = evidence.life.asset_id;
+  const SiteConfig* site = site_of(asset_id);
+  const Recommendation recommendation = recommend(evidence, assessment, in_force, site, part_of(asset_id));
+  Advisory advisory = revision_of(assets_[asset_id].current, asset_id, recommendation, cause);
   advisory.header.source_ids = source_ids(evidence);
   advisory.reasons = assessment.reasons;
   advisory.reasons.insert(advisory.reasons.end(), recommendation.also.begin(), recommendation.also.end());
@@ -113,7 +125,6 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   advisory.reasons.push_back(in_words(assessment.verdict, in_force));
   if (is_replacement(advisory.action)) advisory.request_for_work = {work_order(advisory, recommendation)};
   put_out(std::move(advisory), conclusion);
-  return conclusion;
 }
 
 Conclusion AdvisoryGeneration::overdue(const StateReport& report) {
@@ -133,10 +144,9 @@ Conclusion AdvisoryGeneration::replaced(const MaintenanceEvent& event) {
   Asset& asset = assets_[event.asset_id];
   const UtcTime time{event.header.event_time_ns};
   const bool newer_known = asset.replaced && *asset.replaced >= time;
-  if (!event.header.event_time_known || newer_known) return conclusion;
-  asset.memory = {};
-  asset.judged.clear();
-  asset.replaced = time;
+  const bool withdrawn = !asset.retracted.holds(event.header.message_id);
+  if (!event.header.event_time_known || newer_known || withdrawn) return conclusion;
+  note_replacement(event.header.message_id, time, asset);
   const bool tested_since = asset.current && asset.last_test && *asset.last_test > time;
   put_out(tested_since ? after_late_replacement(*asset.current, event) : after_replacement(asset.current, event),
           conclusion);

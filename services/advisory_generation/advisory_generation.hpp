@@ -2,8 +2,8 @@
 //
 // Driven by remaining_life, joined with health_report, state_report and leakage_estimate of the same pst_id, in
 // whatever order they come. Acknowledgements, replacements, retractions and overdue tests are answered at once; after a
-// retraction the memory is what the tests that still count make of it. Tests older than the
-// last one judged change nothing. docs/advisories.md has the decision table and the rules against flapping.
+// retraction the memory is what the tests that still count make of it, and the advice is renewed as soon as the layers
+// below have said what they make of them. Tests older than the last one judged change nothing. docs/advisories.md has the decision table and the rules against flapping.
 #pragma once
 
 #include <map>
@@ -35,7 +35,7 @@ class AdvisoryGeneration final : public Layer {
   [[nodiscard]] Conclusion receive(const Message& input) override;
 
  private:
-  /// Inputs of one test until all are there.
+  /// Inputs of one test, or answers to one retraction, until all are there.
   struct Pending {
     std::optional<RemainingLife> life;
     std::optional<HealthReport> health;
@@ -43,11 +43,12 @@ class AdvisoryGeneration final : public Layer {
     std::optional<LeakageEstimate> leakage;
     [[nodiscard]] bool complete() const { return life && health && state && leakage; }
   };
-  /// One test of the memory.
+  /// One test of the memory, or a replacement between two.
   struct Judged {
     std::string pst_id;
     std::optional<UtcTime> time;
     TestVerdict verdict;
+    std::string replacement_id = {};  ///< "" of a test
   };
   /// What is remembered of one asset, all of it rebuilt from its advisories.
   struct Asset {
@@ -55,8 +56,10 @@ class AdvisoryGeneration final : public Layer {
     VerdictMemory memory;
     std::optional<UtcTime> last_test;
     std::optional<UtcTime> replaced;
-    std::vector<Judged> judged;  ///< the last kMostJudged, in the order of judgement
+    std::vector<Judged> judged;                   ///< the last kMostJudged, in the order of judgement
+    std::map<std::string, UtcTime> replacements;  ///< by message id
     RetractedTests retracted;
+    std::set<std::string> retractions;   ///< all that are known
     std::vector<std::string> concluded;  ///< message ids of all advisories
   };
 
@@ -66,11 +69,27 @@ class AdvisoryGeneration final : public Layer {
   template <class Input>
   [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
   [[nodiscard]] Conclusion advise(const Evidence& evidence);
+  /// What all tests so far, of which the evidence is the last, make the advice; and puts it out.
+  void put_out(const Evidence& evidence, const Header& cause, const Assessment& assessment, const InForce& in_force,
+               Conclusion& conclusion);
   [[nodiscard]] Conclusion overdue(const StateReport& report);
   [[nodiscard]] Conclusion replaced(const MaintenanceEvent& event);
   [[nodiscard]] Conclusion retracted(const MaintenanceEvent& event);
   /// The memory as it is with the tests that count after `retraction`.
   void apply(const Retraction& retraction, Asset& asset) const;
+  /// Likewise, once: false where it was known. It may come by itself, or be named by an answer to it alone, where this
+  /// service's journal was lost.
+  bool learn(const Retraction& retraction, Asset& asset) const;
+  /// The memory as the tests make it that are remembered and count.
+  void judge_anew(Asset& asset) const;
+  /// Takes what a layer below made of the tests that count after a retraction.
+  template <class Input>
+  [[nodiscard]] Conclusion take_answer(const Input& input, std::optional<Input> Pending::*slot);
+  /// The advice that follows from them, once all have answered.
+  void renew(const std::string& retraction_id, Conclusion& conclusion);
+  /// What the last test that counts says by all that is known now.
+  static void revise_last(const TestVerdict& verdict, Asset& asset);
+  static void note_replacement(const std::string& message_id, UtcTime time, Asset& asset);
   static void remember(Judged judged, Asset& asset);
   [[nodiscard]] Conclusion acknowledged(const Acknowledgement& acknowledgement);
   /// Remembers `advisory` and puts it out, after the one that it supersedes.
@@ -82,7 +101,7 @@ class AdvisoryGeneration final : public Layer {
 
   Configuration configuration_;
   Options options_;
-  std::map<std::string, Pending> pending_;  ///< by pst_id
+  std::map<std::string, Pending> pending_;  ///< by pst_id, or id of the retraction
   std::map<std::string, Asset> assets_;     ///< by asset_id
 };
 

@@ -149,15 +149,19 @@ Advisory after_retraction(const Advisory& current, const MaintenanceEvent& event
   Header cause = event.header;
   cause.pst_id.clear();
   Advisory advisory = said_again(current, answer_to(cause));
-  const std::string what = !retraction.withdrawn_id.empty() ? "retraction '" + retraction.withdrawn_id + "' withdrawn"
-                           : retraction.since ? "all tests since " + format_date(*retraction.since) + " retracted"
-                                              : "test " + retraction.pst_id + " retracted";
-  advisory.reasons.insert(advisory.reasons.begin(), what + " by " + event.reported_by +
-                                                        (event.remark.empty() ? "" : " (" + event.remark + ")") +
-                                                        ": this advice stands until the next test, which is judged "
-                                                        "with the tests that count; its id is " +
+  advisory.reasons.insert(advisory.reasons.begin(), in_words(retraction, event) +
+                                                        ": this advice is about to be renewed from the tests that "
+                                                        "count; its id is " +
                                                         retraction.id);
   return advisory;
+}
+
+std::string renewed_id(const std::string& retraction_id) { return "renewed/" + retraction_id; }
+
+std::optional<Retraction> retraction_of_renewed(const Advisory& advisory) {
+  const std::string prefix = "advisory/" + renewed_id({});
+  const std::string& id = advisory.header.message_id;
+  return id.starts_with(prefix) ? retraction_of(advisory.asset_id, id.substr(prefix.size())) : std::nullopt;
 }
 
 std::optional<Retraction> answered_retraction(const Advisory& advisory) {

@@ -30,9 +30,12 @@ namespace sealwatch::advisory_generation {
 /// The call for an overdue test: its own advisory, or a reason more where something at least as urgent stands.
 [[nodiscard]] Advisory with_overdue_test(const std::optional<Advisory>& current, const StateReport& report);
 
-/// The advice in force stands; the retraction (or its withdrawal) is named, with who and why.
+/// The advice in force stands until it is renewed; the retraction (or what it withdraws) is named, with who and why.
 [[nodiscard]] Advisory after_retraction(const Advisory& current, const MaintenanceEvent& event,
                                         const Retraction& retraction);
+/// The cause of the advice that is renewed from the tests that count after a retraction.
+[[nodiscard]] std::string renewed_id(const std::string& retraction_id);
+[[nodiscard]] std::optional<Retraction> retraction_of_renewed(const Advisory& advisory);
 /// Which retraction the advisory answers; nothing for others.
 [[nodiscard]] std::optional<Retraction> answered_retraction(const Advisory& advisory);
 

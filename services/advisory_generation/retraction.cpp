@@ -11,19 +11,56 @@ constexpr std::size_t kMostJudged = 60;
 }  // namespace
 
 void AdvisoryGeneration::remember(Judged judged, Asset& asset) {
-  asset.retracted.know(judged.pst_id, judged.time);
+  if (judged.replacement_id.empty()) asset.retracted.know(judged.pst_id, judged.time);
   asset.judged.push_back(std::move(judged));
   if (asset.judged.size() > kMostJudged) asset.judged.erase(asset.judged.begin());
 }
 
+void AdvisoryGeneration::note_replacement(const std::string& message_id, UtcTime time, Asset& asset) {
+  asset.memory = {};
+  asset.replaced = time;
+  asset.replacements[message_id] = time;
+  Judged replacement;
+  replacement.time = time;
+  replacement.replacement_id = message_id;
+  remember(std::move(replacement), asset);
+}
+
 void AdvisoryGeneration::apply(const Retraction& retraction, Asset& asset) const {
   asset.retracted.apply(retraction);
+  asset.replaced.reset();
+  for (const auto& [message_id, time] : asset.replacements)
+    if (asset.retracted.holds(message_id)) asset.replaced = std::max(asset.replaced.value_or(time), time);
+  judge_anew(asset);
+}
+
+bool AdvisoryGeneration::learn(const Retraction& retraction, Asset& asset) const {
+  if (!asset.retractions.insert(retraction.id).second) return false;
+  apply(retraction, asset);
+  return true;
+}
+
+void AdvisoryGeneration::judge_anew(Asset& asset) const {
   asset.memory = {};
   asset.last_test.reset();
-  for (const Judged& test : asset.judged) {
-    if (!asset.retracted.counts(test.pst_id)) continue;
-    (void)asset.memory.judge(test.verdict, test.time, options_);
-    if (test.time) asset.last_test = test.time;
+  for (const Judged& one : asset.judged) {
+    if (!one.replacement_id.empty()) {
+      if (asset.retracted.holds(one.replacement_id)) asset.memory = {};
+      continue;
+    }
+    if (!asset.retracted.counts(one.pst_id)) continue;
+    (void)asset.memory.judge(one.verdict, one.time, options_);
+    if (one.time) asset.last_test = one.time;
+  }
+}
+
+void AdvisoryGeneration::revise_last(const TestVerdict& verdict, Asset& asset) {
+  for (auto one = asset.judged.rbegin(); one != asset.judged.rend(); ++one) {
+    const bool is_test = one->replacement_id.empty();
+    if (!is_test && asset.retracted.holds(one->replacement_id)) return;  // none since counts
+    if (!is_test || !asset.retracted.counts(one->pst_id)) continue;
+    one->verdict = verdict;
+    return;
   }
 }
 
@@ -32,9 +69,50 @@ Conclusion AdvisoryGeneration::retracted(const MaintenanceEvent& event) {
   const auto retraction = retraction_of(event.asset_id, event.header.message_id);
   if (!retraction) return conclusion;
   Asset& asset = assets_[event.asset_id];
-  apply(*retraction, asset);
-  if (asset.current) put_out(after_retraction(*asset.current, event, *retraction), conclusion);
+  if (learn(*retraction, asset) && asset.current)
+    put_out(after_retraction(*asset.current, event, *retraction), conclusion);
   return conclusion;
+}
+
+template <class Input>
+Conclusion AdvisoryGeneration::take_answer(const Input& input, std::optional<Input> Pending::*slot) {
+  const std::string id = *retraction_answered(input.header);
+  const Asset& asset = assets_[input.asset_id];
+  const bool is_known = std::ranges::find(asset.concluded, "advisory/" + renewed_id(id)) != asset.concluded.end();
+  if (is_known || !asset.current || !retraction_of(input.asset_id, id))
+    return {.outputs = {}, .consumed = {input.header.message_id}};
+  pending_[id].*slot = input;
+  Conclusion conclusion;
+  renew(id, conclusion);
+  return conclusion;
+}
+
+template Conclusion AdvisoryGeneration::take_answer(const RemainingLife&, std::optional<RemainingLife> Pending::*);
+template Conclusion AdvisoryGeneration::take_answer(const HealthReport&, std::optional<HealthReport> Pending::*);
+template Conclusion AdvisoryGeneration::take_answer(const StateReport&, std::optional<StateReport> Pending::*);
+template Conclusion AdvisoryGeneration::take_answer(const LeakageEstimate&, std::optional<LeakageEstimate> Pending::*);
+
+void AdvisoryGeneration::renew(const std::string& retraction_id, Conclusion& conclusion) {
+  const auto found = pending_.find(retraction_id);
+  if (found == pending_.end()) return;
+  const Pending& answers = found->second;
+  if (!answers.life || !answers.health || !answers.state) return;
+  Asset& asset = assets_[answers.life->asset_id];
+  LeakageEstimate last;  // what is known of it stands in the remaining life
+  last.asset_id = answers.life->asset_id;
+  last.header.event_time_known = last.used_for_forecast = answers.life->condition_known;
+  last.header.event_time_ns = answers.life->header.event_time_ns;
+  const Evidence evidence{*answers.life, *answers.health, *answers.state, last};
+  pending_.erase(found);
+  for (const Header* answer : {&evidence.life.header, &evidence.health.header, &evidence.state.header})
+    conclusion.consumed.push_back(answer->message_id);
+  (void)learn(*retraction_of(evidence.life.asset_id, retraction_id), asset);
+  const Assessment assessment = assess(evidence, site_of(evidence.life.asset_id), options_);
+  revise_last(assessment.verdict, asset);
+  judge_anew(asset);
+  Header cause = evidence.life.header;
+  cause.message_id = renewed_id(retraction_id);
+  put_out(evidence, cause, assessment, asset.memory.in_force(), conclusion);
 }
 
 }  // namespace sealwatch::advisory_generation

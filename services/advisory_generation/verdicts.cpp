@@ -250,6 +250,7 @@ std::optional<VerdictRecord> from_words(const std::string& line) {
   record.verdict = {.wear = test->wear,
                     .wear_a_campaign_earlier = test->wear_a_campaign_earlier,
                     .replace_by = test->replace_by,
+                    .urgent = test->wear == WearLevel::replace,  // nothing else makes it so
                     .instruments_doubted = test->doubted,
                     .failed = test->failed,
                     .doubted_channels = test->doubted_channels};

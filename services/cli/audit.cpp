@@ -22,6 +22,11 @@ struct Trail {
 std::optional<std::vector<Trail>> read_trails(const AuditOptions& options) {
   const auto connections = journals_at_hand(options.state_directory, options.config);
   if (!connections) return std::nullopt;
+  std::vector<AuditAnchor> heard;
+  for (const auto& [service, connection] : *connections) {
+    const auto anchors = read_audit_anchors(connection, service);
+    if (anchors) heard.insert(heard.end(), anchors->begin(), anchors->end());
+  }
   std::vector<Trail> trails;
   for (const auto& [service, connection] : *connections) {
     auto entries = read_audit_trail(connection, service);
@@ -30,6 +35,7 @@ std::optional<std::vector<Trail>> read_trails(const AuditOptions& options) {
       return std::nullopt;
     }
     auto broken = find_break(service, *entries);
+    if (!broken) broken = find_cut(service, *entries, heard);
     trails.push_back({service, std::move(*entries), std::move(broken)});
   }
   return trails;

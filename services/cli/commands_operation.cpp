@@ -85,7 +85,8 @@ void add_retract(CommandLine& line) {
   CLI::Option_group* what = retract->add_option_group("what");
   what->add_option("--test", options->pst_id, "the test's PST id, as shown by `show` and `status`");
   what->add_option("--since", options->since, "UTC time: all tests known now that were made at or after it");
-  what->add_option("--withdraw", options->withdraw, "id of a retraction: its tests count again");
+  what->add_option("--withdraw", options->withdraw,
+                   "id of a retraction or replacement: the tests that it set aside count again");
   what->require_option(1);
   retract->add_option("--by", options->by, "who")->required();
   retract->add_option("--reason", options->reason, "why")->required();

@@ -7,6 +7,7 @@
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/time.hpp"
+#include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/alarm_state.hpp"
 #include "services/cli/alarms_listed.hpp"
 #include "services/cli/commands.hpp"
@@ -263,8 +264,11 @@ int run_replaced(const ReplacedOptions& options) {
   }
   if (sent == kOk && says_that_it_waits(*session, message)) return kOk;
   if (sent == kOk)
-    std::printf("received: only tests of %s since %s count for the new %s\n", options.asset_id.c_str(),
-                date(at->nanoseconds).c_str(), options.what.c_str());
+    std::printf(
+        "received: only tests of %s since %s count for the new %s\n"
+        "taken back by: sealwatch retract %s --withdraw %s --by NAME --reason WHY\n",
+        options.asset_id.c_str(), date(at->nanoseconds).c_str(), options.what.c_str(),
+        shell_word(options.asset_id).c_str(), shell_word(message.header.message_id).c_str());
   return sent;
 }
 

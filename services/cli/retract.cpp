@@ -30,12 +30,15 @@ std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
     what = format_utc(*since);
   }
   event.header.message_id = retraction_id(options.asset_id, event.kind, what, {event.header.event_time_ns});
-  if (event.kind != kRetractionWithdrawn || retraction_of(options.asset_id, what)) return event;
+  const bool can_be_withdrawn =
+      retraction_of(options.asset_id, what) ||
+      (time_of_replacement(what) && what.starts_with("maintenance_event/" + options.asset_id + "/"));
+  if (event.kind != kRetractionWithdrawn || can_be_withdrawn) return event;
   complain(Error{.file = {},
                  .place = "--withdraw",
                  .value = what,
-                 .rule = "is no retraction of asset " + options.asset_id,
-                 .advice = "give the id printed by sealwatch retract; the advisory's reasons show it, too"});
+                 .rule = "is no retraction and no replacement of asset " + options.asset_id,
+                 .advice = "give the id printed by sealwatch retract or replaced, or shown by sealwatch audit"});
   return std::nullopt;
 }
 
@@ -50,8 +53,10 @@ int run_retract(const RetractOptions& options) {
       send(session, *event, {"data_acquisition", "state_detection", "prognostic_assessment", "advisory_generation"});
   if (sent != kOk || says_that_it_waits(*session, *event)) return sent;
   const bool withdrawn = event->kind == kRetractionWithdrawn;
-  std::printf("received: %s; the remaining life is concluded anew, the advice with the next test\n",
-              withdrawn ? "these tests count again" : "these tests no longer count");
+  const char* const what = !withdrawn                              ? "these tests no longer count"
+                           : time_of_replacement(options.withdraw) ? "the tests before this replacement count again"
+                                                                   : "these tests count again";
+  std::printf("received: %s; the remaining life and the advice are concluded anew\n", what);
   if (!withdrawn)
     std::printf("taken back by: sealwatch retract %s --withdraw %s --by NAME --reason WHY\n",
                 shell_word(options.asset_id).c_str(), shell_word(event->header.message_id).c_str());

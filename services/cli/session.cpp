@@ -80,7 +80,7 @@ std::string running_services(Session& session, const std::vector<std::string>& w
     if (!running.empty()) end = std::min(end, begin + kTwoHeartbeats / 2);  // the others are heard as soon
     for (const BusItem& item : session.bus->receive(std::chrono::milliseconds(100)))
       if (const auto* status = std::get_if<ServiceStatus>(&item))
-        if (status->state == "running" && std::ranges::find(wanted, status->service) != wanted.end())
+        if (status->state != "stopping" && std::ranges::find(wanted, status->service) != wanted.end())
           running[status->service] = status->service + " (process " + std::to_string(status->process_id) + ")";
   }
   std::string text;

@@ -101,6 +101,11 @@ void DataAcquisition::restore(const Message& own_output) {
   if (ends(block->boundary)) finish(place);
 }
 
+bool DataAcquisition::tells_all(const Message& last_of_test) const {
+  const auto* block = std::get_if<SampleBlock>(&last_of_test);
+  return block != nullptr && ends(block->boundary);
+}
+
 Conclusion DataAcquisition::receive(const Message& input) {
   Conclusion conclusion;
   if (const auto* raw = std::get_if<RawSamples>(&input)) take_raw(*raw, conclusion);

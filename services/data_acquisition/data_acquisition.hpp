@@ -30,6 +30,8 @@ class DataAcquisition final : public Layer {
   [[nodiscard]] std::span<const Topic> inputs() const override;
   [[nodiscard]] std::span<const Topic> outputs() const override;
   void restore(const Message& own_output) override;
+  /// The block that ends it.
+  [[nodiscard]] bool tells_all(const Message& last_of_test) const override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
   [[nodiscard]] Conclusion tick(UtcTime now) override;
   /// Whether the test that begins with this block is closed.

@@ -14,7 +14,6 @@ namespace sealwatch {
 namespace {
 
 constexpr const char* kProducer = "health_assessment 0.1.0";
-constexpr std::string_view kEventPrefix = "maintenance_event/";
 
 void add_source(Header& header, const Header& source) {
   const auto add = [&header](const std::string& id) {
@@ -26,8 +25,7 @@ void add_source(Header& header, const Header& source) {
 }
 
 bool is_first_after_replacement(const Header& header) {
-  return std::any_of(header.source_ids.begin(), header.source_ids.end(),
-                     [](const std::string& id) { return id.starts_with(kEventPrefix); });
+  return std::ranges::any_of(header.source_ids, is_replacement_id);
 }
 
 HealthReport begin_report(const StateReport& state_report, const TestFeatures& features) {
@@ -47,11 +45,9 @@ void take_grade(std::optional<double> grade, HealthReport& report) {
   report.health_grade = grade.value_or(0.0);
 }
 
-/// The retraction that a report of no test answers; its id comes first among the sources.
 std::optional<Retraction> answered_retraction(const std::string& asset_id, const Header& header) {
-  if (!header.pst_id.empty() || header.source_ids.empty()) return std::nullopt;
-  const auto named = std::ranges::find_if(header.source_ids, is_retraction_id);
-  return named == header.source_ids.end() ? std::nullopt : retraction_of(asset_id, *named);
+  const auto id = retraction_answered(header);
+  return id ? retraction_of(asset_id, *id) : std::nullopt;
 }
 
 void add_trend(const std::vector<GradeAt>& grades, HealthReport& report) {
@@ -100,7 +96,7 @@ void HealthAssessment::restore(const Message& own_output) {
     state.discrepancies.forget([&](const std::string& pst_id) { return !state.past.counts(pst_id); }, released);
     return;
   }
-  learn(state, *report);
+  state.past.add(*report);
   state.discrepancies.restore(*report, is_first_after_replacement(report->header));
 }
 
@@ -173,8 +169,8 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
   const AssetConfig unknown;
   report.inadmissible_reasons =
       inadmissible_reasons(asset == assets_.end() ? unknown : asset->second, state_report, features);
-  if (is_first_after_replacement(report.header)) state.past.restart();
-  const std::optional<HealthReport> last = state.past.last();
+  const bool is_first = is_first_after_replacement(report.header);
+  const std::optional<HealthReport> last = is_first ? std::nullopt : state.past.last();
   report.admissible_for_prognosis = report.inadmissible_reasons.empty();
   if (state_report.judgements.empty() || is_poor_recording(state_report) || asset == assets_.end()) {
     carry_over(last, report);
@@ -198,14 +194,9 @@ HealthReport HealthAssessment::conclude(AssetState& state, const StateReport& st
                                  " found may be the cause as well: these are measured quantities, which an accepted "
                                  "model explains but does not change");
   }
-  learn(state, report);
+  state.past.add(report);
   add_trend(state.past.grades(), report);
   return report;
-}
-
-void HealthAssessment::learn(AssetState& state, const HealthReport& report) {
-  if (is_first_after_replacement(report.header)) state.past.restart();
-  state.past.add(report);
 }
 
 void HealthAssessment::retract(AssetState& state, const StateReport& answer, Conclusion& conclusion) {

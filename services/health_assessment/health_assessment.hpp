@@ -56,7 +56,6 @@ class HealthAssessment final : public Layer {
   void take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const;
   void settle(AssetState& state, const StateReport& report, bool admissible, Conclusion& conclusion) const;
   [[nodiscard]] HealthReport conclude(AssetState& state, const StateReport& report, const TestFeatures& features) const;
-  static void learn(AssetState& state, const HealthReport& report);
   [[nodiscard]] AssetState& state_of(const std::string& asset_id);
   /// The health that the tests which count say, after `answer`, with which state detection answered a retraction.
   static void retract(AssetState& state, const StateReport& answer, Conclusion& conclusion);

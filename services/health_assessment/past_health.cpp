@@ -32,14 +32,17 @@ void carry_over(const std::optional<HealthReport>& last, HealthReport& report) {
     fault.evidence = {std::string(kCarried) + last->header.message_id + ": this test does not tell"};
 }
 
-void PastHealth::restart() {
-  tests_.clear();
-  reports_.clear();
+bool PastHealth::begins(const std::vector<std::string>& replacements) const {
+  return std::ranges::any_of(replacements, [this](const auto& id) { return retracted_.holds(id); });
 }
 
 void PastHealth::add(const HealthReport& report) {
   const bool graded = report.admissible_for_prognosis && report.health_grade_known && report.header.event_time_known;
-  Test test{.pst_id = report.header.pst_id, .time = {}, .graded = graded, .grade = report.health_grade};
+  Test test{.pst_id = report.header.pst_id,
+            .time = {},
+            .graded = graded,
+            .grade = report.health_grade,
+            .replacements = replacements_before(report.header)};
   if (report.header.event_time_known) test.time = UtcTime{report.header.event_time_ns};
   retracted_.know(test.pst_id, test.time);
   tests_.push_back(std::move(test));
@@ -51,6 +54,7 @@ std::optional<HealthReport> PastHealth::last() const {
   std::optional<HealthReport> last;
   const HealthReport* before = nullptr;
   for (const HealthReport& report : reports_) {
+    if (begins(replacements_before(report.header))) last.reset(), before = nullptr;
     const bool carried = is_carried(report, before);
     const bool own_grade = !carried || before == nullptr || report.health_grade != before->health_grade;
     before = &report;
@@ -70,8 +74,10 @@ std::optional<HealthReport> PastHealth::last() const {
 
 std::vector<GradeAt> PastHealth::grades() const {
   std::vector<GradeAt> grades;
-  for (const Test& test : tests_)
+  for (const Test& test : tests_) {
+    if (begins(test.replacements)) grades.clear();
     if (test.graded && counts(test.pst_id)) grades.push_back({*test.time, test.grade});
+  }
   if (grades.size() > trend_tests_)
     grades.erase(grades.begin(), grades.end() - static_cast<std::ptrdiff_t>(trend_tests_));
   return grades;

@@ -21,10 +21,8 @@ class PastHealth {
  public:
   explicit PastHealth(std::size_t trend_tests = 24) : trend_tests_(trend_tests) {}
 
-  /// The actuator is a new one.
-  void restart();
   void add(const HealthReport& report);
-  /// From now on the tests that it means do not count, or count again.
+  /// From now on the tests that it means do not count, or count again, or the replacement that it means was none.
   void apply(const Retraction& retraction) { retracted_.apply(retraction); }
   [[nodiscard]] bool counts(const std::string& pst_id) const { return retracted_.counts(pst_id); }
 
@@ -39,10 +37,13 @@ class PastHealth {
     std::optional<UtcTime> time;
     bool graded = false;  ///< admissible, with a grade and a date
     double grade = 0.0;
+    std::vector<std::string> replacements;  ///< ids of those that it is the first test after
   };
+  /// Whether the actuator or seal is another from this test on.
+  [[nodiscard]] bool begins(const std::vector<std::string>& replacements) const;
 
   std::size_t trend_tests_;
-  std::vector<Test> tests_;           ///< since the last replacement
+  std::vector<Test> tests_;           ///< all
   std::deque<HealthReport> reports_;  ///< the last of them in full
   RetractedTests retracted_;
 };

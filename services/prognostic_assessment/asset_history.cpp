@@ -28,7 +28,17 @@ void AssetHistory::add(const LeakageEstimate& estimate) {
   entries_.insert(place, std::move(entry));
 }
 
-void AssetHistory::add_replacement(UtcTime time) { replacements_.insert(time); }
+void AssetHistory::add_replacement(UtcTime time) {
+  if (!withdrawn_.contains(time)) replacements_.insert(time);
+}
+
+void AssetHistory::apply(const Retraction& retraction) {
+  retracted_.apply(retraction);
+  if (const auto time = time_of_replacement(retraction.withdrawn_id)) {
+    replacements_.erase(*time);
+    withdrawn_.insert(*time);
+  }
+}
 
 bool AssetHistory::has_estimate(const std::string& estimate_id) const {
   return std::find(concluded_.begin(), concluded_.end(), estimate_id) != concluded_.end();

@@ -31,8 +31,10 @@ class AssetHistory {
   /// Takes an own output. Tests without event time are only remembered as concluded.
   void add(const LeakageEstimate& estimate);
   void add_replacement(UtcTime time);
-  /// From now on the tests that it means do not count, or count again.
-  void apply(const Retraction& retraction) { retracted_.apply(retraction); }
+  /// From now on the tests that it means do not count, or count again, or the replacement that it means was none.
+  void apply(const Retraction& retraction);
+  /// Whether nobody took the replacement of this message id back.
+  [[nodiscard]] bool holds(const std::string& replacement_id) const { return retracted_.holds(replacement_id); }
 
   [[nodiscard]] bool has_estimate(const std::string& estimate_id) const;
   /// The latest replacement of all.
@@ -49,7 +51,8 @@ class AssetHistory {
  private:
   std::vector<std::string> concluded_;
   std::vector<HistoryEntry> entries_;  ///< in the order of time; equal times by id
-  std::set<UtcTime> replacements_;
+  std::set<UtcTime> replacements_;     ///< that hold
+  std::set<UtcTime> withdrawn_;        ///< that were none
   RetractedTests retracted_;
 };
 

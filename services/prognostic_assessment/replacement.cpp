@@ -13,8 +13,7 @@ namespace sealwatch::prognostic_assessment {
 /// service's journal was lost, as nobody sends a maintenance_event again. So does the answer to it.
 void PrognosticAssessment::learn_replacements(const std::string& asset_id, const Header& header) {
   for (const std::string& source : header.source_ids)
-    if (source.starts_with("maintenance_event/"))
-      if (const auto time = parse_utc(source.substr(source.rfind('/') + 1))) history_[asset_id].add_replacement(*time);
+    if (const auto time = time_of_replacement(source)) history_[asset_id].add_replacement(*time);
 }
 
 /// Of several replacements the latest counts, whichever was reported last.
@@ -23,11 +22,12 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   accepted_[event.asset_id].take(event, conclusion);
   conclusion.consumed.push_back(event.header.message_id);
   if (!event.header.event_time_known) return conclusion;  // without its time it cannot part the history
+  if (!history_[event.asset_id].holds(event.header.message_id)) return conclusion;
   const UtcTime time{event.header.event_time_ns};
   const std::string what = text::in_words(event.kind) + " on " + format_date(time);
   AssetHistory& history = history_[event.asset_id];
   history.add_replacement(time);
-  const UtcTime last = *history.last_replacement();
+  const UtcTime last = history.last_replacement().value_or(time);
   const AssetConfig* asset = configuration_.find_asset(event.asset_id);
   RemainingLife life;
   UtcTime as_of = last;

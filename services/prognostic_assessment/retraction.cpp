@@ -22,14 +22,6 @@ LeakageEstimate estimate_of(const HistoryEntry& test, const std::string& asset_i
   return estimate;
 }
 
-std::string in_words(const Retraction& retraction, const MaintenanceEvent& event) {
-  std::string text = !retraction.withdrawn_id.empty() ? "retraction '" + retraction.withdrawn_id + "' withdrawn"
-                     : retraction.since ? "all tests since " + format_date(*retraction.since) + " retracted"
-                                        : "test " + retraction.pst_id + " retracted";
-  text += " by " + event.reported_by;
-  return event.remark.empty() ? text : text + " (" + event.remark + ")";
-}
-
 }  // namespace
 
 /// The answer to a retraction names it: so it is known after a restart, at the same place among the tests.

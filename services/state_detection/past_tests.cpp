@@ -16,11 +16,11 @@ std::uint16_t PastTests::index_of(const RegionJudgement& judgement) {
   return index;
 }
 
-bool PastTests::add(const StateReport& report, bool first_after_replacement) {
+bool PastTests::add(const StateReport& report) {
   Test test{.pst_id = report.header.pst_id,
             .time = {},
             .verdict = report.verdict,
-            .first_after_replacement = first_after_replacement,
+            .replacements = replacements_before(report.header),
             .replay = report.header.replay,
             .accepted_discrepancy = report.accepted_discrepancy,
             .judgements = {}};
@@ -66,7 +66,9 @@ StateReport PastTests::judged_by(const AssetConfig& asset, const Test& test, con
 std::optional<StateReport> PastTests::judge_anew(const AssetConfig& asset, AssetHistory& fresh) const {
   std::optional<StateReport> last;
   for (const Test& test : tests_) {
-    if (test.first_after_replacement) fresh.restart();  // the actuator was replaced, whatever the test is worth
+    const bool replaced =
+        std::ranges::any_of(test.replacements, [this](const auto& id) { return retracted_.holds(id); });
+    if (replaced) fresh.restart();  // whatever the test is worth
     if (!retracted_.counts(test.pst_id)) continue;
     fresh.use_accepted(test.accepted_discrepancy);
     StateReport report = judged_by(asset, test, fresh);

@@ -18,8 +18,8 @@ namespace sealwatch {
 class PastTests {
  public:
   /// Takes a test's report. False when the test is retracted: then nothing is learnt from it.
-  bool add(const StateReport& report, bool first_after_replacement);
-  /// From now on the tests that it means do not count, or count again.
+  bool add(const StateReport& report);
+  /// From now on the tests that it means do not count, or count again, or the replacement that it means was none.
   void apply(const Retraction& retraction) { retracted_.apply(retraction); }
   /// Plays the tests that count into a history that knows nothing yet. Returns the last of them as it is judged now, as
   /// far as its past says: nothing where none counts.
@@ -35,7 +35,7 @@ class PastTests {
     std::string pst_id;
     std::optional<UtcTime> time;
     PstVerdict verdict = PstVerdict::not_judged;
-    bool first_after_replacement = false;
+    std::vector<std::string> replacements;  ///< ids of those that it is the first test after
     bool replay = false;
     std::string accepted_discrepancy;
     std::vector<Judgement> judgements;

@@ -20,7 +20,6 @@ namespace {
 constexpr const char* kProducer = "state_detection 0.1.0";
 /// An asset whose test has been overdue for longer is not in live operation: old recordings are being taken in.
 constexpr double kLongestSilence_months = 12.0;
-constexpr std::string_view kEventPrefix = "maintenance_event/";
 
 void add_source(Header& header, const Header& source) {
   const auto add = [&header](const std::string& id) {
@@ -32,8 +31,7 @@ void add_source(Header& header, const Header& source) {
 }
 
 bool is_first_after_replacement(const StateReport& report) {
-  return std::any_of(report.header.source_ids.begin(), report.header.source_ids.end(),
-                     [](const std::string& id) { return id.starts_with(kEventPrefix); });
+  return std::ranges::any_of(report.header.source_ids, is_replacement_id);
 }
 
 /// What the report answers, if it answers a retraction: an id of the event comes first among its sources.
@@ -104,7 +102,7 @@ void StateDetection::restore(const Message& own_output) {
   if (std::vector<RegionJudgement> judgements = report->judgements; is_judged(report->verdict))
     history.judge(judgements);
   history.learn(*report);
-  if (!report->header.pst_id.empty() && !state.past.add(*report, is_first_after_replacement(*report)))
+  if (!report->header.pst_id.empty() && !state.past.add(*report))
     static_cast<void>(judge_anew(report->asset_id, state));
 }
 
@@ -142,6 +140,8 @@ Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& 
   const auto retraction = retraction_of(event.asset_id, event.header.message_id);
   if (!retraction) return conclusion;
   state.past.apply(*retraction);
+  if (std::erase_if(state.events, [&](const auto& one) { return one.header.message_id == retraction->withdrawn_id; }))
+    conclusion.consumed.push_back(retraction->withdrawn_id);
   StateReport report = judge_anew(event.asset_id, state).value_or(StateReport{});
   const std::string about = report.header.pst_id.empty() ? "no test counts" : "this is test " + report.header.pst_id;
   const Header judged = report.header;
@@ -152,9 +152,7 @@ Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& 
   report.header.source_ids = {event.header.message_id};
   if (!judged.message_id.empty()) report.header.source_ids.push_back(judged.message_id);
   if (judged.event_time_known) report.header.event_time_ns = judged.event_time_ns;
-  report.verdict_reasons = {(retraction->withdrawn_id.empty() ? "tests retracted by " : "tests count again by ") +
-                            event.reported_by + (event.remark.empty() ? "" : " (" + event.remark + ")") +
-                            ": judged anew; " + about};
+  report.verdict_reasons = {in_words(*retraction, event) + ": judged anew; " + about};
   conclusion.outputs.emplace_back(std::move(report));
   return conclusion;
 }
@@ -197,7 +195,7 @@ void StateDetection::conclude(AssetState& state, const TestFeatures& features, c
     judge(state, asset->second, features, window, report);
   report.region = state.history.worst_region();
   state.history.learn(report);
-  if (!state.past.add(report, is_first_after_replacement(report)))
+  if (!state.past.add(report))
     static_cast<void>(judge_anew(report.asset_id, state));  // it was retracted before it came
   if (is_judged(report.verdict))
     std::erase_if(state.events, [&](const MaintenanceEvent& event) {

@@ -52,6 +52,7 @@ class Types {
       (types.add<std::variant_alternative_t<Index, MessageAlternatives>>(), ...);
       types.add<ServiceStatus>();
       types.add<ResendRequest>();
+      types.add<MaintenanceEvent>();  // retraction
     }
   };
 

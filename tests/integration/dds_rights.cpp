@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "sealwatch/message/retraction.hpp"
 #include "services/cli/session.hpp"
 
 namespace sealwatch {
@@ -33,11 +34,16 @@ int main(int argc, char** argv) {
   if (!session) return 2;
   Bus& bus = *session->bus;
   try_messages(bus, std::make_index_sequence<std::variant_size_v<MessageAlternatives>>{});
+  MaintenanceEvent retraction;
+  retraction.kind = kTestRetracted;
+  tell("write", "retraction", bus.publish(Message(retraction)));
   tell("write", "service_status", bus.publish(ServiceStatus{}));
   tell("write", "resend_request", bus.publish(ResendRequest{}));
   for (std::size_t index = 0; index < std::variant_size_v<MessageAlternatives>; ++index) {
     const auto topic = static_cast<Topic>(index);
-    tell("read", name_of(topic), bus.subscribe(std::span(&topic, 1)));
+    const Status subscribed = bus.subscribe(std::span(&topic, 1));
+    tell("read", name_of(topic), subscribed);
+    if (topic == Topic::maintenance_event) tell("read", "retraction", subscribed);  // both, or neither
   }
   tell("read", "service_status", bus.subscribe_service_topics());
   return 0;

@@ -97,9 +97,9 @@ documented() {  # LAYER COLUMN
 check_rights() {
   local name conclusions acts granted expected
   conclusions='acknowledgement advisory health_report leakage_estimate maintenance_event model_acceptance model_discrepancy pst_request
-    remaining_life state_report test_features'
+    remaining_life retraction state_report test_features'
   local -A acts_of=([sender]=raw_samples [replay]='raw_samples resend_request' [operator]=acknowledgement
-    [maintenance]=maintenance_event [engineer]=model_acceptance [subscriber]='')
+    [maintenance]=maintenance_event [reviewer]=retraction [engineer]=model_acceptance [subscriber]='')
   for name in "${layers[@]}" "${!acts_of[@]}"; do
     granted=$(CYCLONEDDS_URI=file://$ours/$name/cyclonedds.xml "$dds_rights" "$config" 2>"$scratch/rights_errors" | sort) ||
       fail "$name cannot join" "$scratch/rights_errors"
@@ -114,7 +114,7 @@ check_rights() {
       # shellcheck disable=SC2086  # lists of words
       expected=$({
         [ -z "$acts" ] || printf 'write %s\n' $acts
-        if [ "$name" = sender ]; then printf 'read %s\n' pst_request maintenance_event; else printf 'read %s\n' $conclusions; fi
+        if [ "$name" = sender ]; then printf 'read %s\n' pst_request maintenance_event retraction; else printf 'read %s\n' $conclusions; fi
         echo read service_status
       } | sort)
     fi
@@ -230,7 +230,8 @@ check_alarm() {
 check_acts() {
   local identity act number
   local -a acts=("subscriber acknowledge XT03-MV2 $advisory" "maintenance acknowledge XT03-MV2 $advisory"
-    'operator replaced XT03-MV2 --at 2001-01-01' 'operator retract XT03-MV2 --since 2030-01-01 --reason test') tries=()
+    'operator replaced XT03-MV2 --at 2001-01-01' 'operator retract XT03-MV2 --since 2030-01-01 --reason test'
+    'maintenance retract XT03-MV2 --since 2030-01-01 --reason test' 'reviewer replaced XT03-MV2 --at 2001-01-01') tries=()
   for number in "${!acts[@]}"; do
     read -r identity act <<<"${acts[$number]}"
     # shellcheck disable=SC2086  # a line of words
@@ -245,6 +246,8 @@ check_acts() {
   as "$ours/operator" acknowledge XT03-MV2 "$advisory" --by tester >"$scratch/act" 2>&1 || fail "an operator cannot acknowledge" "$scratch/act"
   as "$ours/maintenance" replaced XT03-MV2 --at 2001-01-01 --by tester >"$scratch/act" 2>&1 ||
     fail "maintenance cannot report a replacement" "$scratch/act"
+  as "$ours/reviewer" retract XT03-MV2 --since 2030-01-01 --reason test --by tester >"$scratch/act" 2>&1 ||
+    fail "a reviewer cannot retract tests" "$scratch/act"
 }
 
 # Identities of ours in programs that do not check their own rights. What they write nobody takes, what they may not read nobody

@@ -19,10 +19,13 @@ class RetractedTests {
 
   void forget(const std::string& pst_id) { tests_.erase(pst_id); }
 
-  /// From now on the tests that it means do not count, or count again.
+  /// From now on the tests that it means do not count, or count again; or a replacement was none.
   void apply(const Retraction& retraction) {
     meant_.erase(retraction.withdrawn_id);
-    if (!retraction.withdrawn_id.empty()) return;
+    if (!retraction.withdrawn_id.empty()) {
+      withdrawn_.insert(retraction.withdrawn_id);
+      return;
+    }
     std::set<std::string>& meant = meant_[retraction.id];
     if (!retraction.since) {
       meant = {retraction.pst_id};
@@ -37,6 +40,9 @@ class RetractedTests {
     return std::ranges::none_of(meant_, [&](const auto& one) { return one.second.contains(pst_id); });
   }
 
+  /// Whether nobody took the replacement of this message id back.
+  [[nodiscard]] bool holds(const std::string& replacement_id) const { return !withdrawn_.contains(replacement_id); }
+
   /// The date of the newest test that counts.
   [[nodiscard]] std::optional<UtcTime> newest() const {
     std::optional<UtcTime> newest;
@@ -48,6 +54,7 @@ class RetractedTests {
  private:
   std::map<std::string, std::optional<UtcTime>> tests_;
   std::map<std::string, std::set<std::string>> meant_;  ///< by the id of the retraction in force
+  std::set<std::string> withdrawn_;                     ///< ids of what was taken back
 };
 
 }  // namespace sealwatch

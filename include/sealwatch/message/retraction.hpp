@@ -4,15 +4,18 @@
 //
 //   test_retracted         retraction/<asset>/test/<pst_id>/<when>
 //   tests_retracted        retraction/<asset>/since/<time>/<when>     all that is known when it comes, from that time on
-//   retraction_withdrawn   retraction/<asset>/withdrawn/<when>/<id of the retraction>
+//   retraction_withdrawn   retraction/<asset>/withdrawn/<when>/<id of the retraction, or of a replacement that was none>
 //
-// Nothing is deleted: what is retracted stays in the record, and counts again when the retraction is withdrawn.
+// Nothing is deleted: what is retracted stays in the record, and counts again when the retraction is withdrawn. Where a
+// replacement is taken back, the tests before it count again.
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/advisory_generation.hpp"
@@ -27,10 +30,33 @@ struct Retraction {
   std::string id;                     ///< message id of the event that says it
   std::string pst_id = {};            ///< the test; "" none
   std::optional<UtcTime> since = {};  ///< all tests from then on
-  std::string withdrawn_id = {};      ///< the retraction that no longer holds; "" none
+  std::string withdrawn_id = {};      ///< the retraction or replacement that no longer holds; "" none
 };
 
+[[nodiscard]] inline bool is_retraction_kind(std::string_view kind) {
+  return kind == kTestRetracted || kind == kTestsRetracted || kind == kRetractionWithdrawn;
+}
+
 [[nodiscard]] inline bool is_replacement(const MaintenanceEvent& event) { return event.kind.ends_with("_replaced"); }
+
+/// Whether a message of this id reports a replacement; its id ends in the time.
+[[nodiscard]] inline bool is_replacement_id(std::string_view message_id) {
+  return message_id.starts_with("maintenance_event/");
+}
+
+/// Those that the message names as its causes: it is of the first test after them.
+[[nodiscard]] inline std::vector<std::string> replacements_before(const Header& header) {
+  std::vector<std::string> ids;
+  std::ranges::copy_if(header.source_ids, std::back_inserter(ids), is_replacement_id);
+  return ids;
+}
+
+/// When the replacement of this id was, where it is one.
+[[nodiscard]] inline std::optional<UtcTime> time_of_replacement(const std::string& message_id) {
+  if (!is_replacement_id(message_id)) return std::nullopt;
+  const auto time = parse_utc(message_id.substr(message_id.rfind('/') + 1));
+  return time ? std::optional(*time) : std::nullopt;
+}
 
 [[nodiscard]] inline bool is_retraction_id(std::string_view message_id) {
   return message_id.starts_with("retraction/");
@@ -40,6 +66,23 @@ struct Retraction {
 /// latest, though it speaks of an earlier test than the one retracted.
 [[nodiscard]] inline bool answers_retraction(const Header& header) {
   return header.pst_id.empty() && std::ranges::any_of(header.source_ids, is_retraction_id);
+}
+
+/// The retraction that the message answers: its id stands among the sources; nothing where it answers none.
+[[nodiscard]] inline std::optional<std::string> retraction_answered(const Header& header) {
+  const auto named = std::ranges::find_if(header.source_ids, is_retraction_id);
+  return !header.pst_id.empty() || named == header.source_ids.end() ? std::nullopt : std::optional(*named);
+}
+
+/// What was done, by whom and why, in words.
+[[nodiscard]] inline std::string in_words(const Retraction& retraction, const MaintenanceEvent& event) {
+  std::string text = is_replacement_id(retraction.withdrawn_id)
+                         ? "replacement '" + retraction.withdrawn_id + "' withdrawn"
+                     : !retraction.withdrawn_id.empty() ? "retraction '" + retraction.withdrawn_id + "' withdrawn"
+                     : retraction.since ? "all tests since " + format_date(*retraction.since) + " retracted"
+                                        : "test " + retraction.pst_id + " retracted";
+  text += " by " + event.reported_by;
+  return event.remark.empty() ? text : text + " (" + event.remark + ")";
 }
 
 /// What the event of this id retracts or withdraws; nothing when it is no such event.

@@ -71,6 +71,12 @@ class Layer {
   [[nodiscard]] virtual std::span<const Topic> outputs() const = 0;
   /// Takes back one of its own earlier outputs.
   virtual void restore(const Message& own_output) = 0;
+  /// Whether restoring this output, the last about its test, restores what all of that test would: whoever starts the
+  /// layer may then leave the others out. True for layers that make many of a test, or large ones.
+  [[nodiscard]] virtual bool tells_all(const Message& last_of_test) const {
+    (void)last_of_test;
+    return false;
+  }
   /// Takes one input; never fails: bad content becomes a message that says so.
   [[nodiscard]] virtual Conclusion receive(const Message& input) = 0;
   /// How many of its unconsumed inputs it keeps as its memory: they wait for nothing.

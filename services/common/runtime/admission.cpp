@@ -78,7 +78,7 @@ std::optional<std::string> refusal_of_kind(const Message& message) {
     return "its message_id, '" + event->header.message_id +
            "', does not say which alarm is meant; use sealwatch shelve";
   }
-  if (event->kind != kTestRetracted && event->kind != kTestsRetracted && event->kind != kRetractionWithdrawn)
+  if (!is_retraction_kind(event->kind))
     return "its kind, '" + event->kind + "', is none of actuator_replaced, seal_replaced, " +
            std::string(kTestRetracted) + ", " + std::string(kTestsRetracted) + ", " +
            std::string(kRetractionWithdrawn) + ", " + std::string(kActConfirmed) + ", " + std::string(kActRejected) +
@@ -88,6 +88,9 @@ std::optional<std::string> refusal_of_kind(const Message& message) {
   const bool same = retraction && (event->kind == kTestRetracted    ? !retraction->pst_id.empty()
                                    : event->kind == kTestsRetracted ? retraction->since.has_value()
                                                                     : !retraction->withdrawn_id.empty());
+  const bool is_undone = same && is_replacement_id(retraction->withdrawn_id);
+  if (is_undone && !time_of_replacement(retraction->withdrawn_id))
+    return "the replacement that it takes back, '" + retraction->withdrawn_id + "', has no time at the end of its id";
   if (same) return std::nullopt;
   return "its message_id, '" + event->header.message_id + "', does not say what is retracted; use sealwatch retract";
 }
@@ -101,8 +104,8 @@ std::string name_of_test(const RawSamples& raw) {
 void Admission::note(const Message& message) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
-  note_asset(message);
   const std::string asset_id = asset_of(message);
+  note_asset(asset_id);
   if (const std::optional<std::int64_t> time_ns = time_of_test(message)) note_test(message, {*time_ns});
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
@@ -110,8 +113,7 @@ void Admission::note(const Message& message) {
   for (const std::string& id : acts) note_act(asset_id, id);
 }
 
-void Admission::note_asset(const Message& message) {
-  const std::string asset_id = asset_of(message);
+void Admission::note_asset(const std::string& asset_id) {
   if (!asset_id.empty() && !assets_.names.contains(asset_id)) unknown_.insert(asset_id);
 }
 

@@ -46,8 +46,8 @@ class Admission {
       : commissioned_(std::move(commissioned)), assets_(std::move(assets)) {}
   /// Takes note of its asset, of when a test was made, and of retractions.
   void note(const Message& message);
-  /// Takes note of its asset alone.
-  void note_asset(const Message& message);
+  /// Takes note of an asset alone.
+  void note_asset(const std::string& asset_id);
   /// Takes note of an act of that id, if it is a retraction.
   void note_act(const std::string& asset_id, const std::string& act_id);
   /// Why nothing of its asset is taken in; none where it is.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "services/common/runtime/heartbeat.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -160,7 +162,8 @@ void AlarmDesk::hear(const ServiceStatus& status, Steady now, UtcTime time) {
     if (is_of_ours(alarm) && !is_advice(alarm) && alarm.kind != kOutOfServiceAlarm && has_room)
       (void)raise(status.service, alarm, now);
   }
-  if (status.alarm_count <= status.alarms.size()) end_untold(status, now, time);
+  // What a service has not recalled yet it does not deny.
+  if (status.alarm_count <= status.alarms.size() && status.state != kRestoring) end_untold(status, now, time);
 }
 
 void AlarmDesk::end_untold(const ServiceStatus& status, Steady now, UtcTime time) {

@@ -23,7 +23,9 @@ class Alarms {
     const auto of_kind = std::ranges::count_if(
         standing_, [&](const Standing& standing) { return standing.end && standing.alarm.kind == alarm.kind; });
     if (end && of_kind >= kMostOfAKind) return false;
-    standing_.push_back({std::move(alarm), end});
+    const auto later =
+        std::ranges::upper_bound(standing_, alarm.since_ns, {}, [](const Standing& one) { return one.alarm.since_ns; });
+    standing_.insert(later, {std::move(alarm), end});  // what is recalled of the past hides nothing that is new
     return true;
   }
   /// True when it stood.
@@ -38,7 +40,7 @@ class Alarms {
     std::erase_if(standing_, [&](const Standing& one) { return one.end && *one.end <= now; });
     return over;
   }
-  /// Those of a kind about an asset, in the order in which they were raised.
+  /// Those of a kind about an asset, the newest last.
   [[nodiscard]] std::vector<ServiceAlarm> of(const std::string& kind, const std::string& asset_id) const {
     std::vector<ServiceAlarm> found;
     for (const Standing& one : standing_)
@@ -66,7 +68,7 @@ class Alarms {
 
   static constexpr std::size_t kMostTold = 32;  ///< a heartbeat stays small
   static constexpr std::ptrdiff_t kMostOfAKind = 256;
-  std::vector<Standing> standing_;  ///< in the order in which they were raised
+  std::vector<Standing> standing_;  ///< the newest last
 };
 
 }  // namespace sealwatch

@@ -72,49 +72,13 @@ Status LayerRunner::start() {
   status.version = options_.version;
   status.started_ns = started_ns_;
   status.process_id = ::getpid();
-  status.state = "running";
+  status.state = forgotten_.empty() ? "running" : kRestoring;
   Heartbeat::Options beats = options_.heartbeat;
   const bool takes_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
   auto confirmed = std::make_shared<ConfirmedPositions>(journal_.to_disk(), takes_samples);
   beats.before_beat = [confirmed](ServiceStatus& said) { return confirmed->make_sure(said); };
   heartbeat_ = std::make_unique<Heartbeat>(heartbeat_bus_, clock_, status, std::move(beats));
   report_progress();
-  return {};
-}
-
-Status LayerRunner::restore_past() {
-  std::size_t restored = 0;
-  std::map<std::string, StandingAdvice> advice;  // as it stands in the end: the desk knows what became of the rest
-  auto acts = past_retractions();
-  if (!acts) return fail(acts.error());
-  Status outputs = journal_.for_each_numbered_output([&](const Message& output, const Journal::Place& place) {
-    for (; !acts->empty() && acts->front().at < place.concluded; acts->pop_front())
-      admission_.note_act(acts->front().asset_id, acts->front().id);
-    lanes_.restore(output);
-    note_alarms_of(output);
-    if (const auto said = options_.advice_of_output ? options_.advice_of_output(output) : std::nullopt)
-      advice[said->asset_id] = *said;
-    admission_.note(output);
-    latest_.concluded(output, place.sequence);
-    replaying_[asset_of(output)] = header_of(output).replay;
-    ++restored;
-    return Status();
-  });
-  if (!outputs) return outputs;
-  for (const PastAct& act : *acts) admission_.note_act(act.asset_id, act.id);
-  if (Status opened = open_desk(advice); !opened) return opened;
-  const std::uint64_t open = journal_.open_inputs();
-  Status inputs = journal_.for_each_open_input([&](const Message& input) {
-    replaying_[asset_of(input)] = header_of(input).replay;
-    admission_.note(input);
-    lanes_.add(asset_of(input), header_of(input).message_id, nullptr);
-    return Status();
-  });
-  if (!inputs) return inputs;
-  log_event(LogLevel::info, "started",
-            {{"writer", journal_.writer_id()},
-             {"restored_outputs", std::to_string(restored)},
-             {"open_inputs", std::to_string(open)}});
   return {};
 }
 
@@ -130,6 +94,7 @@ Status LayerRunner::run(const std::atomic<bool>& stop) {
 
 Status LayerRunner::step(std::chrono::milliseconds timeout) {
   std::this_thread::sleep_until(last_work_ + options_.batch_pause);
+  timeout = until_looking_back(timeout);
   if (lanes_.on_trial()) timeout = std::min(timeout, kTrialLook);
   if (!outbox_.empty() || !resends_.empty()) timeout = std::min(timeout, Outbox::kShortestPause);
   const bool may_resend = !resends_.empty() && resends_.may_send(steady_clock::now());
@@ -139,16 +104,19 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     full_since_.reset();
   else if (!full_since_)
     full_since_ = steady_clock::now();
+  const bool is_idle = items.empty() && ready_.empty();
   for (BusItem& item : items) sort_in(std::move(item));
   if (Status status = take_ready(); !status) return status;
   send_outbox();
   if (Status status = serve_resends(); !status) return status;
   send_requests();
+  if (Status status = look_back_in_passing(is_idle); !status) return status;
   if (steady_clock::now() - last_second_ >= kSecond) {
     last_second_ = steady_clock::now();
     give_memory_back();
     if (Status status = try_again_what_was_asked(); !status) return status;
     if (Status status = let_time_pass(); !status) return status;
+    if (Status status = note_acts(); !status) return status;
     if (resends_.empty())
       if (Status status = publish_latest(); !status) return status;
     if (Status status = drop_old_samples(); !status) return status;
@@ -180,7 +148,8 @@ Survives LayerRunner::batch_survives() const {
   const bool said_once = std::ranges::any_of(taken_, [](const Taken& one) {
     return one.stream.sequence == 0 && topic_of(*one.message) != Topic::raw_samples;
   });
-  const bool acted = !acts_.empty() || !no_longer_awaiting_.empty();
+  const bool refused = std::ranges::any_of(results_, [](const auto& one) { return !one.conclusion.refused.empty(); });
+  const bool acted = !acts_.empty() || !no_longer_awaiting_.empty() || refused;
   return said_once || acted || took_local_ ? Survives::power_cuts : Survives::kills;
 }
 
@@ -236,6 +205,7 @@ Status LayerRunner::take(Message message) {
     note_unknown_asset(message, *refused);
     return {};
   }
+  if (Status recalled = recall(asset_of(message)); !recalled) return recalled;
   const auto id = identify_input(message);
   if (!id) return fail(id.error());
   if (!*id) {
@@ -251,7 +221,7 @@ Status LayerRunner::take(Message message) {
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
     if (topic_of(message) == Topic::raw_samples) return {};
   }
-  if (!refused) admission_.note_asset(message);
+  if (!refused) admission_.note_asset(asset_of(message));
   const bool for_desk = is_for_desk(message);
   if (for_desk && !refused) refused = tell_desk(message);
   InputState state = for_desk ? InputState::consumed : is_set_aside(message) ? InputState::set_aside : InputState::open;
@@ -341,7 +311,9 @@ void LayerRunner::give_memory_back() {
 Status LayerRunner::let_time_pass() {
   look_for_trouble();
   if (Status looked = let_time_pass_at_desk(); !looked) return looked;
-  const auto at_rest = [this](const std::string& asset_id) { return lanes_.at_rest(asset_id); };
+  const auto at_rest = [this](const std::string& asset_id) {
+    return forgotten_.contains(asset_id) ? nullptr : lanes_.at_rest(asset_id);
+  };
   if (options_.local_inputs)
     for (Message& message : options_.local_inputs(at_rest)) {
       ready_.push_back(std::move(message));
@@ -350,11 +322,12 @@ Status LayerRunner::let_time_pass() {
   const auto now = steady_clock::now();
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};
   for (const std::string& asset_id : lanes_.assets()) {
-    Layer* const layer = lanes_.at_rest(asset_id);
+    Layer* const layer = at_rest(asset_id);
     if (layer == nullptr || replaying_[asset_id] || may_be_on_its_way(asset_id)) continue;
     Conclusion conclusion = layer->tick(clock_.now());
     if (conclusion.outputs.empty() && conclusion.consumed.empty()) continue;
-    if (Status status = in_batch([&] { return keep(std::move(conclusion)); }); !status) return status;
+    const Survives survives = conclusion.refused.empty() ? Survives::kills : Survives::power_cuts;
+    if (Status status = in_batch([&] { return keep(std::move(conclusion)); }, survives); !status) return status;
   }
   return {};
 }
@@ -373,6 +346,8 @@ void LayerRunner::report_progress() {
   std::vector<StreamPosition> written;
   for (const auto& [topic, sequence] : journal_.written())
     written.push_back({std::string(name_of(topic)), journal_.writer_id(), sequence});
+  if (last_act_.sequence > 0)
+    written.push_back({kActsTopic, last_act_.hash, static_cast<std::uint64_t>(last_act_.sequence)});
   std::vector<StreamPosition> received;
   for (const Key& stream : reader_->active()) {
     const auto position = committed_.find(stream);
@@ -386,6 +361,7 @@ void LayerRunner::report_progress() {
     status.written = std::move(written);
     status.received = std::move(received);
     status.last_error = last_error_;
+    status.state = forgotten_.empty() ? "running" : kRestoring;
     alarms_.tell(status);
     status.desk = told_at_desk_.desk;
     status.desk_count = told_at_desk_.desk_count;

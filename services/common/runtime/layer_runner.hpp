@@ -53,6 +53,9 @@ struct RunnerOptions {
   std::chrono::milliseconds batch_time{20};
   /// Time does not pass for the layer until the writers have had so long to say what it missed while it was dead.
   std::chrono::milliseconds settling{3000};
+  /// A start gives assets their past back, and looks for damage, for so long: all of a short history. The rest follows
+  /// while the service runs, an asset's past before anything is taken of it.
+  std::chrono::milliseconds recalls_at_start{1000};
   /// The layer of an asset, where nothing is under way in it.
   using LayerAtRest = std::function<const Layer*(const std::string& asset_id)>;
   /// Nor while the bus is not emptied, but for no longer than this: what then still waits is a flood's, as a bus gives
@@ -110,7 +113,6 @@ class LayerRunner {
     InputState state = InputState::open;
   };
 
-  [[nodiscard]] Status restore_past();
   void sort_in(BusItem item);
   void sort_in(Message message);
   void sort_in(const ServiceStatus& status);
@@ -139,6 +141,16 @@ class LayerRunner {
   void note_error(const std::string& text);
   void report_progress();
 
+  // The past (layer_runner_past.cpp).
+  [[nodiscard]] Status restore_past();
+  /// Gives the asset's layer its past back, where it has not got it yet.
+  [[nodiscard]] Status recall(const std::string& asset_id);
+  [[nodiscard]] Status recall_inputs(const std::string& asset_id);
+  [[nodiscard]] Status look_back();
+  [[nodiscard]] Status look_back(std::chrono::milliseconds at_most);
+  [[nodiscard]] Status look_back_in_passing(bool is_idle);
+  [[nodiscard]] std::chrono::milliseconds until_looking_back(std::chrono::milliseconds timeout) const;
+
   // What keeps the service from seeing (layer_runner_alarms.cpp).
   void note_rival(const ServiceStatus& rival);
   void hear_name(const ServiceStatus& status);
@@ -152,7 +164,7 @@ class LayerRunner {
   void look_for_trouble();
 
   // The states of all alarms (layer_runner_desk.cpp).
-  [[nodiscard]] Status open_desk(const std::map<std::string, StandingAdvice>& past);
+  [[nodiscard]] Status open_desk();
   void note_advice_of(const Message& output);
   /// Whether people speak to the desk with it, not to the layer.
   [[nodiscard]] bool is_for_desk(const Message& message) const;
@@ -172,16 +184,19 @@ class LayerRunner {
   /// Gives the layer what this confirms, and forgets what it rejects.
   void confirm(const Message& message);
   [[nodiscard]] Status record_acts();
+  /// What another service tells of its record of acts.
+  void hear_of_acts(const ServiceStatus& status);
+  /// Keeps it, and looks how far the own record goes.
+  [[nodiscard]] Status note_acts();
   [[nodiscard]] Status record(const OperatorAct& act);
   /// What a layer does not act upon.
   [[nodiscard]] Status tell(const Refusal& refused);
   struct PastAct {
     UtcTime at;  ///< when it came to count
-    std::string asset_id;
     std::string id;
   };
-  /// Retractions and withdrawals that counted before this start, in order.
-  [[nodiscard]] Result<std::deque<PastAct>> past_retractions();
+  /// Retractions and withdrawals that counted before this start, in order, by asset.
+  [[nodiscard]] Result<std::map<std::string, std::vector<PastAct>>> past_retractions();
 
   // What is kept for how long (layer_runner_retention.cpp).
   [[nodiscard]] Status drop_old_samples();
@@ -221,11 +236,19 @@ class LayerRunner {
   std::map<std::string, InputState> no_longer_awaiting_;  ///< ids of those whose wait is over, of this batch
   std::size_t acts_on_unknown_assets_ = 0;                ///< recorded while the alarm of them stands
   std::vector<OperatorAct> acts_;                         ///< of the running batch
+  AuditAnchor last_act_;                                  ///< of the own record
+  std::map<std::string, AuditAnchor> heard_acts_;         ///< the last of each other service, as kept
+  std::vector<AuditAnchor> new_anchors_;                  ///< not yet kept
   std::vector<LaneResult> results_;                       ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal
   std::map<Key, std::uint64_t> uncommitted_;  ///< positions of the running batch
   LatestOutputs latest_;
+  std::set<std::string> forgotten_;  ///< assets whose past was not recalled yet
+  std::deque<std::string> to_recall_;
+  std::map<std::string, std::vector<PastAct>> past_acts_;   ///< of forgotten assets
+  bool all_checked_ = false;                                ///< of the journal's outputs
+  std::chrono::steady_clock::time_point look_back_next_{};  ///< under load, not before
   ResendQueue resends_;
   Admission admission_;
   bool took_local_ = false;  ///< of the running batch: inputs that came from no bus

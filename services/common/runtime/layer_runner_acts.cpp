@@ -13,6 +13,9 @@ namespace {
 
 constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
 constexpr const char* kTaken = "taken";
+constexpr std::size_t kHashLength = 64;
+/// Of a second: who invents records invents many.
+constexpr std::size_t kMostNewAnchors = 16;
 
 std::string who_said(const Message& message) {
   const auto act = act_of(message, {}, {});
@@ -105,16 +108,16 @@ void LayerRunner::confirm(const Message& message) {
   lanes_.add(asset_of(*act), *act_id, act);
 }
 
-Result<std::deque<LayerRunner::PastAct>> LayerRunner::past_retractions() {
+Result<std::map<std::string, std::vector<LayerRunner::PastAct>>> LayerRunner::past_retractions() {
   const auto acts = journal_.acts();
   if (!acts) return fail(acts.error());
-  std::deque<PastAct> past;
+  std::map<std::string, std::vector<PastAct>> past;
   for (const AuditEntry& entry : *acts) {
     const OperatorAct& act = entry.act;
     if (act.outcome != kTaken) continue;
     const auto confirmed =
         act.kind == kActConfirmed ? confirmed_act(act.asset_id, act.subject) : std::optional<std::string>();
-    past.push_back({act.at, act.asset_id, confirmed.value_or(act.subject)});
+    past[act.asset_id].push_back({act.at, confirmed.value_or(act.subject)});
   }
   return past;
 }
@@ -138,6 +141,34 @@ Status LayerRunner::tell(const Refusal& refused) {
   log_message(LogLevel::warn, "refused", refused.input, {{"reason", refused.reason}});
   const auto act = act_of(refused.input, clock_.now(), refused.reason);
   return act ? record(*act) : Status();
+}
+
+/// A stranger may tell anything; but of whom DDS Security lets nobody else speak, only that service does.
+void LayerRunner::hear_of_acts(const ServiceStatus& status) {
+  const auto& services = options_.strangers.services;
+  const bool is_known = services.empty() || std::ranges::find(services, status.service) != services.end();
+  if (!is_known || status.service == kind_->name()) return;
+  for (const StreamPosition& told : status.written) {
+    if (told.topic != kActsTopic || told.writer_id.size() != kHashLength) continue;
+    const AuditAnchor heard{status.service, static_cast<std::int64_t>(told.sequence), told.writer_id};
+    AuditAnchor& last = heard_acts_[status.service];
+    if (heard == last) continue;
+    last = heard;
+    if (new_anchors_.size() < kMostNewAnchors) new_anchors_.push_back(heard);
+  }
+}
+
+/// About once a second. Also those who ask for something in a journal of their own (sealwatch quarantine) write there.
+Status LayerRunner::note_acts() {
+  auto last = journal_.last_act();
+  if (!last) return fail(last.error());
+  last_act_ = std::move(*last);
+  if (new_anchors_.empty()) return {};
+  return in_batch([this] {
+    for (const AuditAnchor& heard : std::exchange(new_anchors_, {}))
+      if (Status kept = journal_.keep_anchor(heard); !kept) return kept;
+    return Status();
+  });
 }
 
 /// Their last hash stands in the log as well: whoever changes the journal must change that too.

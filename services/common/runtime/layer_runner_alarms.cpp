@@ -31,7 +31,7 @@ Alarms::Steady steady_now() { return steady_clock::now().time_since_epoch(); }
 
 /// Both conclude from the same messages, each under its own name: readers take what comes first, people see both.
 void LayerRunner::note_rival(const ServiceStatus& rival) {
-  if (rival.state != "running") {
+  if (rival.state == "stopping") {
     alarms_.clear(kRival, {}, rival.writer_id);
     return;
   }

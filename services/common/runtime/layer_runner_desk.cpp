@@ -10,12 +10,11 @@ AlarmDesk::Steady steady_now() { return std::chrono::steady_clock::now().time_si
 
 }  // namespace
 
-Status LayerRunner::open_desk(const std::map<std::string, StandingAdvice>& past) {
+Status LayerRunner::open_desk() {
   if (!options_.desk) return {};
   auto kept = journal_.alarms();
   if (!kept) return fail(kept.error());
   desk_.emplace(*options_.desk, std::move(*kept), steady_now(), clock_.now());
-  for (const auto& [asset_id, said] : past) desk_->stand(said, clock_.now());
   return let_time_pass_at_desk();
 }
 

@@ -74,11 +74,15 @@ Status LayerRunner::set_aside(const LaneResult& failure) {
 }
 
 Status LayerRunner::begin_anew(const std::string& asset_id) {
+  if (Status recalled = recall(asset_id); !recalled) return recalled;
   lanes_.begin_anew(asset_id);
-  Status restored = journal_.for_each_output_of(asset_id, [this](const Message& output) {
-    lanes_.restore(output);
-    return Status();
-  });
+  Status restored = journal_.for_each_output_of(
+      asset_id,
+      [this](const Message& output, const Journal::Place&) {
+        lanes_.restore(output);
+        return Status();
+      },
+      [this](const Message& last_of_test) { return kind_->tells_all(last_of_test); });
   if (!restored) return restored;
   const auto open = journal_.open_inputs_of(asset_id);
   if (!open) return fail(open.error());

@@ -23,7 +23,8 @@ bool LayerRunner::is_set_aside_anywhere(const std::string& asset_id, const std::
 
 Status LayerRunner::drop_old_samples() {
   const auto now = std::chrono::steady_clock::now();
-  const bool is_idle = !full_since_ && resends_.empty() && outbox_.empty();
+  // Which samples are the newest of their asset is not known before.
+  const bool is_idle = forgotten_.empty() && !full_since_ && resends_.empty() && outbox_.empty();
   if (!retention_.is_bounded() || !is_idle || now < next_retention_) return {};
   next_retention_ = now + options_.retention_pause;
   for (const Retention::Sample& sample : Retention::samples()) {

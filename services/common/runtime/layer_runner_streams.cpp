@@ -71,6 +71,7 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
   if (status.service == kind_->name()) note_rival(status);
   note_set_aside_elsewhere(status);
   retention_.hear(status, journal_.writer_id());
+  hear_of_acts(status);
   if (desk_) desk_->hear(status, std::chrono::steady_clock::now().time_since_epoch(), clock_.now());
   for (Message& next : reader_->note_start(status.writer_id, status.started_ns, steady_seconds()))
     ready_.push_back(std::move(next));

@@ -1,4 +1,4 @@
-// Table `acts` (audit_trail.hpp) in a database that is open, for those who write to it.
+// Tables `acts` and `anchors` (audit_trail.hpp) in a database that is open, for those who write to it.
 #pragma once
 
 #include <soci/soci.h>
@@ -11,6 +11,8 @@ namespace sealwatch {
 void make_acts_table(soci::session& sql);
 /// All entries, in order. Throws what SOCI throws.
 [[nodiscard]] std::vector<AuditEntry> acts_in(soci::session& sql);
+/// All anchors, service by service, in order. Throws what SOCI throws.
+[[nodiscard]] std::vector<AuditAnchor> anchors_in(soci::session& sql);
 /// Between begin and commit. Returns the entry. Throws what SOCI throws.
 AuditEntry append_act(soci::session& sql, const std::string& service, const OperatorAct& act);
 

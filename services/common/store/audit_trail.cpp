@@ -34,13 +34,35 @@ void add(std::string& bytes, const std::string& field) {
 
 bool is_file(soci::session& sql) { return sql.get_backend_name() == "sqlite3"; }
 
-bool has_acts_table(soci::session& sql) {
+bool has_table(soci::session& sql, const std::string& table) {
   int tables = 0;
   if (is_file(sql))
-    sql << "SELECT count(*) FROM sqlite_master WHERE name = 'acts'", into(tables);
+    sql << "SELECT count(*) FROM sqlite_master WHERE name = :table", use(table, "table"), into(tables);
   else
-    sql << "SELECT count(*) FROM pg_tables WHERE tablename = 'acts' AND schemaname = current_schema()", into(tables);
+    sql << "SELECT count(*) FROM pg_tables WHERE tablename = :table AND schemaname = current_schema()",
+        use(table, "table"), into(tables);
   return tables != 0;
+}
+
+/// What `read` finds in a service's journal, which is not changed.
+template <class Read>
+auto look_into(const std::string& connection, const std::string& service, const std::string& table, Read&& read)
+    -> Result<decltype(read(std::declval<soci::session&>()))> {
+  // It says what is wrong with a journal that is none, or another's, or of a newer program.
+  if (const auto readable = JournalReader::open(connection, service); !readable) return fail(readable.error());
+  try {
+    soci::session sql;
+    open_session(sql, connection);
+    std::string answer;
+    if (is_file(sql)) sql << "PRAGMA busy_timeout = 5000", into(answer);
+    return read(sql);
+  } catch (const std::exception& exception) {
+    return fail(Error{.file = without_password(connection),
+                      .place = "table " + table,
+                      .value = {},
+                      .rule = exception.what(),
+                      .advice = "look as a user that may read there: the service's own, or root"});
+  }
 }
 
 AuditBreak broken(std::int64_t sequence, std::string why) { return {sequence, std::move(why)}; }
@@ -73,7 +95,7 @@ std::optional<AuditBreak> find_break(const std::string& service, const std::vect
 }
 
 void make_acts_table(soci::session& sql) {
-  if (has_acts_table(sql)) return;
+  if (has_table(sql, "acts")) return;
   const std::string key = is_file(sql) ? "INTEGER" : "BIGINT";
   sql << "CREATE TABLE IF NOT EXISTS acts(sequence " + key +
              " PRIMARY KEY, at BIGINT NOT NULL, kind TEXT NOT NULL, asset_id TEXT NOT NULL, who TEXT NOT NULL,"
@@ -105,7 +127,7 @@ AuditEntry append_act(soci::session& sql, const std::string& service, const Oper
 
 std::vector<AuditEntry> acts_in(soci::session& sql) {
   std::vector<AuditEntry> entries;
-  if (!has_acts_table(sql)) return entries;
+  if (!has_table(sql, "acts")) return entries;
   AuditEntry row;
   long long sequence = 0;
   long long at = 0;
@@ -124,21 +146,43 @@ std::vector<AuditEntry> acts_in(soci::session& sql) {
 }
 
 Result<std::vector<AuditEntry>> read_audit_trail(const std::string& connection, const std::string& service) {
-  // It says what is wrong with a journal that is none, or another's, or of a newer program.
-  if (const auto readable = JournalReader::open(connection, service); !readable) return fail(readable.error());
-  try {
-    soci::session sql;
-    open_session(sql, connection);
-    std::string answer;
-    if (is_file(sql)) sql << "PRAGMA busy_timeout = 5000", into(answer);
-    return acts_in(sql);
-  } catch (const std::exception& exception) {
-    return fail(Error{.file = without_password(connection),
-                      .place = "table acts",
-                      .value = {},
-                      .rule = exception.what(),
-                      .advice = "look as a user that may read there: the service's own, or root"});
+  return look_into(connection, service, "acts", [](soci::session& sql) { return acts_in(sql); });
+}
+
+std::optional<AuditBreak> find_cut(const std::string& service, const std::vector<AuditEntry>& entries,
+                                   const std::vector<AuditAnchor>& heard) {
+  std::optional<AuditBreak> first;
+  for (const AuditAnchor& anchor : heard) {
+    if (anchor.service != service || anchor.sequence < 1 || (first && first->sequence <= anchor.sequence)) continue;
+    const auto place = static_cast<std::size_t>(anchor.sequence) - 1;
+    if (place >= entries.size())
+      first = broken(anchor.sequence,
+                     "other services have heard of it, and it is not there: the end was cut off, or the "
+                     "journal is an older copy");
+    else if (entries[place].hash != anchor.hash)
+      first =
+          broken(anchor.sequence, "other services have heard of another entry in its place, with hash " + anchor.hash);
   }
+  return first;
+}
+
+std::vector<AuditAnchor> anchors_in(soci::session& sql) {
+  std::vector<AuditAnchor> anchors;
+  if (!has_table(sql, "anchors")) return anchors;
+  AuditAnchor row;
+  long long sequence = 0;
+  soci::statement statement = (sql.prepare << "SELECT service, sequence, hash FROM anchors ORDER BY service, sequence",
+                               into(row.service), into(sequence), into(row.hash));
+  statement.execute();
+  while (statement.fetch()) {
+    row.sequence = sequence;
+    anchors.push_back(row);
+  }
+  return anchors;
+}
+
+Result<std::vector<AuditAnchor>> read_audit_anchors(const std::string& connection, const std::string& service) {
+  return look_into(connection, service, "anchors", [](soci::session& sql) { return anchors_in(sql); });
 }
 
 }  // namespace sealwatch

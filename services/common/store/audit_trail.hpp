@@ -4,8 +4,9 @@
 //   hash_n = SHA-256(hash_{n-1}, n, when, kind, asset, who, subject, text, outcome),   hash_0 = SHA-256(service)
 //
 // each field with its length before it. Whoever changes, removes or reorders an entry must make anew all that follow;
-// who cuts off the end leaves a chain that is whole, and shorter: hence the last hash is told (sealwatch audit, the log),
-// to be kept elsewhere, and looked for later.
+// who cuts off the end leaves a chain that is whole, and shorter. Hence every service tells its last entry in its
+// heartbeat, and the others keep what they heard in their own journals, table `anchors`: an entry that is in no record any
+// more was cut off. The last hash stands in the log, too, and can be kept elsewhere (sealwatch audit).
 #pragma once
 
 #include <cstdint>
@@ -41,12 +42,30 @@ struct AuditBreak {
   std::string why;
 };
 
+/// An entry of another service's record, as that one told it.
+struct AuditAnchor {
+  std::string service;
+  std::int64_t sequence = 0;
+  std::string hash;
+  friend bool operator==(const AuditAnchor&, const AuditAnchor&) = default;
+};
+
+/// In a heartbeat: StreamPosition of this topic, with the last entry's hash in the place of the writer.
+inline constexpr const char* kActsTopic = "acts";
+
 /// The hash before the first entry.
 [[nodiscard]] std::string audit_begin(const std::string& service);
 [[nodiscard]] std::string audit_hash(const AuditEntry& entry);
 /// Nothing where the chain is whole.
 [[nodiscard]] std::optional<AuditBreak> find_break(const std::string& service, const std::vector<AuditEntry>& entries);
 
+/// The first entry that others have heard of and that is not, or no longer, in the record; nothing where all are.
+[[nodiscard]] std::optional<AuditBreak> find_cut(const std::string& service, const std::vector<AuditEntry>& entries,
+                                                 const std::vector<AuditAnchor>& heard);
+
+/// What a service's journal, which may run, says of others' records.
+[[nodiscard]] Result<std::vector<AuditAnchor>> read_audit_anchors(const std::string& connection,
+                                                                  const std::string& service);
 /// The chain in a service's journal, which may run; it is not changed.
 [[nodiscard]] Result<std::vector<AuditEntry>> read_audit_trail(const std::string& connection,
                                                                const std::string& service);

@@ -12,6 +12,7 @@
 #include "services/common/store/checkpointer.hpp"
 #include "services/common/store/journal.hpp"
 #include "services/common/store/journal_lock.hpp"
+#include "services/common/store/rows.hpp"
 #include "services/common/store/statements.hpp"
 
 namespace sealwatch {
@@ -19,7 +20,10 @@ namespace sealwatch {
 /// Raised when the layout of the tables changes: a journal of an older version is changed when it is opened
 /// (schema.cpp), one of a newer version is refused, not guessed at. Stands in table meta and, in SQLite, in user_version as well: a
 /// turned bit changes only one of them.
-inline constexpr int kJournalSchemaVersion = 3;
+inline constexpr int kJournalSchemaVersion = 4;
+
+/// Table meta: that an output was found damaged while it was read.
+inline constexpr const char* kToBeMended = "to_be_mended";
 
 struct Journal::Database {
   std::string name;  ///< connection string as errors show it, without a password
@@ -34,6 +38,7 @@ struct Journal::Database {
   std::optional<Checkpointer> checkpointer;                     ///< SQLite's
   Survives synchronous = Survives::power_cuts;                  ///< as SQLite is set now
   std::set<std::pair<std::string, std::string>> damaged_tests;  ///< asset, PST id
+  long long checked = 0;                                        ///< outputs up to here are as they were written
   std::optional<JournalLock> lock;                              ///< SQLite's
   bool has_synced = false;  ///< the first batch brings the log's entry in its directory to the disk as well
   std::string file;         ///< SQLite's
@@ -87,8 +92,10 @@ struct Journal::Database {
   void mend_positions();
   void mend_quarantine();
   void mend_inputs();
-  void mend_outputs();
+  void mend_outputs(bool all);
   void know_damaged_tests();
+  /// Throws Error where an output is not as it was written, and has the next opening look at all of them.
+  void check(const MessageRow& output);
   /// The output, stamped, where one of its id was damaged: it now stands in its place.
   [[nodiscard]] std::optional<Message> fill_place(const Message& message, UtcTime publishing_time);
   void tell_of_damage(const std::string& aside);

@@ -2,10 +2,10 @@
 
 #include "sealwatch/message/blank.hpp"
 #include "sealwatch/message/outside.hpp"
-#include "services/common/message/json.hpp"
 #include "services/common/store/database.hpp"
 #include "services/common/store/log_sync.hpp"
 #include "services/common/store/row_checksum.hpp"
+#include "services/common/store/rows.hpp"
 
 namespace sealwatch {
 namespace {
@@ -16,56 +16,11 @@ using soci::use;
 /// Messages read at once: bounds memory, as one window of a test has some hundred kilobytes.
 constexpr int kPage = 16;
 
-struct Row {
-  long long order = 0;
-  std::string topic;
-  std::string payload;
-  long long sequence = 0;
-  long long published = 0;
-  std::string message_id;
-  std::string asset_id;
-  std::string pst_id;
-  std::string checksum;
-};
-
-/// What a query for rows_of begins with.
-constexpr const char* kOutput =
-    "SELECT ordinal, topic, payload, sequence, published, message_id, asset_id, pst_id, coalesce(checksum, '')"
-    " FROM outputs WHERE ";
 constexpr const char* kInput =
     "SELECT receipt, topic, coalesce(payload, ''), sequence, received, message_id, asset_id, pst_id,"
     " coalesce(checksum, '') FROM inputs WHERE ";
 
 std::string topic_name(Topic topic) { return std::string(name_of(topic)); }
-
-/// Of one whose samples were dropped: its columns.
-Message what_is_left(Topic topic, const Row& row) {
-  Message message = blank_message(topic);
-  Header& header = header_of(message);
-  header.message_id = row.message_id;
-  header.pst_id = row.pst_id;
-  header.producer = kExpired;
-  if (auto* block = std::get_if<SampleBlock>(&message)) block->asset_id = row.asset_id;
-  if (auto* window = std::get_if<TestWindow>(&message)) window->asset_id = row.asset_id;
-  return message;
-}
-
-/// The message of a row; throws Error where it cannot be read.
-Message message_of(const Row& row, const std::string& journal) {
-  const auto damaged = [&](const std::string& what) {
-    return Error{.file = journal,
-                 .place = "message " + std::to_string(row.order),
-                 .value = row.topic,
-                 .rule = what,
-                 .advice = "restore a backup of the journal"};
-  };
-  const auto topic = value_of<Topic>(row.topic);
-  if (!topic) throw damaged("is not a topic that this program knows");
-  Result<Message> message = message_from_json(*topic, row.payload);
-  if (row.checksum == kExpiredRow && !message) return what_is_left(*topic, row);
-  if (!message) throw damaged(message.error().describe());
-  return std::move(*message);
-}
 
 Message stamped(Message message, const std::string& writer_id, std::uint64_t sequence, long long published) {
   Header& header = header_of(message);
@@ -76,35 +31,11 @@ Message stamped(Message message, const std::string& writer_id, std::uint64_t seq
 }
 
 /// In place of a row that is damaged: its readers count on, and refuse it.
-Message placeholder(const Row& row) {
+Message placeholder(const MessageRow& row) {
   const auto topic = value_of<Topic>(row.topic);
   Message message = blank_message(topic.value_or(Topic::sample_block));
   header_of(message).message_id = std::string(kDamagedMessage) + row.topic + "/" + std::to_string(row.sequence);
   return message;
-}
-
-/// Rows of a query that begins with kOutput or kInput, with :after bound, as the query pages, and :asset
-/// where one is asked for.
-std::vector<Row> rows_of(soci::session& sql, const std::string& query, long long after,
-                         const std::string& asset_id = {}) {
-  std::vector<Row> rows;
-  Row row;
-  soci::statement statement(sql);
-  statement.exchange(into(row.order));
-  statement.exchange(into(row.topic));
-  statement.exchange(into(row.payload));
-  statement.exchange(into(row.sequence));
-  statement.exchange(into(row.published));
-  for (std::string* field : {&row.message_id, &row.asset_id, &row.pst_id, &row.checksum})
-    statement.exchange(into(*field));
-  statement.exchange(use(after, "after"));
-  if (!asset_id.empty()) statement.exchange(use(asset_id, "asset"));
-  statement.alloc();
-  statement.prepare(query);
-  statement.define_and_bind();
-  statement.execute();
-  while (statement.fetch()) rows.push_back(row);
-  return rows;
 }
 
 }  // namespace
@@ -123,45 +54,35 @@ std::function<bool()> Journal::to_disk() const {
   return [log = std::make_shared<LogSync>(database_->file + "-wal")] { return log->sync(); };
 }
 
-Status Journal::for_each_page(const std::string& query, const std::string& asset_id, const NumberedVisitor& visit) {
+Status Journal::for_each_page(const std::string& query, const Visitor& visit) {
   const bool of_outputs = query.starts_with(kOutput);  // of a damaged test they are concluded again from its inputs
   long long after = 0;
   for (;;) {
-    std::vector<std::pair<Message, Place>> page;
+    std::vector<Message> page;
     auto rows = database_->guard("reading messages", [&] {
-      const std::vector<Row> read = rows_of(database_->sql, query + std::to_string(kPage), after, asset_id);
-      for (const Row& row : read) {
+      const std::vector<MessageRow> read = rows_of(database_->sql, query + std::to_string(kPage), after);
+      for (const MessageRow& row : read) {
         after = row.order;
         if (row.checksum == kDamaged) continue;
         if (of_outputs && database_->damaged_tests.contains({row.asset_id, row.pst_id})) continue;
-        page.emplace_back(message_of(row, database_->name),
-                          Place{static_cast<std::uint64_t>(row.sequence), UtcTime{row.published}});
+        if (of_outputs) database_->check(row);
+        page.push_back(message_of(row, database_->name));
       }
       return read.size();
     });
     if (!rows) return fail(rows.error());
     if (*rows == 0) return {};
-    for (const auto& [message, place] : page)
-      if (const Status visited = visit(message, place); !visited) return visited;
+    for (const Message& message : page)
+      if (const Status visited = visit(message); !visited) return visited;
   }
 }
 
-Status Journal::for_each_numbered_output(const NumberedVisitor& visit) {
-  return for_each_page(std::string(kOutput) + "ordinal > :after ORDER BY ordinal LIMIT ", {}, visit);
-}
-
 Status Journal::for_each_output(const Visitor& visit) {
-  return for_each_numbered_output([&visit](const Message& message, const Place&) { return visit(message); });
-}
-
-Status Journal::for_each_output_of(const std::string& asset_id, const Visitor& visit) {
-  return for_each_page(std::string(kOutput) + "ordinal > :after AND asset_id = :asset ORDER BY ordinal LIMIT ",
-                       asset_id, [&visit](const Message& message, const Place&) { return visit(message); });
+  return for_each_page(std::string(kOutput) + "ordinal > :after ORDER BY ordinal LIMIT ", visit);
 }
 
 Status Journal::for_each_open_input(const Visitor& visit) {
-  return for_each_page(std::string(kInput) + "consumed = 0 AND receipt > :after ORDER BY receipt LIMIT ", {},
-                       [&visit](const Message& message, const Place&) { return visit(message); });
+  return for_each_page(std::string(kInput) + "consumed = 0 AND receipt > :after ORDER BY receipt LIMIT ", visit);
 }
 
 Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, std::uint64_t last, std::size_t most) {
@@ -170,9 +91,11 @@ Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, 
                               " AND topic = '" + topic_name(topic) + "' ORDER BY sequence LIMIT " +
                               std::to_string(most);
     std::vector<Message> messages;
-    for (const Row& row : rows_of(database_->sql, query, static_cast<long long>(first) - 1))
+    for (const MessageRow& row : rows_of(database_->sql, query, static_cast<long long>(first) - 1)) {
+      database_->check(row);
       messages.push_back(stamped(row.checksum == kDamaged ? placeholder(row) : message_of(row, database_->name),
                                  writer_id(), static_cast<std::uint64_t>(row.sequence), row.published));
+    }
     return messages;
   });
 }

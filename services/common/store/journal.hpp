@@ -84,13 +84,20 @@ class Journal {
     UtcTime concluded;
   };
   using NumberedVisitor = std::function<Status(const Message&, const Place& place)>;
-  /// Every output in the order of conclusion, as the layer made it.
+  /// Whether the last output about a test tells all of it (Layer::tells_all).
+  using TellsAll = std::function<bool(const Message& last_of_test)>;
+  /// Every output in the order of conclusion, as the layer made it. Those of a test of which one is damaged are left out:
+  /// all of that test is concluded again (journal_mend.cpp).
   [[nodiscard]] Status for_each_output(const Visitor& visit);
-  /// Likewise, with its number in its stream. Those of a test of which one is damaged are left out: all of that test is
-  /// concluded again (journal_mend.cpp).
-  [[nodiscard]] Status for_each_numbered_output(const NumberedVisitor& visit);
-  /// Every output about one asset, likewise.
-  [[nodiscard]] Status for_each_output_of(const std::string& asset_id, const Visitor& visit);
+  /// Every output about one asset, likewise. Of a test of which the last tells all, the others of its topic are left out,
+  /// and those of other topics come with their ids and the last one's header alone.
+  [[nodiscard]] Status for_each_output_of(const std::string& asset_id, const NumberedVisitor& visit,
+                                          const TellsAll& tells_all);
+  /// Assets about which there is an output or an open input, those with open inputs first.
+  [[nodiscard]] Result<std::vector<std::string>> assets();
+  /// Looks at the next few outputs that were not looked at since the journal was opened; false when there are no more.
+  /// An Error where one is not as it was written: opened again, the journal mends it.
+  [[nodiscard]] Result<bool> check_some();
   /// Every input that was not consumed, in the order of receipt. `visit` may write to the journal.
   [[nodiscard]] Status for_each_open_input(const Visitor& visit);
   /// Ids of those about one asset.
@@ -156,6 +163,10 @@ class Journal {
 
   /// What people did, in the order of receipt.
   [[nodiscard]] Result<std::vector<AuditEntry>> acts();
+  /// The last of them; number 0 where there is none.
+  [[nodiscard]] Result<AuditAnchor> last_act();
+  /// Keeps what another service told of its record; between begin and commit.
+  [[nodiscard]] Status keep_anchor(const AuditAnchor& heard);
 
   struct Awaiting {
     Message message;
@@ -178,8 +189,7 @@ class Journal {
  private:
   struct Database;
   explicit Journal(std::unique_ptr<Database> database);
-  [[nodiscard]] Status for_each_page(const std::string& query, const std::string& asset_id,
-                                     const NumberedVisitor& visit);
+  [[nodiscard]] Status for_each_page(const std::string& query, const Visitor& visit);
   std::unique_ptr<Database> database_;
 };
 

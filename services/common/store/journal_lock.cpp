@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -32,7 +33,7 @@ Result<JournalLock> JournalLock::take(const std::string& journal_file) {
                       .value = {},
                       .rule = "unable to open its lock: " + std::string(std::strerror(errno)),
                       .advice = "check that the directory exists and that this user may write to it"});
-  JournalLock lock(descriptor);
+  JournalLock lock(file, descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     std::array<char, 300> owner{};
     const bool known = ::read(descriptor, owner.data(), owner.size() - 1) > 0;
@@ -50,6 +51,13 @@ Result<JournalLock> JournalLock::take(const std::string& journal_file) {
 
 JournalLock::~JournalLock() {
   if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool JournalLock::holds() const {
+  struct stat held {};
+  struct stat there {};
+  return ::fstat(descriptor_, &held) == 0 && ::stat(file_.c_str(), &there) == 0 && held.st_ino == there.st_ino &&
+         held.st_dev == there.st_dev;
 }
 
 std::optional<Error> lock_schema(soci::session& sql, const std::string& name) {

@@ -16,11 +16,16 @@ class JournalLock {
  public:
   [[nodiscard]] static Result<JournalLock> take(const std::string& journal_file);
   ~JournalLock();
-  JournalLock(JournalLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  JournalLock(JournalLock&& other) noexcept
+      : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
   JournalLock& operator=(JournalLock&&) = delete;
 
+  /// Whether the file that is locked is still the one that others would try to lock: somebody may have removed it.
+  [[nodiscard]] bool holds() const;
+
  private:
-  explicit JournalLock(int descriptor) : descriptor_(descriptor) {}
+  JournalLock(std::string file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
+  std::string file_;
   int descriptor_ = -1;
 };
 

@@ -1,5 +1,6 @@
-// Rows that are not as they were written: a disk or a memory turned a bit. They are found when the journal is opened,
-// never read, and wherever possible made again:
+// Rows that are not as they were written: a disk or a memory turned a bit. They are found when the journal is opened or,
+// in a long history, when they are read or looked at later, which ends the service: it then opens the journal again. They
+// are never used, and wherever possible made again:
 //
 //   position     from the numbers of the inputs, which are kept for ever
 //   output       its place stays empty; the inputs of its test are forgotten, come again from the neighbours' journals,
@@ -21,8 +22,9 @@ namespace {
 
 using soci::into;
 using soci::use;
+using std::chrono::steady_clock;
 
-struct Row {
+struct DamagedRow {
   long long order = 0;
   std::string topic;
   std::string writer_id;
@@ -35,15 +37,20 @@ struct Row {
   std::string expected;  ///< checksum of what stands in the row
 };
 
-/// Rows of a table that are not as they were written; those of version 1 have no checksum.
-std::vector<Row> damaged_rows(soci::session& sql, bool outputs) {
+/// How long a start looks at outputs. The rest is looked at while the service runs (Journal::check_some).
+constexpr std::chrono::milliseconds kLook{500};
+
+/// Rows of a table that are not as they were written; those of version 1 have no checksum. Up to `end`: `looked_at` is
+/// the last.
+std::vector<DamagedRow> damaged_rows(soci::session& sql, bool outputs, steady_clock::time_point end,
+                                     long long& looked_at) {
   const std::string query =
       outputs
           ? "SELECT ordinal, topic, '', sequence, message_id, asset_id, pst_id, payload, checksum FROM outputs"
-            " WHERE checksum NOT IN ('damaged', 'expired')"
+            " WHERE checksum NOT IN ('damaged', 'expired') ORDER BY ordinal"
           : "SELECT receipt, topic, writer_id, sequence, message_id, asset_id, pst_id, payload, checksum FROM inputs"
             " WHERE payload IS NOT NULL OR consumed <> 1";
-  Row row;
+  DamagedRow row;
   std::string& payload = row.payload;
   std::string& checksum = row.checksum;
   soci::indicator has_payload = soci::i_null;
@@ -51,9 +58,10 @@ std::vector<Row> damaged_rows(soci::session& sql, bool outputs) {
   soci::statement statement = (sql.prepare << query, into(row.order), into(row.topic), into(row.writer_id),
                                into(row.sequence), into(row.message_id), into(row.asset_id), into(row.pst_id),
                                into(payload, has_payload), into(checksum, has_checksum));
-  std::vector<Row> damaged;
+  std::vector<DamagedRow> damaged;
   statement.execute();
-  while (statement.fetch()) {
+  while (steady_clock::now() < end && statement.fetch()) {
+    looked_at = row.order;
     const bool known = has_payload == soci::i_ok && has_checksum != soci::i_ok;
     if (known) continue;
     const std::string expected =
@@ -76,7 +84,7 @@ bool is_one_character_off(const std::string& a, const std::string& b) {
 }
 
 /// The row is whole, and its checksum is not.
-bool put_checksum_right(soci::session& sql, const Row& row, bool output) {
+bool put_checksum_right(soci::session& sql, const DamagedRow& row, bool output) {
   if (!is_one_character_off(row.checksum, row.expected)) return false;
   sql << (output ? "UPDATE outputs SET checksum = :checksum WHERE ordinal = :order"
                  : "UPDATE inputs SET checksum = :checksum WHERE receipt = :order"),
@@ -85,7 +93,7 @@ bool put_checksum_right(soci::session& sql, const Row& row, bool output) {
 }
 
 /// Where a column is off and not the message, the message says what stood in it: the checksum agrees.
-bool put_right(soci::session& sql, const Row& row) {
+bool put_right(soci::session& sql, const DamagedRow& row) {
   const auto topic = value_of<Topic>(row.topic);
   const Result<Message> message = topic ? message_from_json(*topic, row.payload) : fail("of an unknown topic");
   if (!message) return false;
@@ -96,7 +104,7 @@ bool put_right(soci::session& sql, const Row& row) {
   return true;
 }
 
-void tell(soci::session& sql, const Row& row, const std::string& reason) {
+void tell(soci::session& sql, const DamagedRow& row, const std::string& reason) {
   const long long now =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
   const std::string none;
@@ -116,7 +124,8 @@ void Journal::Database::mend() {
   mend_positions();
   mend_quarantine();
   mend_inputs();
-  mend_outputs();
+  mend_outputs(!meta(kToBeMended).empty());
+  sql << std::string("DELETE FROM meta WHERE name = '") + kToBeMended + "'";
   transaction.commit();
   know_damaged_tests();
 }
@@ -142,7 +151,7 @@ void Journal::Database::mend_positions() {
 
 void Journal::Database::mend_quarantine() {
   std::vector<std::string> damaged;
-  Row row;
+  DamagedRow row;
   long long since = 0;
   std::string reason;
   std::string state;
@@ -169,7 +178,8 @@ void Journal::Database::mend_quarantine() {
 void Journal::Database::mend_inputs() {
   // A consumed input has no payload any more: one that has was not consumed.
   sql << "UPDATE inputs SET consumed = 0 WHERE payload IS NOT NULL AND consumed NOT IN (0, 2, 3)";
-  for (const Row& row : damaged_rows(sql, false)) {
+  long long looked_at = 0;
+  for (const DamagedRow& row : damaged_rows(sql, false, steady_clock::time_point::max(), looked_at)) {
     if (put_checksum_right(sql, row, false)) continue;
     long long position = 0;
     sql << "SELECT coalesce(max(sequence), 0) FROM positions WHERE topic = :topic AND writer_id = :writer",
@@ -184,13 +194,14 @@ void Journal::Database::mend_inputs() {
   }
 }
 
-void Journal::Database::mend_outputs() {
-  for (const Row& row : damaged_rows(sql, true)) {
+void Journal::Database::mend_outputs(bool all) {
+  const auto end = all ? steady_clock::time_point::max() : steady_clock::now() + kLook;
+  for (const DamagedRow& row : damaged_rows(sql, true, end, checked)) {
     if (put_checksum_right(sql, row, true) || put_right(sql, row)) continue;
     sql << "UPDATE outputs SET checksum = 'damaged' WHERE ordinal = :ordinal", use(row.order, "ordinal");
     tell(sql, row, "damaged in the journal; it is concluded again from the neighbours' messages, where they have them");
-    std::vector<Row> sources;
-    Row source;
+    std::vector<DamagedRow> sources;
+    DamagedRow source;
     soci::statement statement =
         (sql.prepare << "SELECT receipt, topic, writer_id, sequence FROM inputs WHERE asset_id = :asset AND"
                         " pst_id = :pst AND pst_id <> '' AND consumed = 1 AND sequence > 0",
@@ -199,7 +210,7 @@ void Journal::Database::mend_outputs() {
     statement.execute();
     while (statement.fetch())
       if (is_of_a_service(source.topic)) sources.push_back(source);
-    for (const Row& one : sources) {
+    for (const DamagedRow& one : sources) {
       sql << "DELETE FROM inputs WHERE receipt = :receipt", use(one.order, "receipt");
       fetch_again(one.topic, one.writer_id, one.sequence);
     }
@@ -245,7 +256,7 @@ std::optional<Message> Journal::Database::fill_place(const Message& message, Utc
 }
 
 void Journal::Database::tell_of_damage(const std::string& aside) {
-  Row row;
+  DamagedRow row;
   row.message_id = "journal/" + service;
   tell(sql, row,
        "the journal was damaged and is made again from the neighbours' messages; the old one is " + aside +

@@ -151,6 +151,27 @@ Result<std::vector<AuditEntry>> Journal::acts() {
   return database_->guard("reading what people did", [&] { return acts_in(database_->sql); });
 }
 
+Result<AuditAnchor> Journal::last_act() {
+  return database_->guard("reading the last act", [&] {
+    AuditAnchor last{.service = database_->service, .sequence = 0, .hash = {}};
+    long long sequence = 0;
+    database_->sql << "SELECT sequence, hash FROM acts WHERE sequence = (SELECT max(sequence) FROM acts)",
+        into(sequence), into(last.hash);
+    if (database_->sql.got_data()) last.sequence = sequence;
+    return last;
+  });
+}
+
+Status Journal::keep_anchor(const AuditAnchor& heard) {
+  return database_->guard("keeping what was heard of acts", [&] {
+    const long long sequence = heard.sequence;
+    database_->sql << "INSERT INTO anchors(service, sequence, hash) VALUES(:service, :sequence, :hash)"
+                      " ON CONFLICT(service, sequence, hash) DO NOTHING",
+        use(heard.service, "service"), use(sequence, "sequence"), use(heard.hash, "hash");
+    ++database_->batch_rows;
+  });
+}
+
 Result<AuditEntry> Journal::record(const OperatorAct& act) {
   return database_->guard("recording an act", [&] {
     ++database_->batch_rows;

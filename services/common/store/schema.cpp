@@ -35,13 +35,21 @@ constexpr const char* kAlarms =
     " subject VARCHAR(512) NOT NULL, payload TEXT NOT NULL, checksum VARCHAR(16) NOT NULL,"
     " PRIMARY KEY(kind, asset_id, subject))";
 
+/// How far other services' records of acts went (audit_trail.hpp).
+constexpr const char* kAnchors =
+    "CREATE TABLE IF NOT EXISTS anchors(service VARCHAR(64) NOT NULL, sequence BIGINT NOT NULL,"
+    " hash VARCHAR(64) NOT NULL, PRIMARY KEY(service, sequence, hash))";
+
 /// What makes version n + 2 of version n + 1. Version 2: checksums of rows; those of older rows are not known. Version
-/// 3: alarms.
-constexpr std::array<std::array<const char*, 5>, 2> kChanges = {{
+/// 3: alarms. Version 4: indexes by which a start reads no more than it needs, however long the history; anchors.
+constexpr std::array<std::array<const char*, 5>, 3> kChanges = {{
     {"ALTER TABLE inputs ADD COLUMN checksum VARCHAR(16)", "ALTER TABLE outputs ADD COLUMN checksum VARCHAR(16)",
      "ALTER TABLE positions ADD COLUMN checksum VARCHAR(16)", "ALTER TABLE quarantine ADD COLUMN checksum VARCHAR(16)",
      "CREATE INDEX outputs_damaged ON outputs(asset_id, pst_id) WHERE checksum = 'damaged'"},
     {kAlarms},
+    {"CREATE INDEX outputs_of_asset ON outputs(asset_id, ordinal, pst_id, topic)", "DROP INDEX inputs_open",
+     "CREATE INDEX inputs_open ON inputs(asset_id, receipt) WHERE consumed = 0",
+     "CREATE INDEX inputs_kept ON inputs(receipt) WHERE payload IS NOT NULL OR consumed <> 1", kAnchors},
 }};
 static_assert(kChanges.size() + 1 == kJournalSchemaVersion);
 
@@ -150,6 +158,7 @@ void Journal::Database::make_later_tables() {
     sql << "ALTER TABLE quarantine ADD COLUMN checksum VARCHAR(16)";
   }
   if (!has_table("alarms")) sql << kAlarms;
+  if (!has_table("anchors")) sql << kAnchors;
   make_acts_table(sql);
 }
 

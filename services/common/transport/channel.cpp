@@ -6,7 +6,9 @@
 #include <memory>
 
 #include "dds/ddsi/ddsi_serdata.h"
+#include "sealwatch/message/retraction.hpp"
 #include "services/common/transport/participant.hpp"
+#include "services/common/transport/refusals.hpp"
 
 namespace sealwatch::transport {
 namespace {
@@ -64,6 +66,11 @@ void announce(dds_entity_t reader, void* channel) { static_cast<Channel*>(channe
 
 }  // namespace
 
+bool is_retraction(const Message& message) {
+  const auto* event = std::get_if<MaintenanceEvent>(&message);
+  return event != nullptr && is_retraction_kind(event->kind);
+}
+
 Status Channel::open_topic() {
   if (topic_ > 0) return {};
   const std::string name = "sealwatch/" + type_->name;
@@ -110,7 +117,7 @@ bool Channel::take_batch(std::vector<Stamped>& taken) const {
   for (std::size_t k = 0; static_cast<dds_return_t>(k) < count; ++k) {
     const std::unique_ptr<ddsi_serdata, decltype(&ddsi_serdata_unref)> sample(samples[k], &ddsi_serdata_unref);
     if (!infos[k].valid_data) continue;
-    if (auto item = decode(*sample))
+    if (auto item = decode(*sample); item && may_say(*item))
       taken.push_back(
           {.published = infos[k].source_timestamp, .writer = infos[k].publication_handle, .item = std::move(*item)});
   }
@@ -124,6 +131,18 @@ std::optional<BusItem> Channel::decode(const ddsi_serdata& sample) const {
   auto item = type_->decode({static_cast<const std::byte*>(bytes.iov_base), bytes.iov_len});
   ddsi_serdata_to_ser_unref(held, &bytes);
   return item;
+}
+
+/// A retraction on the topic of all other events was sent without the right to retract, or by a program that knows of no
+/// rights: where there are any, it is refused.
+bool Channel::may_say(const BusItem& item) const {
+  const auto* message = std::get_if<Message>(&item);
+  const bool retracts = message != nullptr && is_retraction(*message);
+  const bool is_of_retractions = type_ == &topic_types()[kRetractionIndex];
+  if (retracts == is_of_retractions || (retracts && rights_ == Rights::none)) return true;
+  note_refusal("topic " + type_->name + ": a message of asset '" + asset_of(*message) +
+               "' belongs to another topic, for which its sender needs another right");
+  return false;
 }
 
 void Channel::take() {

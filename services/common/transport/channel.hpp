@@ -26,16 +26,23 @@ struct ddsi_serdata;
 
 namespace sealwatch::transport {
 
+/// Whether DDS Security says who may write what.
+enum class Rights { none, enforced };
+
+/// What travels as a maintenance_event and has a topic of its own.
+[[nodiscard]] bool is_retraction(const Message& message);
+
 class Channel {
  public:
   static constexpr std::string_view kServiceStatus = "service_status";
 
   /// `type` must outlive the channel; the participant owns and deletes the entities.
-  Channel(dds_entity_t participant, const TopicType& type, TopicQos qos, SlowReader slow_reader)
+  Channel(dds_entity_t participant, const TopicType& type, TopicQos qos, SlowReader slow_reader, Rights rights)
       : participant_(participant),
         type_(&type),
         qos_(qos),
         slow_reader_(slow_reader),
+        rights_(rights),
         takes_at_once_(slow_reader == SlowReader::asks_again && (qos.keep_all || type.name == kServiceStatus)) {}
 
   [[nodiscard]] bool subscribed() const { return reader_ > 0; }
@@ -65,11 +72,14 @@ class Channel {
   /// Takes one batch; whether there may be more.
   bool take_batch(std::vector<Stamped>& taken) const;
   [[nodiscard]] std::optional<BusItem> decode(const ddsi_serdata& sample) const;
+  /// Whether who may write this topic may say that.
+  [[nodiscard]] bool may_say(const BusItem& item) const;
 
   dds_entity_t participant_;
   const TopicType* type_;
   TopicQos qos_;
   SlowReader slow_reader_;
+  Rights rights_;
   bool takes_at_once_;
   dds_entity_t topic_ = 0;
   dds_entity_t reader_ = 0;

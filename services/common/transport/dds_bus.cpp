@@ -17,6 +17,10 @@ using transport::Channel;
 using transport::DdsSample;
 using Clock = std::chrono::steady_clock;
 
+transport::Rights rights_of(const Configuration& configuration) {
+  return transport::is_secured(configuration) ? transport::Rights::enforced : transport::Rights::none;
+}
+
 class CycloneBus final : public DdsBus {
  public:
   CycloneBus(transport::Participant participant, const Configuration& configuration, SlowReader slow_reader)
@@ -25,7 +29,7 @@ class CycloneBus final : public DdsBus {
     for (const transport::TopicType& type : transport::topic_types()) {
       const auto overridden = configuration.topics.find(type.name);
       const TopicQos qos = overridden == configuration.topics.end() ? type.qos : overridden->second;
-      channels_.emplace_back(participant_.handle(), type, qos, slow_reader);
+      channels_.emplace_back(participant_.handle(), type, qos, slow_reader, rights_of(configuration));
     }
     std::set<std::string> assets;
     for (const AssetConfig& asset : configuration.assets) assets.insert(asset.asset_id);
@@ -35,8 +39,11 @@ class CycloneBus final : public DdsBus {
   [[nodiscard]] bool ok() const { return inbox_.signal.ok(); }
 
   Status subscribe(std::span<const Topic> topics) override {
-    for (const Topic topic : topics)
+    for (const Topic topic : topics) {
       if (Status made = channels_[static_cast<std::size_t>(topic)].subscribe(inbox_); !made) return made;
+      if (topic == Topic::maintenance_event)
+        if (Status made = channels_[transport::kRetractionIndex].subscribe(inbox_); !made) return made;
+    }
     return {};
   }
   Status subscribe_service_topics() override {
@@ -45,7 +52,10 @@ class CycloneBus final : public DdsBus {
     return {};
   }
 
-  Status publish(const Message& message) override { return channels_[message.index()].write(DdsSample(message)); }
+  Status publish(const Message& message) override {
+    const std::size_t index = transport::is_retraction(message) ? transport::kRetractionIndex : message.index();
+    return channels_[index].write(DdsSample(message));
+  }
   Status publish(const ServiceStatus& status) override {
     return channels_[transport::kServiceStatusIndex].write(DdsSample(status));
   }

@@ -1,6 +1,8 @@
 #include "services/common/transport/participant.hpp"
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -65,6 +67,18 @@ tl::unexpected<Error> dds_failure(std::string what, dds_return_t code, std::stri
                     .value = {},
                     .rule = std::string("DDS says: ") + dds_strretcode(code),
                     .advice = std::move(advice)});
+}
+
+bool is_secured(const Configuration& configuration) {
+  const char* const uri = std::getenv("CYCLONEDDS_URI");
+  std::string settings = uri != nullptr && *uri != '\0' ? uri : configuration.cyclonedds_uri;
+  constexpr std::string_view kFile = "file://";
+  for (std::size_t begin = settings.find(kFile); begin != std::string::npos; begin = settings.find(kFile, begin + 1)) {
+    const std::size_t path = begin + kFile.size();
+    std::ifstream file(settings.substr(path, settings.find(',', path) - path));
+    settings.append(std::istreambuf_iterator<char>(file), {});
+  }
+  return settings.find("Security") != std::string::npos;
 }
 
 Result<Participant> Participant::join(const Configuration& configuration) {

@@ -12,6 +12,9 @@ namespace sealwatch::transport {
 /// Error of a DDS call: what was tried, and DDS's own word for what went wrong.
 [[nodiscard]] tl::unexpected<Error> dds_failure(std::string what, dds_return_t code, std::string advice = {});
 
+/// Whether the settings of Cyclone that count for this process have DDS Security in them.
+[[nodiscard]] bool is_secured(const Configuration& configuration);
+
 /// A domain's participant; its end deletes all that was made in it, then the domain when it was the process's last
 /// there.
 class Participant {

@@ -27,11 +27,9 @@ void take_line(void* /*unused*/, const dds_log_data_t* data) {
   const std::string_view line(data->message, data->size);
   std::fwrite(line.data(), 1, line.size(), stderr);
   if (!line.ends_with('\n')) std::fputc('\n', stderr);
-  if (!transport::tells_a_refusal(line)) return;
-  Refusals& known = refusals();
-  const std::lock_guard lock(known.mutex);
-  known.last = line.substr(0, line.find_last_not_of("\n ") + 1);
-  ++known.count;
+  if (transport::tells_a_refusal(line))
+    transport::note_refusal("DDS Security refused a connection; last message of Cyclone: " +
+                            std::string(line.substr(0, line.find_last_not_of("\n ") + 1)));
 }
 
 }  // namespace
@@ -51,6 +49,13 @@ bool tells_a_refusal(std::string_view line) {
                              [&](std::string_view words) { return !std::ranges::search(line, words, same).empty(); });
 }
 
+void note_refusal(const std::string& words) {
+  Refusals& known = refusals();
+  const std::lock_guard lock(known.mutex);
+  known.last = words;
+  ++known.count;
+}
+
 void listen_to_cyclone() {
   static const bool once = (dds_set_log_sink(&take_line, nullptr), true);
   (void)once;
@@ -63,7 +68,7 @@ std::optional<std::string> refused_by_security() {
   const std::lock_guard lock(known.mutex);
   if (known.count == 0) return std::nullopt;
   known.count = 0;
-  return "DDS Security refused a connection; last message of Cyclone: " + known.last;
+  return known.last;
 }
 
 }  // namespace sealwatch

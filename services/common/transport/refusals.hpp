@@ -1,6 +1,7 @@
 // What Cyclone DDS says on standard error is read along: only there it tells whom DDS Security refused.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace sealwatch::transport {
@@ -10,5 +11,8 @@ void listen_to_cyclone();
 
 /// Whether a line of Cyclone's says that somebody else was refused.
 [[nodiscard]] bool tells_a_refusal(std::string_view line);
+
+/// It is told once, as an alarm (refused_by_security).
+void note_refusal(const std::string& words);
 
 }  // namespace sealwatch::transport

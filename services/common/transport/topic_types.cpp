@@ -104,6 +104,7 @@ std::vector<TopicType> describe_all(std::index_sequence<Index...> /*topics*/) {
   types.back().qos.keep_all = false;  // a state: only the last heartbeat counts
   types.push_back(describe<ResendRequest>("resend_request"));
   types.back().qos.transient_local = false;  // an old request asks for what has long been sent
+  types.push_back(describe<MaintenanceEvent>("retraction"));
   return types;
 }
 

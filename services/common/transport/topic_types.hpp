@@ -32,7 +32,9 @@ struct TopicType {
 /// Index of a topic in topic_types(): static_cast<std::size_t>(Topic), then these.
 inline constexpr std::size_t kServiceStatusIndex = EnumNames<Topic>::kNames.size();
 inline constexpr std::size_t kResendRequestIndex = kServiceStatusIndex + 1;
-inline constexpr std::size_t kTopicCount = kResendRequestIndex + 1;
+/// maintenance_event of its own: what retracts tests, so that DDS Security can grant the one right without the other.
+inline constexpr std::size_t kRetractionIndex = kResendRequestIndex + 1;
+inline constexpr std::size_t kTopicCount = kRetractionIndex + 1;
 
 [[nodiscard]] const std::vector<TopicType>& topic_types();
 

@@ -72,6 +72,7 @@ class MortalLayer final : public Layer {
   std::span<const Topic> inputs() const override { return layer_->inputs(); }
   std::span<const Topic> outputs() const override { return layer_->outputs(); }
   void restore(const Message& own) override { layer_->restore(own); }
+  bool tells_all(const Message& last_of_test) const override { return layer_->tells_all(last_of_test); }
   Conclusion receive(const Message& input) override {
     fate_.step();  // taken, before the conclusion
     Conclusion conclusion = layer_->receive(input);

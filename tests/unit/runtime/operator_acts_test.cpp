@@ -102,6 +102,40 @@ TEST_F(ActsTest, EachIsRecordedOnceWithWhoAndWhat) {
   EXPECT_FALSE(find_break("advisory_generation", acts()));
 }
 
+/// Each service tells its last entry, and keeps what others tell: who cuts off an end would have to cut all.
+TEST_F(ActsTest, TheEndOfTheRecordIsToldAndThatOfOthersIsKept) {
+  const auto process = start();
+  say(*process, seen("J. Silva"));
+  ServiceStatus told;
+  ASSERT_TRUE(operator_.subscribe_service_topics());
+  const auto is_told = [&] {
+    process->step();
+    for (const BusItem& item : operator_.receive(std::chrono::milliseconds(1), 100))
+      if (const auto* status = std::get_if<ServiceStatus>(&item)) told = *status;
+    return std::ranges::find(told.written, kActsTopic, &StreamPosition::topic) != told.written.end();
+  };
+  ASSERT_TRUE(step_until(is_told, [] {}));
+  EXPECT_EQ(*std::ranges::find(told.written, kActsTopic, &StreamPosition::topic),
+            (StreamPosition{kActsTopic, acts().back().hash, 1}));
+  ServiceStatus other;
+  other.service = "state_detection";
+  other.writer_id = "state_detection-1";
+  other.state = "running";
+  for (const std::uint64_t length : {3U, 3U, 2U}) {
+    other.written = {{kActsTopic, std::string(64, static_cast<char>('0' + length)), length}};
+    ASSERT_TRUE(operator_.publish(other));
+    process->step();
+  }
+  std::vector<AuditAnchor> heard;
+  const auto is_kept = [&] {
+    heard = read_audit_anchors(place_.connection(), "advisory_generation").value();
+    return heard.size() == 2;
+  };
+  ASSERT_TRUE(step_until(is_kept, [&] { process->step(); }));
+  EXPECT_EQ(heard[0], (AuditAnchor{"state_detection", 2, std::string(64, '2')}));
+  EXPECT_EQ(heard[1], (AuditAnchor{"state_detection", 3, std::string(64, '3')}));
+}
+
 TEST_F(ActsTest, WhatIsRefusedIsRecordedWithTheReason) {
   const auto process = start();
   say(*process, replaced("M. Okoye", add_months(process->clock().now(), 1.0)));

@@ -142,6 +142,38 @@ TEST_P(AuditTest, AnEndThatIsCutOffIsKnownByAHashThatWasNoted) {
   for (const AuditEntry& entry : entries()) EXPECT_NE(entry.hash, hashes_.back());
 }
 
+TEST_P(AuditTest, AnEndThatIsCutOffIsKnownByWhatOtherServicesHeard) {
+  const Place neighbours{GetParam()};
+  {
+    auto neighbour = Journal::open(neighbours.connection(), "state_detection");
+    ASSERT_TRUE(neighbour->begin());
+    for (const std::int64_t heard : {2, 4, 4}) {
+      const AuditAnchor anchor{kService, heard, hashes_[static_cast<std::size_t>(heard) - 1]};
+      ASSERT_TRUE(neighbour->keep_anchor(anchor));
+    }
+    ASSERT_TRUE(neighbour->commit());
+  }
+  const auto heard = read_audit_anchors(neighbours.connection(), "state_detection").value();
+  ASSERT_THAT(heard, SizeIs(2));
+  EXPECT_FALSE(find_cut(kService, entries(), heard));
+  place_.execute("DELETE FROM acts WHERE sequence = 5");
+  EXPECT_FALSE(find_cut(kService, entries(), heard)) << "nobody had heard of it";
+  place_.execute("DELETE FROM acts WHERE sequence > 3");
+  EXPECT_FALSE(look()) << "what is left is whole";
+  ASSERT_TRUE(find_cut(kService, entries(), heard));
+  EXPECT_EQ(find_cut(kService, entries(), heard)->sequence, 4);
+  EXPECT_FALSE(find_cut("state_detection", entries(), heard)) << "of another service";
+  // Whoever writes others in their place makes a chain that is whole, and another.
+  auto journal = Journal::open(place_.connection(), kService);
+  ASSERT_TRUE(journal->begin());
+  for (const int number : {44, 45, 46}) ASSERT_TRUE(journal->record(act(number)));
+  EXPECT_EQ(journal->last_act()->sequence, 6);
+  ASSERT_TRUE(journal->commit());
+  EXPECT_FALSE(look());
+  ASSERT_TRUE(find_cut(kService, entries(), heard));
+  EXPECT_THAT(find_cut(kService, entries(), heard)->why, HasSubstr("another entry in its place"));
+}
+
 TEST_P(AuditTest, AJournalOfAnOlderProgramGetsTheTableWhenItsServiceStarts) {
   place_.execute("DROP TABLE acts");
   EXPECT_THAT(entries(), IsEmpty());

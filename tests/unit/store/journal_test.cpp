@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "sealwatch/message/blank.hpp"
 #include "tests/unit/message/fill.hpp"
 #include "tests/unit/store/place.hpp"
 
@@ -106,6 +109,57 @@ TEST_P(JournalTest, OutputsComeBackFieldByFieldInOrderAndStampedWhereTheyGoOut) 
   EXPECT_EQ(header_of(again->front()).stream_sequence, 2U);
   EXPECT_EQ(header_of(again->front()).writer_id, journal.writer_id());
   EXPECT_EQ(header_of(again->front()).publishing_time_ns, 77);
+}
+
+Message of_test(Topic topic, const std::string& pst, const std::string& asset, std::int64_t time_ns) {
+  Message made = blank_message(topic);
+  std::visit([&](auto& content) { content.asset_id = asset; }, made);
+  Header& header = header_of(made);
+  header.message_id = std::string(name_of(topic)) + "/" + pst + "/" + std::to_string(time_ns);
+  header.pst_id = pst;
+  header.event_time_known = true;
+  header.event_time_ns = time_ns;
+  return made;
+}
+
+TEST_P(JournalTest, AnAssetsPastIsReadAloneAndOfATestThatIsToldByItsLastThatAlone) {
+  Journal journal = open("data_manipulation");
+  conclude(journal, {of_test(Topic::test_window, "1", "A", 10), of_test(Topic::test_features, "1", "A", 10),
+                     of_test(Topic::test_window, "1b", "B", 11), of_test(Topic::sample_block, "2", "A", 20),
+                     of_test(Topic::sample_block, "2", "A", 21), of_test(Topic::state_report, "", "A", 30),
+                     of_test(Topic::state_report, "", "A", 31), of_test(Topic::sample_block, "3", "A", 40),
+                     of_test(Topic::sample_block, "3", "A", 41)});
+  const auto past_of = [&](const std::string& asset, const Journal::TellsAll& tells_all) {
+    std::vector<std::string> found;
+    EXPECT_TRUE(journal.for_each_output_of(
+        asset,
+        [&](const Message& m, const Journal::Place& place) {
+          EXPECT_EQ(place.concluded.nanoseconds, 77);
+          EXPECT_EQ(asset_of(m), asset);
+          found.push_back(header_of(m).message_id + " " + std::to_string(place.sequence));
+          return Status();
+        },
+        tells_all));
+    return found;
+  };
+  const auto never = [](const Message&) { return false; };
+  EXPECT_THAT(past_of("A", never),
+              ElementsAre("test_window/1/10 1", "test_features/1/10 1", "sample_block/2/20 1", "sample_block/2/21 2",
+                          "state_report//30 1", "state_report//31 2", "sample_block/3/40 3", "sample_block/3/41 4"));
+  EXPECT_THAT(past_of("B", never), ElementsAre("test_window/1b/11 2"));
+  EXPECT_THAT(past_of("C", never), IsEmpty());
+  EXPECT_THAT(past_of("A", [](const Message& last) { return header_of(last).pst_id != "3"; }),
+              ElementsAre("test_window/1/10 1", "test_features/1/10 1", "sample_block/2/21 2", "state_report//30 1",
+                          "state_report//31 2", "sample_block/3/40 3", "sample_block/3/41 4"));
+}
+
+TEST_P(JournalTest, AssetsWithOpenInputsComeFirst) {
+  Journal journal = open();
+  conclude(journal, {message("a", "A"), message("b", "B"), message("c", "C"), message("d", "B")});
+  receive(journal, message("x", "C", Topic::test_features), false);
+  receive(journal, message("y", "D", Topic::test_features), false);
+  receive(journal, message("z", "E", Topic::test_features), true);
+  EXPECT_THAT(journal.assets().value(), ElementsAre("C", "D", "A", "B"));
 }
 
 TEST_P(JournalTest, TheSameConclusionTwiceIsKeptOnce) {
@@ -272,12 +326,30 @@ TEST_P(JournalTest, AJournalOfAnotherServiceIsRefused) {
 
 TEST_P(JournalTest, ANewerSchemaIsRefusedWithWhatToDo) {
   open();
-  place_.execute("UPDATE meta SET value = '4' WHERE name = 'schema_version'");
-  if (GetParam() == "sqlite3") place_.execute("PRAGMA user_version = 4");
+  place_.execute("UPDATE meta SET value = '5' WHERE name = 'schema_version'");
+  if (GetParam() == "sqlite3") place_.execute("PRAGMA user_version = 5");
   const Result<Journal> journal = Journal::open(place_.connection(), "state_detection");
   ASSERT_FALSE(journal.has_value());
-  EXPECT_THAT(journal.error().describe(), HasSubstr("'4': must be at most 3, the version that this program knows"));
+  EXPECT_THAT(journal.error().describe(), HasSubstr("'5': must be at most 4, the version that this program knows"));
   EXPECT_THAT(journal.error().advice, HasSubstr("install the sealwatch that wrote this journal"));
+}
+
+/// On a file by the lock's own end, on a server by the end of the session that has it: then the other one may have it.
+TEST_P(JournalTest, WhoLostItsLockWritesNoMore) {
+  Journal first = open();
+  conclude(first, {message("a")});
+  if (GetParam() == "sqlite3")
+    std::filesystem::remove(place_.directory() / "journal.db.lock");
+  else
+    place_.execute(
+        "SELECT pg_terminate_backend(pid) FROM pg_locks WHERE locktype = 'advisory' AND objid::bigint ="
+        " (hashtext('sealwatch journal ' || current_schema())::bigint & 4294967295)");
+  Journal second = open();
+  Status written = first.begin();
+  if (written) written = first.set_position({"state_report", "w", 1});
+  EXPECT_FALSE(written);
+  conclude(second, {message("b")});
+  EXPECT_EQ(all_outputs(second).size(), 2U);
 }
 
 TEST_P(JournalTest, IsOpenForOneAtATime) {

@@ -85,6 +85,21 @@ class Mend : public ::testing::Test {
         [&](const Message& m) { return ids.push_back(header_of(m).message_id), Status(); }));
     return ids;
   }
+  /// In a long history a start does not look at all: what is damaged there is noticed when it is read, and mended when
+  /// the journal is opened next.
+  void expect_not_read(const std::function<Status(Journal&)>& read) const {
+    {
+      Journal journal = open();
+      turn_bit("outputs", "payload", "ordinal = 1");
+      const Status seen = read(journal);
+      ASSERT_FALSE(seen);
+      EXPECT_THAT(seen.error().describe(), HasSubstr("not as it was written"));
+    }
+    Journal journal = open();
+    EXPECT_THAT(outputs(journal), ElementsAre("report 2"));
+    EXPECT_THAT(journal.quarantine().value(), SizeIs(2));
+    EXPECT_TRUE(read(journal));
+  }
   static std::uint64_t position(Journal& journal) { return journal.positions().value().at(0).sequence; }
 
   Place place_;
@@ -116,6 +131,42 @@ TEST_F(Mend, AnOutputIsConcludedAgainInItsPlace) {
     }
     if (field != "payload") place_.execute("UPDATE outputs SET asset_id = 'XT03', pst_id = 'test 1' WHERE ordinal = 1");
   }
+}
+
+TEST_F(Mend, WhatIsDamagedWhileTheJournalIsOpenIsNotRead) {
+  expect_not_read([](Journal& journal) { return journal.for_each_output([](const Message&) { return Status(); }); });
+}
+
+TEST_F(Mend, NorAsAnAssetsPast) {
+  expect_not_read([](Journal& journal) {
+    return journal.for_each_output_of(
+        "XT03", [](const Message&, const Journal::Place&) { return Status(); }, [](const Message&) { return false; });
+  });
+}
+
+TEST_F(Mend, NorToBeSentAgain) {
+  expect_not_read([](Journal& journal) {
+    const auto again = journal.outputs(Topic::health_report, 1, 9, 9);
+    return again ? Status() : fail(again.error());
+  });
+}
+
+TEST_F(Mend, TheRestIsLookedAtLittleByLittle) {
+  Journal journal = open();
+  ASSERT_TRUE(journal.begin());
+  for (int test = 10; test < 30; ++test) ASSERT_TRUE(journal.add_output(report(test), UtcTime{}).has_value());
+  ASSERT_TRUE(journal.commit());
+  int looks = 1;
+  for (; journal.check_some().value(); ++looks) EXPECT_LT(looks, 30);
+  EXPECT_GT(looks, 3);
+  ASSERT_TRUE(journal.begin());
+  for (int test = 30; test < 40; ++test) ASSERT_TRUE(journal.add_output(report(test), UtcTime{}).has_value());
+  ASSERT_TRUE(journal.commit());
+  turn_bit("outputs", "payload", "message_id = 'report 38'");
+  Result<bool> more = true;
+  for (looks = 0; more && *more && looks < 30; ++looks) more = journal.check_some();
+  ASSERT_FALSE(more);
+  EXPECT_THAT(more.error().describe(), HasSubstr("report 38"));
 }
 
 TEST_F(Mend, AnOutputThatWasConcludedAgainHasItsOldNumber) {
@@ -226,7 +277,7 @@ TEST_F(Mend, TheNameOfADamagedJournalIsNew) {
 }
 
 TEST_F(Mend, ATurnedBitOfTheVersionIsNoNewerVersion) {
-  place_.execute("UPDATE meta SET value = '4' WHERE name = 'schema_version'");
+  place_.execute("UPDATE meta SET value = '5' WHERE name = 'schema_version'");
   EXPECT_FALSE(open().writer_id().empty());
   place_.execute("UPDATE meta SET value = 'r' WHERE name = 'schema_version'");
   EXPECT_FALSE(open().writer_id().empty());

@@ -1,4 +1,5 @@
-// Advice after a retraction: it stands, says who and why, and the next test is judged with those that count.
+// Advice after a retraction: it says who and why, is renewed once the layers below have answered, and the next test is
+// judged with those that count.
 #include "sealwatch/message/retraction.hpp"
 
 #include <gmock/gmock.h>
@@ -40,6 +41,91 @@ std::vector<Message> joined(std::vector<Message> inputs, const std::vector<Messa
   return inputs;
 }
 
+/// What the layers below say of `last`, the last test that counts, after a retraction.
+std::vector<Message> answers(const Message& retraction, const TestCase& last) {
+  RemainingLife life = last.life();
+  HealthReport health = last.health();
+  StateReport state = last.state();
+  for (Header* header : {&life.header, &health.header, &state.header}) {
+    header->message_id += "/after/" + header_of(retraction).message_id;
+    header->pst_id.clear();
+    header->source_ids = {header_of(retraction).message_id};
+  }
+  return {state, life, health};
+}
+
+/// Steep, then flat: what five tests of a broken sensor asked for.
+std::vector<Message> deceived_life() {
+  auto tests = life_until(60, 70, 200.0);
+  for (const TestCase& wrong : life_until(71, 75, 84.0)) tests.push_back(wrong);
+  return inputs_of(tests);
+}
+
+TEST_F(AdviceAfterRetraction, IsRenewedAtOnce) {
+  const auto deceived = deceived_life();
+  ASSERT_NE(last_of(deceived).action, AdvisoryAction::none);
+  const MaintenanceEvent since = event(kTestsRetracted, format_utc(add_months(kInstalled, 70.5)), 75.5);
+  auto inputs = joined(deceived, {since});
+  const Advisory before = last_of(deceived);
+  EXPECT_EQ(last_of(inputs).action, before.action) << "until the others have answered";
+  inputs = joined(inputs, answers(since, life_until(70, 70, 200.0).front()));
+  const Advisory renewed = last_of(inputs);
+  EXPECT_EQ(renewed.action, AdvisoryAction::none);
+  EXPECT_EQ(renewed.supersedes_id, before.advisory_id);
+  EXPECT_EQ(renewed.recommendation, last_of(inputs_of(life_until(60, 70, 200.0))).recommendation);
+  const auto next = inputs_of(life_until(76, 76, 200.0));
+  EXPECT_EQ(last_of(joined(inputs, next)).reasons, last_of(joined(inputs_of(life_until(60, 70, 200.0)), next)).reasons);
+}
+
+TEST_F(AdviceAfterRetraction, OfAllTestsAsksForNothing) {
+  const MaintenanceEvent since = event(kTestsRetracted, format_utc(kInstalled), 75.5);
+  TestCase none{.month = 75.5, .forecast = ForecastState::insufficient_history, .verdict = PstVerdict::not_judged};
+  auto replies = answers(since, none);
+  std::get<RemainingLife>(replies[1]).condition_known = false;
+  std::get<StateReport>(replies[0]).verdict_reasons.clear();
+  const Advisory renewed = last_of(joined(joined(deceived_life(), {since}), replies));
+  EXPECT_EQ(renewed.action, AdvisoryAction::none) << renewed.recommendation;
+}
+
+/// The answers may come first, and alone where this service was dead when the retraction was said.
+TEST_F(AdviceAfterRetraction, IsRenewedByTheAnswersAlone) {
+  const MaintenanceEvent since = event(kTestsRetracted, format_utc(add_months(kInstalled, 70.5)), 75.5);
+  const auto replies = answers(since, life_until(70, 70, 200.0).front());
+  const Advisory alone = last_of(joined(deceived_life(), replies));
+  EXPECT_EQ(alone.action, AdvisoryAction::none);
+  EXPECT_EQ(last_of(joined(joined(deceived_life(), replies), {since})).header.message_id, alone.header.message_id);
+}
+
+MaintenanceEvent replaced(double month) {
+  MaintenanceEvent said;
+  said.asset_id = kAsset;
+  said.kind = "seal_replaced";
+  said.reported_by = "M. Okoye";
+  said.header.event_time_known = true;
+  said.header.event_time_ns = add_months(kInstalled, month).nanoseconds;
+  said.header.message_id = "maintenance_event/" + kAsset + "/" + format_utc({said.header.event_time_ns});
+  return said;
+}
+
+TEST_F(AdviceAfterRetraction, AReplacementThatWasNoneIsUndone) {
+  const auto worn = inputs_of(life_until(60, 75, 84.0));
+  const MaintenanceEvent wrong = replaced(75.5);
+  const MaintenanceEvent undone = event(kRetractionWithdrawn, wrong.header.message_id, 75.6);
+  const Advisory before = last_of(worn);
+  ASSERT_NE(before.action, AdvisoryAction::none);
+  auto inputs = joined(worn, {wrong});
+  ASSERT_EQ(last_of(inputs).action, AdvisoryAction::none);
+  inputs = joined(joined(inputs, {undone}), answers(undone, life_until(75, 75, 84.0).front()));
+  const Advisory renewed = last_of(inputs);
+  EXPECT_EQ(renewed.action, before.action);
+  EXPECT_EQ(renewed.priority, before.priority);
+  EXPECT_EQ(renewed.recommendation, before.recommendation);
+  EXPECT_EQ(renewed.request_for_work.front().work_id, before.request_for_work.front().work_id) << "of the same seal";
+  const auto next = inputs_of(life_until(76, 76, 84.0));
+  EXPECT_EQ(last_of(joined(inputs, next)).reasons, last_of(joined(worn, next)).reasons);
+  EXPECT_EQ(run(joined(inputs, {wrong})).size(), run(inputs).size()) << "the same report again is none";
+}
+
 /// One test of a wrong year silences all that follow, until it is retracted.
 TEST_F(AdviceAfterRetraction, ATestOfTheFutureNoLongerHidesTheOthers) {
   const auto before = inputs_of(life_until(24, 30, 120.0));
@@ -48,7 +134,7 @@ TEST_F(AdviceAfterRetraction, ATestOfTheFutureNoLongerHidesTheOthers) {
   EXPECT_NE(last_of(joined(deceived, after)).header.pst_id, TestCase{.month = 34}.pst_id());
   const auto mended = joined(deceived, {event(kTestRetracted, TestCase{.month = 118}.pst_id(), 30.5)});
   const Advisory answer = last_of(mended);
-  EXPECT_THAT(answer.reasons.front(), HasSubstr("retracted by J. Silva (wrong clock): this advice stands until"));
+  EXPECT_THAT(answer.reasons.front(), HasSubstr("retracted by J. Silva (wrong clock): this advice is about to be"));
   EXPECT_EQ(answer.header.message_id, "advisory/" + header_of(mended.back()).message_id);
   const Advisory now = last_of(joined(mended, after));
   const Advisory undisturbed = last_of(joined(before, after));
@@ -71,7 +157,18 @@ TEST_F(AdviceAfterRetraction, DeathAnywhereChangesNothing) {
   const MaintenanceEvent since = event(kTestsRetracted, format_utc(add_months(kInstalled, 66.5)), 70.1);
   inputs.insert(inputs.begin() + 20, event(kTestRetracted, TestCase{.month = 75}.pst_id(), 65.1));
   inputs.insert(inputs.begin() + 45, since);
-  inputs.insert(inputs.begin() + 60, event(kRetractionWithdrawn, since.header.message_id, 75.0));
+  const MaintenanceEvent back = event(kRetractionWithdrawn, since.header.message_id, 75.0);
+  inputs.insert(inputs.begin() + 60, back);
+  for (const Message& answer : answers(since, life_until(66, 66, 100.0).front()))
+    inputs.insert(inputs.begin() + 47, answer);
+  const MaintenanceEvent wrong = replaced(77.5);
+  inputs.insert(inputs.end() - 8, wrong);
+  const MaintenanceEvent undone = event(kRetractionWithdrawn, wrong.header.message_id, 78.5);
+  inputs.insert(inputs.end() - 4, undone);
+  for (const Message& answer : answers(undone, life_until(79, 79, 100.0).front())) inputs.push_back(answer);
+  for (const TestCase& urgent : life_until(84, 88, 90.0))  // what takes force at once does so after a restart as well
+    for (const Message& message : urgent.messages()) inputs.push_back(message);
+  inputs.push_back(event(kTestRetracted, TestCase{.month = 88}.pst_id(), 88.5));
   const auto undisturbed = run(inputs);
   for (std::size_t death = 0; death < inputs.size(); ++death) ASSERT_EQ(run(inputs, death), undisturbed) << death;
 }

@@ -59,6 +59,16 @@ class Chain {
     event.header.message_id = last_said_ = retraction_id(kAsset, kind, what, {event.header.event_time_ns});
     return take(event);
   }
+  std::string replaced(int month) {
+    MaintenanceEvent event;
+    event.asset_id = kAsset;
+    event.kind = "seal_replaced";
+    event.header.event_time_known = true;
+    event.header.event_time_ns = synthetic::month(month, 20).nanoseconds;
+    event.header.message_id = "maintenance_event/" + event.asset_id + "/" + format_utc(synthetic::month(month, 20));
+    take(event);
+    return event.header.message_id;
+  }
   void restart_health() {
     health_ = make();
     for (const Message& output : concluded_) health_->restore(output);
@@ -166,6 +176,33 @@ TEST(HealthAfterRetraction, WithdrawnItIsAsItWas) {
   changed.retract(wrong, 10);
   changed.say(kRetractionWithdrawn, changed.last_said(), 11);
   EXPECT_EQ(text(changed.test(12, leaky(0.85))), text(undisturbed.test(12, leaky(0.85))));
+}
+
+TEST(HealthAfterRetraction, AReplacementThatWasNoneIsUndone) {
+  for (const bool restarted : {false, true}) {
+    Chain changed, undisturbed;
+    HealthReport with, without;
+    for (int number = 0; number < 10; ++number) {
+      changed.test(number, leaky(0.9 - 0.01 * number));
+      without = undisturbed.test(number, leaky(0.9 - 0.01 * number));
+    }
+    const std::string wrong = changed.replaced(9);
+    for (int number = 10; number < 12; ++number) {
+      with = changed.test(number, leaky(0.75));
+      without = undisturbed.test(number, leaky(0.75));
+    }
+    ASSERT_NE(said(with), said(without)) << "it would not show";
+    const HealthReport answer = changed.say(kRetractionWithdrawn, wrong, 12);
+    EXPECT_EQ(answer.trend_known, without.trend_known);
+    EXPECT_EQ(answer.health_trend_per_year, without.health_trend_per_year);
+    if (restarted) changed.restart_health();
+    for (int number = 13; number < 18; ++number) {
+      with = changed.test(number, leaky(0.7));
+      without = undisturbed.test(number, leaky(0.7));
+      ASSERT_EQ(with.health_trend_per_year, without.health_trend_per_year) << number;
+      ASSERT_EQ(with.trend_known, without.trend_known) << number;
+    }
+  }
 }
 
 TEST(HealthAfterRetraction, TheMismatchAnalysisIsGivenNoTestThatIsRetracted) {

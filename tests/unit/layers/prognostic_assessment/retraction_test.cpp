@@ -92,6 +92,27 @@ TEST_F(RetractionTest, AllSinceADateAreForgottenAndLaterOnesCount) {
   EXPECT_EQ(of_kind<PstRequest>(run(inputs)).back().header.pst_id, (TestCase{.month = 33}.pst_id()));
 }
 
+TEST_F(RetractionTest, AReplacementThatWasNoneIsUndone) {
+  const auto life = inputs_of(straight_life(1, 40));
+  MaintenanceEvent wrong = event("seal_replaced", "", 30.5);
+  wrong.header.message_id = "maintenance_event/" + kAsset + "/" + format_utc({wrong.header.event_time_ns});
+  auto inputs = life;
+  inputs.emplace_back(wrong);
+  EXPECT_EQ(last_of(inputs).tests_since_replacement, 10);
+  inputs.emplace_back(event(kRetractionWithdrawn, wrong.header.message_id, 40.5));
+  const RemainingLife undone = last_of(inputs);
+  EXPECT_FALSE(undone.replacement_known);
+  EXPECT_THAT(undone.forecasts[0].explanation, HasSubstr("replacement 'maintenance_event/"));
+  expect_same_forecast(undone, last_of(life));
+  inputs.emplace_back(wrong);  // of a service that had not received it before
+  const auto next = inputs_of(straight_life(41, 42));
+  inputs.insert(inputs.end(), next.begin(), next.end());
+  expect_same_forecast(last_of(inputs), last_of(inputs_of(straight_life(1, 42))));
+  const auto undisturbed = run(inputs);
+  for (std::size_t death = inputs.size() - 8; death < inputs.size(); ++death)
+    ASSERT_EQ(run(inputs, death), undisturbed) << death;
+}
+
 TEST_F(RetractionTest, OfAllTestsLeavesNone) {
   auto inputs = inputs_of(straight_life(1, 10));
   inputs.emplace_back(event(kTestsRetracted, format_utc(kInstalled), 10.5));

@@ -51,6 +51,16 @@ class Detection {
     event.header.message_id = retraction_id(kAsset, kind, what, {event.header.event_time_ns});
     return take(event);
   }
+  std::string replaced(int month) {
+    MaintenanceEvent event;
+    event.asset_id = kAsset;
+    event.kind = "seal_replaced";
+    event.header.event_time_known = true;
+    event.header.event_time_ns = synthetic::month(month, 20).nanoseconds;
+    event.header.message_id = "maintenance_event/" + event.asset_id + "/" + format_utc(synthetic::month(month, 20));
+    take(event);
+    return event.header.message_id;
+  }
   std::optional<StateReport> tick(UtcTime now) {
     Conclusion conclusion = layer_->tick(now);
     if (conclusion.outputs.empty()) return std::nullopt;
@@ -183,6 +193,27 @@ TEST(Retraction, OfATestThatIsStillToComeHoldsWhenItComes) {
     if (restarted) warned.restart();
     for (int number = 4; number < 10; ++number)
       ASSERT_EQ(judgements_of(warned.test(number)), judgements_of(undisturbed.test(number))) << number;
+  }
+}
+
+TEST(Retraction, AReplacementThatWasNoneIsUndone) {
+  for (const int tests_since : {0, 3}) {
+    for (const bool restarted : {false, true}) {
+      Detection changed, undisturbed;
+      int number = 0;
+      for (; number < 6; ++number) {
+        changed.test(number);
+        undisturbed.test(number);
+      }
+      const std::string wrong = changed.replaced(5);
+      for (const int end = number + tests_since; number < end; ++number)
+        EXPECT_NE(text(changed.test(number, stiff())), text(undisturbed.test(number, stiff()))) << "it would not show";
+      const StateReport answer = changed.say(kRetractionWithdrawn, wrong, number);
+      EXPECT_THAT(answer.verdict_reasons.front(), HasSubstr("replacement '" + wrong + "' withdrawn by J. Silva"));
+      if (restarted) changed.restart();
+      for (const int end = number + 8; number < end; ++number)
+        ASSERT_EQ(text(changed.test(number)), text(undisturbed.test(number))) << number;
+    }
   }
 }
 

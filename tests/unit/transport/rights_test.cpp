@@ -1,0 +1,101 @@
+// A retraction has a topic of its own, so that DDS Security can grant the right to it by itself; where there are rights, it
+// is taken from no other.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "sealwatch/message/retraction.hpp"
+#include "services/common/transport/channel.hpp"
+#include "services/common/transport/participant.hpp"
+#include "tests/unit/transport/kits.hpp"
+
+namespace sealwatch::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using transport::Channel;
+using transport::DdsSample;
+using transport::Rights;
+
+constexpr auto kEvents = static_cast<std::size_t>(Topic::maintenance_event);
+constexpr std::size_t kRetractions = transport::kRetractionIndex;
+
+MaintenanceEvent event(std::string_view kind, const std::string& id) {
+  MaintenanceEvent made;
+  made.asset_id = "A";
+  made.kind = kind;
+  made.header.message_id = id;
+  return made;
+}
+
+/// Ids of what a service takes when all kinds of events are written to both topics.
+std::vector<std::string> taken(const Configuration& configuration, Rights rights) {
+  transport::Inbox inbox;  // outlives the participants, as the channels do
+  std::vector<Channel> readers;
+  std::vector<Channel> writers;
+  readers.reserve(2);
+  const auto reading = transport::Participant::join(configuration);
+  const auto writing = transport::Participant::join(configuration);
+  const auto channel = [](const transport::Participant& participant, std::size_t index, Rights of_reader) {
+    const transport::TopicType& type = transport::topic_types()[index];
+    return Channel(participant.handle(), type, type.qos, SlowReader::asks_again, of_reader);
+  };
+  for (const std::size_t index : {kEvents, kRetractions}) {
+    readers.push_back(channel(*reading, index, rights));
+    EXPECT_TRUE(readers.back().subscribe(inbox));
+    writers.push_back(channel(*writing, index, Rights::none));
+  }
+  int number = 0;
+  for (const std::string_view kind : {std::string_view("seal_replaced"), kTestRetracted}) {
+    for (Channel& writer : writers) {
+      while (writer.subscribers().value_or(0) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      EXPECT_TRUE(writer.write(DdsSample(Message(event(kind, std::to_string(++number))))));
+    }
+  }
+  // What is to be taken, and then what is always taken: the topics' last words.
+  EXPECT_TRUE(writers[0].write(DdsSample(Message(event("seal_replaced", "last 0")))));
+  EXPECT_TRUE(writers[1].write(DdsSample(Message(event(kTestRetracted, "last 1")))));
+  std::vector<std::string> ids;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  for (int last = 0; last < 2 && std::chrono::steady_clock::now() < end;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const std::lock_guard lock(inbox.mutex);
+    for (const BusItem& item : inbox.take(100, std::chrono::steady_clock::now())) {
+      ids.push_back(header_of(std::get<Message>(item)).message_id);
+      last += ids.back().starts_with("last") ? 1 : 0;
+    }
+  }
+  std::erase_if(ids, [](const std::string& id) { return id.starts_with("last"); });
+  std::ranges::sort(ids);
+  return ids;
+}
+
+TEST(RightToRetract, IsOfATopicOfItsOwnWhereThereAreRights) {
+  const Configuration configuration = isolated_configuration(0);
+  (void)refused_by_security();
+  EXPECT_THAT(taken(configuration, Rights::none), ElementsAre("1", "3", "4")) << "a replacement is no retraction";
+  (void)refused_by_security();
+  EXPECT_THAT(taken(configuration, Rights::enforced), ElementsAre("1", "4"));
+  EXPECT_THAT(refused_by_security().value_or(""), HasSubstr("needs another right"));
+}
+
+TEST(RightToRetract, HoldsWhereTheSettingsOfCycloneHaveSecurity) {
+  const Configuration configuration;
+  const char* const before = std::getenv("CYCLONEDDS_URI");
+  const std::string kept = before == nullptr ? "" : before;
+  const std::string file = ::testing::TempDir() + "/secured.xml";
+  std::ofstream(file) << "<CycloneDDS><Domain><Security/></Domain></CycloneDDS>";
+  ::setenv("CYCLONEDDS_URI", ("<CycloneDDS/>,file://" + file + ",<CycloneDDS/>").c_str(), 1);
+  EXPECT_TRUE(transport::is_secured(configuration));
+  ::setenv("CYCLONEDDS_URI", "<CycloneDDS/>", 1);
+  EXPECT_FALSE(transport::is_secured(configuration));
+  ::setenv("CYCLONEDDS_URI", kept.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace sealwatch::test

@@ -367,7 +367,7 @@ class Writer {
   }
 
   [[nodiscard]] std::string start_of(const Row& state, double value) const {
-    const std::string here = text::quoted(number(value) + "[" + state.unit + "]");
+    std::string here = text::quoted(number(value) + "[" + state.unit + "]");
     for (const Row& output : outputs_)
       if (state_shown_by(output) == &state) return "[" + output.channel + ", " + here + "]";
     return here;

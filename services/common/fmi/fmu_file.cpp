@@ -164,13 +164,14 @@ Result<Setup> FmuFile::setup(Selection& selection) const {
         return fail(
             refusal("is no number, but a variable of type " + std::string(sealwatch::name_of(variables[k].type)),
                     "leave it out", variables[k].name));
-  const auto behind = std::ranges::stable_partition(
-      selection.inputs, [&](std::size_t k) { return changes_between_events(variables[k]); });
-  const auto continuous = static_cast<std::uint32_t>(behind.begin() - selection.inputs.begin());
+  // Not std::ranges: clang 14, whose clang-tidy reads this, cannot compile it.
+  const auto behind = std::stable_partition(selection.inputs.begin(), selection.inputs.end(),
+                                            [&](std::size_t k) { return changes_between_events(variables[k]); });
+  const auto continuous = static_cast<std::uint32_t>(behind - selection.inputs.begin());
   const bool real_outputs = std::ranges::all_of(selection.outputs, [&](std::size_t k) {
     return variables[k].causality == FmiCausality::output && variables[k].type == FmiType::float64;
   });
-  const bool real_inputs = std::ranges::all_of(selection.inputs.begin(), behind.begin(),
+  const bool real_inputs = std::ranges::all_of(selection.inputs.begin(), behind,
                                                [&](std::size_t k) { return variables[k].type == FmiType::float64; });
   const bool directional = !co_simulation() && interface().directional_derivatives && real_inputs;
   const std::string resources = unpacked_.path_of("resources").string();

@@ -13,9 +13,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Far from the optimum a shape that is hardly seen yet must not run to the end of its range: the first damping, and how
 // it falls (K. Madsen, H. B. Nielsen, O. Tingleff, Methods for Non-Linear Least Squares Problems, 2004).
 constexpr double kDamping = 1e-4, kUndamped = 1e-8, kFalls = 1.0 / 3.0;
-// Unknowns are of the order of one: no step goes further in any of them, until steps prove that the linear model holds,
-// and never in a logarithm. What is linear anyway, a sensor's gain and offset, goes where it will. Damping alone leaves
-// a step long in what the recordings hardly show.
+// Unknowns are of the order of one: no step goes further in any of them, until steps prove that the linear model holds.
+// Damping alone leaves a step long in what the recordings hardly show.
 constexpr double kOrderOfOne = 3.0, kShrinks = 0.25, kWidens = 3.0, kNearest = 1e-7;
 constexpr double kKept = 1e-3;  // of what the linear model promises: a step that keeps less is taken back
 constexpr double kLinear = 0.25, kTrusted = 0.75;
@@ -32,18 +31,10 @@ double inside(const Unknown& unknown, double value) {
 struct BoxSearch::LinearModel {
   Eigen::MatrixXd gram;
   Eigen::VectorXd gradient, low, high;
-  /// Step of each unknown at a radius of 1, and the furthest at any.
-  Eigen::VectorXd reach, furthest;
 
-  [[nodiscard]] Eigen::VectorXd step(double damping) const {
-    return minimum_in_box(gram, gradient, low, high, damping);
+  [[nodiscard]] Eigen::VectorXd step(double damping, double radius = kInfinite) const {
+    return minimum_in_box(gram, gradient, low.cwiseMax(-radius), high.cwiseMin(radius), damping);
   }
-  [[nodiscard]] Eigen::VectorXd step(double damping, double radius) const {
-    const Eigen::VectorXd most = (radius * reach).cwiseMin(furthest);
-    return minimum_in_box(gram, gradient, low.cwiseMax(-most), high.cwiseMin(most), damping);
-  }
-  /// The radius that reaches as far.
-  [[nodiscard]] double length(const Eigen::VectorXd& by) const { return by.cwiseQuotient(reach).cwiseAbs().maxCoeff(); }
   /// Fall of the cost.
   [[nodiscard]] double promised(const Eigen::VectorXd& by) const { return -by.dot(gradient + 0.5 * gram * by); }
 };
@@ -69,9 +60,7 @@ BoxSearch::LinearModel BoxSearch::linear_model() const {
   LinearModel here{.gram = Eigen::MatrixXd::Zero(size_, size_),
                    .gradient = Eigen::VectorXd::Zero(size_),
                    .low = Eigen::VectorXd::Constant(size_, -kInfinite),
-                   .high = Eigen::VectorXd::Constant(size_, kInfinite),
-                   .reach = Eigen::VectorXd::Ones(size_),
-                   .furthest = Eigen::VectorXd::Constant(size_, kInfinite)};
+                   .high = Eigen::VectorXd::Constant(size_, kInfinite)};
   const auto shared = static_cast<Eigen::Index>(point_.shared.size());
   Eigen::Index first_own = shared;
   for (const RecordingCost* cost : costs_.costs()) {
@@ -87,8 +76,6 @@ BoxSearch::LinearModel BoxSearch::linear_model() const {
     const Unknown& unknown = problem_.shared[static_cast<std::size_t>(k)];
     const double at = point_.shared[static_cast<std::size_t>(k)];
     if (held_[static_cast<std::size_t>(k)]) here.low(k) = here.high(k) = 0.0;
-    if (unknown.quantity.is_of_sensor()) here.reach(k) = kInfinite;
-    if (unknown.logarithmic) here.furthest(k) = kOrderOfOne;
     if (!unknown.is_known()) continue;
     here.gram(k, k) += 1.0 / (unknown.prior_std * unknown.prior_std);
     here.gradient(k) -= unknown.prior_residual(at) / unknown.prior_std;
@@ -135,16 +122,6 @@ bool BoxSearch::let_go(double tolerance) {
   return any;
 }
 
-// A step that went too far in one unknown has mostly left others that can make up for it: where the linear model there
-// promises to come below `worth`, the next step is made from there. The cost where it ends.
-double BoxSearch::from_beyond(double cost, double worth, double damping, double radius) {
-  const LinearModel there = linear_model();
-  const Eigen::VectorXd on = there.step(damping, radius);
-  if (!on.allFinite() || cost - there.promised(on) > worth) return cost;
-  move(on);
-  return evaluate();
-}
-
 SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
   const int end = iterations_ + maximum_iterations;
   cost_ = evaluate();
@@ -153,7 +130,6 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
   int taken = 0;                // steps
   bool shortened = false;       // the last step was taken back,
   bool beyond_is_none = false;  // and one of those in a row led to where there is no simulation
-  bool in_vain = false;         // or a step on from one of them led no further
   LinearModel here = linear_model();
   while (iterations_ <= end) {
     if (passed(rule.deadline)) return SearchEnd::out_of_time;
@@ -169,14 +145,9 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
       return beyond_is_none ? SearchEnd::stuck : SearchEnd::converged;
     if (promises) by = limited;
     const PemPoint before = point_;
-    const double promised = here.promised(by), length = here.length(by);
+    const double promised = here.promised(by), length = by.cwiseAbs().maxCoeff();
     move(by);
-    double after = evaluate();
-    if (!(cost_ - after >= kKept * promised) && std::isfinite(after) && !in_vain) {
-      after = from_beyond(after, cost_ - kLinear * promised, damping, radius);
-      in_vain = !(cost_ - after >= kLinear * promised);
-    }
-    const double change = cost_ - after, kept = change / promised;
+    const double after = evaluate(), change = cost_ - after, kept = change / promised;
     if (!(kept >= kKept)) {
       point_ = before;
       beyond_is_none = beyond_is_none || !std::isfinite(after);
@@ -188,7 +159,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     damping = std::max(kUndamped, damping * std::max(kFalls, 1.0 - std::pow(2.0 * kept - 1.0, 3)));
     if (kept > kTrusted) radius = std::max(radius, kWidens * length);
     if (kept < kLinear) radius = std::min(radius, std::max(kOrderOfOne, kShrinks * length));
-    shortened = beyond_is_none = in_vain = false;
+    shortened = beyond_is_none = false;
     ++taken;
     cost_ = after;
     if (change <= tolerance && kept > kLinear) return SearchEnd::converged;

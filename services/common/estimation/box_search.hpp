@@ -52,8 +52,6 @@ class BoxSearch {
   [[nodiscard]] double evaluate();
   [[nodiscard]] LinearModel linear_model() const;
   void move(const Eigen::VectorXd& by);
-  /// The cost where a step on from a point beyond ends, or `cost`, that of the point, where none promises to be worth it.
-  [[nodiscard]] double from_beyond(double cost, double worth, double damping, double radius);
   /// Unknowns outside their range are moved to its end and held there. True when there were any.
   bool hold_outside();
   /// Lets go of what is held and would come back inside, and lower the cost by more than `tolerance` were it linear

@@ -37,6 +37,7 @@ struct Route {
   Topic topic;
   Node from;
   std::vector<Node> to;
+  std::string_view also = {};  ///< a topic of the same messages with a right of its own
 };
 
 /// The short ones first: they get the lanes next to the boxes.
@@ -49,7 +50,7 @@ std::vector<Route> all_routes() {
           {Topic::state_report, detection, {advice}},
           {Topic::model_acceptance, operators, {detection, prognosis}},
           {Topic::pst_request, prognosis, {control}},
-          {Topic::maintenance_event, operators, {acquisition, detection, prognosis, advice}}};
+          {Topic::maintenance_event, operators, {acquisition, detection, prognosis, advice}, ", retraction"}};
 }
 
 constexpr double kStep = 92.0, kHeight = 52.0, kWidth = 400.0, kLeft = 20.0, kTop = 14.0;
@@ -96,20 +97,53 @@ class Lanes {
     std::string path =
         "M" + at(kLeft + kWidth) + at(begin) + "H" + at(lane) + "M" + at(lane) + at(high) + "V" + at(low);
     std::string heads;
+    crossings_.push_back({.lane = lane, .height = begin});
     for (const double end : ends) {
+      crossings_.push_back({.lane = lane, .height = end});
       path += "M" + at(lane) + at(end) + "H" + at(kLeft + kWidth + 6.0);
       heads += "M" + at(kLeft + kWidth) + at(end) + "l8-4v8Z";
     }
     canvas.raw("<path d=\"" + path + "\" style=\"fill:none;stroke:var(" + ink + ");stroke-width:1.4\"/>\n<path d=\"" +
                heads + "\" style=\"fill:var(" + ink + ")\"/>\n");
-    names_ += "<text class=\"named\" text-anchor=\"middle\" transform=\"translate(" + at(lane + 12.0) +
-              at(0.5 * (high + low)) + ") rotate(-90)\" style=\"fill:var(" + ink + ")\">" +
-              std::string(name_of(route.topic)) + "</text>\n";
+    names_.push_back({.text = std::string(name_of(route.topic)).append(route.also),
+                      .ink = ink,
+                      .lane = lane,
+                      .high = high,
+                      .low = low});
   }
-  /// The topics' names, to be drawn over all lines.
-  [[nodiscard]] const std::string& names() const { return names_; }
+  /// The topics' names, to be drawn over all lines: each beside its lane where the fewest lines pass through it.
+  [[nodiscard]] std::string names() const {
+    std::string svg;
+    for (const Name& name : names_)
+      svg += "<text class=\"named\" text-anchor=\"middle\" transform=\"translate(" + at(name.lane + 12.0) +
+             at(clear_height(name)) + ") rotate(-90)\" style=\"fill:var(" + name.ink + ")\">" + name.text + "</text>\n";
+    return svg;
+  }
 
  private:
+  struct Name {
+    std::string text, ink;
+    double lane, high, low;
+  };
+  /// A line from the boxes to a lane.
+  struct Crossing {
+    double lane, height;
+  };
+
+  [[nodiscard]] double clear_height(const Name& name) const {
+    const double half = 3.4 * static_cast<double>(name.text.size()) + 2.0;
+    const double middle = 0.5 * (name.high + name.low);
+    const auto passing = [&](double height) {
+      return std::ranges::count_if(crossings_, [&](const Crossing& line) {
+        return line.lane > name.lane + 4.0 && std::abs(line.height - height) < half;
+      });
+    };
+    double best = middle;
+    for (double away = 1.0; name.high + half <= middle - away; away += 1.0)
+      for (const double height : {middle - away, middle + away})
+        if (passing(height) < passing(best)) best = height;
+    return best;
+  }
   static std::string at(double pixels) { return std::to_string(std::lround(pixels)) + ' '; }
   double next_port(Node node) {
     const double share = static_cast<double>(++used_[node]) / static_cast<double>(ports_[node] + 1);
@@ -125,7 +159,8 @@ class Lanes {
     return lane;
   }
 
-  std::string names_;
+  std::vector<Name> names_;
+  std::vector<Crossing> crossings_;
   std::array<int, kNodes> ports_{}, used_{};
   std::vector<std::vector<std::pair<double, double>>> taken_;
 };

@@ -47,7 +47,7 @@ pst: {start: 0.01, stroke: 0.02, speed: 0.01, hold: 3.0, interval_months: 1}
 
 class OwnPlantCommands : public SixServices {
  protected:
-  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+  std::string write(const std::string& name, const std::string& text) const {
     const std::string file = (folder_ / name).string();
     std::ofstream(file) << text;
     return file;

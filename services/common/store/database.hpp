@@ -96,6 +96,7 @@ struct Journal::Database {
   void know_damaged_tests();
   /// Throws Error where an output is not as it was written, and has the next opening look at all of them.
   void check(const MessageRow& output);
+  [[noreturn]] void must_be_mended(long long ordinal, const std::string& whose);
   /// The output, stamped, where one of its id was damaged: it now stands in its place.
   [[nodiscard]] std::optional<Message> fill_place(const Message& message, UtcTime publishing_time);
   void tell_of_damage(const std::string& aside);

@@ -2,6 +2,7 @@
 // in a long history, when they are read or looked at later, which ends the service: it then opens the journal again. They
 // are never used, and wherever possible made again:
 //
+//   index        of outputs: made anew from their rows, which have checksums
 //   position     from the numbers of the inputs, which are kept for ever
 //   output       its place stays empty; the inputs of its test are forgotten, come again from the neighbours' journals,
 //                and what is concluded from them anew fills the place
@@ -124,7 +125,9 @@ void Journal::Database::mend() {
   mend_positions();
   mend_quarantine();
   mend_inputs();
-  mend_outputs(!meta(kToBeMended).empty());
+  const bool all = !meta(kToBeMended).empty();
+  if (all) sql << (sql.get_backend_name() == "sqlite3" ? "REINDEX outputs_of_asset" : "REINDEX INDEX outputs_of_asset");
+  mend_outputs(all);
   sql << std::string("DELETE FROM meta WHERE name = '") + kToBeMended + "'";
   transaction.commit();
   know_damaged_tests();

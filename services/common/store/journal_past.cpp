@@ -34,29 +34,36 @@ std::vector<Entry> entries_of(soci::session& sql, const std::string& asset_id) {
   return entries;
 }
 
-/// Reads outputs one by one, by their ordinals.
+/// Reads outputs one by one, by their ordinals, and compares them with what the index says of them: rows have
+/// checksums, the index has none.
 class OutputReader {
  public:
-  explicit OutputReader(soci::session& sql)
-      : whole_((sql.prepare << std::string(kOutput) + "ordinal = :ordinal", into(row_.order), into(row_.topic),
+  OutputReader(soci::session& sql, std::string asset_id)
+      : asset_id_(std::move(asset_id)),
+        whole_((sql.prepare << std::string(kOutput) + "ordinal = :ordinal", into(row_.order), into(row_.topic),
                 into(row_.payload), into(row_.sequence), into(row_.published), into(row_.message_id),
                 into(row_.asset_id), into(row_.pst_id), into(row_.checksum), use(ordinal_, "ordinal"))),
-        place_((sql.prepare << "SELECT sequence, published, message_id FROM outputs WHERE ordinal = :ordinal",
-                into(row_.sequence), into(row_.published), into(row_.message_id), use(ordinal_, "ordinal"))) {}
+        place_((sql.prepare << "SELECT sequence, published, message_id, asset_id, pst_id, topic FROM outputs"
+                               " WHERE ordinal = :ordinal",
+                into(row_.sequence), into(row_.published), into(row_.message_id), into(row_.asset_id),
+                into(row_.pst_id), into(row_.topic), use(ordinal_, "ordinal"))) {}
 
-  const MessageRow& read(long long ordinal) { return run(whole_, ordinal); }
+  /// nullptr: no such output is in the table.
+  const MessageRow* read(const Entry& entry) { return run(whole_, entry); }
   [[nodiscard]] const MessageRow& row() const { return row_; }
-  /// Its numbers and its id alone.
-  [[nodiscard]] const MessageRow& read_place(long long ordinal) { return run(place_, ordinal); }
+  /// Its numbers and its ids alone.
+  const MessageRow* read_place(const Entry& entry) { return run(place_, entry); }
 
  private:
-  const MessageRow& run(soci::statement& query, long long ordinal) {
-    ordinal_ = ordinal;
-    bool found = query.execute(true);
-    while (found && query.fetch()) continue;  // to the end, or it would hold the log as it is now
-    return row_;
+  const MessageRow* run(soci::statement& query, const Entry& entry) {
+    ordinal_ = entry.ordinal;
+    const bool found = query.execute(true);
+    for (bool more = found; more; more = query.fetch()) continue;  // to the end, or it would hold the log as it is now
+    const bool same = row_.asset_id == asset_id_ && row_.pst_id == entry.pst_id && row_.topic == entry.topic;
+    return found && same ? &row_ : nullptr;
   }
 
+  std::string asset_id_;
   long long ordinal_ = 0;
   MessageRow row_;
   soci::statement whole_;
@@ -77,15 +84,19 @@ Message shadow_of(const Message& last, const Entry& entry, const MessageRow& row
 Status Journal::for_each_output_of(const std::string& asset_id, const NumberedVisitor& visit,
                                    const TellsAll& tells_all) {
   struct Last {
-    long long ordinal = 0;
+    Entry entry = {};
     std::optional<Message> told = {};  ///< where it tells all
   };
   std::vector<std::pair<Message, Place>> past;
   const auto read = database_->guard("reading an asset's past", [&] {
     const std::vector<Entry> entries = entries_of(database_->sql, asset_id);
-    OutputReader reader(database_->sql);
+    OutputReader reader(database_->sql, asset_id);
+    const auto of_index = [&](const MessageRow* row, const Entry& entry) -> const MessageRow& {
+      if (row == nullptr) database_->must_be_mended(entry.ordinal, asset_id);
+      return *row;
+    };
     const auto read_whole = [&](const Entry& entry) -> std::optional<Message> {
-      const MessageRow& row = reader.read(entry.ordinal);
+      const MessageRow& row = of_index(reader.read(entry), entry);
       if (row.checksum == kDamaged || database_->damaged_tests.contains({row.asset_id, row.pst_id}))
         return std::nullopt;
       database_->check(row);
@@ -96,17 +107,17 @@ Status Journal::for_each_output_of(const std::string& asset_id, const NumberedVi
       past.emplace_back(std::move(message), Place{static_cast<std::uint64_t>(row.sequence), UtcTime{row.published}});
     };
     std::map<std::string, Last> tests;
-    for (const Entry& entry : entries) tests[entry.pst_id].ordinal = entry.ordinal;
+    for (const Entry& entry : entries) tests[entry.pst_id].entry = entry;
     tests.erase("");  // of no test
     for (auto& [pst_id, last] : tests)
-      if (auto message = read_whole({last.ordinal, {}, {}}); message && tells_all(*message))
-        last.told = std::move(message);
+      if (auto message = read_whole(last.entry); message && tells_all(*message)) last.told = std::move(message);
     for (const Entry& entry : entries) {
       const auto test = tests.find(entry.pst_id);
       const Message* const last = test == tests.end() || !test->second.told ? nullptr : &*test->second.told;
       if (last == nullptr) {
         if (auto message = read_whole(entry)) keep(std::move(*message));
-      } else if (const MessageRow& row = reader.read_place(entry.ordinal); entry.ordinal == test->second.ordinal) {
+      } else if (const MessageRow& row = of_index(reader.read_place(entry), entry);
+                 entry.ordinal == test->second.entry.ordinal) {
         keep(*last);
       } else if (entry.topic != name_of(topic_of(*last))) {
         keep(shadow_of(*last, entry, row));
@@ -161,10 +172,14 @@ void Journal::Database::check(const MessageRow& output) {
   if (output.checksum == checksum_of_output(output.order, output.topic, output.sequence, output.message_id,
                                             output.asset_id, output.pst_id, output.payload))
     return;
+  must_be_mended(output.order, output.message_id);
+}
+
+void Journal::Database::must_be_mended(long long ordinal, const std::string& whose) {
   set_meta(kToBeMended, "1");
   throw Error{.file = name,
-              .place = "output " + std::to_string(output.order),
-              .value = output.message_id,
+              .place = "output " + std::to_string(ordinal),
+              .value = whose,
               .rule = "is not as it was written: a disk or a memory turned a bit",
               .advice = "the service starts again, and makes it anew from the neighbours' messages"};
 }

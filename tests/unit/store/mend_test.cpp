@@ -144,6 +144,44 @@ TEST_F(Mend, NorAsAnAssetsPast) {
   });
 }
 
+// A bit of the index, while the row is whole: the index is made anew, and nothing of the past is lost.
+TEST_F(Mend, AnIndexThatSaysOtherwiseThanItsRowsIsMadeAnew) {
+  const auto turned = [this] {  // the index keeps what stood in the row when it was last maintained
+    const auto statement = [this](const std::string& text) {
+      soci::session sql(place_.connection());
+      sql << "PRAGMA writable_schema = ON";
+      sql << text;
+    };
+    statement("UPDATE outputs SET pst_id = 'uest 1' WHERE ordinal = 1");
+    statement("CREATE TABLE kept AS SELECT * FROM sqlite_master WHERE name = 'outputs_of_asset'");
+    statement("DELETE FROM sqlite_master WHERE name = 'outputs_of_asset'");
+    statement("UPDATE outputs SET pst_id = 'test 1' WHERE ordinal = 1");
+    statement("INSERT INTO sqlite_master SELECT * FROM kept");
+    statement("DROP TABLE kept");
+  };
+  std::vector<std::string> past;
+  const auto read = [&past](Journal& journal) {
+    past.clear();
+    return journal.for_each_output_of(
+        "XT03",
+        [&past](const Message& message, const Journal::Place&) {
+          return past.push_back(header_of(message).message_id), Status();
+        },
+        [](const Message&) { return true; });
+  };
+  turned();
+  {
+    Journal journal = open();
+    const Status seen = read(journal);
+    ASSERT_FALSE(seen);
+    EXPECT_THAT(seen.error().describe(), HasSubstr("not as it was written"));
+  }
+  Journal journal = open();
+  ASSERT_TRUE(read(journal));
+  EXPECT_THAT(past, ElementsAre("report 1", "report 2"));
+  EXPECT_THAT(journal.quarantine().value(), SizeIs(1)) << "no row was damaged";
+}
+
 TEST_F(Mend, NorToBeSentAgain) {
   expect_not_read([](Journal& journal) {
     const auto again = journal.outputs(Topic::health_report, 1, 9, 9);

@@ -89,17 +89,6 @@ Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const A
   return best;
 }
 
-// Mean distance of samples, of the recording where it is shortest. An event of the input lasts that long at least: of a
-// temperature that is read every five seconds no shorter step is needed.
-double shortest_sampling_s(std::span<const TimeSeries> recordings) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const TimeSeries& recorded : recordings)
-    if (recorded.time_s.size() > 1)
-      shortest = std::min(shortest, (recorded.time_s.back() - recorded.time_s.front()) /
-                                        static_cast<double>(recorded.time_s.size() - 1));
-  return std::isfinite(shortest) ? shortest : 0.0;
-}
-
 }  // namespace
 
 SimulationOptions simulation_options(std::span<const TimeSeries> recordings, const ActuatorFitOptions& options) {
@@ -107,14 +96,12 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
   SimulationOptions simulation;
   std::size_t samples = 0;
   double fewest_steps = kFewestSteps;
-  const double longest_step_s = std::max(simulation.maximum_step_s, shortest_sampling_s(recordings));
   for (const TimeSeries& recorded : recordings) {
     samples = std::max(samples, recorded.time_s.size());
     if (recorded.time_s.empty()) continue;
     const double duration_s = recorded.time_s.back() - recorded.time_s.front();
-    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / longest_step_s);
+    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / simulation.maximum_step_s);
   }
-  simulation.maximum_step_s = longest_step_s;
   simulation.relative_tolerance = options.relative_tolerance;
   simulation.maximum_steps =
       static_cast<std::size_t>(fewest_steps + options.steps_per_sample * static_cast<double>(samples));

@@ -103,8 +103,12 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
   if (!problem) return fail(problem.error());
   Result<PemOptimum> optimum = fail("not searched");
   if (start == nullptr) {
-    options.cut_into_pieces = data.groups.empty();  // else they are pieces already
+    // A model that lacks physics often does not converge, and pieces, with states of their own, hide what it lacks: they
+    // are for values with which nothing can be simulated.
+    options.cut_into_pieces = false;
     optimum = search_from_asset(*problem, asset, data.samples, options);
+    options.cut_into_pieces = data.groups.empty();  // else they are pieces already
+    if (!optimum && options.cut_into_pieces) optimum = search_from_asset(*problem, asset, data.samples, options);
   } else {
     PemPoint point = start_point(*problem, 1.0);
     continue_from(*start, *problem, point);

@@ -74,6 +74,9 @@ void judge_admissibility(FitReport& report, const AdmissibilityOptions& options)
     return;
   }
   if (!report.converged) report.reasons.push_back("the fit did not converge: " + report.termination);
+  if (report.channels.empty())
+    report.reasons.emplace_back(
+        "no channel shows its noise, so nothing was judged: give noise_std in the sidecar or under sensors");
   for (const ChannelFit& channel : report.channels) judge_channel(channel, options, report.reasons);
   const std::optional<ConditionSetting>& seal = seal_of(report.model);
   bool has_resistance = false;

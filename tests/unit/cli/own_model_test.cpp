@@ -1,5 +1,5 @@
-// Plants as a user writes them at first: values with which nothing can be simulated, an input that a controller holds, readings every few
-// seconds.
+// Plants as a user writes them at first: values with which nothing can be simulated, an input that a controller holds,
+// a logger that pauses.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -62,6 +62,11 @@ elements:
       - {kind: piston_force, symbol: lost, signals: {speed: v, position: x}}
 law_sizes: {N: 1e-3, m: 1, m/s: 1, N s/m: 1e-3}
 )yaml";
+
+/// The same under another name, as a process knows each plant once.
+std::string mass_named(const std::string& name) {
+  return std::string(kMass).replace(std::string("name: ").size(), std::string("swinging_mass").size(), name);
+}
 
 TimeSeries pushes() {
   TimeSeries samples;
@@ -138,41 +143,36 @@ law_sizes: {}
   EXPECT_NEAR(value_of(fit.report, "R"), 1.2, 2e-3);
 }
 
-// Two hours of a cabinet that is read every five seconds: steps of a quarter of a second are none of its business.
-TEST(OwnModel, ASlowRecordingTakesNoMoreStepsThanItHasSamples) {
+// A logger that keeps still while nothing happens: the mean distance of its samples says nothing of its strokes.
+TEST(OwnModel, StrokesBetweenLongPausesAreNotSteppedOver) {
   const testing::YamlPlace place;
-  const AssetConfig asset = asset_of(place, R"yaml(name: slow_cabinet
-meaning: a heated plate
-inputs:
-  heater: {unit: W, meaning: power}
-outputs:
-  plate: {value: T, unit: K, noise_std: 0.05, meaning: temperature}
-parameters:
-  C: {value: 900, unit: J/K, meaning: heat capacity, estimate: true}
-  G: {value: 2.0, unit: W/K, meaning: to the air, estimate: true}
-  T_0: {value: 293, unit: K, meaning: temperature of the air}
-states:
-  T: {der: (heater - G*(T - T_0))/C, unit: K, start: plate}
-elements: {}
-law_sizes: {}
-)yaml",
-                                     "");
-  TimeSeries samples;
-  Series heater{"heater", "W", 0.0, {}}, plate{"plate", "K", 0.05, {}};
-  for (int k = 0; k < 1440; ++k) {
-    samples.time_s.push_back(5.0 * k);
-    heater.values.push_back(k / 120 % 2 == 0 ? 100.0 : 20.0);
-    plate.values.push_back(300.0);
+  const AssetConfig asset = asset_of(place, mass_named("pausing_mass"), "");
+  TimeSeries samples = pushes();
+  const std::size_t rows = samples.time_s.size();
+  for (int k = 1; k <= 40; ++k) {
+    samples.time_s.push_back(samples.time_s[rows - 1] + 60.0 * k);
+    for (Series& channel : samples.channels) channel.values.push_back(channel.values[rows - 1]);
   }
-  samples.channels = {heater, plate};
-  const TimeSeries recorded = recorded_by(asset, samples, 7);
-  const JointFit fit = fit_actuator(asset, std::span(&recorded, 1), {});
-  EXPECT_TRUE(fit.report.admissible);
-  EXPECT_NEAR(value_of(fit.report, "G"), 2.0, 0.01);
-  const auto simulation = PlantSimulation::create(asset, recorded).value();
-  const auto outputs =
-      simulation->run(simulation->start(), {}, simulation_options(std::span(&recorded, 1), {})).value();
-  EXPECT_LT(outputs.steps, 2U * samples.time_s.size()) << "7200 s in quarters of a second are 28800";
+  const TimeSeries recorded = recorded_by(asset, samples, 3);
+  AssetConfig guess = asset;
+  guess.parameters.at("k").value = 47.0;
+  const JointFit fit = fit_actuator(guess, std::span(&recorded, 1), {});
+  EXPECT_TRUE(fit.report.admissible) << (fit.report.reasons.empty() ? "" : fit.report.reasons.front());
+  EXPECT_NEAR(value_of(fit.report, "k"), 50.0, 0.1);
+}
+
+// A channel that never moves shows no noise, and a misfit without noise says nothing.
+TEST(OwnModel, WithoutNoiseNothingIsAdmissible) {
+  const testing::YamlPlace place;
+  std::string silent = mass_named("silent_mass");
+  silent.replace(silent.find(", noise_std: 1.0e-4"), std::string(", noise_std: 1.0e-4").size(), "");
+  silent.replace(silent.find("start: position"), std::string("start: position").size(), "start: position, size: 0.1");
+  const AssetConfig asset = asset_of(place, silent, "");
+  TimeSeries still = pushes();
+  still.channels[1].noise_std = 0.0;
+  const JointFit fit = fit_actuator(asset, std::span(&still, 1), {});
+  EXPECT_FALSE(fit.report.admissible);
+  EXPECT_THAT(fit.report.reasons, ::testing::Contains(::testing::HasSubstr("noise_std")));
 }
 
 }  // namespace

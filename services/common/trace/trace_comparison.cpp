@@ -10,6 +10,7 @@
 #include "sealwatch/signal/resampling.hpp"
 #include "sealwatch/trace/smooth_course.hpp"
 #include "services/common/text/numbers.hpp"
+#include "services/common/text/words.hpp"
 #include "services/common/trace/alterations.hpp"
 #include "services/common/trace/difference_tests.hpp"
 #include "services/common/trace/regimes.hpp"
@@ -89,6 +90,12 @@ class Comparison {
     for (const Series& channel : simulated_.channels)
       if (!recorded_.has(channel.name)) out_.only_simulated.push_back(channel.name);
     if (pairs_.empty()) return fail("the files share no channel", "give both the same column names, or a map");
+    // What the simulation was given is the same in both by itself: it agrees with nothing.
+    const auto given = [](const Pair& pair) { return pair.input || pair.recorded == pair.simulated; };
+    if (std::ranges::all_of(pairs_, given) && !out_.only_recorded.empty() && !out_.only_simulated.empty())
+      return fail("the files share inputs alone: only the recording has " + text::joined(out_.only_recorded) +
+                      ", only the simulation " + text::joined(out_.only_simulated),
+                  "give both the same column names, or a map");
     return {};
   }
 

@@ -71,6 +71,20 @@ TimeSeries changed(TimeSeries series, const std::function<double(double, double)
   return series;
 }
 
+// A misspelt output leaves the input alone in both files, which agrees by itself.
+TEST(TraceComparison, InputsAloneAgreeWithNothing) {
+  const TimeSeries simulated = stroke();
+  for (const bool declared : {false, true}) {
+    TimeSeries recorded = declared ? noisy(simulated, 0.01, 0.0, 1) : simulated;
+    recorded.channels[1].name = "presure";
+    Options options;
+    if (declared) options.inputs = {"position"};
+    const auto compared = compare_traces(recorded, simulated, options);
+    ASSERT_FALSE(compared) << declared;
+    EXPECT_THAT(compared.error().describe(), ::testing::HasSubstr("only the recording has presure"));
+  }
+}
+
 TEST(Trace, TheSameIsConsistent) {
   const TraceComparison same = compare(stroke(), stroke());
   EXPECT_TRUE(same.consistent);

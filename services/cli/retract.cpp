@@ -30,9 +30,17 @@ std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
     what = format_utc(*since);
   }
   event.header.message_id = retraction_id(options.asset_id, event.kind, what, {event.header.event_time_ns});
+  const auto earlier = retraction_of(options.asset_id, what);
+  if (event.kind == kRetractionWithdrawn && earlier && !earlier->withdrawn_id.empty()) {
+    complain(Error{.file = {},
+                   .place = "--withdraw",
+                   .value = what,
+                   .rule = "withdrew something, which cannot be taken back",
+                   .advice = "retract the tests once more, or report the replacement again, a second later"});
+    return std::nullopt;
+  }
   const bool can_be_withdrawn =
-      retraction_of(options.asset_id, what) ||
-      (time_of_replacement(what) && what.starts_with("maintenance_event/" + options.asset_id + "/"));
+      earlier || (time_of_replacement(what) && what.starts_with("maintenance_event/" + options.asset_id + "/"));
   if (event.kind != kRetractionWithdrawn || can_be_withdrawn) return event;
   complain(Error{.file = {},
                  .place = "--withdraw",
@@ -57,6 +65,8 @@ int run_retract(const RetractOptions& options) {
                            : time_of_replacement(options.withdraw) ? "the tests before this replacement count again"
                                                                    : "these tests count again";
   std::printf("received: %s; the remaining life and the advice are concluded anew\n", what);
+  if (withdrawn && time_of_replacement(options.withdraw))
+    std::printf("to report it after all, give a moment a second later: services pass this one over\n");
   if (!withdrawn)
     std::printf("taken back by: sealwatch retract %s --withdraw %s --by NAME --reason WHY\n",
                 shell_word(options.asset_id).c_str(), shell_word(event->header.message_id).c_str());

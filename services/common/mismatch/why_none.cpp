@@ -21,7 +21,7 @@ WhyNone cannot_be_asked(const Error& why) {
 
 WhyNone time_was_up() {
   return {.summary = "The time limit ended the analysis before it could be asked what is missing.",
-          .next_test = "Give the analysis more time, or fewer and shorter recordings."};
+          .next_test = "Give the analysis more time (--time-limit), or fewer and shorter recordings."};
 }
 
 WhyNone nothing_moves() {

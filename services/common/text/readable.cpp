@@ -105,6 +105,7 @@ std::string readable_with_error(double value, double error, std::string_view si_
   if (!(error > 0.0) || !std::isfinite(error) || !std::isfinite(value)) return readable(value, si_unit, 4);
   const DisplayUnit unit = si_unit.empty() ? DisplayUnit{} : display_unit(si_unit, value);
   const double shown_error = error * unit.factor;
+  if (!std::isfinite(shown_error) || !(shown_error > 0.0)) return readable(value, si_unit, 4);
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(shown_error))), 0, 6);
   std::string text = with_minus(format("{:.{}f} ± {:.{}f}", value * unit.factor, decimals, shown_error, decimals));
   if (unit.text.starts_with("10")) return std::string("(").append(text).append(")·").append(unit.text);

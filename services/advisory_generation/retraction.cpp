@@ -106,7 +106,11 @@ void AdvisoryGeneration::renew(const std::string& retraction_id, Conclusion& con
   pending_.erase(found);
   for (const Header* answer : {&evidence.life.header, &evidence.health.header, &evidence.state.header})
     conclusion.consumed.push_back(answer->message_id);
-  (void)learn(*retraction_of(evidence.life.asset_id, retraction_id), asset);
+  const bool was_known = !learn(*retraction_of(evidence.life.asset_id, retraction_id), asset);
+  const Header& answered = evidence.life.header;
+  // A later test was judged meanwhile: its advice is newer than these answers.
+  if (was_known && answered.event_time_known && asset.last_test && UtcTime{answered.event_time_ns} < *asset.last_test)
+    return;
   const Assessment assessment = assess(evidence, site_of(evidence.life.asset_id), options_);
   revise_last(assessment.verdict, asset);
   judge_anew(asset);

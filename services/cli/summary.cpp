@@ -58,8 +58,11 @@ std::string AssetView::seal_lines() const {
     text += "  seal condition   " + percent(life_->condition) + " (index from the leakage: 100 % is new, fails at " +
             percent(life_->threshold, 0) + ")\n";
   const LeakageEstimate* latest = nullptr;
+  const bool life_has_time = life_ && life_->header.event_time_known;
+  // The remaining life speaks of the last test that counts: a later estimate is of a test that was retracted.
   for (const LeakageEstimate* estimate : estimates_of_now())
-    if (estimate->estimated && (latest == nullptr || estimate->header.event_time_ns >= latest->header.event_time_ns))
+    if (estimate->estimated && (!life_has_time || estimate->header.event_time_ns <= life_->header.event_time_ns) &&
+        (latest == nullptr || estimate->header.event_time_ns >= latest->header.event_time_ns))
       latest = estimate;
   if (latest != nullptr)
     text += (is_of_seal(*latest) ? "  leakage          " : "  wear             ") + worn_parameter(*latest) + " " +

@@ -324,6 +324,28 @@ TEST(AssetView, WhatIsConcludedAnewAfterARetractionTakesThePlaceOfALaterTest) {
   EXPECT_THAT(view.screen(), HasSubstr("grade 0.90"));
 }
 
+TEST(AssetView, TheLeakageOfARetractedTestIsNotShown) {
+  AssetView view;
+  for (const auto& [date, resistance] : {std::pair{"2031-04-12", 1.867e13}, std::pair{"2031-05-12", 1.852e13}}) {
+    LeakageEstimate estimate;
+    estimate.asset_id = "A";
+    estimate.header = header_of_test(date);
+    estimate.header.message_id = date;
+    estimate.estimated = true;
+    estimate.resistance_Pa_s_m3 = resistance;
+    estimate.resistance_std_Pa_s_m3 = 1e11;
+    view.take(Message(estimate));
+  }
+  EXPECT_THAT(view.screen(), HasSubstr("1.852e+13"));
+  RemainingLife anew;
+  anew.asset_id = "A";
+  anew.header = header_of_test("2031-04-12");
+  anew.header.pst_id.clear();
+  anew.header.source_ids = {"retraction/A/test/A-2031-05-12/2031-05-20T00:00:00Z"};
+  view.take(Message(anew));
+  EXPECT_THAT(view.screen(), HasSubstr("1.867e+13"));
+}
+
 TEST(OneLine, ToldOfNoTestAStateReportIsOverdueOrJudgedAnew) {
   StateReport report;
   report.asset_id = "A";

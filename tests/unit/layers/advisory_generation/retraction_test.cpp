@@ -96,6 +96,14 @@ TEST_F(AdviceAfterRetraction, IsRenewedByTheAnswersAlone) {
   EXPECT_EQ(last_of(joined(joined(deceived_life(), replies), {since})).header.message_id, alone.header.message_id);
 }
 
+TEST_F(AdviceAfterRetraction, LateAnswersDoNotTakeThePlaceOfALaterTest) {
+  const MaintenanceEvent since = event(kTestsRetracted, format_utc(add_months(kInstalled, 70.5)), 75.5);
+  const auto next = joined(joined(deceived_life(), {since}), inputs_of(life_until(76, 76, 200.0)));
+  const auto replies = answers(since, life_until(70, 70, 200.0).front());
+  EXPECT_EQ(last_of(joined(next, replies)).header.message_id, last_of(next).header.message_id);
+  EXPECT_EQ(last_of(next).header.pst_id, TestCase{.month = 76}.pst_id());
+}
+
 MaintenanceEvent replaced(double month) {
   MaintenanceEvent said;
   said.asset_id = kAsset;

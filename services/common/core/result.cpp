@@ -2,6 +2,20 @@
 
 namespace sealwatch {
 
+namespace {
+
+constexpr std::size_t kLongestValue = 200;  // bytes: a file taken for a setting would fill the screen
+
+std::string brief(std::string value) {
+  if (value.size() <= kLongestValue) return value;
+  std::size_t end = kLongestValue;
+  while (end > 0 && (static_cast<unsigned char>(value[end]) & 0xC0U) == 0x80U) --end;  // no half letter
+  value.resize(end);
+  return value.append("…");
+}
+
+}  // namespace
+
 std::string Error::describe() const {
   std::string text;
   const auto add = [&text](const std::string& part, const char* separator) {
@@ -11,7 +25,7 @@ std::string Error::describe() const {
   };
   add(file, "");
   add(place, ": ");
-  if (!value.empty()) add("'" + value + "'", ": ");
+  if (!value.empty()) add("'" + brief(value) + "'", ": ");
   add(rule, ": ");
   add(advice, "; ");
   return text;

@@ -77,6 +77,16 @@ INSTANTIATE_TEST_SUITE_P(
                       UnitCase{"kN", 4.0, 4.0e3, "N"}, UnitCase{"rev", 1.0, 2.0 * std::numbers::pi, "rad"},
                       UnitCase{"deg", 180.0, std::numbers::pi, "rad"}));
 
+TEST(Error, CutsALongValueBetweenLetters) {
+  Error error;
+  error.value = "x";
+  for (int k = 0; k < 5000; ++k) error.value += "ü";
+  error.rule = "must be a mapping";
+  std::string expected = "'x";
+  for (int k = 0; k < 99; ++k) expected += "ü";
+  EXPECT_EQ(error.describe(), expected + "…': must be a mapping");
+}
+
 TEST(UnitErrors, NameTheNearestUnit) {
   const auto unknown = find_unit("mpa");
   ASSERT_FALSE(unknown.has_value());

@@ -25,7 +25,7 @@ std::string Error::describe() const {
   };
   add(file, "");
   add(place, ": ");
-  if (!value.empty()) add("'" + brief(value) + "'", ": ");
+  if (!value.empty()) add(std::string("'").append(brief(value)).append("'"), ": ");
   add(rule, ": ");
   add(advice, "; ");
   return text;

@@ -147,18 +147,27 @@ law_sizes: {}
 TEST(OwnModel, StrokesBetweenLongPausesAreNotSteppedOver) {
   const testing::YamlPlace place;
   const AssetConfig asset = asset_of(place, mass_named("pausing_mass"), "");
-  TimeSeries samples = pushes();
-  const std::size_t rows = samples.time_s.size();
-  for (int k = 1; k <= 40; ++k) {
-    samples.time_s.push_back(samples.time_s[rows - 1] + 60.0 * k);
-    for (Series& channel : samples.channels) channel.values.push_back(channel.values[rows - 1]);
+  TimeSeries samples;
+  Series force{"u", "N", 0.0, {}}, position{"position", "m", 1e-4, {}};
+  const auto at = [&](double t, double push) {
+    samples.time_s.push_back(t);
+    force.values.push_back(push);
+    position.values.push_back(0.0);
+  };
+  for (int minute = 0; minute < 40; ++minute) {
+    at(60.0 * minute, 0.0);
+    const bool strokes = minute % 10 == 5;  // a push of half a second, five seconds later
+    for (int k = 1; strokes && k < 500; ++k)
+      at(60.0 * minute + 0.02 * k, k > 250 && k < 282 ? 5.0 * std::pow(std::sin(0.1 * (k - 250)), 2) : 0.0);
   }
+  samples.channels = {force, position};
   const TimeSeries recorded = recorded_by(asset, samples, 3);
   AssetConfig guess = asset;
   guess.parameters.at("k").value = 47.0;
   const JointFit fit = fit_actuator(guess, std::span(&recorded, 1), {});
   EXPECT_TRUE(fit.report.admissible) << (fit.report.reasons.empty() ? "" : fit.report.reasons.front());
   EXPECT_NEAR(value_of(fit.report, "k"), 50.0, 0.1);
+  EXPECT_LE(simulation_options(std::span(&recorded, 1), {}).maximum_step_s, 0.25) << "a push takes 0.64 s";
 }
 
 // A channel that never moves shows no noise, and a misfit without noise says nothing.

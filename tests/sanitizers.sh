@@ -2,13 +2,19 @@
 # Builds and runs the tests under both sanitizer presets, and writes a line of each into docs/records/sanitizers.tsv:
 # commit, date (UTC), preset, tests passed, tests failed, seconds, and which failed.
 #   tests/sanitizers.sh                        everything but the fuzzers: about an hour of building each on two cores
+#   tests/sanitizers.sh services               the six services alone, under each fault of the campaign
 #   tests/sanitizers.sh -L unit -R '^core_'    what follows goes to ctest; such a part of the tests is not recorded
 # Exit status 1 where a test fails or a build does. Refuses to record a tree with uncommitted changes to tracked files.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 record=docs/records/sanitizers.tsv
 commit=$(git rev-parse --short HEAD) || exit 2
-if [ $# -eq 0 ] && ! git diff --quiet HEAD -- . ":!$record"; then
+part="" targets=all
+if [ "${1:-}" = services ]; then
+  part=" services" targets=campaign_programs
+  set -- -R '^campaign_'
+fi
+if { [ $# -eq 0 ] || [ -n "$part" ]; } && ! git diff --quiet HEAD -- . ":!$record"; then
   echo "commit first: the record names the commit that was tested" >&2
   exit 2
 fi
@@ -18,7 +24,7 @@ for preset in asan-ubsan tsan; do
   begin=$(date +%s)
   log=$(mktemp)
   passed=0 broken=0 which="does not build"
-  if cmake --preset "$preset" && cmake --build --preset "$preset"; then
+  if cmake --preset "$preset" && cmake --build --preset "$preset" --target "$targets"; then
     ctest --preset "$preset" -LE fuzz --parallel "$(nproc)" "$@" | tee "$log"
     total=$(sed -n 's/.*tests passed, .* tests failed out of \([0-9]*\)$/\1/p' "$log")
     broken=$(sed -n 's/.*tests passed, \([0-9]*\) tests failed out of .*/\1/p' "$log")
@@ -28,8 +34,8 @@ for preset in asan-ubsan tsan; do
   fi
   rm -f "$log"
   [ -z "$which" ] || failed=1
-  line="$commit\t$(date -u +%FT%TZ)\t$preset\t$passed\t${broken:-0}\t$(($(date +%s) - begin))\t${which:--}"
+  line="$commit\t$(date -u +%FT%TZ)\t$preset$part\t$passed\t${broken:-0}\t$(($(date +%s) - begin))\t${which:--}"
   echo -e "$line"
-  [ $# -gt 0 ] || echo -e "$line" >>"$record"
+  [ $# -gt 0 ] && [ -z "$part" ] || echo -e "$line" >>"$record"
 done
 exit $failed

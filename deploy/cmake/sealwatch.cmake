@@ -23,7 +23,7 @@ if(SEALWATCH_HARDENED AND NOT SEALWATCH_SANITIZE)
   target_link_options(sealwatch_flags INTERFACE $<${optimised}:-Wl,-z,relro,-z,now,-z,noexecstack>)
 endif()
 if(SEALWATCH_SANITIZE)
-  target_compile_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  target_compile_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(sealwatch_flags INTERFACE -fsanitize=${SEALWATCH_SANITIZE})
 endif()
 

@@ -36,6 +36,7 @@ DOMAIN, PATIENCE_S = 96, 240.0
 TRIALS = ["kills", "bits", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "years"]
 LIVE_DOMAIN = 97  # of tests/perf/services/live_latency.cpp
 MOST_GROWTH_MB = 100.0      # of a service under a flood: its queues and inboxes, all of them bounded
+FINDING = re.compile(r"\w+Sanitizer: .*|runtime error: .*")  # of a build with sanitizers, whatever its exit status
 TABLES = {"inputs": ["message_id", "payload", "consumed", "pst_id"], "outputs": ["payload", "asset_id", "checksum"],
           "positions": ["sequence", "writer_id"], "quarantine": ["reason"], "acts": ["who", "hash"],
           "meta": ["value"], "alarms": ["payload"]}
@@ -120,7 +121,11 @@ class World:
                                 stdout=subprocess.DEVNULL, stderr=open(self.folder / "replay.log", "a"))
 
     def run(self, *words):
-        return subprocess.run([*self.prefixes.get("replay", []), *self.command(*words)], env=self.environment, capture_output=True, text=True)
+        done = subprocess.run([*self.prefixes.get("replay", []), *self.command(*words)], env=self.environment,
+                              capture_output=True, text=True)
+        with open(self.folder / "replay.log", "a") as log:
+            log.write(done.stderr)
+        return done
 
     def sizes(self):
         """By service: own memory in MB, and open descriptors."""
@@ -165,6 +170,12 @@ def differences(expected, found):
             example = sorted([*missing, *more, *other])[0]
             texts.append(f"{service}: {len(missing)} missing, {len(more)} more, {len(other)} different ({example})")
     return "; ".join(texts)
+
+
+def findings(folder):
+    """What sanitizers said of any program, each kind once."""
+    logs = [file.read_text(errors="replace") for name in ("services", "replay") for file in folder.rglob(f"{name}.log")]
+    return sorted({finding for log in logs for finding in FINDING.findall(log)})
 
 
 class Campaign:
@@ -607,6 +618,8 @@ def main():
         begin = time.monotonic()
         try:
             said = getattr(campaign, trial)()
+            if found := findings(folder):
+                raise Failed(f"{said}; but sanitizers found {len(found)}: {found[0]}")
         except Failed as failure:
             failed, said = True, f"FAILED: {failure}"
         print(f"{trial}, seed {arguments.seed}, {time.monotonic() - begin:.0f} s: {said}", flush=True)

@@ -11,8 +11,10 @@ namespace {
 constexpr std::size_t kMostLater = 4;
 /// Messages that wait and are kept in memory.
 constexpr std::size_t kMostKept = 64;
-/// Failures in the service of a message that ended well on trial, after which it is set aside all the same.
+/// Failures in the service of a message that ended well on trial, after which it is set aside all the same; and deaths of
+/// the service, for which it may not be to blame.
 constexpr unsigned kMostFailures = 5;
+constexpr unsigned kMostDeaths = 50;
 
 std::string seconds_text(std::chrono::milliseconds time) { return std::to_string(time.count() / 1000) + " s"; }
 
@@ -88,14 +90,15 @@ Status AssetLanes::begin_next(const std::string& asset_id, Lane& lane) {
   }
   lane.receiving = std::move(next);
   ++receiving_;
-  const unsigned failures = record_.failures(lane.receiving->message_id);
-  if (failures == 0)
+  const Tries tries = record_.tries(lane.receiving->message_id);
+  if (tries.failures == 0 && tries.deaths == 0)
     receive(asset_id, lane);
-  else if (failures < kMostFailures)
+  else if (tries.failures < kMostFailures && tries.deaths < kMostDeaths)
     try_first(asset_id, lane);
   else
     fail_without_a_try(asset_id, *lane.receiving,
-                       "its service ended or failed " + std::to_string(failures) + " times while it worked on it");
+                       "its service ended or failed " + std::to_string(tries.failures + tries.deaths) +
+                           " times while it worked on it");
   return {};
 }
 

@@ -4,7 +4,8 @@
 // A message on which the layer fails (it raised an exception, ran out of memory, did not end in time, or its process
 // died with it) is tried a second time in a process of its own (trial.hpp). If it fails there too, it is the message's
 // fault. If not, it was something else's, such as a kill from outside: then it is given to the layer again, but not for
-// ever, as what ends well there may still be what ends the service.
+// ever, as what ends well there may still be what ends the service. Kills from outside come in storms, so that many more
+// deaths than failures are put up with.
 //
 // The owner's thread alone calls; the layers are called by worker threads.
 #pragma once

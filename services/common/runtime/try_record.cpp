@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <functional>
+#include <limits>
 
 #include "sealwatch/core/text.hpp"
 
@@ -17,6 +18,12 @@ namespace {
 std::uint64_t hash_of(const std::string& message_id) {
   return std::max<std::uint64_t>(std::stoull(content_hash(message_id), nullptr, 16), 1);
 }
+
+void count(std::uint16_t& times) {
+  if (times < std::numeric_limits<std::uint16_t>::max()) ++times;
+}
+
+bool is_unsuspected(const Tries& tries) { return tries.failures == 0 && tries.deaths == 0; }
 
 }  // namespace
 
@@ -36,7 +43,7 @@ Status TryRecord::keep_in(const std::string& path) {
   entries_ = static_cast<Entries*>(memory);
   for (Entry& entry : *entries_) {
     if (entry.message == 0 || entry.at_work == 0) continue;
-    ++entry.failures;
+    count(entry.tries.deaths);
     entry.at_work = 0;
   }
   return {};
@@ -51,7 +58,7 @@ void TryRecord::stop_in_order() {
   const std::lock_guard lock(mutex_);
   for (Entry& entry : *entries_) {
     entry.at_work = 0;
-    if (entry.failures == 0) entry.message = 0;
+    if (is_unsuspected(entry.tries)) entry.message = 0;
   }
 }
 
@@ -70,14 +77,14 @@ TryRecord::Entry& TryRecord::find_or_make(const std::string& message_id) {
     if ((*entries_)[next_].at_work == 0) room = entries_->begin() + next_;
   }
   if (room == entries_->end()) room = entries_->begin();
-  *room = {.message = hash_of(message_id), .failures = 0, .at_work = 0};
+  *room = {.message = hash_of(message_id), .tries = {}, .at_work = 0};
   return *room;
 }
 
-unsigned TryRecord::failures(const std::string& message_id) {
+Tries TryRecord::tries(const std::string& message_id) {
   const std::lock_guard lock(mutex_);
   const Entry* const known = find(message_id);
-  return known == nullptr ? 0 : known->failures;
+  return known == nullptr ? Tries{} : known->tries;
 }
 
 void TryRecord::begin(const std::string& message_id) {
@@ -93,7 +100,7 @@ void TryRecord::end(const std::string& message_id) {
 void TryRecord::fail(const std::string& message_id) {
   const std::lock_guard lock(mutex_);
   Entry& entry = find_or_make(message_id);
-  ++entry.failures;
+  count(entry.tries.failures);
   entry.at_work = 0;
 }
 
@@ -102,7 +109,7 @@ void TryRecord::leave(const std::string& message_id) {
   Entry* const known = find(message_id);
   if (known == nullptr) return;
   known->at_work = 0;
-  if (known->failures == 0) known->message = 0;
+  if (is_unsuspected(known->tries)) known->message = 0;
 }
 
 }  // namespace sealwatch

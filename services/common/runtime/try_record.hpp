@@ -12,18 +12,24 @@
 
 namespace sealwatch {
 
+/// How often work on a message failed, and how often the process died while it went on, for whatever reason.
+struct Tries {
+  std::uint16_t failures = 0;
+  std::uint16_t deaths = 0;
+};
+
 class TryRecord {
  public:
   /// For one process alone.
   TryRecord() = default;
-  /// A process that worked on a message and did not end in order has failed on it. `path` is made where it is missing.
+  /// A process that worked on a message and did not end in order has died on it. `path` is made where it is missing.
   [[nodiscard]] Status keep_in(const std::string& path);
   /// In order: what is being worked on has not failed.
   ~TryRecord();
   TryRecord(const TryRecord&) = delete;
   TryRecord& operator=(const TryRecord&) = delete;
 
-  [[nodiscard]] unsigned failures(const std::string& message_id);
+  [[nodiscard]] Tries tries(const std::string& message_id);
   void begin(const std::string& message_id);
   /// It ended well: nothing of it is remembered.
   void end(const std::string& message_id);
@@ -36,7 +42,7 @@ class TryRecord {
  private:
   struct Entry {
     std::uint64_t message;  ///< hash of its id; 0: free
-    std::uint32_t failures;
+    Tries tries;
     std::uint32_t at_work;
   };
   static constexpr std::size_t kEntries = 1024;

@@ -449,13 +449,12 @@ class Campaign:
             if sender.wait() != 0:
                 raise Failed(f"flood of {what}: the actuators could not send")
             after = world.sizes()
+            places = latencies_ms(what, arrived, world.state / "data_manipulation.db")
             if ended := world.keep_up():
                 raise Failed(f"flood of {what}: ended: {ended}")
         # What fits into the queues for strangers is no flood.
         if what == "raw" and sent > 5000 and not re.search(r'"kind":\s*"flood"', status):
             raise Failed(f"flood of {what}: {sent} messages, and nobody said so")
-        with open(arrived) as lines:
-            places = latencies_ms(what, (line.split() for line in lines), world.state / "data_manipulation.db")
         grown = {name: after[name][0] - before[name][0] for name in SERVICES}
         most = max(grown, key=grown.get)
         if grown[most] > MOST_GROWTH_MB:
@@ -590,19 +589,28 @@ def copy_for(name, recording, folder):
     return copy
 
 
-def latencies_ms(what, lines, journal):
-    """Of each live block, from its last sample to its receipt in data manipulation's journal; none may be missing there.
-    The reader of raw blocks, which asks for nothing again, may miss some: those are not timed."""
+def latencies_ms(what, arrived, journal, patience_s=60.0):
+    """Of each live block, from its last sample to its receipt in data manipulation's journal; none may be missing there
+    in the end. The reader of raw blocks, which asks for nothing again, may miss some: those are not timed."""
     sampled = {}
-    for topic, asset, _, block, sent, _ in lines:
+    for line in arrived.read_text().splitlines():
+        topic, asset, _, block, sent, _ = line.split()
         if topic == "raw" and asset.startswith("LIVE-"):
             sampled[asset, int(block.split("/")[1])] = int(sent)
-    with sqlite3.connect(f"file:{journal}?mode=ro", uri=True, timeout=10) as opened:
-        received = {(asset, int(message.rsplit("/", 1)[1])): when for asset, message, when in opened.execute(
-            "SELECT asset_id, message_id, received FROM inputs WHERE topic = 'sample_block'")}
+    end = time.monotonic() + patience_s
+    while sampled.keys() - (received := received_at(journal)).keys() and time.monotonic() < end:
+        time.sleep(1.0)  # late, not lost
     if missing := sampled.keys() - received.keys():
-        raise Failed(f"{what}: {len(missing)} of {len(sampled)} live blocks were lost, {sorted(missing)[0]}")
+        raise Failed(f"{what}: {len(missing)} of {len(sampled)} live blocks are not there after {patience_s:.0f} s, "
+                     f"{sorted(missing)[0]}")
     return [(received[block] - sampled[block]) * 1e-6 for block in sampled]
+
+
+def received_at(journal):
+    """Asset and number of each block that data manipulation has received, and when."""
+    with sqlite3.connect(f"file:{journal}?mode=ro", uri=True, timeout=10) as opened:
+        return {(asset, int(message.rsplit("/", 1)[1])): when for asset, message, when in opened.execute(
+            "SELECT asset_id, message_id, received FROM inputs WHERE topic = 'sample_block'")}
 
 
 def main():

@@ -71,8 +71,7 @@ int complain(const std::string& service, const Error& error, int exit_status) {
 [[noreturn]] void end_now(const std::string& service, const Status& served) {
   const int status = served ? kOk : complain(service, served.error(), kInternalFailure);
   if (served) log_event(LogLevel::info, "stopped");
-  stop_logging();
-  ::_exit(status);
+  ::_exit(status);  // the log, which every such line reaches at once, stays open: what computes may tell it something
 }
 
 sigset_t stop_signals() {

@@ -4,14 +4,16 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 
 namespace sealwatch {
 namespace {
 
 timer_t timer;
-pid_t owner = 0;  ///< the process that has made the timer: a fork does not inherit it
-volatile sig_atomic_t status = 0;
+pid_t owner = 0;              ///< the process that has made the timer: a fork does not inherit it
+std::atomic<int> status = 0;  ///< set by one thread, read by whichever takes the signal
+static_assert(std::atomic<int>::is_always_lock_free);
 
 void set_timer(std::chrono::milliseconds time) {
   if (owner == 0) return;

@@ -110,7 +110,7 @@ TEST_F(DaemonTest, RunsUntilSigtermAndTellsTheServiceManager) {
   EXPECT_THAT(text, HasSubstr("concluded topic=test_features pst=\"A test 0\" asset=A"));
 }
 
-/// Computes for ever, at once or for later, once it has an input.
+/// Computes for ever, at once or for later, once it has an input, and tells the log: it does so while the process ends.
 class EndlessLayer final : public Layer {
  public:
   explicit EndlessLayer(bool later) : later_(later) {}
@@ -120,8 +120,7 @@ class EndlessLayer final : public Layer {
   void restore(const Message&) override {}
   Conclusion receive(const Message&) override {
     const auto endless = [](const std::stop_token&) {
-      for (volatile bool on = true; on;) {
-      }
+      for (volatile bool on = true; on;) log_event(LogLevel::info, "computes", {});
       return Conclusion();
     };
     if (!later_) return endless({});

@@ -1,5 +1,8 @@
 #include "services/common/transport/participant.hpp"
 
+#include <pthread.h>
+#include <time.h>
+
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -7,7 +10,27 @@
 #include <mutex>
 #include <utility>
 
+#include "dds/ddsrt/sync.h"
 #include "services/common/transport/refusals.hpp"
+
+// Cyclone 0.10 waits by the wall clock: set back by an hour during a wait, that clock keeps the thread that sends again
+// what was lost, and tells others that this process lives, asleep for the hour. The library finds these definitions
+// before its own, which differ in the clock alone.
+extern "C" bool ddsrt_cond_waitfor(ddsrt_cond_t* condition, ddsrt_mutex_t* mutex, dds_duration_t time) {
+  if (time == DDS_INFINITY) {
+    ddsrt_cond_wait(condition, mutex);
+    return true;
+  }
+  timespec until{};
+  clock_gettime(CLOCK_MONOTONIC, &until);
+  const dds_duration_t nanoseconds = until.tv_nsec + (time > 0 ? time % DDS_NSECS_IN_SEC : 0);
+  until.tv_sec += (time > 0 ? time / DDS_NSECS_IN_SEC : 0) + nanoseconds / DDS_NSECS_IN_SEC;
+  until.tv_nsec = nanoseconds % DDS_NSECS_IN_SEC;
+  return pthread_cond_clockwait(&condition->cond, &mutex->mutex, CLOCK_MONOTONIC, &until) == 0;
+}
+extern "C" bool ddsrt_cond_waituntil(ddsrt_cond_t* condition, ddsrt_mutex_t* mutex, dds_time_t time) {
+  return ddsrt_cond_waitfor(condition, mutex, time == DDS_NEVER ? DDS_INFINITY : time - dds_time());
+}
 
 namespace sealwatch::transport {
 namespace {

@@ -1,6 +1,7 @@
 #include "services/cli/concluded_history.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "sealwatch/forecast/configured.hpp"
 #include "services/cli/session.hpp"
@@ -9,6 +10,7 @@
 namespace sealwatch::cli {
 namespace {
 
+using prognostic_assessment::AssetHistory;
 using prognostic_assessment::HistoryEntry;
 
 const LeakageEstimate& estimate_of(const HistoryEntry& test, const std::vector<LeakageEstimate>& estimates) {
@@ -21,21 +23,45 @@ const LeakageEstimate& estimate_of(const HistoryEntry& test, const std::vector<L
 void ConcludedHistory::take(const Message& message) {
   if (const auto* estimate = std::get_if<LeakageEstimate>(&message); estimate && estimate->header.event_time_known)
     estimates_.push_back(*estimate);
-  if (const auto* life = std::get_if<RemainingLife>(&message); life && life->replacement_known)
-    replacements_.push_back({life->replaced_ns});
+  if (const auto* life = std::get_if<RemainingLife>(&message)) {
+    Told& told = told_.emplace_back(Told{.pst_id = life->header.pst_id, .retractions = {}, .replacement = {}});
+    for (const std::string& source : life->header.source_ids)
+      if (auto retraction = retraction_of(life->asset_id, source)) told.retractions.push_back(std::move(*retraction));
+    if (life->replacement_known) told.replacement = prognostic_assessment::replacement_of(*life);
+  }
   if (const auto* advice = std::get_if<Advisory>(&message); advice && advice->state != AdvisoryState::superseded)
-    if (!advice_ || advice->header.event_time_ns >= advice_->header.event_time_ns) advice_ = *advice;
+    if (!advice_ || answers_retraction(advice->header) || advice->header.event_time_ns >= advice_->header.event_time_ns)
+      advice_ = *advice;
+}
+
+// "All since a date" means the tests that are known when it is said.
+AssetHistory ConcludedHistory::history() const {
+  AssetHistory history;
+  std::multimap<std::string, const LeakageEstimate*> by_test;
+  for (const LeakageEstimate& estimate : estimates_) by_test.emplace(estimate.header.pst_id, &estimate);
+  const auto add = [&](const std::string& pst_id) {
+    const auto [first, last] = by_test.equal_range(pst_id);
+    std::for_each(first, last, [&](const auto& one) { history.add(*one.second); });
+    by_test.erase(first, last);
+  };
+  add("");
+  for (const Told& told : told_) {
+    add(told.pst_id);
+    for (const Retraction& retraction : told.retractions) history.apply(retraction);
+    if (told.replacement) history.add_replacement(*told.replacement);
+  }
+  for (const auto& [pst_id, estimate] : by_test) history.add(*estimate);
+  return history;
 }
 
 std::optional<ForecastQuestion> ConcludedHistory::question(const AssetConfig& asset,
                                                            const Configuration& configuration) const {
-  prognostic_assessment::AssetHistory history;
-  for (const LeakageEstimate& estimate : estimates_) history.add(estimate);
-  for (const UtcTime time : replacements_) history.add_replacement(time);
+  const AssetHistory history = this->history();
   UtcTime now{};
-  for (const LeakageEstimate& estimate : estimates_) now = std::max(now, UtcTime{estimate.header.event_time_ns});
+  if (const HistoryEntry* const last = history.last_counted()) now = last->sample.time;
   // A replacement that no test has followed yet ends the history too: the tests before it are of another seal.
-  const std::optional<UtcTime> replaced = history.last_replacement();
+  std::optional<UtcTime> replaced;
+  if (const auto* const replacement = history.last_replacement()) replaced = replacement->time;
   if (replaced) now = std::max(now, *replaced);
   const std::vector<HistoryEntry> tests = history.until(now);
   if (!asset.condition || (tests.empty() && !replaced)) return std::nullopt;

@@ -9,11 +9,13 @@
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/alarm_state.hpp"
+#include "sealwatch/message/replacement_id.hpp"
 #include "services/cli/alarms_listed.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/operator_send.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
+#include "services/prognostic_assessment/asset_history.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -116,15 +118,15 @@ std::optional<Error> objection(const Explained& explained, const AcceptOptions& 
   return error;
 }
 
-/// The latest replacement of the asset that prognosis knew before, from the last remaining_life.
-std::optional<std::int64_t> known_replacement(Bus& bus, const std::string& asset_id) {
+/// Of the latest replacement of the asset that prognosis knew before: the last remaining_life.
+std::optional<RemainingLife> known_replacement(Bus& bus, const std::string& asset_id) {
   const auto end = std::chrono::steady_clock::now() + kPatienceForAnswer;
   std::optional<RemainingLife> last;
   while (!last && std::chrono::steady_clock::now() < end)
     for (const BusItem& item : bus.receive(std::chrono::milliseconds(100)))
       if (const auto* message = std::get_if<Message>(&item); message != nullptr && asset_of(*message) == asset_id)
         if (const auto* life = std::get_if<RemainingLife>(message)) last = *life;
-  return last && last->replacement_known ? std::optional(last->replaced_ns) : std::nullopt;
+  return last && last->replacement_known ? last : std::nullopt;
 }
 
 }  // namespace
@@ -240,7 +242,7 @@ int run_replaced(const ReplacedOptions& options) {
   message.remark = options.remark;
   message.header.event_time_known = true;
   message.header.event_time_ns = at->nanoseconds;
-  message.header.message_id = "maintenance_event/" + options.asset_id + "/" + format_utc(*at);
+  message.header.message_id = replacement_id(options.asset_id, message.kind, {now_ns()}, *at);
   std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
   constexpr std::array kLife = {Topic::remaining_life};
@@ -248,17 +250,20 @@ int run_replaced(const ReplacedOptions& options) {
     complain(joined.error());
     return kInternalFailure;
   }
-  const std::optional<std::int64_t> known = known_replacement(*session->bus, options.asset_id);
-  const bool later = known && *known > at->nanoseconds;
-  // The same one may have reached only some of the services: it is sent again.
+  const std::optional<RemainingLife> known = known_replacement(*session->bus, options.asset_id);
+  const bool later = known && known->replaced_ns > at->nanoseconds;
+  // The same one may have reached only some of the services: it is sent again, under the name that they know.
+  if (known && known->replaced_ns == at->nanoseconds)
+    message.header.message_id = prognostic_assessment::replacement_of(*known).id;
   const int sent =
       later ? kOk : send(session, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
-  if (sent == kOk && known && *known >= at->nanoseconds) {
+  if (sent == kOk && known && known->replaced_ns >= at->nanoseconds) {
+    const std::string day = date(known->replaced_ns);
     complain(Error{.file = {},
                    .place = "--at",
                    .value = options.at,
-                   .rule = "changes nothing: a replacement on " + date(*known) + " is known already" +
-                           (later ? ", which is later" : "") + "; only tests since " + date(*known) + " count",
+                   .rule = "changes nothing: a replacement on " + day + " is known already" +
+                           (later ? ", which is later" : "") + "; only tests since " + day + " count",
                    .advice = {}});
     return kAnswerIsNo;
   }

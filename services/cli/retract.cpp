@@ -36,7 +36,7 @@ std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
                    .place = "--withdraw",
                    .value = what,
                    .rule = "withdrew something, which cannot be taken back",
-                   .advice = "retract the tests once more, or report the replacement again, a second later"});
+                   .advice = "retract the tests once more, or report the replacement again"});
     return std::nullopt;
   }
   const bool can_be_withdrawn =
@@ -65,8 +65,6 @@ int run_retract(const RetractOptions& options) {
                            : time_of_replacement(options.withdraw) ? "the tests before this replacement count again"
                                                                    : "these tests count again";
   std::printf("received: %s; the remaining life and the advice are concluded anew\n", what);
-  if (withdrawn && time_of_replacement(options.withdraw))
-    std::printf("to report it after all, give a moment a second later: services pass this one over\n");
   if (!withdrawn)
     std::printf("taken back by: sealwatch retract %s --withdraw %s --by NAME --reason WHY\n",
                 shell_word(options.asset_id).c_str(), shell_word(event->header.message_id).c_str());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
 
 namespace sealwatch::prognostic_assessment {
 namespace {
@@ -10,7 +11,24 @@ bool waits_for_confirmation(const LeakageEstimate& estimate) {
   return estimate.reasons.size() == 1 && estimate.reasons.front().rfind(kUnconfirmed, 0) == 0;
 }
 
+bool in_order(const Replacement& a, const Replacement& b) { return std::tie(a.time, a.id) < std::tie(b.time, b.id); }
+
 }  // namespace
+
+void tell_of(const Replacement& replacement, RemainingLife& life) {
+  life.replacement_known = true;
+  life.replaced_ns = replacement.time.nanoseconds;
+  if (std::ranges::find(life.header.source_ids, replacement.id) == life.header.source_ids.end())
+    life.header.source_ids.push_back(replacement.id);
+}
+
+// Lives in journals of before told the time alone; the id was made of it.
+Replacement replacement_of(const RemainingLife& life) {
+  const UtcTime time{life.replaced_ns};
+  for (const std::string& source : life.header.source_ids)
+    if (time_of_replacement(source) == time) return {source, time};
+  return {"maintenance_event/" + life.asset_id + "/" + format_utc(time), time};
+}
 
 void AssetHistory::add(const LeakageEstimate& estimate) {
   concluded_.push_back(estimate.header.message_id);
@@ -28,36 +46,36 @@ void AssetHistory::add(const LeakageEstimate& estimate) {
   entries_.insert(place, std::move(entry));
 }
 
-void AssetHistory::add_replacement(UtcTime time) {
-  if (!withdrawn_.contains(time)) replacements_.insert(time);
+void AssetHistory::add_replacement(const Replacement& replacement) {
+  if (!holds(replacement.id)) return;
+  const auto place = std::ranges::lower_bound(replacements_, replacement, in_order);
+  if (place == replacements_.end() || place->id != replacement.id) replacements_.insert(place, replacement);
 }
 
 void AssetHistory::apply(const Retraction& retraction) {
   retracted_.apply(retraction);
-  if (const auto time = time_of_replacement(retraction.withdrawn_id)) {
-    replacements_.erase(*time);
-    withdrawn_.insert(*time);
-  }
+  std::erase_if(replacements_, [&](const Replacement& one) { return one.id == retraction.withdrawn_id; });
 }
 
 bool AssetHistory::has_estimate(const std::string& estimate_id) const {
   return std::find(concluded_.begin(), concluded_.end(), estimate_id) != concluded_.end();
 }
 
-std::optional<UtcTime> AssetHistory::last_replacement() const {
-  return replacements_.empty() ? std::nullopt : std::optional(*replacements_.rbegin());
+const Replacement* AssetHistory::last_replacement() const {
+  return replacements_.empty() ? nullptr : &replacements_.back();
 }
 
-std::optional<UtcTime> AssetHistory::replaced_before(UtcTime now) const {
-  const auto later = replacements_.upper_bound(now);
-  return later == replacements_.begin() ? std::nullopt : std::optional(*std::prev(later));
+const Replacement* AssetHistory::replaced_before(UtcTime now) const {
+  const auto later = std::ranges::upper_bound(replacements_, now, {}, &Replacement::time);
+  return later == replacements_.begin() ? nullptr : &*std::prev(later);
 }
 
 std::vector<HistoryEntry> AssetHistory::until(UtcTime now) const {
-  const std::optional<UtcTime> replaced = replaced_before(now);
+  const Replacement* const replaced = replaced_before(now);
   std::vector<HistoryEntry> entries;
   for (const HistoryEntry& entry : entries_)
-    if (retracted_.counts(entry.pst_id) && entry.sample.time <= now && (!replaced || entry.sample.time > *replaced))
+    if (retracted_.counts(entry.pst_id) && entry.sample.time <= now &&
+        (replaced == nullptr || entry.sample.time > replaced->time))
       entries.push_back(entry);
   return entries;
 }

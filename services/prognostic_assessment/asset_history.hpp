@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -26,21 +24,32 @@ struct HistoryEntry {
   std::string pst_id = {};
 };
 
+/// A replacement of the seal or the actuator, as somebody reported it.
+struct Replacement {
+  std::string id;  ///< message id of the report
+  UtcTime time;
+};
+
+/// Says in `life` that only tests since this replacement count: by its time, and by its id among the sources.
+void tell_of(const Replacement& replacement, RemainingLife& life);
+/// The replacement that `life` tells of, where one is known.
+[[nodiscard]] Replacement replacement_of(const RemainingLife& life);
+
 class AssetHistory {
  public:
   /// Takes an own output. Tests without event time are only remembered as concluded.
   void add(const LeakageEstimate& estimate);
-  void add_replacement(UtcTime time);
+  void add_replacement(const Replacement& replacement);
   /// From now on the tests that it means do not count, or count again, or the replacement that it means was none.
   void apply(const Retraction& retraction);
   /// Whether nobody took the replacement of this message id back.
   [[nodiscard]] bool holds(const std::string& replacement_id) const { return retracted_.holds(replacement_id); }
 
   [[nodiscard]] bool has_estimate(const std::string& estimate_id) const;
-  /// The latest replacement of all.
-  [[nodiscard]] std::optional<UtcTime> last_replacement() const;
-  /// Last replacement not after `now`.
-  [[nodiscard]] std::optional<UtcTime> replaced_before(UtcTime now) const;
+  /// The latest replacement of all; nullptr where there was none.
+  [[nodiscard]] const Replacement* last_replacement() const;
+  /// The last one not after `now`.
+  [[nodiscard]] const Replacement* replaced_before(UtcTime now) const;
   /// Tests after the last replacement up to and including `now`, in the order of time.
   [[nodiscard]] std::vector<HistoryEntry> until(UtcTime now) const;
   /// The latest test that counts, a replacement or not; nullptr when none does.
@@ -50,9 +59,8 @@ class AssetHistory {
 
  private:
   std::vector<std::string> concluded_;
-  std::vector<HistoryEntry> entries_;  ///< in the order of time; equal times by id
-  std::set<UtcTime> replacements_;     ///< that hold
-  std::set<UtcTime> withdrawn_;        ///< that were none
+  std::vector<HistoryEntry> entries_;      ///< in the order of time; equal times by id
+  std::vector<Replacement> replacements_;  ///< that hold, in the order of time; equal times by id
   RetractedTests retracted_;
 };
 

@@ -82,7 +82,7 @@ void PrognosticAssessment::restore(const Message& own_output) {
   if (const auto* estimate = std::get_if<LeakageEstimate>(&own_output)) remember(*estimate);
   if (const auto* life = std::get_if<RemainingLife>(&own_output)) learn_retractions(life->asset_id, life->header);
   if (const auto* life = std::get_if<RemainingLife>(&own_output); life && life->replacement_known) {
-    history_[life->asset_id].add_replacement({life->replaced_ns});
+    history_[life->asset_id].add_replacement(replacement_of(*life));
     learn_replacements(life->asset_id, life->header);
   }
 }
@@ -135,7 +135,8 @@ std::vector<Message> PrognosticAssessment::conclude(const HealthReport& health, 
   const AssetConfig* asset = configuration_.find_asset(leakage.asset_id);
   const UtcTime tested{leakage.header.event_time_ns};
   const bool latest = leakage.header.event_time_known && !history.has_later_than(tested);
-  if (asset && latest && history.last_replacement().value_or(tested) <= tested) {
+  const Replacement* const replaced = history.last_replacement();
+  if (asset && latest && (replaced == nullptr || replaced->time <= tested)) {
     PstRequest request = next_test(*asset, leakage);
     request.header = concluded_from(health.header, "pst_request", kProducer, {leakage.header.message_id});
     outputs.emplace_back(std::move(request));
@@ -172,9 +173,10 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   AssetHistory history = history_.contains(asset->asset_id) ? history_.at(asset->asset_id) : AssetHistory{};
   if (!history.has_estimate(leakage.header.message_id)) history.add(leakage);
   const std::vector<HistoryEntry> tests = history.until(now);
+  const Replacement* const replaced = history.replaced_before(now);
   forecast::ForecastRequest request{.threshold = asset->condition->threshold,
                                     .now = now,
-                                    .installed = history.replaced_before(now),
+                                    .installed = replaced == nullptr ? std::nullopt : std::optional(replaced->time),
                                     .horizons = campaigns(*asset)};
   for (const HistoryEntry& test : tests)
     if (test.eligible) request.history.push_back(test.sample);
@@ -187,9 +189,8 @@ RemainingLife PrognosticAssessment::remaining_life(LeakageEstimate& leakage) con
   mark_unconfirmed(leakage, answer.left_out);
   life.threshold = asset->condition->threshold;
   life.tests_since_replacement = static_cast<std::int32_t>(tests.size());
-  life.replacement_known = request.installed.has_value();
-  life.replaced_ns = request.installed.value_or(UtcTime{}).nanoseconds;
   life.header.source_ids = estimate_ids(tests);
+  if (replaced != nullptr) tell_of(*replaced, life);
   if (!answer.used.empty()) {
     life.condition_known = true;
     life.condition = answer.used.back().condition;

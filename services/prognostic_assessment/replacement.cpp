@@ -13,7 +13,7 @@ namespace sealwatch::prognostic_assessment {
 /// service's journal was lost, as nobody sends a maintenance_event again. So does the answer to it.
 void PrognosticAssessment::learn_replacements(const std::string& asset_id, const Header& header) {
   for (const std::string& source : header.source_ids)
-    if (const auto time = time_of_replacement(source)) history_[asset_id].add_replacement(*time);
+    if (const auto time = time_of_replacement(source)) history_[asset_id].add_replacement({source, *time});
 }
 
 /// Of several replacements the latest counts, whichever was reported last.
@@ -26,8 +26,9 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
   const UtcTime time{event.header.event_time_ns};
   const std::string what = text::in_words(event.kind) + " on " + format_date(time);
   AssetHistory& history = history_[event.asset_id];
-  history.add_replacement(time);
-  const UtcTime last = history.last_replacement().value_or(time);
+  history.add_replacement({event.header.message_id, time});
+  const Replacement latest_replacement = *history.last_replacement();
+  const UtcTime last = latest_replacement.time;
   const AssetConfig* asset = configuration_.find_asset(event.asset_id);
   RemainingLife life;
   UtcTime as_of = last;
@@ -45,11 +46,11 @@ Conclusion PrognosticAssessment::replaced(const MaintenanceEvent& event) {
                                               : "replaced on " + format_date(last) + ": the history starts anew; " +
                                                     what + ", reported after it, changes nothing");
   }
-  if (!std::exchange(life.replacement_known, true)) life.replaced_ns = last.nanoseconds;
   life.asset_id = event.asset_id;
   life.header = concluded_from(event.header, "remaining_life", kProducer, {event.header.message_id});
   life.header.pst_id.clear();
   life.header.event_time_ns = as_of.nanoseconds;
+  tell_of(latest_replacement, life);
   conclusion.outputs.emplace_back(std::move(life));
   if (asset && !tested_since && time == last) {
     PstRequest request = first_test(*asset, time, what);

@@ -85,6 +85,50 @@ TEST_F(Question, HasNoTestAfterAReplacementThatNoneHasFollowed) {
   EXPECT_EQ(history_words(*question), "replaced on 2031-04-01, no test since") << "the latest of all counts";
 }
 
+/// The answer of prognosis to an act.
+RemainingLife answer(const std::string& act) {
+  RemainingLife life;
+  life.asset_id = "A";
+  life.header.message_id = "remaining_life/" + act;
+  life.header.source_ids = {act};
+  return life;
+}
+
+TEST_F(Question, LeavesOutWhatWasRetracted) {
+  LeakageEstimate wrong = estimate("2032-03-10", 0.3);
+  wrong.header.pst_id = "wrong";
+  history_.take(wrong);
+  const std::string act = "retraction/A/test/wrong/2031-03-11T00:00:00Z";
+  RemainingLife of_wrong;
+  of_wrong.header.pst_id = "wrong";
+  history_.take(of_wrong);
+  history_.take(answer(act));
+  const auto question = history_.question(asset_, configuration_);
+  ASSERT_TRUE(question);
+  EXPECT_EQ(question->tests, 3U);
+  EXPECT_EQ(question->request.now, parse_utc("2031-03-10").value());
+
+  history_.take(answer("retraction/A/withdrawn/2031-03-12T00:00:00Z/" + act));
+  EXPECT_EQ(history_.question(asset_, configuration_)->tests, 4U);
+}
+
+TEST_F(Question, IsNoneWhereAllTestsAreRetracted) {
+  history_.take(answer("retraction/A/since/2030-01-01T00:00:00Z/2031-03-11T00:00:00Z"));
+  EXPECT_FALSE(history_.question(asset_, configuration_));
+}
+
+TEST_F(Question, HasAReplacementThatWasTakenBackAndReportedAgain) {
+  RemainingLife life = answer("maintenance_event/A/seal_replaced/2031-03-11T00:00:00Z/2031-01-20T00:00:00Z");
+  life.replacement_known = true;
+  life.replaced_ns = parse_utc("2031-01-20").value().nanoseconds;
+  history_.take(life);
+  history_.take(answer("retraction/A/withdrawn/2031-03-12T00:00:00Z/" + life.header.source_ids.front()));
+  EXPECT_FALSE(history_.question(asset_, configuration_)->request.installed);
+  life.header.source_ids.front() = "maintenance_event/A/seal_replaced/2031-03-13T00:00:00Z/2031-01-20T00:00:00Z";
+  history_.take(life);
+  EXPECT_EQ(history_.question(asset_, configuration_)->request.installed, UtcTime{life.replaced_ns});
+}
+
 Advisory advice(const std::string& day, const std::string& recommendation) {
   Advisory one;
   one.asset_id = "A";

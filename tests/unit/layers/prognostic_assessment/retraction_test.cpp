@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sealwatch/message/replacement_id.hpp"
 #include "services/prognostic_assessment/prognostic_assessment.hpp"
 #include "tests/unit/layers/prognostic_assessment/fixtures.hpp"
 #include "tests/unit/layers/prognostic_assessment/layer_contract.hpp"
@@ -11,6 +12,7 @@ namespace sealwatch::prognostic_assessment {
 namespace {
 
 using namespace sealwatch::test;
+using testing::Contains;
 using testing::HasSubstr;
 
 MaintenanceEvent event(std::string_view kind, const std::string& what, double month) {
@@ -108,6 +110,32 @@ TEST_F(RetractionTest, AReplacementThatWasNoneIsUndone) {
   const auto next = inputs_of(straight_life(41, 42));
   inputs.insert(inputs.end(), next.begin(), next.end());
   expect_same_forecast(last_of(inputs), last_of(inputs_of(straight_life(1, 42))));
+  const auto undisturbed = run(inputs);
+  for (std::size_t death = inputs.size() - 8; death < inputs.size(); ++death)
+    ASSERT_EQ(run(inputs, death), undisturbed) << death;
+}
+
+/// What was taken back is a report, not a moment: another report of the same moment counts, also after a restart.
+TEST_F(RetractionTest, AReplacementThatWasTakenBackCanBeReportedAgain) {
+  auto inputs = inputs_of(straight_life(1, 40));
+  const auto report = [](double reported_month) {
+    MaintenanceEvent said = event("seal_replaced", "", 30.5);
+    said.header.message_id =
+        replacement_id(kAsset, said.kind, add_months(kInstalled, reported_month), {said.header.event_time_ns});
+    return said;
+  };
+  const MaintenanceEvent first = report(40.1), second = report(40.3);
+  inputs.emplace_back(first);
+  EXPECT_THAT(last_of(inputs).header.source_ids, Contains(first.header.message_id));
+  inputs.emplace_back(event(kRetractionWithdrawn, first.header.message_id, 40.2));
+  EXPECT_FALSE(last_of(inputs).replacement_known);
+  inputs.emplace_back(second);
+  EXPECT_THAT(last_of(inputs).header.source_ids, Contains(second.header.message_id));
+  EXPECT_EQ(last_of(inputs).tests_since_replacement, 10);
+  const auto next = inputs_of(straight_life(41, 42));
+  inputs.insert(inputs.end(), next.begin(), next.end());
+  EXPECT_EQ(last_of(inputs).tests_since_replacement, 12);
+  EXPECT_THAT(last_of(inputs).header.source_ids, Contains(second.header.message_id));
   const auto undisturbed = run(inputs);
   for (std::size_t death = inputs.size() - 8; death < inputs.size(); ++death)
     ASSERT_EQ(run(inputs, death), undisturbed) << death;

@@ -1,0 +1,19 @@
+// The message id of a replacement, which ends in its time (time_of_replacement in retraction.hpp). It tells kind and
+// time of the report too: one that was taken back can be reported again, as what no longer holds is a report, by its
+// id, and no moment.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "sealwatch/core/time.hpp"
+
+namespace sealwatch {
+
+[[nodiscard]] inline std::string replacement_id(const std::string& asset_id, std::string_view kind, UtcTime reported,
+                                                UtcTime replaced) {
+  return "maintenance_event/" + asset_id + "/" + std::string(kind) + "/" + format_utc(reported) + "/" +
+         format_utc(replaced);
+}
+
+}  // namespace sealwatch

@@ -39,9 +39,11 @@ struct Journal::Database {
   Survives synchronous = Survives::power_cuts;                  ///< as SQLite is set now
   std::set<std::pair<std::string, std::string>> damaged_tests;  ///< asset, PST id
   long long checked = 0;                                        ///< outputs up to here are as they were written
-  std::optional<JournalLock> lock;                              ///< SQLite's
-  bool has_synced = false;  ///< the first batch brings the log's entry in its directory to the disk as well
-  std::string file;         ///< SQLite's
+  long long outputs_looked_up = 0;                              ///< up to here the indexes find them
+  long long inputs_looked_up = 0;
+  std::optional<JournalLock> lock;  ///< SQLite's
+  bool has_synced = false;          ///< the first batch brings the log's entry in its directory to the disk as well
+  std::string file;                 ///< SQLite's
   std::optional<JournalStatements> statements;  ///< after `sql`, as they must end before it
 
   /// Connects, sets SQLite up, creates or checks the schema. Throws soci::soci_error, std::runtime_error or Error.
@@ -94,6 +96,10 @@ struct Journal::Database {
   void mend_inputs();
   void mend_outputs(bool all);
   void know_damaged_tests();
+  void make_indexes_anew();
+  // journal_check.cpp
+  /// Looks whether the indexes find the next rows; false once all were looked at. Throws Error where one does not.
+  bool check_indexes();
   /// Throws Error where an output is not as it was written, and has the next opening look at all of them.
   void check(const MessageRow& output);
   [[noreturn]] void must_be_mended(long long ordinal, const std::string& whose);

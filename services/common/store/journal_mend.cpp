@@ -2,7 +2,7 @@
 // in a long history, when they are read or looked at later, which ends the service: it then opens the journal again. They
 // are never used, and wherever possible made again:
 //
-//   index        of outputs: made anew from their rows, which have checksums
+//   index        made anew from its rows, which have checksums
 //   position     from the numbers of the inputs, which are kept for ever
 //   output       its place stays empty; the inputs of its test are forgotten, come again from the neighbours' journals,
 //                and what is concluded from them anew fills the place
@@ -122,15 +122,19 @@ void tell(soci::session& sql, const DamagedRow& row, const std::string& reason) 
 
 void Journal::Database::mend() {
   soci::transaction transaction(sql);
+  const bool all = !meta(kToBeMended).empty();
+  if (all) make_indexes_anew();
   mend_positions();
   mend_quarantine();
   mend_inputs();
-  const bool all = !meta(kToBeMended).empty();
-  if (all) sql << (sql.get_backend_name() == "sqlite3" ? "REINDEX outputs_of_asset" : "REINDEX INDEX outputs_of_asset");
   mend_outputs(all);
   sql << std::string("DELETE FROM meta WHERE name = '") + kToBeMended + "'";
   transaction.commit();
   know_damaged_tests();
+}
+
+void Journal::Database::make_indexes_anew() {
+  for (const std::string table : {"outputs", "inputs"}) sql << (is_file() ? "REINDEX " : "REINDEX TABLE ") + table;
 }
 
 void Journal::Database::mend_positions() {

@@ -1,5 +1,5 @@
 // What a journal tells of one asset's past, which is read when somebody needs it: a start does not wait for the history
-// of all. What is read is checked, and the rest is looked at little by little.
+// of all. What is read is checked.
 #include <map>
 
 #include "sealwatch/message/blank.hpp"
@@ -19,9 +19,6 @@ struct Entry {
   std::string pst_id;
   std::string topic;
 };
-
-/// Outputs that are looked at at once: some of them hold samples.
-constexpr int kFew = 4;
 
 std::vector<Entry> entries_of(soci::session& sql, const std::string& asset_id) {
   std::vector<Entry> entries;
@@ -152,36 +149,6 @@ Result<std::vector<std::string>> Journal::assets() {
     }
     return found;
   });
-}
-
-Result<bool> Journal::check_some() {
-  return database_->guard("looking for damage", [&] {
-    const std::string query = std::string(kOutput) + "ordinal > :after ORDER BY ordinal LIMIT " + std::to_string(kFew);
-    const std::vector<MessageRow> rows = rows_of(database_->sql, query, database_->checked);
-    for (const MessageRow& row : rows) {
-      database_->check(row);
-      database_->checked = row.order;
-    }
-    return !rows.empty();
-  });
-}
-
-void Journal::Database::check(const MessageRow& output) {
-  const bool is_known = !output.checksum.empty() && output.checksum != kDamaged && output.checksum != kExpiredRow;
-  if (!is_known) return;
-  if (output.checksum == checksum_of_output(output.order, output.topic, output.sequence, output.message_id,
-                                            output.asset_id, output.pst_id, output.payload))
-    return;
-  must_be_mended(output.order, output.message_id);
-}
-
-void Journal::Database::must_be_mended(long long ordinal, const std::string& whose) {
-  set_meta(kToBeMended, "1");
-  throw Error{.file = name,
-              .place = "output " + std::to_string(ordinal),
-              .value = whose,
-              .rule = "is not as it was written: a disk or a memory turned a bit",
-              .advice = "the service starts again, and makes it anew from the neighbours' messages"};
 }
 
 }  // namespace sealwatch

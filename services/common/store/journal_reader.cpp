@@ -5,10 +5,11 @@
 #include <filesystem>
 #include <utility>
 
-#include "services/common/message/json.hpp"
 #include "services/common/store/connection_string.hpp"
 #include "services/common/store/database.hpp"
 #include "services/common/store/journal.hpp"
+#include "services/common/store/row_checksum.hpp"
+#include "services/common/store/rows.hpp"
 
 namespace sealwatch {
 namespace {
@@ -33,7 +34,8 @@ std::string damage_in(std::string_view complaint) {
 struct JournalReader::Session {
   std::string place;
   std::string writer_id;
-  std::string whole;  ///< condition: rows that are as they were written
+  std::string whole;            ///< condition: rows that were not found damaged
+  std::string checksum = "''";  ///< column
   soci::session sql;
 
   /// Runs `work`, turning the library's exceptions into an Error that names the journal.
@@ -59,15 +61,32 @@ struct JournalReader::Session {
     }
   }
 
-  [[nodiscard]] Message message_of(const std::string& topic, const std::string& payload) const {
-    const auto known = value_of<Topic>(topic);
-    Result<Message> message =
-        known ? message_from_json(*known, payload)
-              : fail(Error{.file = {}, .place = {}, .value = topic, .rule = "is not a known topic", .advice = {}});
-    if (message) return std::move(*message);
-    Error error = message.error();
-    error.file = place;
-    throw error;
+  /// Outputs of a topic and an asset, or of a message id, in the order of conclusion. Throws Error where one is not as
+  /// it was written.
+  [[nodiscard]] std::vector<Message> outputs(const std::string& condition, const std::string& first,
+                                             const std::string& second) {
+    MessageRow row;
+    soci::statement query =
+        (sql.prepare << "SELECT ordinal, topic, payload, sequence, message_id, asset_id, pst_id, " + checksum +
+                            " FROM outputs WHERE " + condition + whole + " ORDER BY ordinal",
+         use(first, "first"), use(second, "second"), into(row.order), into(row.topic), into(row.payload),
+         into(row.sequence), into(row.message_id), into(row.asset_id), into(row.pst_id), into(row.checksum));
+    std::vector<Message> messages;
+    query.execute();
+    while (query.fetch()) {
+      check(row);
+      messages.push_back(message_of(row, place));
+    }
+    return messages;
+  }
+
+  void check(const MessageRow& row) const {
+    if (is_as_written(row)) return;
+    throw Error{.file = place,
+                .place = "output " + std::to_string(row.order),
+                .value = row.message_id,
+                .rule = "is not as it was written: a disk or a memory turned a bit",
+                .advice = "start its service, which makes it anew from the neighbours' messages, or restore a backup"};
   }
 
   [[nodiscard]] std::string meta(const std::string& name) {
@@ -87,7 +106,9 @@ struct JournalReader::Session {
     const std::string owner = meta("service");
     if (owner != service) throw Error{place, "table meta, service", owner, "must be '" + service + "'", {}};
     writer_id = meta("writer_id");
-    if (version[0] >= '2') whole = " AND coalesce(checksum, '') <> 'damaged'";
+    if (version[0] < '2') return;
+    checksum = "coalesce(checksum, '')";
+    whole = " AND " + checksum + " <> 'damaged'";
   }
 };
 
@@ -123,28 +144,14 @@ const std::string& JournalReader::writer_id() const { return session_->writer_id
 
 Result<std::optional<Message>> JournalReader::output(const std::string& message_id) {
   return session_->guard([&]() -> std::optional<Message> {
-    std::string topic;
-    std::string payload;
-    session_->sql << "SELECT topic, payload FROM outputs WHERE message_id = :id" + session_->whole,
-        use(message_id, "id"), into(topic), into(payload);
-    if (!session_->sql.got_data()) return std::nullopt;
-    return session_->message_of(topic, payload);
+    std::vector<Message> found = session_->outputs("message_id = :first AND :second = ''", message_id, "");
+    return found.empty() ? std::nullopt : std::optional(std::move(found.front()));
   });
 }
 
 Result<std::vector<Message>> JournalReader::outputs(Topic topic, const std::string& asset_id) {
-  return session_->guard([&] {
-    const std::string name = topic_name(topic);
-    std::string payload;
-    soci::statement query = (session_->sql.prepare << "SELECT payload FROM outputs WHERE topic = :topic AND asset_id ="
-                                                      " :asset" +
-                                                          session_->whole + " ORDER BY ordinal",
-                             use(name, "topic"), use(asset_id, "asset"), into(payload));
-    std::vector<Message> messages;
-    query.execute();
-    while (query.fetch()) messages.push_back(session_->message_of(name, payload));
-    return messages;
-  });
+  return session_->guard(
+      [&] { return session_->outputs("topic = :first AND asset_id = :second", topic_name(topic), asset_id); });
 }
 
 Result<std::vector<std::string>> JournalReader::output_ids(Topic topic, const std::string& asset_id) {

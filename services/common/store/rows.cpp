@@ -22,6 +22,13 @@ Message what_is_left(Topic topic, const MessageRow& row) {
 
 }  // namespace
 
+bool is_as_written(const MessageRow& output) {
+  const bool is_known = !output.checksum.empty() && output.checksum != kDamaged && output.checksum != kExpiredRow;
+  return !is_known ||
+         output.checksum == checksum_of_output(output.order, output.topic, output.sequence, output.message_id,
+                                               output.asset_id, output.pst_id, output.payload);
+}
+
 Message message_of(const MessageRow& row, const std::string& journal) {
   const auto damaged = [&](const std::string& what) {
     return Error{.file = journal,

@@ -30,6 +30,9 @@ inline constexpr const char* kOutput =
 /// Rows of a query that begins so, or with the like of inputs, with :after bound.
 [[nodiscard]] std::vector<MessageRow> rows_of(soci::session& sql, const std::string& query, long long after);
 
+/// Whether an output is as it was written, as far as its checksum tells.
+[[nodiscard]] bool is_as_written(const MessageRow& output);
+
 /// The message of a row; throws Error where it cannot be read.
 [[nodiscard]] Message message_of(const MessageRow& row, const std::string& journal);
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <soci/soci.h>
 
 #include <filesystem>
 #include <fstream>
@@ -78,6 +79,25 @@ TEST_F(JournalReaderTest, MakesNoJournalAndRefusesAnothers) {
   const Result<JournalReader> another = JournalReader::open(connection(), "health_assessment");
   ASSERT_FALSE(another);
   EXPECT_THAT(another.error().describe(), HasSubstr("must be 'health_assessment'"));
+}
+
+/// A wrong figure must not be shown as what the service concluded.
+TEST_F(JournalReaderTest, ShowsNothingThatIsNotAsItWasWritten) {
+  {
+    Result<Journal> journal = Journal::open(connection(), "state_detection");
+    ASSERT_TRUE(journal);
+    conclude(*journal, {report("a/1", "A"), report("b/1", "B")});
+  }
+  soci::session(connection())
+      << R"(UPDATE outputs SET payload = replace(payload, '"overdue_days":', '"overdue_days":1')"
+         R"() WHERE message_id = 'a/1')";
+  Result<JournalReader> reader = JournalReader::open(connection(), "state_detection");
+  ASSERT_TRUE(reader);
+  const auto changed = reader->output("a/1");
+  ASSERT_FALSE(changed);
+  EXPECT_THAT(changed.error().describe(), HasSubstr("output 1: 'a/1': is not as it was written"));
+  EXPECT_FALSE(reader->outputs(Topic::state_report, "A"));
+  EXPECT_TRUE(reader->outputs(Topic::state_report, "B")) << "the rest is there";
 }
 
 TEST_F(JournalReaderTest, SaysThatAFileIsDamagedAndWhatToDo) {

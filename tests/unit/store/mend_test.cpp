@@ -182,6 +182,49 @@ TEST_F(Mend, AnIndexThatSaysOtherwiseThanItsRowsIsMadeAnew) {
   EXPECT_THAT(journal.quarantine().value(), SizeIs(1)) << "no row was damaged";
 }
 
+/// Rows that an index leaves out are found by looking, before anything is concluded twice or not at all.
+TEST_F(Mend, AnIndexThatLeavesARowOutIsMadeAnew) {
+  const auto left_out = [this](const std::string& index, const std::string& table, const std::string& number,
+                               const std::string& row) {
+    const auto statement = [this](const std::string& text) {
+      soci::session sql(place_.connection());
+      sql << "PRAGMA writable_schema = ON";
+      sql << text;
+    };
+    const auto move = [&](const std::string& from, const std::string& to) {
+      statement("UPDATE " + table + " SET " + number + " = " + to + " WHERE " + number + " = " + from);
+    };
+    // The index follows the row away, and not back.
+    move(row, "-1");
+    statement("CREATE TABLE kept AS SELECT * FROM sqlite_master WHERE name = '" + index + "'");
+    statement("DELETE FROM sqlite_master WHERE name = '" + index + "'");
+    move("-1", row);
+    statement("INSERT INTO sqlite_master SELECT * FROM kept");
+    statement("DROP TABLE kept");
+  };
+  const auto look = [](Journal& journal) -> Status {
+    for (int looks = 0; looks < 30; ++looks) {
+      const auto more = journal.check_some();
+      if (!more) return fail(more.error());
+      if (!*more) break;
+    }
+    return Status();
+  };
+  for (const auto& [index, table, number, row] : {std::tuple{"outputs_of_asset", "outputs", "ordinal", "1"},
+                                                  std::tuple{"inputs_open", "inputs", "receipt", "3"}}) {
+    left_out(index, table, number, row);
+    {
+      Journal journal = open();
+      const Status looked = look(journal);
+      ASSERT_FALSE(looked) << index;
+      EXPECT_THAT(looked.error().describe(), HasSubstr("does not find it"));
+    }
+    Journal journal = open();
+    EXPECT_TRUE(look(journal)) << index;
+    EXPECT_THAT(journal.quarantine().value(), SizeIs(1)) << "no row was damaged";
+  }
+}
+
 TEST_F(Mend, NorToBeSentAgain) {
   expect_not_read([](Journal& journal) {
     const auto again = journal.outputs(Topic::health_report, 1, 9, 9);

@@ -286,6 +286,7 @@ Status LayerRunner::keep(Conclusion conclusion) {
     if (!kept) return fail(kept.error());
     if (!*kept) continue;
     latest_.concluded(**kept, header_of(**kept).stream_sequence);
+    note_remembered(asset_of(**kept));
     forget_damage(header_of(**kept).message_id);
     note_alarms_of(**kept);
     note_advice_of(**kept);
@@ -312,13 +313,19 @@ Status LayerRunner::let_time_pass() {
   look_for_trouble();
   if (Status looked = let_time_pass_at_desk(); !looked) return looked;
   const auto at_rest = [this](const std::string& asset_id) {
-    return forgotten_.contains(asset_id) ? nullptr : lanes_.at_rest(asset_id);
+    return forgotten_.contains(asset_id) || asleep_.contains(asset_id) ? nullptr : lanes_.at_rest(asset_id);
+  };
+  Status woken;
+  const auto woken_at_rest = [&](const std::string& asset_id) -> const Layer* {
+    if (woken && asleep_.contains(asset_id)) woken = recall(asset_id);
+    return woken ? at_rest(asset_id) : nullptr;
   };
   if (options_.local_inputs)
-    for (Message& message : options_.local_inputs(at_rest)) {
+    for (Message& message : options_.local_inputs(woken_at_rest)) {
       ready_.push_back(std::move(message));
       took_local_ = true;
     }
+  if (!woken) return woken;
   const auto now = steady_clock::now();
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};
   for (const std::string& asset_id : lanes_.assets()) {

@@ -56,6 +56,11 @@ struct RunnerOptions {
   /// A start gives assets their past back, and looks for damage, for so long: all of a short history. The rest follows
   /// while the service runs, an asset's past before anything is taken of it.
   std::chrono::milliseconds recalls_at_start{1000};
+  /// Outputs of which layers keep the past: beyond it, the assets used longest ago forget theirs, which is recalled when
+  /// it is needed again. Of twenty years of monthly tests an asset has 250 to 750.
+  std::size_t most_recalled = 50'000;
+  /// After so long an asset is recalled all the same: time passes for it too, and its tests become overdue.
+  std::chrono::milliseconds longest_sleep{3'600'000};
   /// The layer of an asset, where nothing is under way in it.
   using LayerAtRest = std::function<const Layer*(const std::string& asset_id)>;
   /// Nor while the bus is not emptied, but for no longer than this: what then still waits is a flood's, as a bus gives
@@ -146,6 +151,13 @@ class LayerRunner {
   /// Gives the asset's layer its past back, where it has not got it yet.
   [[nodiscard]] Status recall(const std::string& asset_id);
   [[nodiscard]] Status recall_inputs(const std::string& asset_id);
+  /// Gives a layer its own outputs, and nothing else, back.
+  [[nodiscard]] Status restore_layer(const std::string& asset_id);
+  /// Counts an output that the asset's layer remembers.
+  void note_remembered(const std::string& asset_id);
+  /// Lets assets forget their past where all of them together remember too much.
+  [[nodiscard]] Status forget_some();
+  [[nodiscard]] Status wake_longest_asleep();
   [[nodiscard]] Status look_back();
   [[nodiscard]] Status look_back(std::chrono::milliseconds at_most);
   [[nodiscard]] Status look_back_in_passing(bool is_idle);
@@ -246,9 +258,18 @@ class LayerRunner {
   LatestOutputs latest_;
   std::set<std::string> forgotten_;  ///< assets whose past was not recalled yet
   std::deque<std::string> to_recall_;
-  std::map<std::string, std::vector<PastAct>> past_acts_;   ///< of forgotten assets
-  bool all_checked_ = false;                                ///< of the journal's outputs
-  std::chrono::steady_clock::time_point look_back_next_{};  ///< under load, not before
+  struct Remembered {
+    std::size_t outputs = 0;
+    std::uint64_t used = 0;  ///< when, among all uses
+  };
+  std::map<std::string, Remembered> remembered_;  ///< assets whose past their layers have, once it was recalled
+  std::size_t outputs_remembered_ = 0;            ///< outputs, of all of them together
+  std::uint64_t uses_ = 0;
+  std::map<std::string, std::chrono::steady_clock::time_point> asleep_;  ///< recalled once, and forgotten since
+  std::deque<std::string> fell_asleep_;                                  ///< in the order in which they did
+  std::map<std::string, std::vector<PastAct>> past_acts_;                ///< of forgotten assets
+  bool all_checked_ = false;                                             ///< of the journal's outputs
+  std::chrono::steady_clock::time_point look_back_next_{};               ///< under load, not before
   ResendQueue resends_;
   Admission admission_;
   bool took_local_ = false;  ///< of the running batch: inputs that came from no bus

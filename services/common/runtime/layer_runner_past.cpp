@@ -42,6 +42,8 @@ Status LayerRunner::restore_past() {
 }
 
 Status LayerRunner::recall(const std::string& asset_id) {
+  remembered_[asset_id].used = ++uses_;
+  if (asleep_.erase(asset_id) > 0) return restore_layer(asset_id);
   if (forgotten_.erase(asset_id) == 0) return {};
   std::vector<PastAct> acts;
   if (auto of_asset = past_acts_.extract(asset_id)) acts = std::move(of_asset.mapped());
@@ -52,6 +54,7 @@ Status LayerRunner::recall(const std::string& asset_id) {
       [&](const Message& output, const Journal::Place& place) {
         for (; act != acts.end() && act->at < place.concluded; ++act) admission_.note_act(asset_id, act->id);
         lanes_.restore(output);
+        note_remembered(asset_id);
         note_alarms_of(output);
         if (const auto said = options_.advice_of_output ? options_.advice_of_output(output) : std::nullopt)
           advice = *said;
@@ -65,6 +68,59 @@ Status LayerRunner::recall(const std::string& asset_id) {
   for (; act != acts.end(); ++act) admission_.note_act(asset_id, act->id);
   if (desk_ && advice) desk_->stand(*advice, clock_.now());
   return recall_inputs(asset_id);
+}
+
+Status LayerRunner::restore_layer(const std::string& asset_id) {
+  return journal_.for_each_output_of(
+      asset_id,
+      [&](const Message& output, const Journal::Place&) {
+        lanes_.restore(output);
+        note_remembered(asset_id);
+        return Status();
+      },
+      [this](const Message& last_of_test) { return kind_->tells_all(last_of_test); });
+}
+
+void LayerRunner::note_remembered(const std::string& asset_id) {
+  ++remembered_[asset_id].outputs;
+  ++outputs_remembered_;
+}
+
+/// What waits for anything, be it for an answer, keeps its past: its time passes, and it is told of soon.
+Status LayerRunner::forget_some() {
+  if (outputs_remembered_ <= options_.most_recalled) return {};
+  std::vector<std::pair<std::uint64_t, std::string>> by_use;
+  for (const auto& [asset_id, past] : remembered_)
+    if (past.outputs > 0) by_use.emplace_back(past.used, asset_id);
+  std::ranges::sort(by_use);
+  // Some more than has to be: the next look is not the next message's.
+  const std::size_t enough = options_.most_recalled - options_.most_recalled / 10;
+  for (const auto& [used, asset_id] : by_use) {
+    if (outputs_remembered_ <= enough) break;
+    if (lanes_.at_rest(asset_id) == nullptr) continue;
+    const auto open = journal_.open_inputs_of(asset_id);
+    if (!open) return fail(open.error());
+    if (!open->empty()) continue;
+    lanes_.begin_anew(asset_id);
+    outputs_remembered_ -= remembered_.at(asset_id).outputs;
+    remembered_.at(asset_id).outputs = 0;
+    asleep_[asset_id] = steady_clock::now();
+    fell_asleep_.push_back(asset_id);
+    holds_memory_ = true;
+  }
+  return {};
+}
+
+Status LayerRunner::wake_longest_asleep() {
+  while (!fell_asleep_.empty()) {
+    const std::string asset_id = fell_asleep_.front();
+    const auto since = asleep_.find(asset_id);
+    const bool sleeps = since != asleep_.end();
+    if (sleeps && steady_clock::now() < since->second + options_.longest_sleep) return {};
+    fell_asleep_.pop_front();
+    if (sleeps) return recall(asset_id);
+  }
+  return {};
 }
 
 Status LayerRunner::recall_inputs(const std::string& asset_id) {
@@ -103,11 +159,11 @@ Status LayerRunner::look_back(std::chrono::milliseconds at_most) {
 
 /// While nothing comes, one asset after another; else now and then.
 Status LayerRunner::look_back_in_passing(bool is_idle) {
-  if (all_checked_) return {};
+  if (Status forgot = forget_some(); !forgot) return forgot;
   const bool recalls = !to_recall_.empty();
   const auto begin = steady_clock::now();
   if (begin < look_back_next_ && !(is_idle && recalls)) return {};
-  const Status looked = recalls ? look_back() : look_back(kInPassing);
+  const Status looked = all_checked_ ? wake_longest_asleep() : recalls ? look_back() : look_back(kInPassing);
   const auto end = steady_clock::now();
   look_back_next_ = end + std::max<steady_clock::duration>(kPause, kShare * (end - begin));
   return looked;

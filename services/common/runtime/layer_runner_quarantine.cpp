@@ -1,6 +1,7 @@
 // The runner's part in setting aside messages on which a layer fails (asset_lanes.hpp says when): in the journal, in the
 // heartbeat's alarms, and back again when somebody asked for it.
 #include <algorithm>
+#include <utility>
 
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
@@ -76,14 +77,8 @@ Status LayerRunner::set_aside(const LaneResult& failure) {
 Status LayerRunner::begin_anew(const std::string& asset_id) {
   if (Status recalled = recall(asset_id); !recalled) return recalled;
   lanes_.begin_anew(asset_id);
-  Status restored = journal_.for_each_output_of(
-      asset_id,
-      [this](const Message& output, const Journal::Place&) {
-        lanes_.restore(output);
-        return Status();
-      },
-      [this](const Message& last_of_test) { return kind_->tells_all(last_of_test); });
-  if (!restored) return restored;
+  outputs_remembered_ -= std::exchange(remembered_[asset_id].outputs, 0);
+  if (Status restored = restore_layer(asset_id); !restored) return restored;
   const auto open = journal_.open_inputs_of(asset_id);
   if (!open) return fail(open.error());
   for (const std::string& message_id : *open) lanes_.add(asset_id, message_id, nullptr);

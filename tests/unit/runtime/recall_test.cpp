@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "services/data_acquisition/data_acquisition.hpp"
 #include "tests/unit/runtime/harness.hpp"
@@ -32,6 +33,13 @@ class RecordingLayer final : public CuttingLayer {
 RunnerOptions lazy() {
   RunnerOptions options = fast_options();
   options.recalls_at_start = milliseconds(0);
+  return options;
+}
+
+/// Remembers hardly anything.
+RunnerOptions forgetful() {
+  RunnerOptions options = lazy();
+  options.most_recalled = 10;
   return options;
 }
 
@@ -81,6 +89,40 @@ TEST_F(Recall, AStartReadsNoHistoryAndAnAssetsComesBeforeItsNextMessage) {
   EXPECT_THAT(restored_, SizeIs(3 * 8)) << "each once";
 }
 
+/// Twenty years of many assets take no more memory than a year of one: those that are asleep are recalled when something
+/// is taken of them, or when it is time to look after them.
+TEST_F(Recall, AssetsThatWereNotUsedForLongestForgetTheirPast) {
+  Feeder feeder(network_, blocks_of_tests(4, {"A", "B", "C"}));
+  {
+    const auto process = start(fast_options());
+    while (process->outputs().size() < 2 * 4 * 3) feed(*process, feeder, 3);
+  }
+  auto process = start(forgetful());
+  ASSERT_TRUE(step_until([&] { return restored_.size() == 3 * 8; }, [&] { process->step(); }));
+  for (int k = 0; k < 5; ++k) process->step();
+  EXPECT_THAT(restored_, SizeIs(3 * 8)) << "at rest, nobody is woken";
+
+  restored_.clear();
+  InMemoryBus other(network_);
+  RawSamples news = blocks_of_tests(1, {"A"}).at(1);
+  news.recording_id = "A test 77";
+  news.boundary = BlockBoundary::end;
+  news.header = header("raw_samples/A test 77/0", "");
+  ASSERT_TRUE(other.publish(Message(news)));
+  process->step();
+  EXPECT_EQ(restored_, std::vector<std::string>(8, "A")) << "forgotten as the first of three";
+
+  restored_.clear();
+  process.reset();
+  RunnerOptions options = forgetful();
+  options.longest_sleep = milliseconds(0);
+  process = start(options);
+  const auto all_twice = [&] {
+    return restored_.size() > 50 && std::set<std::string>(restored_.begin() + 25, restored_.end()).size() == 3;
+  };
+  EXPECT_TRUE(step_until(all_twice, [&] { process->step(); })) << "time passes for all of them, in turn";
+}
+
 TEST_F(Recall, TheHeartbeatSaysWhenAllIsThere) {
   Feeder feeder(network_, blocks_of_tests(2, {"A", "B"}));
   {
@@ -114,7 +156,7 @@ std::map<std::string, std::vector<Message>> by_asset(Process& process) {
 template <class MakeLayer>
 void expect_the_same_however_killed(const MakeLayer& make_layer, const std::vector<RawSamples>& blocks) {
   int steps = 0;
-  const auto run = [&](int fatal_step, bool is_lazy) {
+  const auto run = [&](int fatal_step, const RunnerOptions& options) {
     const Place place;
     auto network = std::make_shared<InMemoryNetwork>();
     Feeder feeder(network, blocks);
@@ -126,7 +168,7 @@ void expect_the_same_however_killed(const MakeLayer& make_layer, const std::vect
       try {
         if (!process) {
           process = std::make_unique<Process>(network, make_layer, place.connection(),
-                                              Fate(lives++ == 0 ? fatal_step : -1), is_lazy ? lazy() : fast_options());
+                                              Fate(lives++ == 0 ? fatal_step : -1), options);
           process->start();
         }
         process->step();
@@ -138,18 +180,17 @@ void expect_the_same_however_killed(const MakeLayer& make_layer, const std::vect
     const auto done = [&] { return process && feeder.all_received() && process->journal().open_inputs() == 0; };
     EXPECT_TRUE(step_until(done, step)) << "killed at step " << fatal_step;
     process.reset();  // and once more from the start
-    process =
-        std::make_unique<Process>(network, make_layer, place.connection(), Fate(), is_lazy ? lazy() : fast_options());
+    process = std::make_unique<Process>(network, make_layer, place.connection(), Fate(), options);
     process->start();
     for (int k = 0; k < 3; ++k) process->step();
     return by_asset(*process);
   };
-  const auto undisturbed = run(-1, false);
+  const auto undisturbed = run(-1, fast_options());
   const int last = steps;
   ASSERT_GT(last, 20);
-  EXPECT_EQ(run(-1, true), undisturbed);
+  EXPECT_EQ(run(-1, lazy()), undisturbed);
   for (int fatal_step = 1; fatal_step <= last; ++fatal_step)
-    ASSERT_EQ(run(fatal_step, true), undisturbed) << "killed at step " << fatal_step;
+    ASSERT_EQ(run(fatal_step, forgetful()), undisturbed) << "killed at step " << fatal_step;
 }
 
 TEST(RecallAfterKills, OfALayerThatIsGivenAllComesToTheSame) {

@@ -3,21 +3,32 @@
 
 #include <CLI/App.hpp>
 #include <string>
+#include <vector>
 
 namespace sealwatch::cli {
 
 namespace detail {
 
+/// Its subcommands, and the groups of options, which have no name.
+inline std::vector<const CLI::App*> parts_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+inline std::string words_of(const CLI::App& app) {
+  std::string words;
+  for (const CLI::App* part : parts_of(app))
+    words += part->get_name().empty() ? words_of(*part) : part->get_name() + " ";
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames())
+      if (name != "help" || !app.get_name().empty()) words += "--" + name + " ";
+  return words;
+}
+
 /// "case" arm of one (sub)command: its subcommands and options.
 inline void add_words(const CLI::App& app, const std::string& path, std::string& arms) {
-  std::string words;
-  for (const CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
-    words += subcommand->get_name() + " ";
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) words += "--" + name + " ";
-  arms += "    \"" + path + "\") words=\"" + words + "\" ;;\n";
-  for (const CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
-    add_words(*subcommand, path + " " + subcommand->get_name(), arms);
+  arms += "    \"" + path + "\") words=\"" + words_of(app) + "\" ;;\n";
+  for (const CLI::App* part : parts_of(app))
+    if (!part->get_name().empty()) add_words(*part, path + " " + part->get_name(), arms);
 }
 
 }  // namespace detail

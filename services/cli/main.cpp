@@ -4,10 +4,11 @@
 
 #include "services/cli/command_line.hpp"
 #include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
 
 int main(int argc, char** argv) {
   try {
-    return sealwatch::cli::CommandLine().run(argc, argv);
+    return sealwatch::cli::with_output_written(sealwatch::cli::CommandLine().run(argc, argv));
   } catch (const std::exception& error) {
     std::cerr << "sealwatch: internal failure: " << error.what() << "\n";
     return sealwatch::cli::kInternalFailure;

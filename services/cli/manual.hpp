@@ -19,17 +19,24 @@ inline std::string roff(const std::string& text) {
   return result;
 }
 
-inline void describe(const CLI::App& app, const std::string& path, std::string& page) {
-  page += ".SS \"" + path + "\"\n" + roff(app.get_description()) + "\n";
+/// Its own, and those in groups, which have no name.
+inline void describe_options(const CLI::App& app, std::string& page) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_name() == "--help") continue;
     page += ".TP\n\\fB" + roff(option->get_name(false, true)) + "\\fR\n" + roff(option->get_description());
     if (!option->get_default_str().empty()) page += " (default: " + roff(option->get_default_str()) + ")";
     page += "\n";
   }
+  for (const CLI::App* part : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (part->get_name().empty()) describe_options(*part, page);
+}
+
+inline void describe(const CLI::App& app, const std::string& path, std::string& page) {
+  page += ".SS \"" + path + "\"\n" + roff(app.get_description()) + "\n";
+  describe_options(app, page);
   if (!app.get_footer().empty()) page += ".PP\n.nf\n" + roff(app.get_footer()) + "\n.fi\n";
   for (const CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
-    describe(*subcommand, path + " " + subcommand->get_name(), page);
+    if (!subcommand->get_name().empty()) describe(*subcommand, path + " " + subcommand->get_name(), page);
 }
 
 }  // namespace detail

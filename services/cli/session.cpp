@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <map>
 #include <random>
 #include <utility>
@@ -40,6 +43,22 @@ std::optional<Configuration> load_or_explain(const std::string& path) {
   if (configuration) return std::move(*configuration);
   for (const Error& error : configuration.error()) complain(error);
   return std::nullopt;
+}
+
+int with_output_written(int status) {
+  errno = 0;
+  std::cout.flush();
+  const bool is_flushed = std::fflush(stdout) == 0;
+  const int why = errno;
+  if (is_flushed && std::ferror(stdout) == 0 && std::cout.good()) return status;
+  complain(Error{
+      .file = "standard output",
+      .place = {},
+      .value = {},
+      .rule =
+          std::string("could not be written").append(why == 0 ? "" : ": ").append(why == 0 ? "" : std::strerror(why)),
+      .advice = "what was printed is not all: make room, or print elsewhere, and run it again"});
+  return status == kInternalFailure ? status : kBadInput;
 }
 
 std::optional<AssetConfig> load_asset_or_explain(const std::string& path, const std::string& map_file) {

@@ -37,6 +37,10 @@ struct Session {
 /// "sealwatch: " and the error, on standard error.
 void complain(const Error& error);
 
+/// The exit status of a command whose exit status would be that; bad where not all of its standard output was taken, as
+/// of a full disk.
+[[nodiscard]] int with_output_written(int status);
+
 /// Makes Ctrl-C and SIGTERM set interrupted() instead of ending the program at once: it has until kCommandStops to end.
 void catch_interrupts();
 [[nodiscard]] bool interrupted();

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
 #include "services/verification/command/arguments.hpp"
 
 namespace {
@@ -34,7 +35,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return sealwatch::cli::with_output_written(run(argc, argv));
   } catch (const std::exception& error) {
     std::cerr << "sealwatch verify: internal failure: " << error.what() << "\n";
     return sealwatch::cli::kInternalFailure;

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -339,6 +341,50 @@ TEST_F(Commands, ReplayWhoseResultsFindNoRoomSaysSo) {
       {"sealwatch", "replay", "--config", config(), "--offline", "--quiet", "--results", results.string(), recording});
   EXPECT_EQ(replay.status, 2) << replay.output;
   EXPECT_THAT(replay.output, ::testing::AllOf(HasSubstr("advisory.jsonl"), HasSubstr("make room")));
+}
+
+/// Half an answer must not look like a whole one: in scripts, the exit status is all that is looked at.
+TEST_F(Commands, AnswersThatFindNoRoomAreNoSuccess) {
+  const std::string sealwatch = program("sealwatch"), asset_file = "'" + asset() + "'";
+  for (const std::string& command :
+       {std::string("manual"), std::string("laws"), std::string("laws --json"), std::string("completion bash"),
+        std::string("--help"), std::string("--version"), std::string("replay --help"), std::string("plant show eha"),
+        "config check --config '" + config() + "'", "forecast --json --history '" + history(40, 0.003) + "'"}) {
+    const Finished full = run({"/bin/sh", "-c", "'" + sealwatch + "' " + command + " > /dev/full"});
+    EXPECT_EQ(full.status, 2) << command;
+    EXPECT_THAT(full.output, HasSubstr("standard output: could not be written: No space left on device")) << command;
+  }
+}
+
+/// Options in groups are options too.
+TEST_F(Commands, CompletionAndManualHaveEveryOptionThatHelpShows) {
+  const std::string arms = run({"sealwatch", "completion", "bash"}).output, page = run({"sealwatch", "manual"}).output;
+  const auto options_in = [](const std::string& text) {
+    std::set<std::string> options;
+    const std::regex option(R"((?:^|\n) +(?:-\w,)?(--[a-z-]+))");
+    for (std::sregex_iterator one(text.begin(), text.end(), option), end; one != end; ++one) options.insert((*one)[1]);
+    return options;
+  };
+  const std::string help = run({"sealwatch", "--help"}).output;
+  const std::regex command(R"((?:^|\n)  ([a-z-]+) )");
+  int commands = 0;
+  for (std::sregex_iterator one(help.begin(), help.end(), command), end; one != end; ++one, ++commands) {
+    const std::string name = (*one)[1];
+    const auto of_command = [&](const std::string& text, const std::string& begin, const std::string& after) {
+      const std::size_t at = text.find(begin);
+      return at == std::string::npos ? std::string() : text.substr(at, text.find(after, at + begin.size()) - at);
+    };
+    const std::string arm = of_command(arms, "\"sealwatch " + name + "\") words=", ";;");
+    std::string section = of_command(page, ".SS \"sealwatch " + name + "\"\n", ".SS ");
+    std::erase(section, '\\');
+    for (const std::string& option : options_in(run({"sealwatch", name, "--help"}).output)) {
+      EXPECT_THAT(arm, HasSubstr(option + " ")) << name;
+      if (option != "--help") {
+        EXPECT_THAT(section, HasSubstr(option)) << name;
+      }
+    }
+  }
+  EXPECT_GT(commands, 25);
 }
 
 TEST_F(Commands, ReplayWritesThePageOfTheForecastThatItShows) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "dds/ddsi/ddsi_serdata.h"
+#include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "services/common/transport/participant.hpp"
 #include "services/common/transport/refusals.hpp"
@@ -68,7 +69,12 @@ void announce(dds_entity_t reader, void* channel) { static_cast<Channel*>(channe
 
 bool is_retraction(const Message& message) {
   const auto* event = std::get_if<MaintenanceEvent>(&message);
-  return event != nullptr && is_retraction_kind(event->kind);
+  if (event == nullptr) return false;
+  if (is_retraction_kind(event->kind)) return true;
+  // Who may not retract may not make somebody else's retraction count either.
+  const bool answers = event->kind == kActConfirmed || event->kind == kActRejected;
+  const auto act = answers ? confirmed_act(event->asset_id, event->header.message_id) : std::optional<std::string>();
+  return act && is_retraction_id(*act);
 }
 
 Status Channel::open_topic() {

@@ -29,7 +29,7 @@ namespace sealwatch::transport {
 /// Whether DDS Security says who may write what.
 enum class Rights { none, enforced };
 
-/// What travels as a maintenance_event and has a topic of its own.
+/// What travels as a maintenance_event and has a topic of its own: retractions, and what second people say of them.
 [[nodiscard]] bool is_retraction(const Message& message);
 
 class Channel {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "services/common/transport/channel.hpp"
 #include "services/common/transport/participant.hpp"
@@ -51,10 +52,14 @@ std::vector<std::string> taken(const Configuration& configuration, Rights rights
     writers.push_back(channel(*writing, index, Rights::none));
   }
   int number = 0;
-  for (const std::string_view kind : {std::string_view("seal_replaced"), kTestRetracted}) {
+  const auto id_of = [&number](std::string_view kind) {
+    const std::string id = std::to_string(++number);
+    return kind == kActConfirmed ? confirmation_id("A", "retraction/A/test/T/" + id, UtcTime{}) : id;
+  };
+  for (const std::string_view kind : {std::string_view("seal_replaced"), kTestRetracted, kActConfirmed}) {
     for (Channel& writer : writers) {
       while (writer.subscribers().value_or(0) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      EXPECT_TRUE(writer.write(DdsSample(Message(event(kind, std::to_string(++number))))));
+      EXPECT_TRUE(writer.write(DdsSample(Message(event(kind, id_of(kind))))));
     }
   }
   // What is to be taken, and then what is always taken: the topics' last words.
@@ -66,7 +71,8 @@ std::vector<std::string> taken(const Configuration& configuration, Rights rights
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     const std::lock_guard lock(inbox.mutex);
     for (const BusItem& item : inbox.take(100, std::chrono::steady_clock::now())) {
-      ids.push_back(header_of(std::get<Message>(item)).message_id);
+      const std::string id = header_of(std::get<Message>(item)).message_id;
+      ids.push_back(id.substr(id.rfind('/') + 1));
       last += ids.back().starts_with("last") ? 1 : 0;
     }
   }
@@ -78,9 +84,10 @@ std::vector<std::string> taken(const Configuration& configuration, Rights rights
 TEST(RightToRetract, IsOfATopicOfItsOwnWhereThereAreRights) {
   const Configuration configuration = isolated_configuration(0);
   (void)refused_by_security();
-  EXPECT_THAT(taken(configuration, Rights::none), ElementsAre("1", "3", "4")) << "a replacement is no retraction";
+  EXPECT_THAT(taken(configuration, Rights::none), ElementsAre("1", "3", "4", "5", "6"))
+      << "a replacement is no retraction";
   (void)refused_by_security();
-  EXPECT_THAT(taken(configuration, Rights::enforced), ElementsAre("1", "4"));
+  EXPECT_THAT(taken(configuration, Rights::enforced), ElementsAre("1", "4", "6"));
   EXPECT_THAT(refused_by_security().value_or(""), HasSubstr("needs another right"));
 }
 

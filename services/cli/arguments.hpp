@@ -21,7 +21,8 @@ inline std::string a_number(const std::string& text) {
 
 /// An asset is given by its file: whoever gives the id is told so.
 inline std::string an_asset_file(const std::string& text) {
-  if (std::filesystem::is_regular_file(text)) return {};
+  std::error_code none;
+  if (std::filesystem::is_regular_file(text, none)) return {};
   return "wants an asset file, and '" + text + "' is none; for example --asset config/assets/xt03-mv2.yaml";
 }
 

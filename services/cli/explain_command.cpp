@@ -72,7 +72,8 @@ class Directory {
   Status make() {
     std::error_code error;
     made_ = std::filesystem::create_directories(name_, error);
-    if (!std::filesystem::is_directory(name_))
+    std::error_code none;
+    if (!std::filesystem::is_directory(name_, none))
       return fail(Error{.file = name_,
                         .place = "--out",
                         .value = {},
@@ -242,7 +243,8 @@ int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
   const Result<Explanation> explanation = analyse(engine, options, *asset, *fit, *holdout);
   if (!explanation) {
     complain(explanation.error());
-    if (std::filesystem::exists(files.json))
+    std::error_code none;
+    if (std::filesystem::exists(files.json, none))
       std::fprintf(stderr, "sealwatch: %s is of an earlier run\n", files.json.c_str());
     return kBadInput;
   }

@@ -19,8 +19,9 @@ namespace sealwatch::cli {
 namespace {
 
 std::optional<Error> not_a_file(const std::string& file) {
-  const bool folder = std::filesystem::is_directory(file);
-  if (std::filesystem::exists(file) && !folder) return std::nullopt;
+  std::error_code none;  // of a link to itself, a name that is too long
+  const bool folder = std::filesystem::is_directory(file, none);
+  if (std::filesystem::exists(file, none) && !folder) return std::nullopt;
   return Error{.file = file,
                .place = {},
                .value = {},

@@ -322,6 +322,37 @@ TEST_F(Commands, ReplayPassesOverAMissingRecordingAndAFolder) {
               ::testing::AllOf(HasSubstr("nofile.csv: is not there"), HasSubstr("is a folder"), HasSubstr("R_CL")));
 }
 
+/// Names that the system cannot follow are bad input, no failure of this program.
+TEST_F(Commands, ALinkToItselfAndANameTooLongAreBadInput) {
+  const std::string loop = (folder_ / "loop.csv").string();
+  std::filesystem::create_symlink("loop.csv", loop);
+  for (const std::string& name : {loop, std::string(5000, 'x')}) {
+    const std::vector<std::vector<std::string>> commands = {
+        {"replay", "--offline", "--config", config(), name},
+        {"replay", "--offline", "--config", name, name},
+        {"replay", "--offline", "--config", config(), "--asset", name, name},
+        {"fit", "--asset", asset(), name},
+        {"explain", "--asset", asset(), "--fit", name, "--out", (folder_ / "found").string()},
+        {"explain", "--asset", asset(), "--fit", asset(), "--out", name},
+        {"forecast", "--asset", name, "--state", folder_.string(), "--config", config()},
+        {"forecast", "--history", name},
+        {"validate", "--simulated", name, name},
+        {"asset", "new", "--from", name, "--out", name},
+        {"simulate", "--asset", asset(), "--out", name},
+        {"config", "check", "--config", name},
+        {"show", "XT03-MV2", "--config", config(), "--state", name},
+        {"audit", "--config", config(), "--state", name},
+        {"backup", "--config", config(), "--state", name, "--to", name},
+        {"plant", "check", name},
+        {"fleet", "fit", name}};
+    for (std::vector<std::string> command : commands) {
+      command.insert(command.begin(), "sealwatch");
+      const Finished refused = run(command);
+      EXPECT_EQ(refused.status, 2) << command[1] << " " << command[2] << ": " << refused.output.substr(0, 300);
+    }
+  }
+}
+
 TEST_F(Commands, ReplayOfAnotherAssetsRecordingIsRefused) {
   const auto [recording, truth] = worn_test();
   const std::string other = write("other.yaml", "asset_id: XT04-MV2\n");

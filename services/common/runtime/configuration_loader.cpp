@@ -26,8 +26,14 @@ constexpr NumberRule kInterval{.min = 0.1, .max = 600, .words = "must be a numbe
 constexpr NumberRule kRate{
     .min = 0, .max = 1e-3, .min_excluded = true, .words = "must be a rate per hour above 0, at most 1e-3"};
 
+bool is_file(const fs::path& path) {
+  std::error_code none;
+  return fs::is_regular_file(path, none);
+}
+
 fs::path file_of(const std::string& path) {
-  return fs::is_directory(path) ? fs::path(path) / "sealwatch.yaml" : fs::path(path);
+  std::error_code none;
+  return fs::is_directory(path, none) ? fs::path(path) / "sealwatch.yaml" : fs::path(path);
 }
 
 /// Whoever is told of a configuration that is not there learns where it was looked for, and how to name another.
@@ -285,7 +291,7 @@ std::string place_in_configuration(const std::string& path, const std::string& k
 Checked<Configuration> load_configuration(const std::string& path, const ConfigurationOverrides& overrides) {
   const fs::path file = file_of(path);
   std::vector<Error> errors;
-  if (!std::ifstream(file) || !fs::is_regular_file(file)) return tl::unexpected(std::vector{not_there(file)});
+  if (!std::ifstream(file) || !is_file(file)) return tl::unexpected(std::vector{not_there(file)});
   const auto root = load_yaml(file.string(), errors);
   if (!root) return tl::unexpected(errors);
   YamlMap map(file.string(), *root, {}, errors);

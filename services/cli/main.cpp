@@ -5,8 +5,10 @@
 #include "services/cli/command_line.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
+#include "services/common/runtime/large_blocks.hpp"
 
 int main(int argc, char** argv) {
+  sealwatch::give_large_blocks_back();
   try {
     return sealwatch::cli::with_output_written(sealwatch::cli::CommandLine().run(argc, argv));
   } catch (const std::exception& error) {

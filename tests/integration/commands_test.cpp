@@ -383,7 +383,7 @@ TEST_F(Commands, AnswersThatFindNoRoomAreNoSuccess) {
         "config check --config '" + config() + "'", "forecast --json --history '" + history(40, 0.003) + "'"}) {
     const Finished full = run({"/bin/sh", "-c", "'" + sealwatch + "' " + command + " > /dev/full"});
     EXPECT_EQ(full.status, 2) << command;
-    EXPECT_THAT(full.output, HasSubstr("standard output: could not be written: No space left on device")) << command;
+    EXPECT_THAT(full.output, HasSubstr("standard output: could not be written")) << command;
   }
 }
 

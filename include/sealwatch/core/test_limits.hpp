@@ -2,7 +2,7 @@
 // acquisition, data manipulation and the admission of messages ask here, so that no algorithm sees more or worse.
 //
 // A partial stroke test has some 10^4 rows and takes half a minute. The limits leave room for a hundred times as much,
-// and keep what all services hold of one test, about 190 bytes a number, under 512 MB.
+// and keep what a service holds of one test, at most 150 bytes a number, under 512 MB (tests/perf/services/memory.py).
 #pragma once
 
 #include <cstddef>

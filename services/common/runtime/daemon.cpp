@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "services/common/runtime/configuration_loader.hpp"
+#include "services/common/runtime/large_blocks.hpp"
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/process_end.hpp"
@@ -211,6 +212,7 @@ int run(const Arguments& arguments, const DaemonParts& parts) {
 }  // namespace
 
 int run_daemon(int argc, const char* const* argv, const DaemonParts& parts) {
+  give_large_blocks_back();
   const auto arguments = parse(argc, argv, parts.service);
   if (!arguments) return arguments.error();
   int status = kInternalFailure;

@@ -34,8 +34,8 @@ inline constexpr TestLimits kTestLimits{};
 /// Times beyond the largest of a plant's range that no slip of unit explains (the largest, Pa for MPa, is 10^6): such a
 /// number is damage, and its powers leave a double's range.
 inline constexpr double kImplausible = 1e6;
-/// For a channel without a range, and for messages whose plant is not known.
-inline constexpr double kLargestOfAnyChannel = 1e18;
+/// For a channel without a range, and for messages whose plant is not known: whole numbers of 64 bits are below it.
+inline constexpr double kLargestOfAnyChannel = 1e20;
 /// Below it a number is zero: the powers of smaller ones are not normal numbers.
 inline constexpr double kSmallestNumber = 1e-100;
 

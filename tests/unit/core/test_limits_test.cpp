@@ -26,6 +26,8 @@ TEST(Plausible, ANumberThatNoSensorGivesIsNone) {
   EXPECT_THAT(plausible(5e-324, largest), Optional(0.0));
   EXPECT_THAT(plausible(-1e-200, largest), Optional(0.0));
   for (const double wild : {1e308, -1e308, 1e5, kInfinity, -kInfinity, kNaN}) EXPECT_FALSE(plausible(wild, largest));
+  for (const double whole : {9223372036854775807.0, 18446744073709551615.0})
+    EXPECT_THAT(plausible(whole, largest_plausible(0.0, 0.0)), Optional(whole)) << "the largest of 64 bits";
   EXPECT_EQ(largest_plausible(0.0, 0.0), kLargestOfAnyChannel) << "the range is not known";
   EXPECT_EQ(largest_plausible(-kInfinity, 1e308), kLargestOfAnyChannel);
 }

@@ -137,6 +137,15 @@ void read_fmi3(const DescriptionReader& reader, const pugi::xml_node& root, Mode
                     "is another variable's value reference");
   }
   resolve(reader, nodes, places, set_structure(settings, description), description);
+  // Other names of a variable: to be read by, and no second input or parameter.
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (const pugi::xml_node& alias : nodes[k].children("Alias")) {
+      Variable other = description.variables[k];
+      other.name = reader.required(alias, "name");
+      other.causality = FmiCausality::local;
+      other.derivative_of.reset();
+      description.variables.push_back(std::move(other));
+    }
   const pugi::xml_node structure = root.child("ModelStructure");
   for (const pugi::xml_node& node : structure.children("ContinuousStateDerivative"))
     if (description.model_exchange)

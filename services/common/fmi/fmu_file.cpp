@@ -122,9 +122,13 @@ Status FmuFile::find_binary() {
   }
   std::string there;
   for (const std::string& one : platforms) there += (there.empty() ? "" : ", ") + one;
-  return fail(
-      refusal("has no binary " + binary_ + (there.empty() ? "; it has none at all" : "; it has some for " + there),
-              "export the FMU for Linux on x86-64 (linux64)"));
+  const bool has_sources = std::ranges::any_of(
+      unpacked_.members, [](const std::string& member) { return member.starts_with("sources/") && member.size() > 8; });
+  return fail(refusal(
+      "has no binary " + binary_ + (there.empty() ? "; it has none at all" : "; it has some for " + there),
+      has_sources ? "it has its sources: compile those in sources/ to a shared library of that name and add it to "
+                    "the archive, or export the FMU for Linux on x86-64 (linux64)"
+                  : "export the FMU for Linux on x86-64 (linux64)"));
 }
 
 Status FmuFile::check_settings() const {

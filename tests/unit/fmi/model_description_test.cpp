@@ -76,6 +76,19 @@ TEST(ModelDescription, ArraysHaveTheirElements) {
               HasSubstr("each of the 6 elements"));
 }
 
+TEST(ModelDescription, AVariableIsFoundByEachOfItsNames) {
+  TestUnit unit = spring_return("fmu_spring_return3");
+  const std::string position = "name=\"position\" valueReference=\"5000\" causality=\"output\" unit=\"m\"";
+  unit.variables = replaced(unit.variables, position + "/>",
+                            position + "><Alias name=\"stem.s\" description=\"of the stem\"/></Float64>");
+  const auto description = read_model_description("m.fmu", description_of(unit));
+  ASSERT_TRUE(description) << description.error().describe();
+  const auto element = description->find_element("stem.s");
+  ASSERT_TRUE(element) << element.error().describe();
+  EXPECT_EQ(description->variables[element->variable].reference, 5000U);
+  EXPECT_EQ(std::ranges::count(description->variables, FmiCausality::output, &Variable::causality), 1);
+}
+
 TEST(ModelDescription, FaultsNameLineValueAndRule) {
   const std::string good = description_of(spring_return("fmu_spring_return2"));
   EXPECT_THAT(refused("<a><b></a>"), HasSubstr("no XML"));

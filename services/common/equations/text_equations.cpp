@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "services/common/equations/tape.hpp"
+#include "services/common/model/start_values.hpp"
 
 namespace sealwatch::equations {
 namespace {
@@ -119,12 +120,12 @@ class TextEvaluator final : public RuntimeEvaluator {
   std::array<std::vector<std::unique_ptr<Program>>, 3> programs_;
 };
 
-/// First value (mean of three samples), slope over the first ten samples, mean.
-std::array<double, 3> statistics(const TimeSeries& recorded, const std::vector<double>& values) {
-  constexpr std::size_t kFirst = 3, kSlope = 10;
-  std::array<double, 3> result{};
-  const std::size_t count = std::min(kFirst, values.size()), last = std::min(kSlope, values.size() - 1);
-  for (std::size_t k = 0; k < count; ++k) result[0] += values[k] / static_cast<double>(count);
+/// First value, slope over the first ten samples, mean.
+std::array<double, 3> statistics(const TimeSeries& recorded, const Series& series) {
+  constexpr std::size_t kSlope = 10;
+  const std::vector<double>& values = series.values;
+  std::array<double, 3> result{*first_value(recorded, series.name)};
+  const std::size_t last = std::min(kSlope, values.size() - 1);
   const double duration = recorded.time_s[last] - recorded.time_s[0];
   result[1] = duration > 0.0 ? (values[last] - values[0]) / duration : 0.0;
   for (const double value : values) result[2] += value / static_cast<double>(values.size());
@@ -178,7 +179,7 @@ Result<std::vector<double>> TextEquations::initial_state(std::span<const double>
     std::ranges::copy(parameters, registers.begin());
     for (std::size_t c = 0; c < start.channels.size(); ++c)
       if (const Series* series = recorded.find(start.channels[c]); series != nullptr && !series->values.empty())
-        std::ranges::copy(statistics(recorded, series->values),
+        std::ranges::copy(statistics(recorded, *series),
                           registers.begin() + static_cast<std::ptrdiff_t>(start.parameters + 3 * c));
     tape.run(registers);
     const double value = tape.result(registers, 0);

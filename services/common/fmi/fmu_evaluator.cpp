@@ -18,9 +18,14 @@ void add_product(const RuntimeMatrix& a, std::size_t first, const RuntimeMatrix&
 
 /// Rows [first, first + rows) and columns from `skip` of a matrix.
 void take(const RuntimeMatrix& from, std::size_t first, std::size_t rows, std::size_t skip, RuntimeMatrix& to) {
-  to.resize(rows, from.columns - skip);
+  to.rows = rows, to.columns = from.columns - skip;
+  to.values.resize(rows * to.columns);
   for (std::size_t row = 0; row < rows; ++row)
     std::copy(from.row(first + row) + skip, from.row(first + row) + from.columns, to.row(row));
+}
+
+bool is_zero(const RuntimeMatrix& matrix) {
+  return std::ranges::all_of(matrix.values, [](double value) { return value == 0.0; });
 }
 
 }  // namespace
@@ -97,21 +102,26 @@ const RuntimeLinearisation* FmuEvaluator::linearise(RuntimeFunction function, co
     if (directions.states) take(v->by_state, outputs_, inputs, 0, v_by_state_);
     if (directions.parameters) take(v->by_parameter, outputs_, inputs, 0, v_by_parameter_);
     if (directions.added) take(v->by_added, outputs_, inputs, z_count_, v_by_added_);
+    // Recorded inputs depend on nothing that is asked: then the FMU is spared its derivatives by them.
+    const bool by_input = (directions.states && !is_zero(v_by_state_)) ||
+                          (directions.parameters && !is_zero(v_by_parameter_)) ||
+                          (directions.added && !is_zero(v_by_added_));
     const BlockValues* block = running_->at(point.time_s, point.states, input_values,
                                             {.by_state = directions.states ? 1U : 0U,
-                                             .by_input = inputs > 0 ? 1U : 0U,
+                                             .by_input = by_input ? 1U : 0U,
                                              .by_parameter = directions.parameters ? 1U : 0U});
     if (block == nullptr) return nullptr;
     std::ranges::copy(block->z, added_.begin());
-    if (directions.states) z_by_state_ = block->by_state, add_product(block->by_input, 0, v_by_state_, z_by_state_);
+    if (directions.states) z_by_state_ = block->by_state;
+    if (directions.states && by_input) add_product(block->by_input, 0, v_by_state_, z_by_state_);
     if (directions.parameters) {
       z_by_parameter_ = block->by_parameter;
       if (z_by_parameter_.columns == 0) z_by_parameter_.resize(z_count_, differentiated_);
-      add_product(block->by_input, 0, v_by_parameter_, z_by_parameter_);
+      if (by_input) add_product(block->by_input, 0, v_by_parameter_, z_by_parameter_);
     }
     if (directions.added) {
       z_by_added_.resize(z_count_, sites_);
-      add_product(block->by_input, 0, v_by_added_, z_by_added_);
+      if (by_input) add_product(block->by_input, 0, v_by_added_, z_by_added_);
     }
   }
   const RuntimeLinearisation* frame = frame_->linearise(function, inner, all);

@@ -1,6 +1,6 @@
 // Runs of a plant with an FMU within the process that has the FMU's binary: the integration with its sensitivities takes
 // place there, so that a run costs one request and not one for every value of the binary. What a run depends on is sent,
-// trajectories come back. Columns that are injected from outside are asked for step by step.
+// trajectories come back. Columns that are injected from outside are asked for step by step, unless they are laws'.
 #pragma once
 
 #include <memory>

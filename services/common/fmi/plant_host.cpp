@@ -55,14 +55,17 @@ void PlantHost::make_simulation(Unpacker request) {
 
 void PlantHost::run(Unpacker request) {
   const auto place = static_cast<std::size_t>(request.get<std::uint64_t>());
-  HostedRun run = get_run(request);
+  const auto& simulation = dynamic_cast<const RuntimePlantSimulation&>(*simulations_.at(place));
+  Result<HostedRun> run = get_run(request, simulation.plant());
+  if (!run) throw Failure{run.error().describe()};
   stop_ = {};
   const Deadline deadline(stop_.get_token());
-  run.options.deadline = &deadline;
-  AskedColumns columns(conversation_, run);
-  const auto& simulation = dynamic_cast<const RuntimePlantSimulation&>(*simulations_.at(place));
-  const auto outputs =
-      simulation.run_driven_by(run.input, run.values, run.free, run.options, run.injected ? &columns : nullptr);
+  run->options.deadline = &deadline;
+  AskedColumns asked(conversation_, *run);
+  LawColumns laws(run->laws, simulation.plant());
+  InjectedColumns* injected = run->laws.empty() ? static_cast<InjectedColumns*>(&asked) : &laws;
+  if (!run->injected) injected = nullptr;
+  const auto outputs = simulation.run_driven_by(run->input, run->values, run->free, run->options, injected);
   Packer answer(conversation_.heap());
   put_outputs(answer, outputs);
 }

@@ -91,6 +91,43 @@ HostedSimulation get_simulation(Unpacker& unpacker) {
   return simulation;
 }
 
+namespace {
+
+// A law is known by its id and its parameters' names, as in an asset.
+void put_laws(Packer& packer, const std::vector<LawColumn>& laws) {
+  put_count(packer, laws.size());
+  for (const LawColumn& column : laws) {
+    packer.put_text(column.law->id);
+    put_count(packer, column.law->parameters.size());
+    for (const LawParameter& parameter : column.law->parameters) packer.put_text(parameter.name);
+    packer.put_list(std::span<const std::size_t>(column.sites));
+    put_values(packer, column.parameters);
+    put_count(packer, column.strength);
+    packer.put(column.unit);
+    packer.put(column.hidden);
+  }
+}
+
+Result<std::vector<LawColumn>> get_laws(Unpacker& unpacker, const PlantDescription& plant) {
+  std::vector<LawColumn> laws(get_count(unpacker));
+  for (LawColumn& column : laws) {
+    const std::string id = unpacker.text();
+    std::vector<std::string> names(get_count(unpacker));
+    for (std::string& name : names) name = unpacker.text();
+    const auto law = find_law(id, names, plant.name);
+    if (!law) return fail(law.error());
+    column.law = *law;
+    column.sites = unpacker.list<std::size_t>();
+    column.parameters = unpacker.list<double>();
+    column.strength = get_count(unpacker);
+    column.unit = unpacker.get<double>();
+    column.hidden = unpacker.get<double>();
+  }
+  return laws;
+}
+
+}  // namespace
+
 void put_run(Packer& packer, const RuntimeRun& run) {
   put_values(packer, run.input.times());
   put_count(packer, run.input.channels().size());
@@ -113,9 +150,11 @@ void put_run(Packer& packer, const RuntimeRun& run) {
   if (run.injected == nullptr) return;
   put_count(packer, run.injected->columns());
   packer.put_list(run.injected->entries());
+  const auto* laws = dynamic_cast<const LawColumns*>(run.injected);
+  put_laws(packer, laws == nullptr ? std::vector<LawColumn>{} : laws->laws());
 }
 
-HostedRun get_run(Unpacker& unpacker) {
+Result<HostedRun> get_run(Unpacker& unpacker, const PlantDescription& plant) {
   std::vector<double> times = unpacker.list<double>();
   std::vector<InputChannel> channels(get_count(unpacker));
   for (InputChannel& channel : channels) {
@@ -125,8 +164,12 @@ HostedRun get_run(Unpacker& unpacker) {
     channel.cubic = unpacker.get<std::uint64_t>() != 0;
     channel.delay_s = unpacker.get<double>();
   }
-  HostedRun run{
-      .input = {std::move(times), std::move(channels)}, .values = {}, .free = {}, .options = {}, .entries = {}};
+  HostedRun run{.input = {std::move(times), std::move(channels)},
+                .values = {},
+                .free = {},
+                .options = {},
+                .entries = {},
+                .laws = {}};
   run.values.parameters = unpacker.list<double>();
   run.values.load_factor = unpacker.get<double>();
   for (auto* list : {&run.values.initial_state, &run.values.sensor_gain, &run.values.sensor_offset})
@@ -139,6 +182,9 @@ HostedRun get_run(Unpacker& unpacker) {
   if (!run.injected) return run;
   run.injected_columns = get_count(unpacker);
   run.entries = unpacker.list<InjectedColumns::Entry>();
+  Result<std::vector<LawColumn>> laws = get_laws(unpacker, plant);
+  if (!laws) return fail(laws.error());
+  run.laws = std::move(*laws);
   return run;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "services/common/fmi/host_protocol.hpp"
+#include "services/common/model/law_columns.hpp"
 #include "services/common/model/runtime_run.hpp"
 
 namespace sealwatch::fmi {
@@ -27,7 +28,8 @@ struct HostedSimulation {
 void put_simulation(Packer& packer, const AssetConfig& asset, const TimeSeries& recorded);
 [[nodiscard]] HostedSimulation get_simulation(Unpacker& unpacker);
 
-/// A run as the process gets it.
+/// A run as the process gets it. Injected columns of laws come as what they are and are weighed there; others are asked
+/// for step by step.
 struct HostedRun {
   RecordedInput input;
   ModelValues values;
@@ -36,9 +38,11 @@ struct HostedRun {
   std::vector<InjectedColumns::Entry> entries;
   std::size_t injected_columns = 0;
   bool injected = false;
+  std::vector<LawColumn> laws;
 };
 void put_run(Packer& packer, const RuntimeRun& run);
-[[nodiscard]] HostedRun get_run(Unpacker& unpacker);
+/// An Error where the plant has not the laws of the columns.
+[[nodiscard]] Result<HostedRun> get_run(Unpacker& unpacker, const PlantDescription& plant);
 
 void put_outputs(Packer& packer, const Result<SimulatedOutputs>& outputs);
 [[nodiscard]] Result<SimulatedOutputs> get_outputs(Unpacker& unpacker);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "services/common/mismatch/law_columns.hpp"
+#include "services/common/model/law_columns.hpp"
 
 namespace sealwatch::mismatch {
 namespace {

@@ -1,11 +1,11 @@
-#include "services/common/mismatch/law_columns.hpp"
+#include "services/common/model/law_columns.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "sealwatch/model/law_sizes.hpp"
 
-namespace sealwatch::mismatch {
+namespace sealwatch {
 namespace {
 
 constexpr double kLongestHiddenStep_s = 2e-3;
@@ -81,4 +81,4 @@ void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {
   started_ = true;
 }
 
-}  // namespace sealwatch::mismatch
+}  // namespace sealwatch

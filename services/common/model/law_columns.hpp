@@ -6,7 +6,7 @@
 
 #include "sealwatch/model/simulation.hpp"
 
-namespace sealwatch::mismatch {
+namespace sealwatch {
 
 /// One strength of a law at an element, its other parameters at given values.
 struct LawColumn {
@@ -23,6 +23,7 @@ class LawColumns final : public InjectedColumns {
   LawColumns(std::vector<LawColumn> laws, const PlantDescription& plant);
   [[nodiscard]] std::size_t columns() const override { return laws_.size(); }
   [[nodiscard]] std::span<const Entry> entries() const override { return entries_; }
+  [[nodiscard]] const std::vector<LawColumn>& laws() const { return laws_; }
   void weigh(double t, Signals signals, std::span<double> weights) override;
 
  private:
@@ -37,4 +38,4 @@ class LawColumns final : public InjectedColumns {
   bool started_ = false;
 };
 
-}  // namespace sealwatch::mismatch
+}  // namespace sealwatch

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "sealwatch/model/eha.hpp"
-#include "services/common/mismatch/law_columns.hpp"
+#include "services/common/model/law_columns.hpp"
 
 namespace sealwatch::verification {
 namespace {
@@ -119,7 +119,7 @@ class Regression {
     std::array<bool, kBalances> usable{};
     for (std::size_t b = 0; b < kBalances; ++b)
       usable[b] = std::ranges::all_of(kNeeds[b], [&](std::string_view name) { return known.contains(name); });
-    mismatch::LawColumns laws(columns_, **find_plant("eha"));
+    LawColumns laws(columns_, **find_plant("eha"));
     for (std::size_t k = 0; k < recorded.time_s.size(); ++k)
       add_row(known, usable, laws, recorded.time_s[k], k, recording);
   }
@@ -128,7 +128,7 @@ class Regression {
 
  private:
   void add_row(const std::map<std::string_view, Smoothed>& known, const std::array<bool, kBalances>& usable,
-               mismatch::LawColumns& laws, double t, std::size_t sample, std::size_t recording) {
+               LawColumns& laws, double t, std::size_t sample, std::size_t recording) {
     const auto at = static_cast<Eigen::Index>(sample);
     const auto value = [&](std::string_view name) { return known.contains(name) ? known.at(name).value[at] : 0.0; };
     const auto rate = [&](std::string_view name) { return known.contains(name) ? known.at(name).rate[at] : 0.0; };
@@ -164,7 +164,7 @@ class Regression {
   }
 
   EhaParameters<double> p_;
-  std::vector<mismatch::LawColumn> columns_;
+  std::vector<LawColumn> columns_;
   std::vector<std::size_t> owner_;  ///< balance of each column
   std::array<Balance, kBalances> balances_;
 };

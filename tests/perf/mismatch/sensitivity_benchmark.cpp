@@ -12,8 +12,8 @@
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/mismatch/candidates.hpp"
-#include "services/common/mismatch/law_columns.hpp"
 #include "services/common/mismatch/sensitivity_pass.hpp"
+#include "services/common/model/law_columns.hpp"
 #include "services/virtual_bench/simulate_test.hpp"
 #include "tests/perf/mismatch/cvodes_sensitivities.hpp"
 

@@ -1,6 +1,6 @@
 // Every law at every site of the plants: sensitivities of a law in force against differences of whole simulations, and
 // the injected column of an absent law against the simulation with a little of it.
-#include "services/common/mismatch/law_columns.hpp"
+#include "services/common/model/law_columns.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,9 @@
 //   where the signal is rounded coarsely, the root mean square of all but the largest tenth of |d| instead
 //   a signal of few samples a period is no parabola over four of them: of white noise, differences of order 12 show the
 //   same sigma, of such a signal far less of it, and where they show clearly less they are believed
+//   where samples are unevenly spaced, their divided differences show it likewise: sum c_j y_k+j / |c|,
+//   c_j = prod (i != j) 1 / (t_k+j - t_k+i), is 0 for a parabola and has variance sigma^2; where these show clearly less
+//   they are believed
 //   quantisation in steps of Delta adds Delta^2 / 12, the least that the noise can be.
 //
 // Noise that is correlated from sample to sample is underestimated: whoever uses the figure must test its residual for
@@ -24,13 +27,15 @@ struct NoiseFloor {
   double quantisation_step = 0.0;   ///< in the channel's unit; 0 when none was seen
 };
 
-/// Uniform or slightly jittered samples. What is no number is passed over; fewer than 8 samples, or a constant channel,
-/// tell nothing.
+/// `time_s`: when the samples were taken; without it they count as equally spaced. What is no number is passed over;
+/// fewer than 8 samples, or a constant channel, tell nothing.
+[[nodiscard]] NoiseFloor estimate_noise_floor(std::span<const double> values, std::span<const double> time_s);
 [[nodiscard]] NoiseFloor estimate_noise_floor(std::span<const double> values);
 
 /// The standard deviation to believe of a channel: what the recording says of itself, else what its samples show, but at
 /// least a tenth of the sensor's usual one (a counter that stands still for most of the test shows no noise; it has some
 /// when it turns); where they show nothing, the usual one. 0 when nobody knows.
+[[nodiscard]] double believed_noise_std(const Series& channel, double usual_noise_std, std::span<const double> time_s);
 [[nodiscard]] double believed_noise_std(const Series& channel, double usual_noise_std);
 
 }  // namespace sealwatch::signal

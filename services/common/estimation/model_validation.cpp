@@ -68,7 +68,8 @@ RecordingValidation compare(const AssetConfig& asset, const Recording& recording
   for (const Series& channel : simulated.channels) {
     const Series* recorded = samples.find(channel.name);
     if (recorded == nullptr) continue;
-    const double noise_std = channel.noise_std > 0.0 ? channel.noise_std : noise_std_of(asset, *recorded);
+    const double noise_std =
+        channel.noise_std > 0.0 ? channel.noise_std : noise_std_of(asset, *recorded, samples.time_s);
     result.channels.push_back(compare(*recorded, channel, noise_std, past));
   }
   return result;

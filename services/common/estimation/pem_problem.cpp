@@ -172,7 +172,7 @@ Result<PemRecording> make_recording(const AssetConfig& asset, const TimeSeries& 
   const std::span<const std::string> channels = recording.simulation->channels();
   recording.noise_std.resize(static_cast<Eigen::Index>(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    const double noise_std = noise_std_of(asset, *recorded.find(channels[c]));
+    const double noise_std = noise_std_of(asset, *recorded.find(channels[c]), recorded.time_s);
     recording.noise_std(static_cast<Eigen::Index>(c)) = noise_std > 0.0 ? noise_std : kInfinity;
   }
   Result<std::vector<Unknown>> own = own_unknowns(*recording.simulation, !window);

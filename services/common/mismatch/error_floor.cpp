@@ -27,7 +27,7 @@ Data with_error_floor(const AssetConfig& asset, Data data, const ChannelScales& 
   data.start_as_measured = true;  // or a start far from it makes up for what the model lacks
   for (TimeSeries& samples : data.samples)
     for (Series& channel : samples.channels)
-      channel.noise_std = std::max(noise_std_of(asset, channel), kErrorFloor * spread.at(channel.name));
+      channel.noise_std = std::max(noise_std_of(asset, channel, samples.time_s), kErrorFloor * spread.at(channel.name));
   return data;
 }
 
@@ -53,7 +53,7 @@ double rms_in_noise(const FittedModel& model, const AssetConfig& asset, const Da
     const PemRecording& part = model.problem.recordings[k];
     for (Eigen::Index c = 0; c < part.noise_std.size(); ++c) {
       Series channel = *data.samples[k].find(part.simulation->channels()[static_cast<std::size_t>(c)]);
-      const double noise_std = noise_std_of(asset, channel);
+      const double noise_std = noise_std_of(asset, channel, data.samples[k].time_s);
       const auto difference = part.simulation->recorded().col(c) - model.optimum.at_optimum[k].simulated.col(c);
       if (noise_std > 0.0) squares += difference.squaredNorm() / (noise_std * noise_std);
       count += static_cast<double>(difference.size());

@@ -179,7 +179,7 @@ class GrossMismatch {
                       std::size_t k, std::size_t in_model) {
     RecordingComparison comparison = compare_in(before, after, data, k, in_model);
     for (ChannelComparison& channel : comparison.channels) {
-      const double sigma = noise_std_of(asset_, *noise.samples[k].find(channel.channel));
+      const double sigma = noise_std_of(asset_, *noise.samples[k].find(channel.channel), noise.samples[k].time_s);
       const double floor = data.samples[k].find(channel.channel)->noise_std;
       channel.rms_before *= floor / sigma;
       channel.rms_after *= floor / sigma;

@@ -120,7 +120,7 @@ double pooled_floor(const Data& data, const std::string& channel) {
   double squares = 0.0, count = 0.0;
   for (const TimeSeries& recorded : data.samples)
     if (const Series* series = recorded.find(channel)) {
-      squares += std::pow(signal::estimate_noise_floor(series->values).standard_deviation, 2);
+      squares += std::pow(signal::estimate_noise_floor(series->values, recorded.time_s).standard_deviation, 2);
       count += 1.0;
     }
   return std::sqrt(squares / std::max(count, 1.0));
@@ -161,7 +161,8 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
       data.colour[k][c] = colour;
       for (Series& series : data.samples[k].channels)
         if (series.name == channels[c] && series.noise_std <= 0.0)
-          series.noise_std = growth * signal::estimate_noise_floor(series.values).standard_deviation;
+          series.noise_std =
+              growth * signal::estimate_noise_floor(series.values, data.samples[k].time_s).standard_deviation;
     }
     sentences.push_back(text::format(
         "The noise of {} is correlated from sample to sample ({:.2f}); it was whitened by an autoregression.",

@@ -21,7 +21,7 @@ TimeSeries with_more_noise(const AssetConfig& asset, TimeSeries samples, std::mt
   const std::vector<std::string> measured = measured_inputs(asset, samples);
   for (Series& channel : samples.channels) {
     if (std::ranges::find(measured, channel.name) == measured.end()) continue;
-    const double noise_std = noise_std_of(asset, channel);
+    const double noise_std = noise_std_of(asset, channel, samples.time_s);
     for (double& value : channel.values) value += noise_std * normal(random);
   }
   return samples;
@@ -79,8 +79,8 @@ void add_input_noise(Data& data, const FittedModel& model, const Data& windows, 
     for (Series& channel : samples.channels) {
       const auto found = squares.find(channel.name);
       if (found == squares.end() || !(found->second.second > 0.0)) continue;
-      channel.noise_std =
-          std::sqrt(std::pow(noise_std_of(model.asset, channel), 2) + found->second.first / found->second.second);
+      channel.noise_std = std::sqrt(std::pow(noise_std_of(model.asset, channel, samples.time_s), 2) +
+                                    found->second.first / found->second.second);
     }
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <vector>
 
 namespace sealwatch::signal {
@@ -68,12 +68,52 @@ double from_high_order(std::span<const double> values) {
   return trimmed_standard_deviation(std::move(difference)) / std::sqrt(kHighOrderVariance);
 }
 
+// Whether distances differ by more than the rounding of times.
+bool is_uneven(std::span<const double> time_s) {
+  constexpr double kRounding = 1e-6;
+  const double mean = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  for (std::size_t k = 1; k < time_s.size(); ++k)
+    if (std::abs(time_s[k] - time_s[k - 1] - mean) > kRounding * mean) return true;
+  return false;
+}
+
+// Divided differences of this order, of white noise with its own standard deviation.
+std::vector<double> divided_differences(std::span<const double> values, std::span<const double> time_s, int order) {
+  const auto width = static_cast<std::size_t>(order) + 1;
+  const double mean = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  std::vector<double> magnitudes;
+  for (std::size_t first = 0; first + width <= values.size(); ++first) {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t j = 0; j < width; ++j) {
+      double weight = 1.0;
+      for (std::size_t i = 0; i < width; ++i)
+        if (i != j) weight *= mean / (time_s[first + j] - time_s[first + i]);
+      sum += weight * values[first + j];
+      squares += weight * weight;
+    }
+    magnitudes.push_back(std::abs(sum) / std::sqrt(squares));
+  }
+  return magnitudes;
+}
+
+// The least that divided differences show; infinite where the samples are equally spaced.
+double from_divided_differences(std::span<const double> values, std::span<const double> time_s, bool high_order) {
+  if (time_s.size() != values.size() || !is_uneven(time_s)) return std::numeric_limits<double>::infinity();
+  const double third = trimmed_standard_deviation(divided_differences(values, time_s, 3));
+  return high_order ? std::min(third, trimmed_standard_deviation(divided_differences(values, time_s, kHighOrder)))
+                    : third;
+}
+
 }  // namespace
 
-NoiseFloor estimate_noise_floor(std::span<const double> samples) {
-  std::vector<double> values;
+NoiseFloor estimate_noise_floor(std::span<const double> samples, std::span<const double> sample_times_s) {
+  std::vector<double> values, time_s;
   values.reserve(samples.size());
-  std::ranges::copy_if(samples, std::back_inserter(values), [](double value) { return std::isfinite(value); });
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!std::isfinite(samples[k])) continue;
+    values.push_back(samples[k]);
+    if (sample_times_s.size() == samples.size()) time_s.push_back(sample_times_s[k]);
+  }
   if (values.size() < kFewestSamples) return {};
   std::vector<double> difference(values.size() - 3);
   for (std::size_t k = 0; k < difference.size(); ++k)
@@ -84,17 +124,23 @@ NoiseFloor estimate_noise_floor(std::span<const double> samples) {
     from_differences = trimmed_standard_deviation(std::move(difference)) / std::sqrt(kThirdDifferenceVariance);
   const double least = step / std::sqrt(12.0);
   const bool enough = values.size() >= kEnoughForHighOrder;
-  const double high_order = enough ? std::max(from_high_order(values), least) : from_differences;
-  const bool signal_shows = high_order * kClearly < from_differences;
-  return {.standard_deviation = std::max(signal_shows ? high_order : from_differences, least),
-          .quantisation_step = step};
+  const double high_order = enough ? from_high_order(values) : from_differences;
+  const double other = std::max(std::min(high_order, from_divided_differences(values, time_s, enough)), least);
+  const bool signal_shows = other * kClearly < from_differences;
+  return {.standard_deviation = std::max(signal_shows ? other : from_differences, least), .quantisation_step = step};
+}
+
+NoiseFloor estimate_noise_floor(std::span<const double> values) { return estimate_noise_floor(values, {}); }
+
+double believed_noise_std(const Series& channel, double usual_noise_std, std::span<const double> time_s) {
+  constexpr double kLeastShareOfUsual = 0.1;
+  if (channel.noise_std > 0.0) return channel.noise_std;
+  const double shown = estimate_noise_floor(channel.values, time_s).standard_deviation;
+  return shown > 0.0 ? std::max(shown, kLeastShareOfUsual * usual_noise_std) : usual_noise_std;
 }
 
 double believed_noise_std(const Series& channel, double usual_noise_std) {
-  constexpr double kLeastShareOfUsual = 0.1;
-  if (channel.noise_std > 0.0) return channel.noise_std;
-  const double shown = estimate_noise_floor(channel.values).standard_deviation;
-  return shown > 0.0 ? std::max(shown, kLeastShareOfUsual * usual_noise_std) : usual_noise_std;
+  return believed_noise_std(channel, usual_noise_std, {});
 }
 
 }  // namespace sealwatch::signal

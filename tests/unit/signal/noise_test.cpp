@@ -26,6 +26,21 @@ std::vector<double> white_noise(std::size_t size, double standard_deviation, uns
 // The median absolute deviation of 4000 third differences scatters by about 2.5 %: three standard errors.
 constexpr double kNoiseFloorTolerance = 0.075;
 
+TEST(NoiseFloor, SeesTheNoiseOfUnevenSamples) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> distance(0.001, 0.019);
+  for (const double noise_std : {1e-4, 0.02}) {
+    std::vector<double> values = white_noise(4000, noise_std, 1), time_s(values.size(), 0.0);
+    for (std::size_t k = 1; k < time_s.size(); ++k) time_s[k] = time_s[k - 1] + distance(random);
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] += 5.0 * std::sin(0.5 * time_s[k]);
+    EXPECT_NEAR(estimate_noise_floor(values, time_s).standard_deviation, noise_std, kNoiseFloorTolerance * noise_std);
+    if (noise_std < 1e-3) {
+      EXPECT_GT(estimate_noise_floor(values).standard_deviation, 10.0 * noise_std)
+          << "by distances that count as equal";
+    }
+  }
+}
+
 TEST(NoiseFloor, SeesTheNoiseUnderAMovingSignal) {
   std::vector<double> values = white_noise(4000, 0.02, 1);
   for (std::size_t k = 0; k < values.size(); ++k)

@@ -211,7 +211,8 @@ std::string page_of(const Understood& log, const std::string& file) {
     const bool mapped = mapping != log.map.columns.end();
     table.row({text::in_words(channel.name), mapped ? mapping->second.column : channel.name,
                mapped ? mapping->second.unit : "", range_text(log.tests, channel.name),
-               text::readable(signal::estimate_noise_floor(channel.values).standard_deviation, channel.unit, 2)});
+               text::readable(signal::estimate_noise_floor(channel.values, test.samples.time_s).standard_deviation,
+                              channel.unit, 2)});
     plots += "<div>" +
              report::to_svg({.title = text::in_words(channel.name),
                              .x = {.label = "time", .unit = "s"},
@@ -268,7 +269,7 @@ Result<const PlantDescription*> named_plant(const std::string& model) {
   if (!fs::is_regular_file(model, ignored))
     return fail(Error{.file = model, .place = {}, .value = {}, .rule = "is no file", .advice = "--model"});
   const auto plant = load_plant(model);
-  if (!plant) return fail(plant.error().front());
+  if (!plant) return fail(combine(plant.error()));
   return *plant;
 }
 

@@ -125,14 +125,16 @@ std::optional<double> first_value(const TimeSeries& recorded, std::string_view c
   const Series* series = recorded.find(channel);
   if (series == nullptr || series->values.empty()) return std::nullopt;
   constexpr std::size_t kMost = 3;
-  constexpr double kSurely = 3.0;  // standard deviations
+  constexpr double kSurely = 3.0;      // standard deviations
+  constexpr double kRounding = 1e-12;  // of a sum of equal values
   const double scatter = scatter_of(*series);
   double believed = series->values.front();
   for (std::size_t count = 2; count <= std::min(kMost, series->values.size()); ++count) {
     const double mean = mean_of(series->values, count);
     for (std::size_t fewer = 1; fewer < count; ++fewer) {
       const double spread = std::sqrt(1.0 / static_cast<double>(fewer) - 1.0 / static_cast<double>(count));
-      if (std::abs(mean - mean_of(series->values, fewer)) > kSurely * scatter * spread) return believed;
+      if (std::abs(mean - mean_of(series->values, fewer)) > kSurely * scatter * spread + kRounding * std::abs(mean))
+        return believed;
     }
     believed = mean;
   }

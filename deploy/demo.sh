@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 machine to a forecast: installs packages, builds, starts the six services, plays nine years of monthly
-# partial stroke tests of one actuator through them over DDS, and shows the forecast with its reasons.
+# From a fresh Debian 12 machine to a forecast: installs packages, builds, starts the six services, plays nine years of
+# monthly partial stroke tests of one actuator through them over DDS, and shows the forecast with its reasons.
 #   deploy/demo.sh               with a life recorded by sealwatch's own virtual bench
 #   deploy/demo.sh --data DIR    with the recordings (*.csv, *.mat) in DIR
-# Needs root or sudo for the packages, nothing else. Everything it makes is in build/ and demo/ of this checkout. Run it again as
-# often as you like.
+# Needs root or sudo for the packages, nothing else. Everything it makes is in build/ and demo/ of this checkout. Run it
+# again as often as you like.
 set -euo pipefail
 started_in=$PWD
 cd "$(dirname "$0")/.."
@@ -52,15 +52,15 @@ echo "== replay: ${#recordings[@]} tests through six services over DDS, as fast 
 
 cat <<TXT
 
-Look further:
-  build/release/bin/sealwatch forecast --config config --state demo/state --page demo/forecast.html
-                                                                       the forecast as a page for a browser
-  build/release/bin/sealwatch show $asset --state demo/state         what the advice was concluded from, down to the recording
-  build/release/bin/sealwatch up --config config --state demo/state    the services again (they ended with the demo), with what they remember
-  build/release/bin/sealwatch status                                   then, in another terminal: the last word on every actuator, and the
-                                                                       command that acknowledges its advice
-  build/release/bin/sealwatch watch                                    every message, live
-  demo/results/*.jsonl                                                 all conclusions, a JSON line each
-  demo/state/log/                                                      what each service did, by PST id
-  docs/tutorial.md                                                     the same step by step, and what the figures mean
+Look further (first: export PATH=\$PWD/build/release/bin:\$PATH):
+  sealwatch forecast --config config --state demo/state --page demo/forecast.html
+                                                     the forecast as a page for a browser
+  sealwatch show $asset --state demo/state         what the advice was concluded from, down to the recording
+  sealwatch up --config config --state demo/state    the services again, with what they remember
+  sealwatch status                                   then, in another terminal: the last word on every actuator,
+                                                     and the command that acknowledges its advice
+  sealwatch watch                                    every message, live
+  demo/results/*.jsonl                               all conclusions, a JSON line each
+  demo/state/log/                                    what each service did, by PST id
+  docs/tutorial.md                                   the same step by step, and what the figures mean
 TXT

@@ -78,11 +78,17 @@ std::string alteration_text(const Alteration& alteration) {
 std::string trace_summary(const trace::TraceComparison& comparison) {
   if (comparison.consistent)
     return "The simulation agrees with the recording: what is left depends on nothing in the simulation.";
-  std::string channels;
-  std::size_t differing = 0;
-  for (const ChannelComparison& channel : comparison.channels)
-    if (channel.differs) channels.append(differing++ == 0 ? "" : ", ").append(text::in_words(channel.name));
-  std::string text = "They differ beyond noise in " + channels + ". ";
+  std::vector<std::string> channels, inputs;
+  for (const ChannelComparison& channel : comparison.channels) {
+    if (channel.differs) channels.push_back(text::in_words(channel.name));
+    if (channel.differs && channel.input) inputs.push_back(channels.back());
+  }
+  const std::size_t differing = channels.size();
+  std::string text = "They differ beyond noise in " + text::joined(channels) + ". ";
+  if (!inputs.empty())
+    text += "The input itself differs (" + text::joined(inputs) +
+            "): the simulation was not given what the recording was, so its outputs prove nothing; simulate with the "
+            "recorded input. ";
   if (comparison.answer.empty())
     return text + "No gain, offset, delay, clock rate or sign of a channel or of the input would do.";
   text += "This would do: ";
@@ -96,10 +102,8 @@ std::string trace_summary(const trace::TraceComparison& comparison) {
 
 std::string trace_limit() {
   return "A trace alone cannot name physics in the plant: what a plant lacks moves its balances, and a trace shows "
-         "only what "
-         "came out. What would: the equations as a text plant or an FMU (sealwatch plant), and sealwatch explain on "
-         "the same "
-         "recordings.";
+         "only what came out. What would: the equations as a text plant or an FMU (sealwatch plant), and sealwatch "
+         "explain on the same recordings.";
 }
 
 std::string trace_json(const trace::TraceComparison& comparison, const std::string& recorded,

@@ -54,10 +54,10 @@ TEST(Terminal, ChartShowsEachPointAndTheThreshold) {
 }
 
 TEST(ProgressLine, NeverCountsBeyondItsTotal) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   Progress("replay", 1).show(2, "2031-04-12");  // a service concludes from a test of before, too
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              testing::AnyOf(testing::HasSubstr("1 of 1 2031-04-12"), testing::HasSubstr("1/1 2031-04-12")));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              ::testing::AnyOf(::testing::HasSubstr("1 of 1 2031-04-12"), ::testing::HasSubstr("1/1 2031-04-12")));
 }
 
 }  // namespace

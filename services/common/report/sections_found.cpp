@@ -96,7 +96,7 @@ std::string effect_in_short(const FoundEffect& effect) {
     html += paragraph(parameter.name + " = " +
                       text::readable_with_error(parameter.value, parameter.std_error, parameter.unit));
   html += paragraph("Probability of this law: " + text::percent_text(effect.probability) +
-                        "; of this element: " + text::percent_text(effect.element_probability) + ".",
+                        "; of this element: " + text::percent_text(effect.element_probability) + " (not calibrated).",
                     "small muted");
   std::string others;
   for (const mismatch::LawAt& other : effect.indistinguishable)
@@ -114,7 +114,8 @@ std::string effect_html(const FoundEffect& effect) {
       std::string("Probability ").append(text::percent_text(effect.probability)).append(" among the laws tried; ");
   sure.append(text::percent_text(effect.element_probability))
       .append(
-          " that it sits in this element. Without it, the BIC (squared misfit plus a penalty for each parameter) is ")
+          " that it sits in this element (not calibrated). Without it, the BIC (squared misfit plus a penalty for each "
+          "parameter) is ")
       .append(text::number_text(-effect.delta_bic, 3))
       .append(" higher; 12 is decisive. ")
       .append(size_words(effect.engineering_share));
@@ -206,7 +207,7 @@ std::string where_section(const Explanation& explanation) {
     const std::string element = element_name(place.element);
     table.row({element, text::percent_text(place.probability), elements(place.indistinguishable_from), place.evidence});
   }
-  return folded_section("Location", "probability and evidence for each element", table.html());
+  return folded_section("Location", "probability (not calibrated) and evidence for each element", table.html());
 }
 
 std::string effects_section(const Explanation& explanation) {

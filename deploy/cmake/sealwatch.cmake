@@ -1,7 +1,7 @@
 # Helpers by which each folder declares what it builds.
 #
 #   sealwatch_library(sealwatch_core SOURCES a.cpp LINK tl::expected PRIVATE_LINK Ceres::ceres)
-#   sealwatch_library(sealwatch_cli WORDS ...)   reads and writes text, computes nothing: optimised little, compiled fast
+#   sealwatch_library(sealwatch_cli WORDS ...)   handles text, or decides once a test: optimised little, compiled fast
 #   sealwatch_executable(sealwatch-state-detection SOURCES main.cpp LINK sealwatch_runtime)
 #   sealwatch_test(core_test SOURCES core_test.cpp LINK sealwatch_core LABELS unit)
 #   sealwatch_waits(campaign_kills)
@@ -52,6 +52,7 @@ function(sealwatch_executable name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} sealwatch_flags)
   sealwatch_words(${name})  # main() alone
+  sealwatch_unity(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 endfunction()
 

@@ -7,7 +7,8 @@ preset=${1:-release}
 shift || true
 target=()
 if [ "${1:-}" = --target ]; then target=(--target "$2"); shift 2; fi
-export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/ccache}" CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
+# Depend mode: files that the cache does not know yet are not preprocessed once more to ask for them.
+export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/ccache}" CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1
 echo "== build: build/$preset"
 mkdir -p build
 # From nothing, several files at once: half the time. A folder that is there keeps what it was made with, as turning this

@@ -72,7 +72,8 @@ function(sealwatch_unity target)
   set(batches 0)
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} OUTPUT_VARIABLE file)
-    if(NOT source MATCHES "\\.cpp$" OR NOT EXISTS ${file})  # made by the build: its names are not known yet
+    get_source_file_property(made ${file} DIRECTORY ${folder} GENERATED)
+    if(NOT source MATCHES "\\.cpp$" OR made)  # by the build: its names are not known at first, its text changes
       continue()
     endif()
     set_property(DIRECTORY ${folder} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})

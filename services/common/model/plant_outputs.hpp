@@ -107,9 +107,11 @@ class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
     const Gradient result = evaluate_output(which, System::plant_state(state), input, this->values().plant, extra);
     signal[0] = result.value;
     std::fill(signal + 1, signal + columns_, 0.0);
-    for (int k = 0; k < kStates; ++k)
-      for (std::size_t column = 1; column < columns_; ++column)
-        signal[column] += result.derivative[static_cast<std::size_t>(k)] * point[k * stride + column];
+    for (int k = 0; k < kStates; ++k) {
+      const double slope = result.derivative[static_cast<std::size_t>(k)];
+      if (slope == 0.0) continue;  // an output shows few states
+      for (std::size_t column = 1; column < columns_; ++column) signal[column] += slope * point[k * stride + column];
+    }
     if constexpr (Directions > kStates)
       for (std::size_t e = 0; e < injected_->entries().size(); ++e) {
         const auto [column, site] = injected_->entries()[e];

@@ -136,7 +136,9 @@ class Analysis {
     Result<Naming> naming = name_effects(baseline_, data, options, progress_, from.value_or(Trial{{}, baseline_}));
     if (naming && naming->sensors_are_inexact) {
       Result<Naming> again = beside_inexact_sensors(*naming, options);
-      if (again && value_in_place_of_sensors(*again, data.sensors)) {
+      // The search asked for a value in place of the sensors before it took them for inexact.
+      const bool was_asked = again && naming->with_sensors && same_effects(naming->best.effects, again->best.effects);
+      if (again && !was_asked && value_in_place_of_sensors(*again, data.sensors)) {
         tell("looking again, with exact sensors", 0.6);
         data.sensors.clear();
         again = name_effects(baseline_, data, options, progress_);

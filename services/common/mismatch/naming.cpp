@@ -148,35 +148,66 @@ bool one_law_does(const std::vector<Trial>& trials, Naming& naming, const Data& 
   return left && !differs(left->p_value, *best->model, options.false_alarm_rate);
 }
 
-// The model with all sensors off by what they may be. Nothing where that leaves a gross misfit, or promises to.
-std::optional<FittedModel> with_inexact_sensors(const FittedModel& exact, const Data& data, int threads) {
-  Data inexact = data;
-  std::ranges::copy(data.sensors, std::back_inserter(inexact.known));
-  const auto there = fit_model(exact.asset, inexact, &exact, threads, 0);
-  if (!there || there->misfit - 4.0 * there->optimum.promised > kGross * there->residuals) return std::nullopt;
-  constexpr int kIterations = 30;
-  Result<FittedModel> model = continue_fit(*there, inexact, threads, kIterations);
-  if (!model || excess(*model) > kGross) return std::nullopt;
-  return std::move(*model);
-}
+// The model with all sensors off by what they may be. Beside the laws found so far it competes with every further one.
+class InexactSensors {
+ public:
+  InexactSensors(const FittedModel& exact, const Data& data, int threads)
+      : exact_(exact), data_(data), inexact_(data), threads_(threads) {
+    std::ranges::copy(data.sensors, std::back_inserter(inexact_.known));
+    if (data.sensors.empty()) return;
+    auto there = fit_model(exact.asset, inexact_, &exact, threads, 0);
+    if (there) there_ = std::move(*there);
+  }
 
-// Whether sensors that are not exact explain more, beside what was found before, than the best law tried now. What the
-// recordings tell of the sensors is paid for (occam_factor): else they could imitate much of what small effects do. Not
-// asked beside a law whose other forms were not: sensors would bend to what its form lacks.
-bool sensors_are_inexact(Naming& naming, const std::vector<Trial>& trials, const Data& data, int threads) {
-  if (data.sensors.empty()) return false;
-  const FittedModel& best = *naming.best.model;
-  std::optional<FittedModel> inexact = with_inexact_sensors(best, data, threads);
-  if (!inexact) return false;
-  const double phi = std::min(smallest_dispersion(trials, best), dispersion(*inexact));
-  const Trial* law = best_of(trials, phi);
-  const double known = criterion(best, phi),
-               with_law = law == nullptr ? known : std::min(known, criterion(*law->model, phi));
-  const double score = known - (best.misfit - inexact->misfit) / phi + occam_factor(*inexact, data.sensors, phi);
-  if (score >= with_law - kWorthAnother || a_value_explains(best, score, phi, data, threads)) return false;
-  naming.with_sensors = std::make_shared<const FittedModel>(std::move(*inexact));
-  return true;
-}
+  // What any single law must promise to do better, however well its refit went. Nothing where the linear model does not
+  // tell what a refit brings, in a gross misfit, or where sensors cannot do better than the best of the laws.
+  [[nodiscard]] std::optional<double> least_gain(const Screening& asked) {
+    if (!there_ || excess(exact_) > kGross || by_gain(asked).empty()) return std::nullopt;
+    const double most = there_->misfit - could_reach(*there_);
+    if (most < by_gain(asked).front()->gain + kWorthAnother * dispersion(exact_) || !fitted()) return std::nullopt;
+    const double phi = std::min(dispersion(exact_), dispersion(*model_));
+    return (criterion(exact_, phi) - score(phi) - kWorthAnother) * phi / kOptimistic;
+  }
+
+  // Whether they explain more than the best law tried. What the recordings tell of the sensors is paid for
+  // (occam_factor): else they could imitate much of what small effects do. Not asked beside a law whose other forms were
+  // not: sensors would bend to what its form lacks.
+  [[nodiscard]] bool beat(const std::vector<Trial>& trials) {
+    if (!fitted()) return false;
+    const double phi = std::min(smallest_dispersion(trials, exact_), dispersion(*model_));
+    const Trial* law = best_of(trials, phi);
+    const double known = criterion(exact_, phi),
+                 with_law = law == nullptr ? known : std::min(known, criterion(*law->model, phi));
+    if (score(phi) >= with_law - kWorthAnother) return false;
+    if (!a_value_explains_) a_value_explains_ = a_value_explains(exact_, score(phi), phi, data_, threads_);
+    return !*a_value_explains_;
+  }
+
+  [[nodiscard]] const std::shared_ptr<const FittedModel>& model() const { return model_; }
+
+ private:
+  // Not where that leaves a gross misfit, or promises to.
+  [[nodiscard]] bool fitted() {
+    constexpr int kIterations = 30;
+    if (!there_ || model_ != nullptr) return model_ != nullptr;
+    const bool hopeless = could_reach(*there_) > kGross * there_->residuals;
+    Result<FittedModel> model = hopeless ? fail("") : continue_fit(*there_, inexact_, threads_, kIterations);
+    there_.reset();
+    if (model && excess(*model) <= kGross) model_ = std::make_shared<const FittedModel>(std::move(*model));
+    return model_ != nullptr;
+  }
+  [[nodiscard]] double score(double phi) const {
+    return criterion(exact_, phi) - (exact_.misfit - model_->misfit) / phi + occam_factor(*model_, data_.sensors, phi);
+  }
+
+  const FittedModel& exact_;
+  const Data& data_;
+  Data inexact_;
+  int threads_;
+  std::optional<FittedModel> there_;  ///< not fitted yet, where it can be
+  std::shared_ptr<const FittedModel> model_;
+  std::optional<bool> a_value_explains_;
+};
 
 // A sensor's gain or offset that is no further off than its tolerance lets it be is no fault.
 bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::vector<KnownValue>& sensors) {
@@ -189,7 +220,8 @@ bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::ve
 }
 
 // Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
-// Where none of them does, sensors that are not exact; else the other laws, then pairs.
+// Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
+// the laws come first, and only laws that could do better are refitted.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
@@ -205,11 +237,20 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
     for (Trial& trial : refit(naming.best, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
   };
-  const auto first = static_cast<std::ptrdiff_t>(gross ? singles.size() : nearly_as_promising(asked, singles.size()));
+  InexactSensors sensors(*naming.best.model, data, options.threads);
+  const auto are_inexact = [&] {
+    naming.sensors_are_inexact = sensors.beat(trials);
+    if (naming.sensors_are_inexact) naming.with_sensors = sensors.model();
+    return naming.sensors_are_inexact;
+  };
+  const std::optional<double> least_gain = sensors.least_gain(asked);
+  if (least_gain && by_gain(asked).front()->gain < *least_gain && are_inexact()) return trials;
+  const auto first = static_cast<std::ptrdiff_t>(
+      gross ? singles.size() : nearly_as_promising(asked, singles.size(), least_gain.value_or(0.0)));
   refit_also({singles.begin(), singles.begin() + first});
+  if (least_gain && are_inexact()) return trials;
   if (!one_law_does(trials, naming, data, options)) {
-    naming.sensors_are_inexact = sensors_are_inexact(naming, trials, data, options.threads);
-    if (naming.sensors_are_inexact) return trials;
+    if (are_inexact()) return trials;
     refit_also({singles.begin() + first, singles.end()});
     if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
       refit_also(ranked_pairs(asked, naming.best.model->misfit));
@@ -230,7 +271,10 @@ bool a_value_explains(const FittedModel& model, double score, double phi, const 
   const auto explains = [&](std::size_t k) {
     Data others = data;
     std::erase_if(others.known, [&](const KnownValue& value) { return value.name == ends[k]; });
-    const auto freed = fit_model(with_free_value(model.asset, ends[k]), others, &model, 1);
+    const auto there = fit_model(with_free_value(model.asset, ends[k]), others, &model, 1, 0);
+    if (!there || criterion(*there, phi) - (there->misfit - could_reach(*there)) / phi >= score) return false;
+    constexpr int kIterations = 30;
+    const auto freed = continue_fit(*there, others, 1, kIterations);
     return freed && criterion(*freed, phi) < score;
   };
   return std::ranges::any_of(in_parallel<char>(ends.size(), threads, explains), [](char yes) { return yes != 0; });

@@ -65,7 +65,7 @@ std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most) 
   return starts;
 }
 
-std::size_t nearly_as_promising(const Screening& screening, std::size_t most) {
+std::size_t nearly_as_promising(const Screening& screening, std::size_t most, double least) {
   constexpr std::size_t kLeast = 3;
   constexpr double kShare = 0.5, kFarBehind = 2.0 * kWorthAnother;
   const std::vector<const Variant*> ranked = best_of_each(screening);
@@ -73,6 +73,7 @@ std::size_t nearly_as_promising(const Screening& screening, std::size_t most) {
   while (count < std::min(most, ranked.size())) {
     const double best = ranked.front()->gain, gain = ranked[count]->gain;
     if (count >= kLeast && gain < kShare * best && gain < best - kFarBehind) break;
+    if (count > 0 && gain < least) break;
     ++count;
   }
   return count;

@@ -15,8 +15,8 @@ namespace sealwatch::mismatch {
 [[nodiscard]] std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most);
 
 /// How many of the first `most` ranked laws promise nearly as much as the best, at least three: half as much, or less by
-/// no more than twice what decides between models.
-[[nodiscard]] std::size_t nearly_as_promising(const Screening& screening, std::size_t most);
+/// no more than twice what decides between models. None that promises less than `least`, but for the best.
+[[nodiscard]] std::size_t nearly_as_promising(const Screening& screening, std::size_t most, double least = 0.0);
 
 /// Of the best laws another point of their shape's grid: far from a recording the linearised gain says little about
 /// where a refit ends, and from one start it may end in a hollow beside the best.

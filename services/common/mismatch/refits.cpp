@@ -16,7 +16,6 @@ namespace {
 constexpr int kFirstRound = 8;           // iterations of every refit
 constexpr int kRound = 10, kRounds = 3;  // iterations of those that go on, so often
 constexpr std::size_t kGoOn = 5;         // refits that go on after the first round
-constexpr double kOptimistic = 2.0;      // times what the linear model promises: no search has done better by far
 constexpr double kHopeful = 10.0;        // times the best misfit, in a gross one: further off a refit does not go on,
 constexpr double kNearer = 0.5;          // nor where a round leaves more than this share of the distance to the best
 constexpr double kFar = 100.0;           // times the noise: a model that misses by more says nothing of sizes
@@ -74,12 +73,6 @@ bool lost_its_core(const Refit& refit) {
   return false;
 }
 
-// The least misfit that its search can come to, at best.
-double could_reach(const FittedModel& model) {
-  if (model.optimum.converged) return model.misfit;
-  return model.misfit - kOptimistic * 2.0 * model.optimum.promised;
-}
-
 // Whether a refit goes on: where it may come near the best of them, or what is to beat. Further off than twice what
 // decides it is no alternative to it. In a gross misfit no linear model tells how far down a search leads: there it goes
 // on as long as it comes much nearer to the best.
@@ -118,6 +111,11 @@ std::vector<Trial> trials_of(std::vector<Refit> refits) {
 }
 
 }  // namespace
+
+double could_reach(const FittedModel& model, double optimism) {
+  if (model.optimum.converged) return model.misfit;
+  return model.misfit - optimism * 2.0 * model.optimum.promised;
+}
 
 // A search that ran out of iterations goes on from where it is.
 Trial polished(Trial trial, const Data& data, int threads) {

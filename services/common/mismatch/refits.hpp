@@ -44,6 +44,12 @@ struct RefitOptions {
 [[nodiscard]] std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws,
                                        const Data& data, int threads, const RefitOptions& options = {});
 
+/// Times what the linear model promises: no search has done better by far.
+inline constexpr double kOptimistic = 2.0;
+
+/// The least misfit that its search can come to, at best: `optimism` times what the linear model promises lower.
+[[nodiscard]] double could_reach(const FittedModel& model, double optimism = kOptimistic);
+
 /// A search that ran out of iterations goes on from where it is.
 [[nodiscard]] Trial polished(Trial trial, const Data& data, int threads);
 

@@ -13,13 +13,14 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr int kFirstRound = 8;           // iterations of every refit
+constexpr int kFirstRound = 5;           // iterations of every refit
 constexpr int kRound = 10, kRounds = 3;  // iterations of those that go on, so often
-constexpr std::size_t kGoOn = 5;         // refits that go on after the first round
-constexpr double kHopeful = 10.0;        // times the best misfit, in a gross one: further off a refit does not go on,
-constexpr double kNearer = 0.5;          // nor where a round leaves more than this share of the distance to the best
-constexpr double kFar = 100.0;           // times the noise: a model that misses by more says nothing of sizes
-constexpr double kSmaller = 0.1;         // strength with which one starts again that set out too far
+constexpr std::size_t kGoOn = 8;         // refits that go on after the first round
+// In a gross misfit a refit does not go on that is further off than so many times the best, or than so many times what
+// its linear model promises, nor where a round leaves more than that share of the distance to the best.
+constexpr double kHopeful = 10.0, kNearer = 0.5;
+constexpr double kFar = 100.0;    // times the noise: a model that misses by more says nothing of sizes
+constexpr double kSmaller = 0.1;  // strength with which one starts again that set out too far
 
 // Whether a strength of the laws added last has come to an end of its range: nothing depends on their shapes there.
 bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added) {
@@ -74,24 +75,28 @@ bool lost_its_core(const Refit& refit) {
 }
 
 // Whether a refit goes on: where it may come near the best of them, or what is to beat. Further off than twice what
-// decides it is no alternative to it. In a gross misfit no linear model tells how far down a search leads: there it goes
-// on as long as it comes much nearer to the best.
+// decides it is no alternative to it. In a gross misfit the linear model tells less of how far down a search leads: it is
+// believed to a tenth, and there a refit goes on as long as it also comes much nearer to the best.
 class GoesOn {
  public:
   GoesOn(const FittedModel& best, double to_beat)
       : gross_(excess(best) > kGross),
-        best_(best.misfit),
-        limit_(std::min(best.misfit, to_beat) + 2.0 * kWorthAnother * dispersion(best)) {}
+        best_(std::min(best.misfit, to_beat)),
+        limit_(best_ + 2.0 * kWorthAnother * dispersion(best)) {}
 
   [[nodiscard]] bool at_first(const FittedModel& model) const {
-    return !model.optimum.converged && (gross_ ? model.misfit <= kHopeful * best_ : could_reach(model) <= limit_);
+    return may_come_near(model) && (!gross_ || model.misfit <= kHopeful * best_);
   }
   [[nodiscard]] bool after(const FittedModel& before, const FittedModel& model) const {
     const bool nearer = model.misfit - best_ <= kNearer * std::max(before.misfit - best_, 0.0);
-    return !model.optimum.converged && (gross_ ? nearer : could_reach(model) <= limit_);
+    return may_come_near(model) && (!gross_ || nearer);
   }
 
  private:
+  [[nodiscard]] bool may_come_near(const FittedModel& model) const {
+    return !model.optimum.converged && could_reach(model, gross_ ? kHopeful : kOptimistic) <= limit_;
+  }
+
   bool gross_;
   double best_, limit_;
 };

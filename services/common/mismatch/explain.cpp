@@ -1,17 +1,15 @@
 #include "sealwatch/mismatch/explain.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <tuple>
 
-#include "sealwatch/model/driving_channels.hpp"
 #include "services/common/mismatch/ageing_seal.hpp"
+#include "services/common/mismatch/baseline.hpp"
 #include "services/common/mismatch/between_tests.hpp"
-#include "services/common/mismatch/carry_over.hpp"
 #include "services/common/mismatch/datasheet.hpp"
 #include "services/common/mismatch/drawn_terms.hpp"
 #include "services/common/mismatch/effects.hpp"
@@ -19,33 +17,24 @@
 #include "services/common/mismatch/gross_mismatch.hpp"
 #include "services/common/mismatch/held_out.hpp"
 #include "services/common/mismatch/naming.hpp"
-#include "services/common/mismatch/noise.hpp"
 #include "services/common/mismatch/pieces.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/proven_laws.hpp"
 #include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/remarks.hpp"
 #include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/time_budget.hpp"
 #include "services/common/mismatch/tolerance.hpp"
 #include "services/common/mismatch/trace.hpp"
-#include "services/common/mismatch/unrecorded_input.hpp"
+#include "services/common/mismatch/verdict.hpp"
 #include "services/common/mismatch/why_none.hpp"
-#include "services/common/mismatch/windows.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kExplainedAtLeast = 0.5;  // of the excess misfit, before a mismatch counts as explained
-constexpr double kSmallestP = 1e-300;      // that is told: the tail's own digits end there
-constexpr double kHeldOutAgrees = 1.5;     // noise-normalised rms of a channel: the noise's own estimate is off by less
-constexpr double kSearchShare = 0.75;      // of the time limit, before what was found is proven and told
-constexpr std::size_t kMostToCarryOver = 6;
-constexpr double kFarOff = 1e4;         // mean square of a hundred times the noise: evidence abounds
-constexpr double kEnoughRows = 8000.0;  // of windows, where it is far off
-constexpr double kEvidenceLeft = 0.1;   // of the evidence against the model, or so much left
-
-// -ln p, to the smallest p that a double holds.
-double evidence(double p_value) { return -std::log(std::max(p_value, kSmallestP)); }
+constexpr double kHeldOutAgrees = 1.5;  // noise-normalised rms of a channel: the noise's own estimate is off by less
+constexpr double kSearchShare = 0.75;   // of the time limit, before what was found is proven and told
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -56,59 +45,55 @@ class Analysis {
         holdout_(std::move(holdout)),
         options_(options),
         progress_(progress),
-        deadline_(options.cancel) {
-    fit_.deadline = holdout_.deadline = &deadline_;
+        time_(options.time_limit_s, options.cancel) {
+    fit_.deadline = holdout_.deadline = &time_.deadline();
   }
 
   [[nodiscard]] Result<Explanation> run() {
     Result<Explanation> result = analyse();
-    if (deadline_.cancelled()) return fail("the analysis was called off");
-    if (result && deadline_.was_met()) say_what_was_cut(*result);
+    if (time_.deadline().cancelled()) return fail("the analysis was called off");
+    if (result) std::ranges::copy(time_.not_asked(), std::back_inserter(result->not_asked));
+    if (result && time_.deadline().was_met()) say_what_was_cut(*result);
     return result;
   }
 
  private:
   [[nodiscard]] Result<Explanation> analyse() {
-    allow(kSearchShare);
+    time_.allow(kSearchShare);
     result_.asset_id = asset_.asset_id;
     result_.model = asset_.model;
     result_.fit_recordings = fit_.names;
     result_.holdout_recordings = holdout_.names;
     if (auto gross = explain_gross_mismatch(asset_, fit_, holdout_, options_, progress_)) return std::move(*gross);
-    if (const Status status = fit_baseline(); !status) return fail(status.error());
+    tell("fitting the model as it is", 0.02);
+    Result<Baseline> baseline = fit_baseline(asset_, fit_, holdout_, options_, time_);
+    if (!baseline) return fail(baseline.error());
+    take_up(std::move(*baseline));
     if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
     if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
-    if (!why_none_ && in_time("whether something changed between the tests")) look_for_a_change();
+    if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
     if (!why_none_ && seal_) say_what_the_seal_did();
-    if (!why_none_ && in_time("the values that the asset file fixes")) ask_the_datasheet();
-    allow(1.0);
+    if (!why_none_ && time_.in_time("the values that the asset file fixes")) ask_the_datasheet();
+    time_.allow(1.0);
     if (why_none_) best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_};
     if (!best_.effects.empty()) {
       tell("proving on held-out recordings", 0.75);
       prove();
     }
-    if (!lacks_a_pressure() && !why_none_ && was_all_asked()) look_again();
+    if (!lacks_a_pressure() && !why_none_ && time_.not_asked().empty()) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
-    allow(1.0);
-    if (in_time("a picture of what is missing"))
+    time_.allow(1.0);
+    if (time_.in_time("a picture of what is missing"))
       draw_missing_terms(*baseline_, tried_.effects.empty() ? best_ : tried_, prepared(fit_), !windowed(), result_);
     tell("done", 1.0);
     return std::move(result_);
   }
 
-  // Work may go on until this share of the time limit is over.
-  void allow(double share) {
-    const std::chrono::duration<double> elapsed = Deadline::Clock::now() - begin_;
-    deadline_.set_in(share * options_.time_limit_s - elapsed.count());
-  }
-  // What the report rests on is done whatever time it takes.
-  void allow_what_is_needed() { deadline_.set_in(std::numeric_limits<double>::infinity()); }
-
-  [[nodiscard]] bool was_all_asked() const { return result_.not_asked.empty(); }
-  bool in_time(std::string step) {
-    if (!deadline_.passed()) return true;
-    result_.not_asked.push_back(std::move(step));
-    return false;
+  void take_up(Baseline baseline) {
+    baseline_ = std::move(baseline.model);
+    window_s_ = baseline.window_s;
+    input_swings_ = baseline.input_swings;
+    result_.notes = std::move(baseline.notes);
   }
 
   // In tests of different days first beside a seal of its own in each, then in common from what was found there, unless
@@ -146,7 +131,7 @@ class Analysis {
         std::ranges::copy(data.sensors, std::back_inserter(fit_.known));
         baseline_ = again->baseline;
       }
-      if (again || !deadline_.passed())
+      if (again || !time_.deadline().passed())
         naming = std::move(again);
       else
         naming->not_asked.emplace_back("what was found beside sensors within their tolerances");
@@ -154,16 +139,16 @@ class Analysis {
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
     say_how_likely_by_noise(naming_.first);
-    std::ranges::copy(naming_.not_asked, std::back_inserter(result_.not_asked));
+    time_.add_not_asked(naming_.not_asked);
     // The best of a search that was cut: what it leaves has not been looked at.
     if (!naming_.not_asked.empty() && !naming_.best.effects.empty()) {
-      allow(1.0);
+      time_.allow(1.0);
       auto last = screen(*naming_.best.model, prepared(fit_), {.seed = options_.seed, .threads = options_.threads});
       if (last)
         naming_.last = std::move(*last);
       else
         naming_.best = {{}, baseline_};
-      allow(kSearchShare);
+      time_.allow(kSearchShare);
     }
     best_ = naming_.best;
     if (!seal_ || !result_.statistically_significant || !is_preferred(*seal_, best_)) {
@@ -210,8 +195,8 @@ class Analysis {
 
   // The model follows the recordings, but nothing can be asked of it: no law, no test, no power.
   Result<Explanation> cannot_look(const Error& why) {
-    why_none_ = in_time("what is missing") ? cannot_be_asked(why) : time_was_up();
-    allow_what_is_needed();
+    why_none_ = time_.in_time("what is missing") ? cannot_be_asked(why) : time_was_up();
+    time_.allow_what_is_needed();
     result_.statistically_significant = excess(*baseline_) > kGross;  // seen without any law
     if (result_.statistically_significant) result_.p_value = kSmallestP;
     naming_ = {.baseline = baseline_, .best = {{}, baseline_}, .trials = {{{}, baseline_}}, .first = {}, .last = {}};
@@ -231,7 +216,7 @@ class Analysis {
     baseline_ = seal.baseline;
     naming_ = seal.naming;
     best_ = naming_.best;
-    std::ranges::copy(naming_.not_asked, std::back_inserter(result_.not_asked));
+    time_.add_not_asked(naming_.not_asked);
   }
 
   // Why the recordings differ though no physics is missing: something changed from test to test.
@@ -263,7 +248,7 @@ class Analysis {
 
   // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it.
   void ask_the_datasheet() {
-    if (best_.effects.empty() || (windowed() && !by_measurements())) return;
+    if (best_.effects.empty() || (windowed() && !by_measurements(asset_, fit_))) return;
     tell("asking the values that the asset file fixes", 0.7);
     const Data data = prepared(fit_);
     const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};
@@ -337,98 +322,12 @@ class Analysis {
   // Driven by the flow, the circuit takes chamber B's pressure as the reservoir's where it is not recorded. If that
   // shows, no law is asked for what an unrecorded pressure did.
   [[nodiscard]] bool lacks_a_pressure() const {
-    return windowed() && by_measurements() && !recorded(ChannelRole::pressure_down) && excess(*baseline_) > kGross;
+    return windowed() && by_measurements(asset_, fit_) && !recorded(ChannelRole::pressure_down) &&
+           excess(*baseline_) > kGross;
   }
 
-  [[nodiscard]] bool by_measurements() const { return !measured_inputs(asset_, fit_.samples.front()).empty(); }
   [[nodiscard]] bool recorded(ChannelRole role) const {
     return find_series(fit_.samples.front(), plant_or_default(asset_.model), role) != nullptr;
-  }
-
-  Status fit_baseline() {
-    tell("fitting the model as it is", 0.02);
-    const auto simulation = PlantSimulation::create(asset_, fit_.samples.front());
-    if (!simulation) return fail(simulation.error());
-    const std::vector<std::string> channels((*simulation)->channels().begin(), (*simulation)->channels().end());
-    result_.notes = find_noise(fit_, channels);
-    static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
-    holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
-    window_s_ = window_of(asset_, fit_.samples.front());
-    if (windowed() && by_measurements()) fit_.resolution = holdout_.resolution = kMeasuredInputResolution;
-    Result<FittedModel> model = fit_model(asset_, prepared(fit_), nullptr, options_.threads);
-    if (model && windowed() && by_measurements()) {
-      add_input_noise(holdout_, *model, prepared(fit_), options_.seed);
-      add_input_noise(fit_, *model, prepared(fit_), options_.seed);
-      model = fit_model(model->asset, prepared(fit_), &*model, options_.threads);
-    }
-    if (!model && !deadline_.cancelled() && !in_time("the model's parameters: they stay as the asset file has them")) {
-      allow_what_is_needed();
-      const FittedModel nowhere;
-      model = fit_model(asset_, prepared(fit_), &nowhere, options_.threads, 0);
-      allow(0.0);
-    }
-    if (!model) {
-      Error error = model.error();
-      if (error.file.empty()) error.file = first_not_simulated();
-      error.advice =
-          "the model cannot be simulated at the start values: check the asset's parameters against the recording";
-      return fail(std::move(error));
-    }
-    if (!windowed() && !deadline_.passed()) model = weighed_by_what_is_recorded(std::move(*model));
-    if (!model) return fail(model.error());
-    model = of_fewer_windows(std::move(*model));
-    if (!model) return fail(model.error());
-    if (!deadline_.passed()) model = with_tolerances(std::move(*model));
-    baseline_ = std::make_shared<const FittedModel>(std::move(*model));
-    return {};
-  }
-
-  // Far off, the model's error decides, and some of the windows show it as well as all.
-  Result<FittedModel> of_fewer_windows(FittedModel model) {
-    double rows = 0.0;
-    for (const TimeSeries& samples : fit_.samples) rows += static_cast<double>(samples.time_s.size());
-    const auto step = static_cast<std::size_t>(rows / kEnoughRows);
-    if (!windowed() || excess(model) <= kFarOff || step < 2 || deadline_.passed()) return model;
-    fit_.window_step = step;
-    return fit_model(model.asset, prepared(fit_), nullptr, options_.threads);
-  }
-
-  // Fitted again with every fixed value that shows as an unknown within its tolerance.
-  FittedModel with_tolerances(FittedModel model) {
-    const PlantDescription& plant = model.problem.recordings.front().simulation->plant();
-    fit_.known = that_show(known_values(asset_, plant), model, prepared(fit_), options_.threads);
-    if (fit_.known.empty()) return model;
-    Result<FittedModel> again = fit_model(model.asset, prepared(fit_), &model, options_.threads);
-    if (again) return std::move(*again);
-    fit_.known.clear();
-    return model;
-  }
-
-  // The recording on which the model fails by itself, at the start values or while it is fitted; "" where none does.
-  [[nodiscard]] std::string first_not_simulated() const {
-    for (std::size_t k = 0; k < fit_.samples.size(); ++k)
-      if (!fit_model(asset_, prepared(only(fit_, k)), nullptr, options_.threads)) return fit_.names[k];
-    return {};
-  }
-
-  // Fitted again with less weight where the input's course between its samples decides.
-  Result<FittedModel> weighed_by_what_is_recorded(FittedModel model) {
-    if (!holdout_.samples.empty())
-      if (const auto held_out = fit_model(with_fixed_parameters(model.asset), holdout_, nullptr, options_.threads))
-        holdout_.weight = unrecorded_input(*held_out, holdout_).weight;
-    UnrecordedInput unrecorded = unrecorded_input(model, fit_);
-    fit_.weight = std::move(unrecorded.weight);
-    fit_.resolution = std::max(fit_.resolution, unrecorded.resolution);
-    input_swings_ = unrecorded.resolution > 0.0;
-    if (fit_.weight.empty()) return model;
-    Result<FittedModel> again = fit_model(model.asset, fit_, &model, options_.threads);
-    if (std::string note = again ? unrecorded_input_in_words(*again) : ""; !note.empty()) {
-      if (unrecorded.resolution > 0.0)
-        note += " That may feign laws: below " + number(100.0 * unrecorded.resolution) +
-                " % of a size that matters none is asked for.";
-      result_.notes.push_back(std::move(note));
-    }
-    return again;
   }
 
   [[nodiscard]] const PlantDescription& plant() const {
@@ -438,90 +337,14 @@ class Analysis {
   [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_}; }
   [[nodiscard]] Data prepared(const Data& data) const { return in_windows(data, window_s_); }
 
-  [[nodiscard]] CarryOver carry_over(const HeldOut& held_out) {
-    return {held_out, {{}, baseline_}, [this](const Trial& trial, std::size_t law) { return without(trial, law); }};
-  }
+  [[nodiscard]] ToProve to_prove() const { return {held_out(), naming_, baseline_}; }
 
-  // Of the likeliest explanations the one that predicts the fitted recordings best, each from the others: those that were
-  // kept aside take no part in that. The first is asked whatever time it takes, so that a search that was cut can be
-  // proven.
-  void choose_what_carries_over() {
-    if (fit_.samples.size() < 2) return;
-    allow_what_is_needed();
-    const Data none;
-    const CarryOver from_others = carry_over({fit_, none, window_s_, options_});
-    std::vector<std::pair<double, Trial>> order;  // by the fall of the misfit that they predict
-    for (const Trial& trial : likeliest(naming_, kMostToCarryOver)) {
-      const Worth worth = from_others.of_whole(trial);
-      if (worth.whole.low > 0.0) order.emplace_back(worth.whole.gain * dispersion(*trial.model), trial);
-      allow(1.0);
-      if (!in_time("which other explanation carries over better")) break;
-    }
-    std::ranges::stable_sort(order, std::greater<>(), &std::pair<double, Trial>::first);
-    allow_what_is_needed();
-    for (auto& [gain, trial] : order) {
-      const Worth worth = from_others.of(trial);
-      allow(1.0);
-      if (!worth.carries_over()) {
-        if (!in_time("whether each law of another explanation carries over")) return;
-        continue;
-      }
-      best_ = std::move(trial);
-      proven_ = holdout_.samples.empty();
-      if (proven_) note_not_compared({.gain = {}, .not_compared = worth.not_compared});
-      return;
-    }
-  }
-
-  // What does not carry over, as a whole and by each law, gives way to the likeliest explanation with fewer laws.
-  void prove_in_gross_misfit() {
-    choose_what_carries_over();
-    if (proven_) return;
-    allow_what_is_needed();
-    const CarryOver kept_aside = carry_over(held_out());
-    while (!best_.effects.empty()) {
-      const Worth worth = kept_aside.of(best_);
-      if (worth.carries_over()) {
-        proven_ = true;
-        return note_not_compared({.gain = {}, .not_compared = worth.not_compared});
-      }
-      const std::size_t least = worth.of_law.empty() ? best_.effects.size() - 1 : worth.least();
-      result_.notes.push_back(does_not_help(best_.effects[least]));
-      const std::vector<Trial> fewer = likeliest(naming_, 1, best_.effects.size() - 1);
-      best_ = fewer.empty() ? Trial{{}, baseline_} : fewer.front();
-    }
-  }
-
-  // Effects that do not help on held-out recordings are taken back, the last first.
   void prove() {
-    if (excess(*best_.model) > kGross) return prove_in_gross_misfit();
-    while (!best_.effects.empty()) {
-      Trial fewer = without_last(best_);
-      const Result<BlockGains> blocks = held_out().gains(fewer, best_);
-      if (blocks && !blocks->gain.empty() &&
-          gain_interval(*blocks, dispersion(*best_.model), options_.seed).low > 0.0) {
-        proven_ = true;
-        note_not_compared(*blocks);
-        return;
-      }
-      result_.notes.push_back(why_not_proven(blocks));
-      best_ = std::move(fewer);
-    }
-  }
-
-  static std::string does_not_help(const Effect& effect) {
-    return "A law that fits better (" + law_in_words(law_at(effect)) +
-           ") does not improve the held-out recordings: it is not claimed.";
-  }
-
-  [[nodiscard]] std::string why_not_proven(const Result<BlockGains>& blocks) const {
-    const std::string law = "A law that fits better (" + law_in_words(law_at(best_.effects.back())) + ") ";
-    if (!blocks)
-      return law + "cannot be simulated on the held-out recordings (" + reason_in_words(blocks.error()) +
-             "): it is not claimed.";
-    if (!blocks->gain.empty()) return does_not_help(best_.effects.back());
-    if (blocks->not_compared.empty()) return "With one recording nothing can be held out: what fits it is not claimed.";
-    return law + "cannot be compared with anything on the held-out recordings: it is not claimed.";
+    ProvenLaws laws = mismatch::prove(to_prove(), best_, time_);
+    best_ = std::move(laws.best);
+    proven_ = laws.proven;
+    std::ranges::move(laws.notes, std::back_inserter(result_.notes));
+    note_not_compared({.gain = {}, .not_compared = std::move(laws.not_compared)});
   }
 
   void note_not_compared(const BlockGains& blocks) {
@@ -532,27 +355,11 @@ class Analysis {
         result_.notes.push_back(note);
   }
 
-  Trial without_last(const Trial& trial) { return without(trial, trial.effects.size() - 1); }
-
-  Trial without(const Trial& trial, std::size_t slot) {
-    Trial fewer{.effects = trial.effects, .model = baseline_};
-    fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
-    if (fewer.effects.empty()) return fewer;
-    for (const Trial& known : naming_.trials)
-      if (same_effects(known.effects, fewer.effects)) fewer.model = known.model;
-    if (fewer.model != baseline_) return fewer;
-    AssetConfig asset = trial.model->asset;
-    asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));
-    Result<FittedModel> model = fit_model(asset, prepared(fit_), trial.model.get(), options_.threads);
-    if (model) fewer.model = std::make_shared<const FittedModel>(std::move(*model));
-    return fewer;
-  }
-
   // What is left beside a law says that something is left, not what, where it could as well sit in three other elements
   // or is no more than the law's own form may be off by.
   void describe_what_was_found() {
     const std::optional<CarryOver> carry_over = excess(*best_.model) > kGross && !best_.effects.empty()
-                                                    ? std::optional(this->carry_over(held_out()))
+                                                    ? std::optional(carry_over_of(to_prove(), held_out()))
                                                     : std::nullopt;
     while (!best_.effects.empty()) {
       result_.effects = describe_effects(naming_, best_, prepared(fit_), options_, carry_over ? &*carry_over : nullptr);
@@ -562,15 +369,15 @@ class Analysis {
       result_.notes.push_back(remainder->sentence);
       const auto slot = std::ranges::find_if(
           best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder->law); });
-      best_ = without(best_, static_cast<std::size_t>(slot - best_.effects.begin()));
+      best_ = without(best_, static_cast<std::size_t>(slot - best_.effects.begin()), to_prove());
     }
   }
 
   Status finish() {
     tell("writing down what was found", 0.9);
     describe_what_was_found();
-    if (!best_.effects.empty()) static_cast<void>(in_time("every alternative to the laws found"));
-    allow_what_is_needed();
+    if (!best_.effects.empty()) static_cast<void>(time_.in_time("every alternative to the laws found"));
+    time_.allow_what_is_needed();
     const Trial before{{}, baseline_};
     for (std::size_t k = 0; k < fit_.samples.size(); ++k) {
       if (!windowed()) {
@@ -675,22 +482,19 @@ class Analysis {
     return true;
   }
 
-  // Of the misfit above the noise.
   [[nodiscard]] double share_explained_by(const FittedModel& model) const {
-    const double before = baseline_->misfit / baseline_->residuals - 1.0;
-    const double after = model.misfit / model.residuals - 1.0;
-    return before > 0.0 ? std::clamp(1.0 - std::max(after, 0.0) / before, 0.0, 1.0) : 0.0;
+    return share_explained(baseline_->misfit / baseline_->residuals, model.misfit / model.residuals);
   }
   [[nodiscard]] double explained_share() const { return share_explained_by(*best_.model); }
 
-  // Nothing significant is left, or at least half of the excess or nine tenths of the evidence is gone: the noise's own
-  // estimate is not exact enough for the first two alone where the effect is small.
   [[nodiscard]] bool explains() const {
-    const bool nothing_left = leaves_nothing();
-    const bool most_gone = explained_share() >= kExplainedAtLeast ||
-                           (naming_.best.effects.size() == best_.effects.size() &&
-                            evidence(naming_.last.p_value) <= kEvidenceLeft * evidence(result_.p_value));
-    return proven_ && !best_.effects.empty() && (nothing_left || most_gone);
+    return mismatch::explains({.any = !best_.effects.empty(),
+                               .proven = proven_,
+                               .leave_nothing = leaves_nothing(),
+                               .share = explained_share(),
+                               .as_searched = naming_.best.effects.size() == best_.effects.size(),
+                               .p_before = result_.p_value,
+                               .p_after = naming_.last.p_value});
   }
 
   // Laws that fit better and explain too little say where to look; a name for it they are not.
@@ -738,31 +542,27 @@ class Analysis {
   }
 
   void decide() {
-    if (why_none_) {
-      result_.verdict = Verdict::undetermined;
-      return;
-    }
-    if (!result_.statistically_significant) {
-      const std::vector<const Power*> blind = could_not_show(result_.power);
-      result_.verdict = blind.empty() && all_compared_ ? Verdict::consistent : Verdict::undetermined;
-      for (const Power* one : blind)
-        result_.notes.push_back("These recordings would show " + law_in_words(one->what) + " only from " +
-                                number(one->minimum_detectable) + " " + one->unit + "; an engineer would care from " +
-                                number(one->significant) + " " + one->unit + ".");
-      return;
-    }
-    const bool explained = explains();
-    result_.verdict = explained ? Verdict::mismatch : Verdict::undetermined;
-    if (explained && naming_.last.p_value <= options_.false_alarm_rate)
+    const std::vector<const Power*> blind = could_not_show(result_.power);
+    const Findings findings{.no_law_for_a_reason = why_none_.has_value(),
+                            .differs = result_.statistically_significant,
+                            .something_hides = !blind.empty(),
+                            .all_compared = all_compared_,
+                            .explained = explains()};
+    result_.verdict = verdict_of(findings);
+    if (result_.verdict == Verdict::mismatch && naming_.last.p_value <= options_.false_alarm_rate)
       result_.notes.emplace_back("A remainder beyond the noise stays unexplained.");
+    if (why_none_ || findings.differs) return;
+    for (const Power* one : blind)
+      result_.notes.push_back("These recordings would show " + law_in_words(one->what) + " only from " +
+                              number(one->minimum_detectable) + " " + one->unit + "; an engineer would care from " +
+                              number(one->significant) + " " + one->unit + ".");
   }
 
   const AssetConfig& asset_;
   Data fit_, holdout_;
   const ExplainOptions& options_;
   const Progress& progress_;
-  Deadline deadline_;
-  Deadline::Clock::time_point begin_ = Deadline::Clock::now();
+  TimeBudget time_;
   std::shared_ptr<const FittedModel> baseline_;
   std::optional<AgeingSeal> seal_;  ///< each test has its own, and nothing in common is preferred
   Naming naming_;

@@ -13,9 +13,9 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr int kFirstRound = 5;           // iterations of every refit
+constexpr int kFirstRound = 8;           // iterations of every refit
 constexpr int kRound = 10, kRounds = 3;  // iterations of those that go on, so often
-constexpr std::size_t kGoOn = 8;         // refits that go on after the first round
+constexpr std::size_t kGoOn = 5;         // refits that go on after the first round
 // In a gross misfit a refit does not go on that is further off than so many times the best, or than so many times what
 // its linear model promises, nor where a round leaves more than that share of the distance to the best.
 constexpr double kHopeful = 10.0, kNearer = 0.5;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "services/common/equations/tape.hpp"
-#include "services/common/model/start_values.hpp"
+#include "services/common/model/first_value.hpp"
 
 namespace sealwatch::equations {
 namespace {

@@ -175,18 +175,6 @@ TEST(FmuStart, OneThatIsShownStartsWhereTheRecordingDoes) {
   EXPECT_EQ(simulation->start().initial_state, std::vector{7.0});
 }
 
-TEST(FmuStart, AChannelThatMovesStartsAtItsFirstSampleAndOneThatRestsAtItsMean) {
-  ImportedUnit unit(mixed("fmu_mixed2"));
-  unit.replace(", start: fmu,", ", start: [x, \"0.0\"],");
-  TimeSeries recorded = samples(5, 0.1, {"x"});
-  recorded.channels.back().values = {7.0, 5.0, 1.0, -5.0, -13.0};
-  EXPECT_EQ(unit.simulation(recorded)->start().initial_state, std::vector{7.0});
-  recorded.channels.back().noise_std = 0.1;
-  EXPECT_EQ(unit.simulation(recorded)->start().initial_state, std::vector{7.0});
-  recorded.channels.back().values = {7.1, 6.9, 7.0, 5.0, 1.0};
-  EXPECT_NEAR(unit.simulation(recorded)->start().initial_state[0], 7.0, 1e-12);
-}
-
 TEST(FmuEnd, OneAtTheLastSampleIsNoFault) {
   for (const Choice choice : {Choice::model_exchange, Choice::co_simulation})
     for (const char* binary : kBinaries) {

@@ -12,6 +12,8 @@
 // What cannot be made again is an alarm (quarantine, "damaged") until somebody has seen it. A consumed input is only an
 // id that prevents doubles; a record of acts shows by itself that it was changed.
 #include <chrono>
+#include <stdexcept>
+#include <string_view>
 
 #include "sealwatch/message/outside.hpp"
 #include "services/common/message/json.hpp"
@@ -133,8 +135,13 @@ void Journal::Database::mend() {
   know_damaged_tests();
 }
 
-void Journal::Database::make_indexes_anew() {
+// What an index left out may have been written again: then two rows have one id, and no index of them can be made. Such a
+// file is made again as a whole.
+void Journal::Database::make_indexes_anew() try {
   for (const std::string table : {"outputs", "inputs"}) sql << (is_file() ? "REINDEX " : "REINDEX TABLE ") + table;
+} catch (const soci::soci_error& error) {
+  if (std::string_view(error.what()).find("UNIQUE constraint failed") == std::string_view::npos) throw;
+  throw std::runtime_error("malformed: a message stands in two rows");
 }
 
 void Journal::Database::mend_positions() {

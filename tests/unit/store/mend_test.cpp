@@ -364,6 +364,42 @@ TEST_F(Mend, ATurnedBitOfTheVersionIsNoNewerVersion) {
   EXPECT_FALSE(open().writer_id().empty());
 }
 
+/// A message that an index left out may have been written once more before anybody looked.
+TEST_F(Mend, AMessageInTwoRowsHasTheFileMadeAgain) {
+  const std::filesystem::path file = place_.directory() / "journal.db";
+  long long page = 0, size = 0;
+  {
+    soci::session sql(place_.connection());
+    sql << "SELECT rootpage FROM sqlite_master WHERE name = 'sqlite_autoindex_inputs_1'", soci::into(page);
+    sql << "PRAGMA page_size", soci::into(size);
+    sql << "PRAGMA wal_checkpoint(TRUNCATE)";
+  }
+  std::string bytes(static_cast<std::size_t>(size), ' ');
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  stream.seekg((page - 1) * size);
+  stream.read(bytes.data(), size);
+  const std::size_t place = bytes.find("features 1");
+  ASSERT_NE(place, std::string::npos);
+  bytes[place + 9] = '0';  // one bit
+  stream.seekp((page - 1) * size);
+  stream.write(bytes.data(), size);
+  stream.close();
+  place_.execute(
+      "INSERT INTO inputs(topic, writer_id, sequence, message_id, asset_id, pst_id, received, consumed)"
+      " SELECT topic, writer_id, sequence, message_id, asset_id, pst_id, received, 1 FROM inputs NOT INDEXED"
+      " WHERE message_id = 'features 1'");
+  {
+    Journal journal = open();
+    Status looked;
+    for (int looks = 0; looked && looks < 30; ++looks)
+      if (const auto more = journal.check_some(); !more) looked = fail(more.error());
+    EXPECT_FALSE(looked);
+  }
+  Journal journal = open();
+  EXPECT_TRUE(std::filesystem::exists(file.string() + ".damaged-1"));
+  EXPECT_THAT(journal.quarantine().value(), SizeIs(1));
+}
+
 /// In the middle of a page that SQLite must read at the start, and in its header.
 TEST_F(Mend, AFileThatIsNoDatabaseAnyMoreIsMadeAgain) {
   for (const std::streamoff place : {std::streamoff{0}, std::streamoff{1024 + 1}, std::streamoff{20}}) {

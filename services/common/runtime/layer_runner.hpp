@@ -59,6 +59,8 @@ struct RunnerOptions {
   /// Outputs of which layers keep the past: beyond it, the assets used longest ago forget theirs, which is recalled when
   /// it is needed again. Of twenty years of monthly tests an asset has 250 to 750.
   std::size_t most_recalled = 50'000;
+  /// Used so recently, an asset keeps its past all the same: a test under way is cut after a minute without samples.
+  std::chrono::milliseconds least_awake{120'000};
   /// After so long an asset is recalled all the same: time passes for it too, and its tests become overdue.
   std::chrono::milliseconds longest_sleep{3'600'000};
   /// The layer of an asset, where nothing is under way in it.
@@ -260,16 +262,16 @@ class LayerRunner {
   std::deque<std::string> to_recall_;
   struct Remembered {
     std::size_t outputs = 0;
-    std::uint64_t used = 0;  ///< when, among all uses
+    std::chrono::steady_clock::time_point used{};  ///< the last time
   };
   std::map<std::string, Remembered> remembered_;  ///< assets whose past their layers have, once it was recalled
   std::size_t outputs_remembered_ = 0;            ///< outputs, of all of them together
-  std::uint64_t uses_ = 0;
   std::map<std::string, std::chrono::steady_clock::time_point> asleep_;  ///< recalled once, and forgotten since
-  std::deque<std::string> fell_asleep_;                                  ///< in the order in which they did
-  std::map<std::string, std::vector<PastAct>> past_acts_;                ///< of forgotten assets
-  bool all_checked_ = false;                                             ///< of the journal's outputs
-  std::chrono::steady_clock::time_point look_back_next_{};               ///< under load, not before
+  std::deque<std::pair<std::string, std::chrono::steady_clock::time_point>> fell_asleep_;  ///< in that order
+  std::chrono::steady_clock::time_point forget_next_{};     ///< where nothing more could be, not before
+  std::map<std::string, std::vector<PastAct>> past_acts_;   ///< of forgotten assets
+  bool all_checked_ = false;                                ///< of the journal's outputs
+  std::chrono::steady_clock::time_point look_back_next_{};  ///< under load, not before
   ResendQueue resends_;
   Admission admission_;
   bool took_local_ = false;  ///< of the running batch: inputs that came from no bus

@@ -42,7 +42,7 @@ Status LayerRunner::restore_past() {
 }
 
 Status LayerRunner::recall(const std::string& asset_id) {
-  remembered_[asset_id].used = ++uses_;
+  remembered_[asset_id].used = steady_clock::now();
   if (asleep_.erase(asset_id) > 0) return restore_layer(asset_id);
   if (forgotten_.erase(asset_id) == 0) return {};
   std::vector<PastAct> acts;
@@ -88,15 +88,16 @@ void LayerRunner::note_remembered(const std::string& asset_id) {
 
 /// What waits for anything, be it for an answer, keeps its past: its time passes, and it is told of soon.
 Status LayerRunner::forget_some() {
-  if (outputs_remembered_ <= options_.most_recalled) return {};
-  std::vector<std::pair<std::uint64_t, std::string>> by_use;
+  const auto begin = steady_clock::now();
+  if (outputs_remembered_ <= options_.most_recalled || begin < forget_next_) return {};
+  std::vector<std::pair<steady_clock::time_point, std::string>> by_use;
   for (const auto& [asset_id, past] : remembered_)
-    if (past.outputs > 0) by_use.emplace_back(past.used, asset_id);
+    if (past.outputs > 0 && past.used + options_.least_awake <= begin) by_use.emplace_back(past.used, asset_id);
   std::ranges::sort(by_use);
   // Some more than has to be: the next look is not the next message's.
   const std::size_t enough = options_.most_recalled - options_.most_recalled / 10;
   for (const auto& [used, asset_id] : by_use) {
-    if (outputs_remembered_ <= enough) break;
+    if (outputs_remembered_ <= enough) return {};
     if (lanes_.at_rest(asset_id) == nullptr) continue;
     const auto open = journal_.open_inputs_of(asset_id);
     if (!open) return fail(open.error());
@@ -104,19 +105,21 @@ Status LayerRunner::forget_some() {
     lanes_.begin_anew(asset_id);
     outputs_remembered_ -= remembered_.at(asset_id).outputs;
     remembered_.at(asset_id).outputs = 0;
-    asleep_[asset_id] = steady_clock::now();
-    fell_asleep_.push_back(asset_id);
+    asleep_[asset_id] = begin;
+    fell_asleep_.emplace_back(asset_id, begin);
     holds_memory_ = true;
   }
+  const auto end = steady_clock::now();
+  forget_next_ = end + kShare * (end - begin);
   return {};
 }
 
 Status LayerRunner::wake_longest_asleep() {
   while (!fell_asleep_.empty()) {
-    const std::string asset_id = fell_asleep_.front();
-    const auto since = asleep_.find(asset_id);
-    const bool sleeps = since != asleep_.end();
-    if (sleeps && steady_clock::now() < since->second + options_.longest_sleep) return {};
+    const auto [asset_id, since] = fell_asleep_.front();
+    const auto asleep = asleep_.find(asset_id);
+    const bool sleeps = asleep != asleep_.end() && asleep->second == since;  // and was not awake in between
+    if (sleeps && steady_clock::now() < since + options_.longest_sleep) return {};
     fell_asleep_.pop_front();
     if (sleeps) return recall(asset_id);
   }
@@ -163,7 +166,8 @@ Status LayerRunner::look_back_in_passing(bool is_idle) {
   const bool recalls = !to_recall_.empty();
   const auto begin = steady_clock::now();
   if (begin < look_back_next_ && !(is_idle && recalls)) return {};
-  const Status looked = all_checked_ ? wake_longest_asleep() : recalls ? look_back() : look_back(kInPassing);
+  Status looked = wake_longest_asleep();
+  if (looked && !all_checked_) looked = recalls ? look_back() : look_back(kInPassing);
   const auto end = steady_clock::now();
   look_back_next_ = end + std::max<steady_clock::duration>(kPause, kShare * (end - begin));
   return looked;

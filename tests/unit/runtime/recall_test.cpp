@@ -40,6 +40,7 @@ RunnerOptions lazy() {
 RunnerOptions forgetful() {
   RunnerOptions options = lazy();
   options.most_recalled = 10;
+  options.least_awake = milliseconds(0);
   return options;
 }
 

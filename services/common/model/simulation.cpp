@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/driving_channels.hpp"

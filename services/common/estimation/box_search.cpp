@@ -31,6 +31,7 @@ double inside(const Unknown& unknown, double value) {
 struct BoxSearch::LinearModel {
   Eigen::MatrixXd gram;
   Eigen::VectorXd gradient, low, high;
+  bool has_kept = false;  ///< some derivatives are those of an earlier point
 
   [[nodiscard]] Eigen::VectorXd step(double damping, double radius = kInfinite) const {
     return minimum_in_box(gram, gradient, low.cwiseMax(-radius), high.cwiseMin(radius), damping);
@@ -45,9 +46,9 @@ BoxSearch::BoxSearch(const PemProblem& problem, PemPoint& point, SideBySide& cos
   for (const std::vector<double>& own : point.own) size_ += static_cast<Eigen::Index>(own.size());
 }
 
-double BoxSearch::evaluate() {
+double BoxSearch::evaluate(bool may_keep) {
   ++iterations_;
-  costs_.PrepareForEvaluation(true, true);
+  costs_.evaluate(may_keep);
   if (costs_.failed()) return kInfinite;
   double sum = 0.0;
   for (const RecordingCost* cost : costs_.costs()) sum += 0.5 * cost->compressed().rightCols(1).squaredNorm();
@@ -71,6 +72,7 @@ BoxSearch::LinearModel BoxSearch::linear_model() const {
     here.gram(place, place) += all.leftCols(n).transpose() * all.leftCols(n);
     here.gradient(place) += all.leftCols(n).transpose() * all.col(n);
     first_own += n - shared;
+    here.has_kept = here.has_kept || cost->has_kept();
   }
   for (Eigen::Index k = 0; k < shared; ++k) {
     const Unknown& unknown = problem_.shared[static_cast<std::size_t>(k)];
@@ -124,13 +126,23 @@ bool BoxSearch::let_go(double tolerance) {
 
 SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
   const int end = iterations_ + maximum_iterations;
-  cost_ = evaluate();
+  cost_ = evaluate(iterations_ == 0);
   if (!std::isfinite(cost_)) return SearchEnd::stuck;
   double damping = kDamping, radius = kOrderOfOne;
   int taken = 0;                // steps
   bool shortened = false;       // the last step was taken back,
   bool beyond_is_none = false;  // and one of those in a row led to where there is no simulation
+  bool may_keep = rule.is_near_noise(cost_);
   LinearModel here = linear_model();
+  // Where kept derivatives lead no further, those of the point itself decide.
+  const auto renew = [&] {
+    if (!here.has_kept) return false;
+    const double cost = evaluate(false);
+    if (!std::isfinite(cost)) return false;
+    cost_ = cost;
+    here = linear_model();
+    return true;
+  };
   while (iterations_ <= end) {
     if (passed(rule.deadline)) return SearchEnd::out_of_time;
     if (rule.is_hopeless(cost_, taken)) return SearchEnd::hopeless;
@@ -138,19 +150,26 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     Eigen::VectorXd by = here.step(kUndamped);
     if (!by.allFinite()) return SearchEnd::stuck;
     promised_ = here.promised(by);
-    if (promised_ <= tolerance) return SearchEnd::converged;
+    if (promised_ <= tolerance) {
+      if (renew()) continue;
+      return SearchEnd::converged;
+    }
+    if (rule.bound.is_out_of_reach(cost_, promised_)) return SearchEnd::out_of_reach;
     const Eigen::VectorXd limited = here.step(damping, radius);
     const bool promises = here.promised(limited) > tolerance;
-    if (shortened && !promises)  // the slope is known no better than that, or the way is barred
+    if (shortened && !promises) {  // the slope is known no better than that, or the way is barred
+      if (renew()) continue;
       return beyond_is_none ? SearchEnd::stuck : SearchEnd::converged;
+    }
     if (promises) by = limited;
     const PemPoint before = point_;
     const double promised = here.promised(by), length = by.cwiseAbs().maxCoeff();
     move(by);
-    const double after = evaluate(), change = cost_ - after, kept = change / promised;
+    const double after = evaluate(may_keep), change = cost_ - after, kept = change / promised;
     if (!(kept >= kKept)) {
       point_ = before;
       beyond_is_none = beyond_is_none || !std::isfinite(after);
+      if (renew()) continue;
       radius = std::min(kOrderOfOne, kShrinks * length);
       if (radius < kNearest) return SearchEnd::stuck;
       shortened = true;
@@ -159,11 +178,12 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     damping = std::max(kUndamped, damping * std::max(kFalls, 1.0 - std::pow(2.0 * kept - 1.0, 3)));
     if (kept > kTrusted) radius = std::max(radius, kWidens * length);
     if (kept < kLinear) radius = std::min(radius, std::max(kOrderOfOne, kShrinks * length));
+    may_keep = kept > kTrusted && rule.is_near_noise(after);
     shortened = beyond_is_none = false;
     ++taken;
     cost_ = after;
-    if (change <= tolerance && kept > kLinear) return SearchEnd::converged;
     here = linear_model();
+    if (change <= tolerance && kept > kLinear && !renew()) return SearchEnd::converged;
   }
   promised_ = here.promised(here.step(kUndamped));
   return SearchEnd::out_of_iterations;

@@ -17,15 +17,21 @@ struct StoppingRule {
   double noise_cost = 1.0;     ///< half the number of residuals
   double hopeless_cost = 0.0;  ///< above it after some iterations, a fit comes to nothing
   const Deadline* deadline = nullptr;
+  SearchBound bound = {};
 
   [[nodiscard]] double at_cost(double cost) const { return tolerance * std::max(1.0, cost / noise_cost); }
+  /// Kept derivatives err by what they miss times the residuals: only small residuals bear them.
+  [[nodiscard]] bool is_near_noise(double cost) const {
+    constexpr double kNear = 2.0;  // of its mean square
+    return cost <= kNear * noise_cost;
+  }
   [[nodiscard]] bool is_hopeless(double cost, int iterations) const {
     constexpr int kIterationsForHope = 6;  // fits that come to something are there by then
     return iterations >= kIterationsForHope && cost > hopeless_cost;
   }
 };
 
-enum class SearchEnd { converged, stuck, out_of_iterations, hopeless, out_of_time };
+enum class SearchEnd { converged, stuck, out_of_iterations, out_of_reach, hopeless, out_of_time };
 
 /// A problem's search from a point, which it moves. What is known beforehand is kept in its range in each step. All
 /// others are searched freely, since a strength that overshoots its end comes back, and are held where they end outside.
@@ -48,8 +54,8 @@ class BoxSearch {
   struct LinearModel;
 
   SearchEnd descend(const StoppingRule& rule, int maximum_iterations);
-  /// At the point; infinite where a recording cannot be simulated.
-  [[nodiscard]] double evaluate();
+  /// At the point; infinite where a recording cannot be simulated. `may_keep`: derivatives by what is known beforehand.
+  [[nodiscard]] double evaluate(bool may_keep = true);
   [[nodiscard]] LinearModel linear_model() const;
   void move(const Eigen::VectorXd& by);
   /// Unknowns outside their range are moved to its end and held there. True when there were any.

@@ -42,25 +42,33 @@ void RecordingCost::remember(const std::vector<double>& shared, const std::vecto
   linearisation_ = std::move(linearisation);
   compressed_ = compress(linearisation_);
   known_ = true;
+  if (!has_kept()) return;
+  kept_ = kept_derivatives(problem_, linearisation_);
+  linearisation_.jacobian = not_known_jacobian(problem_, linearisation_.jacobian);
 }
 
 Result<Linearisation> RecordingCost::take_linearisation(const std::vector<double>& shared,
                                                         const std::vector<double>& own) const {
   if (!known_ || shared != shared_ || own != own_) return linearise(problem_, recording_, shared, own);
   known_ = false;
+  if (has_kept()) linearisation_.jacobian = whole_jacobian(problem_, linearisation_.jacobian, kept_);
   return std::move(linearisation_);
 }
 
-bool RecordingCost::update(const double* shared, const double* own) const {
+bool RecordingCost::update(const double* shared, const double* own, bool may_keep) const {
   const bool same = std::equal(shared_.begin(), shared_.end(), shared) && std::equal(own_.begin(), own_.end(), own);
-  if (same && known_) return true;
+  if (same && known_ && (may_keep || !has_kept())) return true;
+  if (known_ && !has_kept() && may_keep) kept_ = kept_derivatives(problem_, linearisation_);
   std::copy_n(shared, shared_.size(), shared_.begin());
   std::copy_n(own, own_.size(), own_.begin());
-  Result<Linearisation> result = linearise(problem_, recording_, shared_, own_);
+  const bool keep = may_keep && kept_.any();
+  Result<Linearisation> result = linearise(problem_, recording_, shared_, own_,
+                                           keep ? Derivatives::by_what_is_not_known : Derivatives::by_all);
   known_ = result.has_value();
   if (!known_) return false;
   linearisation_ = std::move(*result);
-  compressed_ = compress(linearisation_);
+  linearisation_.has_kept = keep;
+  compressed_ = keep ? compress(problem_, linearisation_, kept_) : compress(linearisation_);
   return true;
 }
 
@@ -85,18 +93,21 @@ bool PriorCost::Evaluate(double const* const* parameters, double* residuals, dou
 }
 
 void SideBySide::PrepareForEvaluation(bool /*evaluate_jacobians*/, bool new_evaluation_point) {
-  if (!new_evaluation_point) return;
+  if (new_evaluation_point) evaluate(false);
+}
+
+void SideBySide::evaluate(bool may_keep) {
   failed_ = false;
   std::vector<std::future<void>> running;
   for (std::size_t first = 1; first < std::min(threads_, costs_.size()); ++first)
-    running.push_back(std::async(std::launch::async, [this, first] { update_from(first); }));
-  update_from(0);
+    running.push_back(std::async(std::launch::async, [this, first, may_keep] { update_from(first, may_keep); }));
+  update_from(0, may_keep);
   for (std::future<void>& one : running) one.get();
 }
 
-void SideBySide::update_from(std::size_t first) {
+void SideBySide::update_from(std::size_t first, bool may_keep) {
   for (std::size_t k = first; k < costs_.size() && !failed_; k += threads_)
-    if (!costs_[k]->update(point_.shared.data(), point_.own[k].data())) failed_ = true;
+    if (!costs_[k]->update(point_.shared.data(), point_.own[k].data(), may_keep)) failed_ = true;
 }
 
 }  // namespace sealwatch

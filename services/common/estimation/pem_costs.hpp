@@ -25,21 +25,29 @@ class RecordingCost final : public ceres::CostFunction {
 
   void remember(const std::vector<double>& shared, const std::vector<double>& own, Linearisation linearisation);
 
+  /// Derivatives by what is known beforehand, from near the point where a search sets out.
+  void keep(KeptDerivatives kept) { kept_ = std::move(kept); }
+
   /// At the given point, which usually is the one that was evaluated last.
   [[nodiscard]] Result<Linearisation> take_linearisation(const std::vector<double>& shared,
                                                          const std::vector<double>& own) const;
 
   /// Ceres asks several times for the same point, first for the cost, then for its derivatives: both cost one
-  /// simulation. False where nothing can be simulated.
-  bool update(const double* shared, const double* own) const;
+  /// simulation. With `may_keep` derivatives by what is known beforehand are those of an earlier point, where there was
+  /// one. False where nothing can be simulated.
+  bool update(const double* shared, const double* own, bool may_keep = false) const;
+
+  /// Whether some derivatives are those of an earlier point.
+  [[nodiscard]] bool has_kept() const { return linearisation_.has_kept; }
 
  private:
   const PemProblem& problem_;
   std::size_t recording_;
   const std::atomic<bool>& point_failed_;
   mutable std::vector<double> shared_, own_;
-  mutable Linearisation linearisation_;
+  mutable Linearisation linearisation_;  ///< by what is not known, where the rest is kept
   mutable Eigen::MatrixXd compressed_;
+  mutable KeptDerivatives kept_;
   mutable bool known_ = false;  ///< at that point
 };
 
@@ -59,6 +67,9 @@ class PriorCost final : public ceres::CostFunction {
 class SideBySide final : public ceres::EvaluationCallback {
  public:
   SideBySide(const PemPoint& point, int threads) : point_(point), threads_(static_cast<std::size_t>(threads)) {}
+
+  /// All recordings at the point, as RecordingCost::update() has it.
+  void evaluate(bool may_keep);
   void add(const RecordingCost* cost) { costs_.push_back(cost); }
   [[nodiscard]] const std::vector<const RecordingCost*>& costs() const { return costs_; }
   [[nodiscard]] const std::atomic<bool>& failed() const { return failed_; }
@@ -66,7 +77,7 @@ class SideBySide final : public ceres::EvaluationCallback {
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
  private:
-  void update_from(std::size_t first);
+  void update_from(std::size_t first, bool may_keep);
 
   const PemPoint& point_;
   std::size_t threads_;

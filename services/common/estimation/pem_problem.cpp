@@ -236,19 +236,21 @@ ModelValues values_at(const PemProblem& problem, std::size_t recording, const st
 }
 
 FreeOfRecording free_of(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
-                        const std::vector<double>& own) {
+                        const std::vector<double>& own, Derivatives derivatives) {
   const PemRecording& part = problem.recordings[recording];
   FreeOfRecording free;
-  const auto add = [&](const std::vector<Unknown>& unknowns, const std::vector<double>& at, std::size_t first) {
+  const auto add = [&](const std::vector<Unknown>& unknowns, const std::vector<double>& at) {
     for (std::size_t k = 0; k < at.size(); ++k) {
+      if (derivatives == Derivatives::by_what_is_not_known && unknowns[k].is_known()) continue;
+      const Eigen::Index column = free.columns++;
       if (!unknowns[k].belongs_to(part.group)) continue;
       free.quantity.push_back(unknowns[k].quantity);
       free.slope.push_back(unknowns[k].slope(at[k]));
-      free.column.push_back(static_cast<Eigen::Index>(first + k));
+      free.column.push_back(column);
     }
   };
-  add(problem.shared, shared, 0);
-  add(part.own, own, shared.size());
+  add(problem.shared, shared);
+  add(part.own, own);
   return free;
 }
 
@@ -281,9 +283,9 @@ void weigh(const Eigen::VectorXd& weight, Linearisation& at) {
 }
 
 Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
-                                const std::vector<double>& own) {
+                                const std::vector<double>& own, Derivatives derivatives) {
   const PemRecording& part = problem.recordings[recording];
-  const FreeOfRecording free = free_of(problem, recording, shared, own);
+  const FreeOfRecording free = free_of(problem, recording, shared, own, derivatives);
   const std::vector<double>& slope = free.slope;
   Result<SimulatedOutputs> outputs =
       part.simulation->run(values_at(problem, recording, shared, own), free.quantity, problem.simulation_options);
@@ -299,8 +301,8 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
   const RowMatrix scale = -weight.transpose() * Eigen::Map<const Eigen::RowVectorXd>(slope.data(), unknowns);
   Eigen::Map<RowMatrix>(result.jacobian.data(), samples, channels * unknowns).array().rowwise() *=
       Eigen::Map<const Eigen::RowVectorXd>(scale.data(), scale.size()).array();
-  if (shared.size() + own.size() != slope.size()) {
-    RowMatrix wide = RowMatrix::Zero(result.jacobian.rows(), static_cast<Eigen::Index>(shared.size() + own.size()));
+  if (free.columns != unknowns) {
+    RowMatrix wide = RowMatrix::Zero(result.jacobian.rows(), free.columns);
     for (Eigen::Index k = 0; k < unknowns; ++k)
       wide.col(free.column[static_cast<std::size_t>(k)]) = result.jacobian.col(k);
     result.jacobian = std::move(wide);
@@ -311,13 +313,24 @@ Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording
   return result;
 }
 
-Eigen::MatrixXd compress(const Linearisation& linearisation) {
-  const Eigen::Index n = linearisation.jacobian.cols();
-  Eigen::MatrixXd gram(n + 1, n + 1);
-  gram.topLeftCorner(n, n).noalias() = linearisation.jacobian.transpose() * linearisation.jacobian;
-  gram.col(n).head(n).noalias() = linearisation.jacobian.transpose() * linearisation.residual;
-  gram.row(n).head(n) = gram.col(n).head(n).transpose();
-  gram(n, n) = linearisation.residual.squaredNorm();
+namespace {
+
+// Places of a recording's unknowns that are known beforehand, and of the others, among all of them.
+struct Places {
+  std::vector<Eigen::Index> known, others;
+};
+Places places(const PemProblem& problem, Eigen::Index unknowns) {
+  Places places;
+  for (Eigen::Index k = 0; k < unknowns; ++k) {
+    const auto shared = static_cast<std::size_t>(k);
+    const bool known = shared < problem.shared.size() && problem.shared[shared].is_known();
+    (known ? places.known : places.others).push_back(k);
+  }
+  return places;
+}
+
+// U with U'U = gram, which may be singular.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& gram) {
   Eigen::VectorXd scale = gram.diagonal().cwiseSqrt();
   for (double& value : scale)
     if (!(value > 0.0)) value = 1.0;
@@ -328,6 +341,53 @@ Eigen::MatrixXd compress(const Linearisation& linearisation) {
   Eigen::MatrixXd result = factor.transpositionsP() * Eigen::MatrixXd(scale.asDiagonal());
   result = factor.matrixU() * result;
   return root.asDiagonal() * result;
+}
+
+}  // namespace
+
+KeptDerivatives kept_derivatives(const PemProblem& problem, const Linearisation& linearisation) {
+  const Places of = places(problem, linearisation.jacobian.cols());
+  KeptDerivatives kept{.jacobian = linearisation.jacobian(Eigen::all, of.known), .gram = {}};
+  kept.gram.noalias() = kept.jacobian.transpose() * kept.jacobian;
+  return kept;
+}
+
+RowMatrix not_known_jacobian(const PemProblem& problem, const RowMatrix& whole) {
+  return whole(Eigen::all, places(problem, whole.cols()).others);
+}
+
+RowMatrix whole_jacobian(const PemProblem& problem, const RowMatrix& not_known, const KeptDerivatives& kept) {
+  const Places of = places(problem, not_known.cols() + kept.jacobian.cols());
+  RowMatrix whole(not_known.rows(), not_known.cols() + kept.jacobian.cols());
+  whole(Eigen::all, of.others) = not_known;
+  whole(Eigen::all, of.known) = kept.jacobian;
+  return whole;
+}
+
+Eigen::MatrixXd compress(const Linearisation& linearisation) {
+  const RowMatrix& jacobian = linearisation.jacobian;
+  const Eigen::Index n = jacobian.cols();
+  Eigen::MatrixXd gram(n + 1, n + 1);
+  gram.topLeftCorner(n, n).noalias() = jacobian.transpose() * jacobian;
+  gram.col(n).head(n).noalias() = jacobian.transpose() * linearisation.residual;
+  gram.row(n).head(n) = gram.col(n).head(n).transpose();
+  gram(n, n) = linearisation.residual.squaredNorm();
+  return root_of(gram);
+}
+
+Eigen::MatrixXd compress(const PemProblem& problem, const Linearisation& not_known, const KeptDerivatives& kept) {
+  const Eigen::Index n = not_known.jacobian.cols() + kept.jacobian.cols();
+  Places of = places(problem, n);
+  of.others.push_back(n);  // the residual
+  RowMatrix moving(not_known.jacobian.rows(), not_known.jacobian.cols() + 1);
+  moving << not_known.jacobian, not_known.residual;
+  const Eigen::MatrixXd mixed = moving.transpose() * kept.jacobian;
+  Eigen::MatrixXd gram(n + 1, n + 1);
+  gram(of.others, of.others) = moving.transpose() * moving;
+  gram(of.others, of.known) = mixed;
+  gram(of.known, of.others) = mixed.transpose();
+  gram(of.known, of.known) = kept.gram;
+  return root_of(gram);
 }
 
 }  // namespace sealwatch

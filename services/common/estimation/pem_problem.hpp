@@ -69,7 +69,8 @@ struct PemProblem {
 struct Linearisation {
   RowMatrix simulated;       ///< samples x channels
   Eigen::VectorXd residual;  ///< (recorded - simulated) / noise
-  RowMatrix jacobian;        ///< d residual / d unknown: shared first, then own
+  RowMatrix jacobian;        ///< d residual / d unknown: shared first, then own; of those that were asked for
+  bool has_kept = false;     ///< those by what is known beforehand are of another point (KeptDerivatives)
 };
 
 /// `groups`: for windows cut from longer recordings, which recording each comes from; its load is then one unknown for
@@ -84,15 +85,20 @@ struct Linearisation {
 [[nodiscard]] std::string name_in_recording(std::string_view parameter, std::size_t recording);
 [[nodiscard]] std::string parameter_of(const Unknown& unknown);
 
+/// By which unknowns outputs are differentiated: all, or only those that are not known beforehand.
+enum class Derivatives { by_all, by_what_is_not_known };
+
 /// Quantities that one recording's outputs are differentiated by, with the slope of each to its unknown and its place
-/// among all unknowns (shared first, then the recording's own).
+/// among the unknowns that were asked for (shared first, then the recording's own), and how many of these there are.
 struct FreeOfRecording {
   std::vector<FreeQuantity> quantity;
   std::vector<double> slope;
   std::vector<Eigen::Index> column;
+  Eigen::Index columns = 0;
 };
 [[nodiscard]] FreeOfRecording free_of(const PemProblem& problem, std::size_t recording,
-                                      const std::vector<double>& shared, const std::vector<double>& own);
+                                      const std::vector<double>& shared, const std::vector<double>& own,
+                                      Derivatives derivatives = Derivatives::by_all);
 
 [[nodiscard]] ModelValues values_at(const PemProblem& problem, std::size_t recording, const std::vector<double>& shared,
                                     const std::vector<double>& own);
@@ -105,10 +111,29 @@ void weigh(const Eigen::VectorXd& weight, Linearisation& at);
 
 /// An Error when the simulation fails there.
 [[nodiscard]] Result<Linearisation> linearise(const PemProblem& problem, std::size_t recording,
-                                              const std::vector<double>& shared, const std::vector<double>& own);
+                                              const std::vector<double>& shared, const std::vector<double>& own,
+                                              Derivatives derivatives = Derivatives::by_all);
+
+/// Derivatives by the unknowns that are known beforehand, from another point. Such values hardly move, and where the
+/// residuals are exact a search that uses them ends at the same point.
+struct KeptDerivatives {
+  RowMatrix jacobian;    ///< columns in the order of the unknowns
+  Eigen::MatrixXd gram;  ///< jacobian' jacobian
+  [[nodiscard]] bool any() const { return jacobian.cols() > 0; }
+};
+[[nodiscard]] KeptDerivatives kept_derivatives(const PemProblem& problem, const Linearisation& linearisation);
+
+/// Of the derivatives by all unknowns those by what is not known, and the other way round, with those by what is known
+/// beforehand from `kept`.
+[[nodiscard]] RowMatrix not_known_jacobian(const PemProblem& problem, const RowMatrix& whole);
+[[nodiscard]] RowMatrix whole_jacobian(const PemProblem& problem, const RowMatrix& not_known,
+                                       const KeptDerivatives& kept);
 
 /// Upper part U of [J r] with U'U = [J r]'[J r]: the same least-squares problem in as many rows as it has unknowns plus
 /// one.
 [[nodiscard]] Eigen::MatrixXd compress(const Linearisation& linearisation);
+/// The same of a linearisation by what is not known, and of kept derivatives.
+[[nodiscard]] Eigen::MatrixXd compress(const PemProblem& problem, const Linearisation& not_known,
+                                       const KeptDerivatives& kept);
 
 }  // namespace sealwatch

@@ -136,6 +136,8 @@ std::string in_words(SearchEnd end) {
       return "given up: the model does not come near the recording";
     case SearchEnd::out_of_iterations:
       return "not converged: out of iterations";
+    case SearchEnd::out_of_reach:
+      return "not converged: it cannot come to what is known to be possible";
     case SearchEnd::out_of_time:
       return "not converged: out of time";
     case SearchEnd::stuck:
@@ -147,7 +149,7 @@ std::string in_words(SearchEnd end) {
 }  // namespace
 
 Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options,
-                          std::vector<Linearisation> at_start) {
+                          KnownBefore known) {
   silence_ceres();
   if (problem.shared.empty() && start.own.front().empty()) return as_it_is(problem, std::move(start));
   PemOptimum optimum{.point = std::move(start), .at_optimum = {}, .termination = {}};
@@ -159,7 +161,9 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
     costs.push_back(new RecordingCost(problem, k, side_by_side.failed()));  // owned by ceres_problem
     side_by_side.add(costs.back());
-    if (k < at_start.size()) costs.back()->remember(optimum.point.shared, optimum.point.own[k], std::move(at_start[k]));
+    if (k < known.at_start.size())
+      costs.back()->remember(optimum.point.shared, optimum.point.own[k], std::move(known.at_start[k]));
+    if (k < known.kept.size()) costs.back()->keep(std::move(known.kept[k]));
     std::vector<double*> blocks;
     if (!problem.shared.empty()) blocks.push_back(optimum.point.shared.data());
     if (!optimum.point.own[k].empty()) blocks.push_back(optimum.point.own[k].data());
@@ -168,7 +172,8 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   if (std::ranges::any_of(problem.shared, &Unknown::is_known))
     ceres_problem.AddResidualBlock(new PriorCost(problem.shared), nullptr, optimum.point.shared.data());
 
-  const StoppingRule rule = stopping_rule(problem, options);
+  StoppingRule rule = stopping_rule(problem, options);
+  rule.bound = known.bound;
   BoxSearch in_box(problem, optimum.point, side_by_side);
   SearchEnd end = in_box.run(rule, options.maximum_iterations);
   optimum.iterations = in_box.iterations();

@@ -1,6 +1,7 @@
 // The search for the minimum of a PemProblem.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -40,9 +41,23 @@ struct PemOptimum {
                                                    std::span<const TimeSeries> recordings,
                                                    const ActuatorFitOptions& options);
 
-/// An Error when the simulation cannot even be run at the start. `at_start`: linearisations there, where they are
-/// known.
+/// What a search has to come to: it ends where its cost would stay above that, even if it fell by `optimism` times what
+/// the linear model promises.
+struct SearchBound {
+  double cost = std::numeric_limits<double>::infinity();
+  double optimism = 2.0;
+  [[nodiscard]] bool is_out_of_reach(double from, double promised) const { return from - optimism * promised > cost; }
+};
+
+/// What is known before a search, where it is: linearisations at the start, derivatives near it, what to come to.
+struct KnownBefore {
+  std::vector<Linearisation> at_start = {};
+  std::vector<KeptDerivatives> kept = {};
+  SearchBound bound = {};
+};
+
+/// An Error when the simulation cannot even be run at the start.
 [[nodiscard]] Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const ActuatorFitOptions& options,
-                                        std::vector<Linearisation> at_start = {});
+                                        KnownBefore known = {});
 
 }  // namespace sealwatch

@@ -32,18 +32,62 @@ void set_value(AssetConfig& asset, const std::string& name, double value) {
       if (physics_parameter_name(term.element, term.id, parameter) == name) setting.value = value;
 }
 
-// Where another fit of the same recordings ended.
-void continue_from(const FittedModel& start, const PemProblem& problem, PemPoint& point) {
-  for (std::size_t k = 0; k < problem.shared.size(); ++k)
-    if (const auto value = estimate_of(start, problem.shared[k].name))
-      point.shared[k] = problem.shared[k].to_unknown(*value);
+double within_range(const Unknown& unknown, double value) {
+  return unknown.max > unknown.min ? std::clamp(value, unknown.min, unknown.max) : value;
+}
+
+// Where another fit of the same recordings ended, changed by `beside`; empty: as it is.
+void continue_from(const FittedModel& start, const PemPoint& beside, const PemProblem& problem, PemPoint& point) {
+  for (std::size_t k = 0; k < start.problem.shared.size(); ++k) {
+    const auto same = std::ranges::find(problem.shared, start.problem.shared[k].name, &Unknown::name);
+    if (same == problem.shared.end()) continue;
+    const double change = beside.shared.empty() ? 0.0 : beside.shared[k],
+                 value = start.problem.shared[k].to_value(start.optimum.point.shared[k] + change);
+    point.shared[static_cast<std::size_t>(same - problem.shared.begin())] =
+        same->to_unknown(change == 0.0 ? value : within_range(*same, value));
+  }
   for (std::size_t r = 0; r < problem.recordings.size() && r < start.problem.recordings.size(); ++r)
     for (std::size_t k = 0; k < problem.recordings[r].own.size(); ++k)
       for (std::size_t j = 0; j < start.problem.recordings[r].own.size(); ++j) {
         const Unknown& from = start.problem.recordings[r].own[j];
         if (from.name == problem.recordings[r].own[k].name)
-          point.own[r][k] = problem.recordings[r].own[k].to_unknown(from.to_value(start.optimum.point.own[r][j]));
+          point.own[r][k] = problem.recordings[r].own[k].to_unknown(
+              from.to_value(start.optimum.point.own[r][j] + (beside.own.empty() ? 0.0 : beside.own[r][j])));
       }
+}
+
+bool same_noise(const PemRecording& a, const PemRecording& b) {
+  const auto same_colour = [](const ChannelColour& x, const ChannelColour& y) {
+    return x.coefficients == y.coefficients && x.innovation_std == y.innovation_std;
+  };
+  return a.time_s == b.time_s && a.noise_std == b.noise_std && std::ranges::equal(a.colour, b.colour, same_colour) &&
+         a.weight.size() == b.weight.size() && a.weight == b.weight;
+}
+
+// Derivatives by what is known beforehand where another fit of the same recordings ended; none where that lacks some.
+std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, const PemProblem& problem) {
+  const std::vector<Unknown>& there = start.problem.shared;
+  std::vector<Eigen::Index> columns;
+  std::vector<double> slopes;
+  for (const Unknown& unknown : problem.shared) {
+    if (!unknown.is_known()) continue;
+    const auto same = std::ranges::find(there, unknown.name, &Unknown::name);
+    if (same == there.end()) return {};
+    const auto k = static_cast<std::size_t>(same - there.begin());
+    const double at = start.optimum.point.shared[k];
+    columns.push_back(static_cast<Eigen::Index>(k));
+    slopes.push_back(unknown.slope(unknown.to_unknown(same->to_value(at))) / same->slope(at));
+  }
+  std::vector<KeptDerivatives> kept;
+  for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
+    const bool same = start.problem.recordings.size() == problem.recordings.size() &&
+                      same_noise(start.problem.recordings[k], problem.recordings[k]);
+    if (!same || start.optimum.at_optimum[k].jacobian.size() == 0) return {};
+    kept.push_back({start.optimum.at_optimum[k].jacobian(Eigen::all, columns), {}});
+    kept.back().jacobian *= Eigen::Map<const Eigen::VectorXd>(slopes.data(), std::ssize(slopes)).asDiagonal();
+    kept.back().gram = kept.back().jacobian.transpose() * kept.back().jacobian;
+  }
+  return kept;
 }
 
 void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording) {
@@ -89,6 +133,19 @@ FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum op
   return model;
 }
 
+Result<FittedModel> fit_from(const FittedModel& start, const PemPoint& beside, const AssetConfig& asset,
+                             const Data& data, int threads, int iterations, const SearchBound& bound) {
+  const ActuatorFitOptions options = search_options(threads, iterations);
+  Result<PemProblem> problem = problem_of(asset, data, options);
+  if (!problem) return fail(problem.error());
+  PemPoint point = start_point(*problem, 1.0);
+  continue_from(start, beside, *problem, point);
+  Result<PemOptimum> optimum =
+      search(*problem, std::move(point), options, {.kept = derivatives_from(start, *problem), .bound = bound});
+  if (!optimum) return fail(optimum.error());
+  return model_at(asset, std::move(*problem), std::move(*optimum));
+}
+
 }  // namespace
 
 bool at_bound(const Unknown& unknown, double at) {
@@ -98,27 +155,27 @@ bool at_bound(const Unknown& unknown, double at) {
 
 Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
                               int iterations) {
+  if (start != nullptr) return fit_from(*start, {}, asset, data, threads, iterations, {});
   ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(asset, data, options);
   if (!problem) return fail(problem.error());
-  Result<PemOptimum> optimum = fail("not searched");
-  if (start == nullptr) {
-    // A model that lacks physics often does not converge, and pieces, with states of their own, hide what it lacks: they
-    // are for values with which nothing can be simulated.
-    options.cut_into_pieces = false;
-    optimum = search_from_asset(*problem, asset, data.samples, options);
-    options.cut_into_pieces = data.groups.empty();  // else they are pieces already
-    if (!optimum && options.cut_into_pieces) optimum = search_from_asset(*problem, asset, data.samples, options);
-  } else {
-    PemPoint point = start_point(*problem, 1.0);
-    continue_from(*start, *problem, point);
-    optimum = search(*problem, std::move(point), options);
-  }
+  // A model that lacks physics often does not converge, and pieces, with states of their own, hide what it lacks: they
+  // are for values with which nothing can be simulated.
+  options.cut_into_pieces = false;
+  Result<PemOptimum> optimum = search_from_asset(*problem, asset, data.samples, options);
+  options.cut_into_pieces = data.groups.empty();  // else they are pieces already
+  if (!optimum && options.cut_into_pieces) optimum = search_from_asset(*problem, asset, data.samples, options);
   if (!optimum) return fail(optimum.error());
   return model_at(asset, std::move(*problem), std::move(*optimum));
 }
 
-Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations) {
+Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
+                                     const FittedModel& start, int iterations, const SearchBound& bound) {
+  return fit_from(start, beside, asset, data, 1, iterations, bound);
+}
+
+Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,
+                                 const SearchBound& bound) {
   const ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(model.asset, data, options);
   if (!problem) return fail(problem.error());
@@ -128,8 +185,9 @@ Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int
   for (std::size_t k = 0; k < problem->recordings.size(); ++k)
     problem->recordings[k].own = model.problem.recordings[k].own;
   const bool known = model.optimum.at_optimum.front().jacobian.size() > 0;
-  Result<PemOptimum> optimum =
-      search(*problem, model.optimum.point, options, known ? model.optimum.at_optimum : std::vector<Linearisation>{});
+  KnownBefore before{.bound = bound};
+  if (known) before.at_start = model.optimum.at_optimum;
+  Result<PemOptimum> optimum = search(*problem, model.optimum.point, options, std::move(before));
   if (!optimum) return fail(optimum.error());
   return model_at(model.asset, std::move(*problem), std::move(*optimum));
 }

@@ -46,9 +46,14 @@ struct FittedModel {
 /// search sets out. `threads`: recordings that are simulated at once.
 [[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
                                             int threads, int iterations = 30);
+/// The same from values that `beside` changes (of as many unknowns as `start` has; empty: none), until `bound` is out of
+/// reach.
+[[nodiscard]] Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
+                                                   const FittedModel& start, int iterations, const SearchBound& bound);
 
 /// Goes on with the search that ended at `model`, with the same unknowns.
-[[nodiscard]] Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations);
+[[nodiscard]] Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,
+                                               const SearchBound& bound = {});
 
 /// As it is, but every shared parameter stays what it is: only load and initial state of each recording are fitted.
 [[nodiscard]] AssetConfig with_fixed_parameters(AssetConfig asset);

@@ -15,6 +15,24 @@ constexpr double kPairAhead =
     0.02;  // of the misfit: a pair that promises less more than the best single is passed over
 constexpr double kSmallestStart = 0.02, kLargestStart = 50.0;  // of a strength's usual size
 
+// Unknowns that had taken on what the law does give it back: else it would come on top of that.
+PemPoint beside(const Screening& screening, const Variant& variant, std::span<const double> strengths) {
+  PemPoint change{.shared = std::vector<double>(static_cast<std::size_t>(screening.shared_like_law.rows()), 0.0),
+                  .own = {}};
+  for (const Eigen::MatrixXd& own : screening.own_like_law)
+    change.own.emplace_back(static_cast<std::size_t>(own.rows()), 0.0);
+  for (std::size_t k = 0; k < strengths.size(); ++k) {
+    const Eigen::Index column = variant.columns[k];
+    const double units = strengths[k] / screening.unit[static_cast<std::size_t>(column)];
+    const auto take = [&](const Eigen::MatrixXd& like, std::vector<double>& from) {
+      Eigen::Map<Eigen::VectorXd>(from.data(), std::ssize(from)) -= units * like.col(column);
+    };
+    take(screening.shared_like_law, change.shared);
+    for (std::size_t r = 0; r < change.own.size(); ++r) take(screening.own_like_law[r], change.own[r]);
+  }
+  return change;
+}
+
 LawStart start_of(const Screening& screening, const Variant& variant) {
   const Candidate& candidate = screening.candidates[variant.candidate];
   LawStart start{.effect = {candidate.law, candidate.element}, .parameters = candidate.grid[variant.point]};
@@ -29,6 +47,10 @@ LawStart start_of(const Screening& screening, const Variant& variant) {
     const double size = std::clamp(std::abs(linear), kSmallestStart * usual, kLargestStart * usual);
     value = linear < 0.0 && candidate.law->parameters[strengths[k]].min < 0.0 ? -size : size;
   }
+  if (variant.columns.size() != strengths.size()) return start;
+  std::vector<double> sizes;
+  for (const std::size_t k : strengths) sizes.push_back(start.parameters[k]);
+  start.beside = beside(screening, variant, sizes);
   return start;
 }
 

@@ -16,6 +16,7 @@ namespace {
 constexpr int kFirstRound = 8;           // iterations of every refit
 constexpr int kRound = 10, kRounds = 3;  // iterations of those that go on, so often
 constexpr std::size_t kGoOn = 5;         // refits that go on after the first round
+constexpr std::size_t kAhead = 2;        // refits that come first: what they come to is to be reached by the others
 // In a gross misfit a refit does not go on that is further off than so many times the best, or than so many times what
 // its linear model promises, nor where a round leaves more than that share of the distance to the best.
 constexpr double kHopeful = 10.0, kNearer = 0.5;
@@ -51,6 +52,22 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
   return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound);
 }
 
+// What changes beside all of them; empty where that is not known.
+PemPoint beside_all(const std::vector<LawStart>& added, double share) {
+  PemPoint all;
+  const auto add = [share](const std::vector<double>& change, std::vector<double>& sum) {
+    sum.resize(change.size(), 0.0);
+    for (std::size_t k = 0; k < change.size(); ++k) sum[k] += share * change[k];
+  };
+  for (const LawStart& law : added) {
+    if (law.beside.own.empty()) return {};
+    add(law.beside.shared, all.shared);
+    all.own.resize(law.beside.own.size());
+    for (std::size_t r = 0; r < all.own.size(); ++r) add(law.beside.own[r], all.own[r]);
+  }
+  return all;
+}
+
 // A trial while it is being worked on.
 struct Refit {
   std::vector<Effect> effects;
@@ -79,10 +96,14 @@ bool lost_its_core(const Refit& refit) {
 // believed to a tenth, and there a refit goes on as long as it also comes much nearer to the best.
 class GoesOn {
  public:
+  /// `best`: the best model so far, or one of about its misfit.
   GoesOn(const FittedModel& best, double to_beat)
       : gross_(excess(best) > kGross),
         best_(std::min(best.misfit, to_beat)),
         limit_(best_ + 2.0 * kWorthAnother * dispersion(best)) {}
+
+  /// The same for every iteration of a search; a cost is half a misfit.
+  [[nodiscard]] SearchBound bound() const { return {.cost = 0.5 * limit_, .optimism = gross_ ? kHopeful : kOptimistic}; }
 
   [[nodiscard]] bool at_first(const FittedModel& model) const {
     return may_come_near(model) && (!gross_ || model.misfit <= kHopeful * best_);
@@ -135,6 +156,8 @@ Trial polished(Trial trial, const Data& data, int threads) {
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
                          int threads, const RefitOptions& options) {
+  SearchBound bound;
+  if (std::isfinite(options.to_beat)) bound = GoesOn(*from.model, options.to_beat).bound();
   const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
     Refit refit{.effects = from.effects, .model = nullptr};
     AssetConfig asset = from.model->asset;
@@ -148,8 +171,10 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
-    Result<FittedModel> model = options.in_place_of.empty() ? fit_model(asset, data, from.model.get(), 1, kFirstRound)
-                                                            : sizes_first(asset, added, data, *from.model);
+    Result<FittedModel> model =
+        options.in_place_of.empty()
+            ? fit_model_beside(beside_all(added, share), asset, data, *from.model, kFirstRound, bound)
+            : sizes_first(asset, added, data, *from.model);
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
   };
@@ -163,15 +188,21 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
     return better ? again : refit;
   };
-  std::vector<Refit> refits = in_parallel<Refit>(laws.size(), threads, [&](std::size_t k) { return one(laws[k]); });
-  std::erase_if(refits, [](const Refit& refit) { return refit.model == nullptr; });
+  std::vector<Refit> refits;
+  for (std::size_t begin = 0, count = 0; begin < laws.size(); begin += count) {
+    count = std::min(begin == 0 ? kAhead : laws.size(), laws.size() - begin);
+    for (Refit& refit : in_parallel<Refit>(count, threads, [&](std::size_t k) { return one(laws[begin + k]); }))
+      if (refit.model != nullptr) refits.push_back(std::move(refit));
+    if (refits.empty()) continue;
+    std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
+    bound = GoesOn(*refits.front().model, options.to_beat).bound();
+  }
   if (refits.empty()) return {};
-  std::ranges::stable_sort(refits, {}, [](const Refit& refit) { return refit.model->misfit; });
   const GoesOn goes_on(*refits.front().model, options.to_beat);
   const auto further = [&](Refit refit) -> Refit {
     bool open = goes_on.at_first(*refit.model);
     for (int round = 0; round < kRounds && open; ++round) {
-      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound);
+      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound, bound);
       if (!model || model->misfit > refit.model->misfit) break;
       open = goes_on.after(*refit.model, *model);
       refit.model = std::make_shared<FittedModel>(std::move(*model));

@@ -22,10 +22,12 @@ struct Trial {
   std::shared_ptr<const FittedModel> model;
 };
 
-/// A law with start values of all its parameters.
+/// A law with start values of all its parameters, and by how much the unknowns of the model that it is added to change
+/// beside it; empty: not known.
 struct LawStart {
   Effect effect;
   std::vector<double> parameters;
+  PemPoint beside = {};
 };
 
 struct RefitOptions {

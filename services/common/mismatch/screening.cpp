@@ -56,6 +56,7 @@ struct Products {
   Eigen::MatrixXd variant;             ///< L_b'L_b of each variant, its entries one after the other; blocks x entries
   Eigen::MatrixXd shared_in_q, own_in_q;   ///< R
   Eigen::MatrixXd shared_left, own_taken;  ///< in Q: shared columns without own ones; what own ones take off [r L]
+  Eigen::MatrixXd own_for_shared, own_for_laws;  ///< own unknowns that do what they can of each shared one, of [r L]
 };
 
 Eigen::Index entries_of(const std::vector<Variant>& variants) {
@@ -158,12 +159,21 @@ Normal without_own(Products& products) {
   products.own_taken = Eigen::MatrixXd::Zero(products.free, outer.cols());
   if (const Eigen::MatrixXd& own = products.own_in_q; own.cols() > 0) {
     const NormalMatrix normal(own.transpose() * inner * own);
-    products.shared_left -= own * normal.solve(own.transpose() * inner * products.shared_in_q);
-    products.own_taken = own * normal.solve(own.transpose() * outer);
+    products.own_for_shared = normal.solve(own.transpose() * inner * products.shared_in_q);
+    products.own_for_laws = normal.solve(own.transpose() * outer);
+    products.shared_left -= own * products.own_for_shared;
+    products.own_taken = own * products.own_for_laws;
   }
   const Eigen::MatrixXd left = inner * products.shared_left;
   return {.gram = products.shared_left.transpose() * left,
           .cross = products.shared_left.transpose() * outer - left.transpose() * products.own_taken};
+}
+
+// The own unknowns beside the shared ones' coefficients.
+Eigen::MatrixXd own_like_law(const Products& products, const Eigen::MatrixXd& coefficients) {
+  if (products.own_in_q.cols() == 0) return Eigen::MatrixXd::Zero(0, coefficients.cols() - 1);
+  const Eigen::MatrixXd own = products.own_for_laws - products.own_for_shared * coefficients;
+  return own.rightCols(own.cols() - 1);
 }
 
 // What is known beforehand of shared unknowns, as rows of their own, the residual last: no law acts on them.
@@ -285,6 +295,8 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
   }
   const Eigen::MatrixXd coefficients =
       shared > 0 ? NormalMatrix(all.gram).solve(all.cross) : Eigen::MatrixXd::Zero(0, layout.size + 1);
+  screening.shared_like_law = coefficients.rightCols(layout.size);
+  for (const Part& part : parts) screening.own_like_law.push_back(own_like_law(**part, coefficients));
   std::vector<Left> left = in_parallel<Left>(recordings, options.threads, [&](std::size_t k) {
     return left_of(**parts[k], coefficients, screening.variants);
   });

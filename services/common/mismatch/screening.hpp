@@ -48,6 +48,10 @@ struct Screening {
   Eigen::VectorXd gradient = {};      ///< g
   Eigen::MatrixXd block_scores = {};  ///< blocks x columns: U_b
   std::vector<double> unit = {};      ///< usual size of each column, in the law's unit
+  /// Changes of the fitted model's unknowns that together do what they can of a law at its usual size: shared x columns,
+  /// and own x columns per recording.
+  Eigen::MatrixXd shared_like_law = {};
+  std::vector<Eigen::MatrixXd> own_like_law = {};
   double p_value = 1.0;               ///< that there is nothing but noise
   double effective_number = 1.0;      ///< of independent laws in the catalogue
   std::size_t best = 0;               ///< variant with the largest score

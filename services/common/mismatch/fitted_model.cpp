@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sealwatch/model/law_sizes.hpp"
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/input_jumps.hpp"
 
 namespace sealwatch::mismatch {
@@ -64,8 +65,10 @@ bool same_noise(const PemRecording& a, const PemRecording& b) {
          a.weight.size() == b.weight.size() && a.weight == b.weight;
 }
 
-// Derivatives by what is known beforehand where another fit of the same recordings ended; none where that lacks some.
+// Derivatives by what is known beforehand where another fit of the same recordings ended; none where that lacks some,
+// or misses grossly.
 std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, const PemProblem& problem) {
+  if (excess(start) > kGross) return {};
   const std::vector<Unknown>& there = start.problem.shared;
   std::vector<Eigen::Index> columns;
   std::vector<double> slopes;

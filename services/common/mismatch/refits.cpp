@@ -52,7 +52,7 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
   return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound);
 }
 
-// What changes beside all of them; empty where that is not known.
+// What changes beside all of them; empty where that is not known. In a gross misfit the linear model says too little.
 PemPoint beside_all(const std::vector<LawStart>& added, double share) {
   PemPoint all;
   const auto add = [share](const std::vector<double>& change, std::vector<double>& sum) {
@@ -102,8 +102,11 @@ class GoesOn {
         best_(std::min(best.misfit, to_beat)),
         limit_(best_ + 2.0 * kWorthAnother * dispersion(best)) {}
 
-  /// The same for every iteration of a search; a cost is half a misfit.
-  [[nodiscard]] SearchBound bound() const { return {.cost = 0.5 * limit_, .optimism = gross_ ? kHopeful : kOptimistic}; }
+  /// The same for every iteration of a search, but in a gross misfit; a cost is half a misfit.
+  [[nodiscard]] SearchBound bound() const {
+    if (gross_) return {};
+    return {.cost = 0.5 * limit_, .optimism = kOptimistic};
+  }
 
   [[nodiscard]] bool at_first(const FittedModel& model) const {
     return may_come_near(model) && (!gross_ || model.misfit <= kHopeful * best_);
@@ -156,6 +159,7 @@ Trial polished(Trial trial, const Data& data, int threads) {
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
                          int threads, const RefitOptions& options) {
+  const bool gross = excess(*from.model) > kGross;
   SearchBound bound;
   if (std::isfinite(options.to_beat)) bound = GoesOn(*from.model, options.to_beat).bound();
   const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
@@ -173,7 +177,7 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
     }
     Result<FittedModel> model =
         options.in_place_of.empty()
-            ? fit_model_beside(beside_all(added, share), asset, data, *from.model, kFirstRound, bound)
+            ? fit_model_beside(gross ? PemPoint{} : beside_all(added, share), asset, data, *from.model, kFirstRound, bound)
             : sizes_first(asset, added, data, *from.model);
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;

@@ -11,7 +11,8 @@
 namespace sealwatch {
 namespace {
 
-/// Receiving comes first, also where processors are few: these threads alone are made nicer (Linux has it by thread).
+/// What is received comes first, also where processors are few: these threads alone are made nicer (Linux has it by
+/// thread). Not those of short work: a batch waits for them, and they would wait for whoever else keeps processors busy.
 void give_way() {
   constexpr int kNicer = 5;
   const auto thread = static_cast<id_t>(::gettid());
@@ -30,44 +31,41 @@ double processor_seconds(pthread_t thread) {
 Workers::~Workers() {
   {
     const std::lock_guard lock(mutex_);
-    stopping_ = true;
-    for (Worker& worker : workers_)
-      if (worker.work) worker.work->stop.request_stop();
+    ask_all_to_stop();
   }
-  changed_.notify_all();
   for (Worker& worker : workers_) worker.thread.join();
+}
+
+void Workers::ask_all_to_stop() {
+  stopping_ = true;
+  for (Worker& worker : workers_)
+    if (worker.work) worker.work->stop.request_stop();
+  short_.changed.notify_all();
+  long_.changed.notify_all();
 }
 
 void Workers::add(Work work) {
   const std::lock_guard lock(mutex_);
-  (work.is_long ? waiting_long_ : waiting_).push_back(std::move(work));
-  if (idle_ < waiting_.size() + waiting_long_.size() && workers_.size() < limits_.threads) {
-    Worker& made = workers_.emplace_back();
-    ++idle_;
-    made.thread = std::thread([this, &made] { run(made); });
+  Crew& crew = work.is_long ? long_ : short_;
+  crew.waiting.push_back(std::move(work));
+  if (crew.idle < crew.waiting.size() && crew.made < crew.most) {
+    Worker& worker = workers_.emplace_back();
+    ++crew.made;
+    ++crew.idle;
+    worker.thread = std::thread([this, &worker, &crew] { run(worker, crew); });
   }
-  changed_.notify_one();
+  crew.changed.notify_one();
 }
 
-std::optional<Workers::Work> Workers::next() {
-  const bool is_long = waiting_.empty() && long_at_work_ < limits_.long_work;
-  std::deque<Work>& queue = is_long ? waiting_long_ : waiting_;
-  if (queue.empty()) return std::nullopt;
-  Work work = std::move(queue.front());
-  queue.pop_front();
-  if (is_long) ++long_at_work_;
-  return work;
-}
-
-void Workers::run(Worker& worker) {
-  give_way();
+void Workers::run(Worker& worker, Crew& crew) {
+  if (&crew == &long_) give_way();
   std::unique_lock lock(mutex_);
   for (;;) {
-    std::optional<Work> work;
-    changed_.wait(lock, [&] { return stopping_ || (work = next()).has_value(); });
-    if (!work) return;
-    --idle_;
-    worker.work = std::move(work);
+    crew.changed.wait(lock, [&] { return stopping_ || !crew.waiting.empty(); });
+    if (stopping_) return;
+    --crew.idle;
+    worker.work = std::move(crew.waiting.front());
+    crew.waiting.pop_front();
     worker.begun = Clock::now();
     worker.processor_s_at_begin = processor_seconds(::pthread_self());
     worker.asked_to_stop.reset();
@@ -75,10 +73,9 @@ void Workers::run(Worker& worker) {
     lock.unlock();
     worker.work->run(worker.work->stop.get_token());
     lock.lock();
-    if (worker.work->is_long) --long_at_work_;
     worker.work.reset();
-    ++idle_;
-    if (stopping_) changed_.notify_all();
+    ++crew.idle;
+    if (stopping_) ended_.notify_all();
   }
 }
 
@@ -109,11 +106,8 @@ std::optional<std::string> Workers::look_after() {
 
 bool Workers::stop(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
-  stopping_ = true;
-  for (Worker& worker : workers_)
-    if (worker.work) worker.work->stop.request_stop();
-  changed_.notify_all();
-  return changed_.wait_for(lock, patience, [this] {
+  ask_all_to_stop();
+  return ended_.wait_for(lock, patience, [this] {
     return std::ranges::none_of(workers_, [](const Worker& worker) { return worker.work.has_value(); });
   });
 }

@@ -1,6 +1,6 @@
 // Threads that do a service's computing, so that its main thread only receives, stores and publishes. They are made as
-// work comes, so that a piece of work that takes long holds up no other; long work is done by a few of them at once, as
-// each piece of it may take much memory.
+// work comes, so that a piece of work that takes long holds up no other. Long work has a few threads of its own, as each
+// piece of it may take much memory, and these give way to all others where processors are few.
 //
 // Each piece of work has a deadline: so much time of its thread's processor, or five times as much by the clock, as it
 // may use other threads or wait. Then it is asked to stop; if it does not, within the grace, it is stuck: a thread
@@ -52,6 +52,14 @@ class Workers {
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// The threads that do short work, or those that do long work.
+  struct Crew {
+    std::size_t most = 0;
+    std::size_t made = 0;
+    std::size_t idle = 0;
+    std::deque<Work> waiting = {};
+    std::condition_variable changed = {};
+  };
   struct Worker {
     std::thread thread;
     std::optional<Work> work;  ///< what it is doing
@@ -60,19 +68,16 @@ class Workers {
     std::optional<Clock::time_point> asked_to_stop;
     bool told_of = false;  ///< that it is stuck
   };
-  void run(Worker& worker);
-  /// The next piece of work that may begin now.
-  [[nodiscard]] std::optional<Work> next();
+  void run(Worker& worker, Crew& crew);
+  void ask_all_to_stop();
   [[nodiscard]] bool is_overdue(const Worker& worker, Clock::time_point now) const;
 
   const Limits limits_;
   std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Work> waiting_;
-  std::deque<Work> waiting_long_;
+  Crew short_{.most = limits_.threads};
+  Crew long_{.most = limits_.long_work};
+  std::condition_variable ended_;  ///< while stopping: a piece of work has
   std::list<Worker> workers_;
-  std::size_t idle_ = 0;
-  std::size_t long_at_work_ = 0;
   bool stopping_ = false;
 };
 

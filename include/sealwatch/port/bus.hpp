@@ -38,6 +38,12 @@ class Bus {
   /// From now on messages of these topics are received. Service topics are separate: see subscribe_service_topics.
   [[nodiscard]] virtual Status subscribe(std::span<const Topic> topics) = 0;
   [[nodiscard]] virtual Status subscribe_service_topics() = 0;
+  /// Connects those who will hear messages of these topics, and resend requests, before the first of them is published:
+  /// who is connected only by the first message misses it, and has to ask for it.
+  [[nodiscard]] virtual Status announce(std::span<const Topic> topics) {
+    (void)topics;
+    return {};
+  }
   [[nodiscard]] virtual Status publish(const Message& message) = 0;
   [[nodiscard]] virtual Status publish(const ServiceStatus& status) = 0;
   [[nodiscard]] virtual Status publish(const ResendRequest& request) = 0;

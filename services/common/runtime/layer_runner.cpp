@@ -44,6 +44,7 @@ Status LayerRunner::start() {
   // Subscribed first: what comes while the past is restored waits on the bus.
   if (Status status = bus_.subscribe_service_topics(); !status) return status;
   if (Status status = bus_.subscribe(kind_->inputs()); !status) return status;
+  if (Status status = bus_.announce(kind_->outputs()); !status) return status;
   const auto positions = journal_.positions();
   if (!positions) return fail(positions.error());
   for (const StreamPosition& known : *positions) {

@@ -56,6 +56,8 @@ class Channel {
   /// Moves what waits in DDS to the inbox, in the order of publishing. The inbox's mutex must be held.
   void take();
 
+  /// Makes the writer, which readers find from now on.
+  [[nodiscard]] Status open_writer();
   /// Waits at most 10 ms.
   [[nodiscard]] Status write(const DdsSample& sample);
   /// Readers anywhere that this participant's writer is matched with.
@@ -63,7 +65,6 @@ class Channel {
 
  private:
   [[nodiscard]] Status open_topic();
-  [[nodiscard]] Status open_writer();
   struct Stamped {
     dds_time_t published;
     Inbox::Writer writer;

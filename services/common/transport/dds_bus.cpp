@@ -51,6 +51,11 @@ class CycloneBus final : public DdsBus {
       if (Status made = channels_[index].subscribe(inbox_); !made) return made;
     return {};
   }
+  Status announce(std::span<const Topic> topics) override {
+    for (const Topic topic : topics)
+      if (Status opened = channels_[static_cast<std::size_t>(topic)].open_writer(); !opened) return opened;
+    return channels_[transport::kResendRequestIndex].open_writer();
+  }
 
   Status publish(const Message& message) override {
     const std::size_t index = transport::is_retraction(message) ? transport::kRetractionIndex : message.index();

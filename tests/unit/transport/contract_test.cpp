@@ -241,6 +241,17 @@ TEST_P(BusContract, CarriesServiceTopics) {
   EXPECT_EQ(std::get<ResendRequest>(items.front()), request);
 }
 
+TEST_P(BusContract, TheFirstMessagesOfAnAnnouncedTopicReachWhoIsThere) {
+  auto subscriber = open_subscribed(kAdvisory);
+  ASSERT_TRUE(subscriber->subscribe_service_topics());
+  auto publisher = open();
+  ASSERT_TRUE(publisher->announce(kAdvisory));
+  std::this_thread::sleep_for(milliseconds(1500));  // they find each other within a few tens of milliseconds
+  ASSERT_TRUE(publisher->publish(ResendRequest{"w", "advisory", 3, 9, "state_detection"}));
+  for (std::uint64_t k = 1; k <= 5; ++k) ASSERT_TRUE(publisher->publish(advisory("a", k)));
+  EXPECT_EQ(collect(*subscriber, 6).size(), 6U);
+}
+
 TEST_P(BusContract, TakesAtMostAsManyAsAskedFor) {
   auto subscriber = open_subscribed(kAdvisory);
   auto publisher = open();

@@ -414,11 +414,10 @@ class Campaign:
 
     def flood(self):
         """Actuators live, fifty by default, while a stranger sends as fast as DDS takes it."""
-        (self.folder / "live").mkdir()
-        for k in range(1, self.arguments.live + 1):
-            text = (SOURCE / "config/assets/xt03-mv2.yaml").read_text()
-            (self.folder / "live/assets").mkdir(exist_ok=True)
-            (self.folder / f"live/assets/live-{k}.yaml").write_text(text.replace("asset_id: XT03-MV2", f"asset_id: LIVE-{k}"))
+        (self.folder / "live/assets").mkdir(parents=True)
+        text = (SOURCE / "config/assets/xt03-mv2.yaml").read_text()
+        for name in [*(f"LIVE-{k}" for k in range(1, self.arguments.live + 1)), "FLOOD-KNOWN"]:
+            (self.folder / f"live/assets/{name.lower()}.yaml").write_text(text.replace("asset_id: XT03-MV2", f"asset_id: {name}"))
         text = (SOURCE / "config/sealwatch.yaml").read_text()
         (self.folder / "live/sealwatch.yaml").write_text(text.replace("domain: 0 ", f"domain: {LIVE_DOMAIN} "))
         said = []
@@ -453,7 +452,7 @@ class Campaign:
             if ended := world.keep_up():
                 raise Failed(f"flood of {what}: ended: {ended}")
         # What fits into the queues for strangers is no flood.
-        if what == "raw" and sent > 5000 and not re.search(r'"kind":\s*"flood"', status):
+        if what in ("raw", "known") and sent > 5000 and not re.search(r'"kind":\s*"flood"', status):
             raise Failed(f"flood of {what}: {sent} messages, and nobody said so")
         grown = {name: after[name][0] - before[name][0] for name in SERVICES}
         most = max(grown, key=grown.get)
@@ -624,7 +623,7 @@ def main():
     parser.add_argument("--steps", type=int, default=10)
     parser.add_argument("--seconds", type=int, default=20)
     parser.add_argument("--assets", type=int, default=2)
-    parser.add_argument("--floods", default="nothing,raw,statuses,resends")
+    parser.add_argument("--floods", default="nothing,raw,known,statuses,resends")
     parser.add_argument("--live", type=int, default=50)
     arguments = parser.parse_args()
     trials = list(TRIALS) if arguments.trial == "all" else [arguments.trial]

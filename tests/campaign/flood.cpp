@@ -1,8 +1,8 @@
 // A stranger that floods the services' topics, for the campaign (campaign.py, trial flood):
 //
-//   flood raw|statuses|resends SECONDS DOMAIN
+//   flood raw|known|statuses|resends SECONDS DOMAIN
 //
-// raw: tests of ever new actuators, as fast as DDS takes them. statuses: each from a writer that nobody heard before, as
+// raw: tests of ever new actuators, as fast as DDS takes them. known: the same of one configured actuator. statuses: each from a writer that nobody heard before, as
 // fast as DDS takes them, 100 000 at least. resends: of the streams that heartbeats name, all ranges. Prints how many it
 // sent.
 #include <array>
@@ -21,9 +21,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kRows = 10;
 
-RawSamples block_of(std::uint64_t number) {
+RawSamples block_of(std::uint64_t number, bool is_known) {
   RawSamples block;
-  block.asset_id = "FLOOD-" + std::to_string(number / 100 % 1000);
+  block.asset_id = is_known ? "FLOOD-KNOWN" : "FLOOD-" + std::to_string(number / 100 % 1000);
   block.recording_id = "flood-" + std::to_string(number / 100);
   block.source_id = "flood";
   block.block_number = number % 100;
@@ -61,7 +61,7 @@ std::uint64_t flood(Bus& bus, const std::string& what, std::chrono::seconds dura
   const auto end = Clock::now() + duration;
   for (std::uint64_t number = 0; Clock::now() < end || (what == "statuses" && number < 100'000); ++number) {
     Status done = {};
-    if (what == "raw") done = bus.publish(Message(block_of(number)));
+    if (what == "raw" || what == "known") done = bus.publish(Message(block_of(number, what == "known")));
     if (what == "statuses") done = bus.publish(status_of(number));
     if (what == "resends" && !requests.empty()) done = bus.publish(requests[number % requests.size()]);
     sent += done ? 1 : 0;

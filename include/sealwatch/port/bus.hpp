@@ -17,7 +17,7 @@ namespace sealwatch {
 
 using BusItem = std::variant<Message, ServiceStatus, ResendRequest>;
 
-/// What was dropped of a stranger who sent more than a stranger may.
+/// What was dropped of somebody who sent more than a stranger may, or than its share beside others.
 struct Flood {
   std::string source;  ///< who it says it is, else the topic
   std::uint64_t dropped = 0;
@@ -27,11 +27,11 @@ struct Flood {
 /// thread of a daemon owns a second Bus).
 ///
 /// Contract: messages of one publisher on one topic arrive in order; between publishers and subscribers that are
-/// connected nothing is lost of what is not numbered, and of what is numbered (Header::stream_sequence) and of service
-/// topics only what a subscriber that does not call receive cannot hold; a late subscriber gets the last message of
-/// every asset of every publisher still alive; a publisher's end removes nothing that was delivered. A publish never
-/// waits for longer than 20 ms. An Error says that the bus did not take the message now: it may have reached some of
-/// its readers; publish it again.
+/// connected nothing is lost of what is not numbered, but what is told as a flood, and of what is numbered
+/// (Header::stream_sequence) and of service topics only what a subscriber that does not call receive cannot hold; a
+/// late subscriber gets the last message of every asset of every publisher still alive; a publisher's end removes
+/// nothing that was delivered. A publish never waits for longer than 20 ms. An Error says that the bus did not take the
+/// message now: it may have reached some of its readers; publish it again.
 class Bus {
  public:
   virtual ~Bus() = default;

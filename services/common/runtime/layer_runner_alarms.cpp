@@ -145,7 +145,8 @@ void LayerRunner::note_alarms_of(const Message& output) {
 void LayerRunner::tell_of_floods() {
   for (const Flood& flood : bus_.floods()) {
     const std::string text = "more comes of " + flood.source +
-                             " than a stranger may send; the rest is dropped: configure its assets, or stop it";
+                             " than may come beside others; the rest is dropped: configure its assets, number its "
+                             "blocks, or stop it";
     alarms_.raise({.kind = kFlood,
                    .asset_id = {},
                    .subject = flood.source,

@@ -153,12 +153,13 @@ bool Channel::may_say(const BusItem& item) const {
 
 void Channel::take() {
   const auto limit = static_cast<std::size_t>(type_->reader_limit);
-  if (inbox_->is_full(static_cast<std::size_t>(type_ - topic_types().data()), limit)) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (inbox_->is_full(static_cast<std::size_t>(type_ - topic_types().data()), limit, now)) return;
   std::vector<Stamped> taken;
   while (take_batch(taken)) {
   }
   std::ranges::stable_sort(taken, {}, &Stamped::published);
-  for (Stamped& one : taken) inbox_->put(one.writer, std::move(one.item), limit);
+  for (Stamped& one : taken) inbox_->put(one.writer, std::move(one.item), limit, now);
 }
 
 Status Channel::open_writer() {

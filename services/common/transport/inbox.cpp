@@ -8,6 +8,8 @@ namespace {
 
 /// Names that are told apart of those who flood; a stranger may invent as many as it likes.
 constexpr std::size_t kMostNames = 16;
+/// Assets that share a take: of more each has one message of it all the same.
+constexpr std::size_t kMostAssets = 64;
 
 std::size_t index_of(const BusItem& item) {
   if (const auto* message = std::get_if<Message>(&item)) return message->index();
@@ -44,9 +46,21 @@ bool Inbox::is_strangers(const BusItem& item) const {
   return !assets_.contains(asset_of(message)) && !(raw != nullptr && senders_.contains(raw->source_id));
 }
 
-bool Inbox::is_left_out(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const {
-  if (topic == kServiceStatusIndex) return queue.size() >= kMostStatuses;
+bool Inbox::is_beyond_share(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const {
   return waiting_[topic] >= limit && queue.size() >= limit / std::max<std::size_t>(writers_[topic], 1);
+}
+
+bool Inbox::is_left_out(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const {
+  return topic == kServiceStatusIndex ? queue.size() >= kMostStatuses : is_beyond_share(queue, topic, limit);
+}
+
+bool Inbox::is_alone(std::size_t topic, Time now) {
+  std::erase_if(heard_[topic], [now](const auto& writer) { return now - writer.second > kForgotten; });
+  return heard_[topic].size() <= 1;
+}
+
+bool Inbox::is_full(std::size_t topic, std::size_t limit, Time now) {
+  return waiting_[topic] >= 2 * limit && is_alone(topic, now);
 }
 
 void Inbox::drop(const BusItem& item) {
@@ -56,10 +70,19 @@ void Inbox::drop(const BusItem& item) {
   ++dropped_[dropped_.contains(name) || dropped_.size() < kMostNames ? name : "others"];
 }
 
-void Inbox::put(Writer writer, BusItem item, std::size_t limit) {
+void Inbox::note_heard(Writer writer, const BusItem& item, std::size_t topic, Time now) {
+  heard_[topic][writer] = now;
+  if (comes_again(item)) return;
+  std::map<std::string, Time>& assets = heard_assets_[topic];
+  const std::string& asset_id = asset_of(std::get<Message>(item));
+  if (assets.size() < kMostAssets || assets.contains(asset_id)) assets[asset_id] = now;
+}
+
+void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
   const std::size_t topic = index_of(item);
   const Key key{is_strangers(item), writer};
   if (key.first && strangers_waiting_ >= kMostOfStrangers) return drop(item);
+  if (!key.first) note_heard(writer, item, topic, now);
   const auto [place, is_new] = queues_.try_emplace(key);
   std::deque<BusItem>& queue = place->second;
   if (is_new && !key.first) ++writers_[topic];
@@ -70,6 +93,8 @@ void Inbox::put(Writer writer, BusItem item, std::size_t limit) {
     queues_.erase(place);
     return;
   }
+  const bool is_flood = !key.first && !comes_again(item) && is_beyond_share(queue, topic, 2 * limit);
+  if (is_flood && !is_alone(topic, now)) return drop(item);
   ++(key.first ? strangers_waiting_ : waiting_[topic]);
   queue.push_back(std::move(item));
   if (is_new) turns_.push_back(key);
@@ -90,17 +115,33 @@ BusItem Inbox::take_one(const Key& key) {
   return item;
 }
 
+std::size_t Inbox::share_of_asset(std::size_t topic, std::size_t most, Time now) {
+  std::erase_if(heard_assets_[topic], [now](const auto& asset) { return now - asset.second > kForgotten; });
+  return std::max<std::size_t>(most / std::max<std::size_t>(heard_assets_[topic].size(), 1), 1);
+}
+
+bool Inbox::is_in_share(const BusItem& item, Shares& taken, std::size_t most, Time now) {
+  if (comes_again(item)) return true;
+  const std::size_t topic = index_of(item);
+  std::size_t& of_asset = taken[{topic, asset_of(std::get<Message>(item))}];
+  if (of_asset >= share_of_asset(topic, most, now)) return false;
+  ++of_asset;
+  return true;
+}
+
 std::vector<BusItem> Inbox::take(std::size_t most, Time now) {
   constexpr auto kRate = static_cast<double>(kStrangersASecond);
   strangers_may_ += std::chrono::duration<double>(now - strangers_looked_).count() * kRate;
   strangers_may_ = std::min(strangers_may_, kRate);
   strangers_looked_ = now;
   std::vector<BusItem> taken;
-  std::deque<Key> later;  // strangers' queues of which nothing may be taken now
+  Shares of_assets;
+  std::deque<Key> later;  // queues of which nothing may be taken now
   while (taken.size() < most && !turns_.empty()) {
     const Key key = turns_.front();
     turns_.pop_front();
-    if (key.first && strangers_may_ < 1.0) {
+    const bool may = key.first ? strangers_may_ >= 1.0 : is_in_share(queues_.at(key).front(), of_assets, most, now);
+    if (!may) {
       later.push_back(key);
       continue;
     }

@@ -5,7 +5,10 @@
 //                   in its journal, and the reader asks for what it misses
 //   service status  only a writer's last word about each service waits
 //   requests        left out as numbered messages are: they are repeated
-//   not numbered    kept up to twice the topic's limit, then left in DDS, which makes its sender wait
+//   not numbered    kept up to twice the topic's limit, then left in DDS, which makes its sender wait. But DDS delivers
+//                   in one line: where others send on that topic too, they would wait with it. So then what is beyond
+//                   its sender's share is dropped and counted. Of one asset a take gives no more than its share, as all
+//                   that is taken at once is waited for at once
 //   of strangers    that is, not numbered, about no configured asset and from no configured sender: so many a second are
 //                   taken, whoever sends them, and so many wait; the rest is dropped and counted
 #pragma once
@@ -36,6 +39,8 @@ class Inbox {
   static constexpr std::size_t kStrangersASecond = 200;
   static constexpr std::size_t kMostOfStrangers = 1024;
   static constexpr std::size_t kMostStatuses = 16;  ///< of one writer
+  /// Who was heard so long ago sends no test any more: acquisition then closes it as cut.
+  static constexpr std::chrono::seconds kForgotten{60};
 
   Signal signal;     ///< something arrived
   std::mutex mutex;  ///< for all that follows
@@ -47,10 +52,11 @@ class Inbox {
   /// Whether strangers' messages wait until more of them may be taken.
   [[nodiscard]] bool strangers_wait() const { return strangers_waiting_ > 0; }
   /// Whether nothing more of that topic should be taken from DDS.
-  [[nodiscard]] bool is_full(std::size_t topic, std::size_t limit) const { return waiting_[topic] >= 2 * limit; }
+  [[nodiscard]] bool is_full(std::size_t topic, std::size_t limit, Time now);
   /// Adds it, or leaves it out.
-  void put(Writer writer, BusItem item, std::size_t limit);
-  /// At most `most`, writers in turn; those of one writer in the order in which they came.
+  void put(Writer writer, BusItem item, std::size_t limit, Time now);
+  /// At most `most`, writers in turn; those of one writer in the order in which they came. Fewer where more would be
+  /// beyond an asset's share: at least one, where any may be taken.
   [[nodiscard]] std::vector<BusItem> take(std::size_t most, Time now);
   /// What was dropped since the last call.
   [[nodiscard]] std::vector<Flood> floods();
@@ -58,9 +64,19 @@ class Inbox {
  private:
   using Key = std::pair<bool, Writer>;  ///< whether it is a stranger's
   [[nodiscard]] bool is_strangers(const BusItem& item) const;
+  /// Whether that many wait, and in this queue more than its writer's share of them.
+  [[nodiscard]] bool is_beyond_share(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const;
   [[nodiscard]] bool is_left_out(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const;
+  /// Whether one writer at most sends on that topic.
+  [[nodiscard]] bool is_alone(std::size_t topic, Time now);
+  void note_heard(Writer writer, const BusItem& item, std::size_t topic, Time now);
   void drop(const BusItem& item);
   [[nodiscard]] BusItem take_one(const Key& key);
+  /// How many not numbered messages of one asset make its share of `most`.
+  [[nodiscard]] std::size_t share_of_asset(std::size_t topic, std::size_t most, Time now);
+  using Shares = std::map<std::pair<std::size_t, std::string>, std::size_t>;  ///< taken, by topic and asset
+  /// Whether it may be taken: then it is counted in `taken`.
+  [[nodiscard]] bool is_in_share(const BusItem& item, Shares& taken, std::size_t most, Time now);
 
   std::set<std::string> assets_;
   std::set<std::string> senders_;
@@ -68,6 +84,8 @@ class Inbox {
   std::deque<Key> turns_;                           ///< each queue once
   std::array<std::size_t, kTopicCount> waiting_{};  ///< by topic, as topic_types() counts them; without strangers'
   std::array<std::size_t, kTopicCount> writers_{};  ///< queues by topic, likewise
+  std::array<std::map<Writer, Time>, kTopicCount> heard_{};  ///< by topic, the last time; without strangers
+  std::array<std::map<std::string, Time>, kTopicCount> heard_assets_{};  ///< likewise, of what is not numbered
   std::size_t strangers_waiting_ = 0;
   double strangers_may_ = 0.0;  ///< how many may be taken now
   Time strangers_looked_{};

@@ -12,6 +12,8 @@ using ::testing::ElementsAre;
 using ::testing::SizeIs;
 
 constexpr std::size_t kLimit = 512;
+constexpr Inbox::Time kNow = Inbox::Time(std::chrono::hours(1));
+constexpr auto kRaw = static_cast<std::size_t>(Topic::raw_samples);
 
 BusItem block(const std::string& asset_id, std::uint64_t number, const std::string& writer_id = {}) {
   RawSamples raw;
@@ -36,8 +38,8 @@ class InboxTest : public ::testing::Test {
 };
 
 TEST_F(InboxTest, ABlockWaitsBehindNoFloodOfAnother) {
-  for (std::uint64_t k = 1; k <= 1000; ++k) inbox_.put(1, block("A", k), kLimit);
-  for (std::uint64_t k = 1; k <= 3; ++k) inbox_.put(2, block("B", k), kLimit);
+  for (std::uint64_t k = 1; k <= 1000; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 3; ++k) inbox_.put(2, block("B", k), kLimit, kNow);
   std::vector<std::uint64_t> numbers;
   for (const BusItem& item : take(8))
     if (asset_of(item) == "B") numbers.push_back(number_of(item));
@@ -52,8 +54,8 @@ TEST_F(InboxTest, ABlockWaitsBehindNoFloodOfAnother) {
 }
 
 TEST_F(InboxTest, OfNumberedMessagesWhoHasMoreThanItsShareWaitingIsLeftOut) {
-  for (std::uint64_t k = 1; k <= 10 * kLimit; ++k) inbox_.put(1, block("A", k, "flood"), kLimit);
-  for (std::uint64_t k = 1; k <= 100; ++k) inbox_.put(2, block("B", k, "live"), kLimit);
+  for (std::uint64_t k = 1; k <= 10 * kLimit; ++k) inbox_.put(1, block("A", k, "flood"), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 100; ++k) inbox_.put(2, block("B", k, "live"), kLimit, kNow);
   std::size_t live = 0;
   std::size_t all = 0;
   while (!inbox_.empty())
@@ -65,11 +67,42 @@ TEST_F(InboxTest, OfNumberedMessagesWhoHasMoreThanItsShareWaitingIsLeftOut) {
   EXPECT_EQ(all, kLimit + 100);
 }
 
+TEST_F(InboxTest, WhoSendsUnnumberedBlocksAloneWaitsAndLosesNone) {
+  for (std::uint64_t k = 1; k <= 2 * kLimit + 100; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
+  EXPECT_TRUE(inbox_.is_full(kRaw, kLimit, kNow)) << "the rest stays in DDS";
+  EXPECT_THAT(inbox_.floods(), SizeIs(0));
+}
+
+TEST_F(InboxTest, WhereOthersSendTooNobodyWaitsInDdsForAFloodOfAKnownSender) {
+  inbox_.put(2, block("B", 1), kLimit, kNow);
+  EXPECT_THAT(take(64), SizeIs(1));
+  for (std::uint64_t k = 1; k <= 20 * kLimit; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
+  EXPECT_FALSE(inbox_.is_full(kRaw, kLimit, kNow));
+  for (std::uint64_t k = 2; k <= 100; ++k) inbox_.put(2, block("B", k), kLimit, kNow);
+  const auto floods = inbox_.floods();
+  ASSERT_THAT(floods, SizeIs(1));
+  EXPECT_EQ(floods[0].source, "sender of A");
+  EXPECT_EQ(floods[0].dropped, 18 * kLimit);
+  std::size_t live = 0;
+  for (const BusItem& item : inbox_.take(2 * 99, kNow)) live += asset_of(item) == "B" ? 1 : 0;
+  EXPECT_EQ(live, 99U) << "all that it sent, in its turns";
+  const auto later = kNow + Inbox::kForgotten + std::chrono::seconds(1);
+  for (std::uint64_t k = 1; k <= 2 * kLimit; ++k) inbox_.put(1, block("A", k), kLimit, later);
+  EXPECT_TRUE(inbox_.is_full(kRaw, kLimit, later)) << "alone again";
+}
+
+TEST_F(InboxTest, AFloodOfOneAssetHasItsShareOfEachTake) {
+  for (std::uint64_t k = 1; k <= 1000; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
+  EXPECT_THAT(inbox_.take(64, kNow), SizeIs(64)) << "alone it is taken as fast as it comes";
+  inbox_.put(2, block("B", 1), kLimit, kNow);
+  EXPECT_THAT(inbox_.take(64, kNow), SizeIs(33)) << "whoever sends it, that asset has a half, and who waits has one";
+}
+
 TEST_F(InboxTest, AStrangersFloodIsTakenSlowlyAndDroppedAndTold) {
   (void)take(1, milliseconds(0));
-  for (std::uint64_t k = 1; k <= 5000; ++k) inbox_.put(7, block("UNKNOWN", k), kLimit);
-  inbox_.put(1, block("A", 1), kLimit);
-  EXPECT_FALSE(inbox_.is_full(static_cast<std::size_t>(Topic::raw_samples), kLimit)) << "nobody waits for it in DDS";
+  for (std::uint64_t k = 1; k <= 5000; ++k) inbox_.put(7, block("UNKNOWN", k), kLimit, kNow);
+  inbox_.put(1, block("A", 1), kLimit, kNow);
+  EXPECT_FALSE(inbox_.is_full(kRaw, kLimit, kNow)) << "nobody waits for it in DDS";
   std::size_t strangers = 0;
   std::size_t known = 0;
   for (int ms = 1; ms <= 2000; ++ms)
@@ -88,8 +121,8 @@ TEST_F(InboxTest, AStrangersFloodIsTakenSlowlyAndDroppedAndTold) {
 TEST_F(InboxTest, AConfiguredSenderIsNoStrangerAndNobodyIsWhereNothingIsConfigured) {
   Inbox open;
   for (std::uint64_t k = 1; k <= 1000; ++k) {
-    inbox_.put(7, block("CONFIGURED", k), kLimit);
-    open.put(7, block("UNKNOWN", k), kLimit);
+    inbox_.put(7, block("CONFIGURED", k), kLimit, kNow);
+    open.put(7, block("UNKNOWN", k), kLimit, kNow);
   }
   std::size_t came = 0;
   while (!inbox_.empty()) came += take(64).size();
@@ -105,9 +138,9 @@ TEST_F(InboxTest, AStrangersHeartbeatsHideNoServicesOwn) {
     status.started_ns = started_ns;
     return BusItem(status);
   };
-  inbox_.put(1, beat("itself", 1), kLimit);
-  for (int k = 0; k < 100'000; ++k) inbox_.put(2, beat("stranger " + std::to_string(k), k), kLimit);
-  inbox_.put(1, beat("itself", 2), kLimit);
+  inbox_.put(1, beat("itself", 1), kLimit, kNow);
+  for (int k = 0; k < 100'000; ++k) inbox_.put(2, beat("stranger " + std::to_string(k), k), kLimit, kNow);
+  inbox_.put(1, beat("itself", 2), kLimit, kNow);
   const auto taken = take(64);
   ASSERT_THAT(taken, SizeIs(2)) << "the last word of each";
   EXPECT_EQ(std::get<ServiceStatus>(taken[0]).started_ns, 2);

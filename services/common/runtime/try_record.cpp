@@ -23,8 +23,6 @@ void count(std::uint16_t& times) {
   if (times < std::numeric_limits<std::uint16_t>::max()) ++times;
 }
 
-bool is_unsuspected(const Tries& tries) { return tries.failures == 0 && tries.deaths == 0; }
-
 }  // namespace
 
 Status TryRecord::keep_in(const std::string& path) {
@@ -42,8 +40,9 @@ Status TryRecord::keep_in(const std::string& path) {
                                  .advice = "let this user write there"});
   entries_ = static_cast<Entries*>(memory);
   for (Entry& entry : *entries_) {
+    entry.zero = 0;
     if (entry.message == 0 || entry.at_work == 0) continue;
-    count(entry.tries.deaths);
+    count(entry.deaths);
     entry.at_work = 0;
   }
   return {};
@@ -58,7 +57,7 @@ void TryRecord::stop_in_order() {
   const std::lock_guard lock(mutex_);
   for (Entry& entry : *entries_) {
     entry.at_work = 0;
-    if (is_unsuspected(entry.tries)) entry.message = 0;
+    if (is_unsuspected(entry)) entry.message = 0;
   }
 }
 
@@ -77,14 +76,15 @@ TryRecord::Entry& TryRecord::find_or_make(const std::string& message_id) {
     if ((*entries_)[next_].at_work == 0) room = entries_->begin() + next_;
   }
   if (room == entries_->end()) room = entries_->begin();
-  *room = {.message = hash_of(message_id), .tries = {}, .at_work = 0};
+  *room = {};
+  room->message = hash_of(message_id);
   return *room;
 }
 
 Tries TryRecord::tries(const std::string& message_id) {
   const std::lock_guard lock(mutex_);
   const Entry* const known = find(message_id);
-  return known == nullptr ? Tries{} : known->tries;
+  return known == nullptr ? Tries{} : Tries{known->failures, known->deaths};
 }
 
 void TryRecord::begin(const std::string& message_id) {
@@ -100,7 +100,7 @@ void TryRecord::end(const std::string& message_id) {
 void TryRecord::fail(const std::string& message_id) {
   const std::lock_guard lock(mutex_);
   Entry& entry = find_or_make(message_id);
-  count(entry.tries.failures);
+  count(entry.failures);
   entry.at_work = 0;
 }
 
@@ -109,7 +109,7 @@ void TryRecord::leave(const std::string& message_id) {
   Entry* const known = find(message_id);
   if (known == nullptr) return;
   known->at_work = 0;
-  if (is_unsuspected(known->tries)) known->message = 0;
+  if (is_unsuspected(*known)) known->message = 0;
 }
 
 }  // namespace sealwatch

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -40,14 +41,20 @@ class TryRecord {
   void stop_in_order();
 
  private:
+  /// The file of a former version has 32 bits of failures, then 32 that say whether it is at work. After a return to it
+  /// deaths make it take the message for one at work, as which it counts one failure: it is tried, and not set aside.
   struct Entry {
     std::uint64_t message;  ///< hash of its id; 0: free
-    Tries tries;
-    std::uint32_t at_work;
+    std::uint16_t failures;
+    std::uint16_t zero;
+    std::uint16_t at_work;
+    std::uint16_t deaths;
   };
+  static_assert(sizeof(Entry) == 16 && std::endian::native == std::endian::little, "as the former version has it");
   static constexpr std::size_t kEntries = 1024;
   using Entries = std::array<Entry, kEntries>;
 
+  [[nodiscard]] static bool is_unsuspected(const Entry& entry) { return entry.failures == 0 && entry.deaths == 0; }
   Entry* find(const std::string& message_id);
   Entry& find_or_make(const std::string& message_id);
 

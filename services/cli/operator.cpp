@@ -252,9 +252,11 @@ int run_replaced(const ReplacedOptions& options) {
   }
   const std::optional<RemainingLife> known = known_replacement(*session->bus, options.asset_id);
   const bool later = known && known->replaced_ns > at->nanoseconds;
-  // The same one may have reached only some of the services: it is sent again, under the name that they know.
-  if (known && known->replaced_ns == at->nanoseconds)
-    message.header.message_id = prognostic_assessment::replacement_of(*known).id;
+  // The same one may have reached only some of the services: it is sent again, under the name that they know. A report
+  // of another kind is another one: under that name nobody would take it.
+  const std::string known_id = known ? prognostic_assessment::replacement_of(*known).id : std::string();
+  if (known && known->replaced_ns == at->nanoseconds && may_report(known_id, options.asset_id, message.kind))
+    message.header.message_id = known_id;
   const int sent =
       later ? kOk : send(session, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
   if (sent == kOk && known && known->replaced_ns >= at->nanoseconds) {

@@ -16,4 +16,12 @@ namespace sealwatch {
          format_utc(replaced);
 }
 
+/// Whether a report of that id may be one of this kind: an id of before kinds stood in it tells none.
+[[nodiscard]] inline bool may_report(std::string_view id, const std::string& asset_id, std::string_view kind) {
+  const std::string of_asset = "maintenance_event/" + asset_id + "/";
+  if (!id.starts_with(of_asset)) return false;
+  id.remove_prefix(of_asset.size());
+  return id.find('/') == std::string_view::npos || id.starts_with(std::string(kind) + "/");
+}
+
 }  // namespace sealwatch

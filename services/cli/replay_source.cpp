@@ -8,6 +8,7 @@
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/model/plant_description.hpp"
+#include "services/cli/operator_send.hpp"
 #include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/common/recording/recording_file.hpp"
@@ -34,6 +35,7 @@ std::optional<Error> not_a_file(const std::string& file) {
 std::optional<ReplaySource> ReplaySource::open(const ReplayOptions& options, const Configuration& configuration) {
   ReplaySource source;
   source.configuration_ = &configuration;
+  source.admission_ = Admission(configuration.commissioned);
   source.files_ = options.recordings;
   if (!options.asset_file.empty()) {
     const auto asset = load_asset_or_explain(options.asset_file, options.map_file);
@@ -97,22 +99,26 @@ Result<Recording> ReplaySource::read(const std::string& file) const {
   Result<Recording> recording = read_recording(file, **plant, map_.value_or(asset->channel_map));
   if (recording) tell_left_aside(*recording, (*plant)->name);
   if (recording) recording->asset_id = *asset_id;
-  const auto commissioned = configuration_->commissioned.find(*asset_id);
-  const bool dated = recording && recording->start_time && commissioned != configuration_->commissioned.end();
-  if (dated && *recording->start_time < commissioned->second)
-    return fail(Error{.file = file,
-                      .place = "start_time",
-                      .value = format_utc(*recording->start_time),
-                      .rule = "lies before the asset was commissioned, " + format_utc(commissioned->second),
-                      .advice = "correct the start time, or 'commissioned' in the configuration"});
   return recording;
+}
+
+Result<std::vector<RawSamples>> ReplaySource::blocks(const std::string& file) {
+  const Result<Recording> recording = read(file);
+  if (!recording) return fail(recording.error());
+  std::vector<RawSamples> blocks = blocks_of(*recording);
+  if (blocks.empty()) return blocks;
+  const Message first(blocks.front());
+  if (const auto refused = admission_.refusal(first, UtcTime{now_ns()}))
+    return fail(Error{.file = file, .place = {}, .value = {}, .rule = *refused, .advice = {}});
+  admission_.note(first);
+  return blocks;
 }
 
 std::vector<RawSamples> ReplaySource::next() {
   while (next_ < files_.size()) {
-    const Result<Recording> recording = read(files_[next_++]);
-    if (recording) return blocks_of(*recording);
-    complain(recording.error());
+    Result<std::vector<RawSamples>> blocks_of_next = blocks(files_[next_++]);
+    if (blocks_of_next) return std::move(*blocks_of_next);
+    complain(blocks_of_next.error());
     ++failures_;
   }
   return {};

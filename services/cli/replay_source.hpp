@@ -9,6 +9,7 @@
 #include "sealwatch/core/recording.hpp"
 #include "sealwatch/message/data_acquisition.hpp"
 #include "services/cli/commands.hpp"
+#include "services/common/runtime/admission.hpp"
 
 namespace sealwatch::cli {
 
@@ -25,11 +26,13 @@ class ReplaySource {
  private:
   void put_in_order();
   [[nodiscard]] Result<Recording> read(const std::string& file) const;
+  [[nodiscard]] Result<std::vector<RawSamples>> blocks(const std::string& file);
 
   const Configuration* configuration_ = nullptr;
   std::vector<std::string> files_;
   std::optional<ChannelMap> map_;  ///< in place of the configured assets' own
   std::string asset_;              ///< of all recordings, where the command line names one
+  Admission admission_;            ///< of what the services would refuse, nothing is concluded here either
   std::size_t next_ = 0;
   std::size_t failures_ = 0;
 };

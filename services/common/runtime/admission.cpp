@@ -38,10 +38,11 @@ std::optional<std::int64_t> time_of_test(const Message& message) {
 
 std::optional<std::string> refusal_of_texts(const Message& message) {
   std::optional<std::string> why;
+  bool is_certain = false;  // of a message's id, which others are part of, they tell more
   std::visit(
-      [&why](const auto& content) {
-        for_each_text("", content, [&why](std::string_view field, const std::string& text) {
-          if (why) return;
+      [&](const auto& content) {
+        for_each_text("", content, [&](std::string_view field, const std::string& text) {
+          if (is_certain) return;
           const bool id = names_something(field);
           if (!is_valid_utf8(text))
             why = "its " + std::string(field) + " is not UTF-8";
@@ -49,6 +50,9 @@ std::optional<std::string> refusal_of_texts(const Message& message) {
             why = "its " + std::string(field) + ", '" + visible(text) + "', has control characters";
           else if (id && text.size() > kLongestId)
             why = "its " + std::string(field) + " is longer than " + std::to_string(kLongestId) + " bytes";
+          else
+            return;
+          is_certain = !field.ends_with("message_id");
         });
       },
       message);
@@ -156,10 +160,10 @@ std::optional<std::string> Admission::refusal(const Message& message, UtcTime no
   const Header& header = header_of(message);
   if (header.message_id.starts_with(kDamagedMessage))
     return visible(header.message_id) + ": its writer's journal is damaged there; see the alarms of that service";
+  const auto* const raw = std::get_if<RawSamples>(&message);
+  if (auto why = raw != nullptr ? refusal_of_test(*raw, now) : refusal_of_samples(message)) return why;
   if (header.event_time_known && !is_time(header.event_time_ns))
-    return "its time, " + std::to_string(header.event_time_ns) + " ns since 1970, is none from 1970 to 2260";
-  if (auto why = refusal_of_samples(message)) return why;
-  if (const auto* raw = std::get_if<RawSamples>(&message)) return refusal_of_test(*raw, now);
+    return "its time, " + format_utc({header.event_time_ns}) + ", is none from 1970 to 2260";
   return is_report(message) ? refusal_of_report(message, now) : std::nullopt;
 }
 
@@ -188,7 +192,7 @@ std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw, Utc
 std::optional<std::string> Admission::refusal_of_time(const RawSamples& raw, UtcTime now) const {
   const std::string test = name_of_test(raw) + ": its start time, ";
   if (!is_time(raw.start_time_ns))
-    return test + std::to_string(raw.start_time_ns) + " ns since 1970, is none from 1970 to 2260; correct it";
+    return test + format_utc({raw.start_time_ns}) + ", is none from 1970 to 2260; correct it";
   const std::string what = test + format_utc({raw.start_time_ns});
   const auto commissioned = commissioned_.find(raw.asset_id);
   if (commissioned != commissioned_.end() && raw.start_time_ns < commissioned->second.nanoseconds)

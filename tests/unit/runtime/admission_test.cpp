@@ -64,6 +64,8 @@ TEST(AdmissionOfDates, ATimeThatCannotBeCountedWithIsNone) {
     event.header.event_time_ns = wild;
     EXPECT_THAT(refusal(event), HasSubstr("is none from 1970 to 2260"));
   }
+  EXPECT_THAT(refusal(live_test("1969-12-31T00:00:00Z")),
+              HasSubstr("its start time, 1969-12-31T00:00:00Z, is none from 1970 to 2260; correct it"));
 }
 
 RawSamples test_of(const std::string& asset_id) {

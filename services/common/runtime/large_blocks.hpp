@@ -1,5 +1,6 @@
 // Memory of large tests goes back to the system as soon as nobody needs it. glibc raises its threshold, up to 32 MB, with
-// each large block that is freed; the matrices of many megabytes that then come and go leave holes in the heap.
+// each large block that is freed; the matrices of many megabytes that then come and go leave holes in the heap. And it
+// makes a heap for nearly each thread: what one layer's thread has given back, no other layer's can use.
 #pragma once
 
 #include <malloc.h>
@@ -8,8 +9,9 @@ namespace sealwatch {
 
 /// To be called once, before there are other threads. A usual test's blocks are smaller, and stay in the heap.
 inline void give_large_blocks_back() {
-  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
   mallopt(M_TRIM_THRESHOLD, 16 << 20);
+  mallopt(M_ARENA_MAX, 2);
 }
 
 }  // namespace sealwatch

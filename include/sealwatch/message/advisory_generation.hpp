@@ -85,7 +85,7 @@ struct Acknowledgement {
 /// Topic maintenance_event: the actuator was replaced (or its seal): histories start anew at event_time_ns.
 struct MaintenanceEvent {
   std::string asset_id;  // key
-  Header header;         ///< message_id "maintenance_event/<asset>/<event time>"
+  Header header;         ///< message_id "maintenance_event/<asset>/<kind>/<reported at>/<event time>"
   std::string kind;      ///< "actuator_replaced" | "seal_replaced"
   std::string reported_by;
   std::string remark;

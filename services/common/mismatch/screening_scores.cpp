@@ -101,6 +101,7 @@ void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen
 }
 
 void calibrate(Screening& screening, const ScreeningOptions& options) {
+  if (screening.variants.empty()) return;  // no law fits: a plant whose sites have no closed forms
   const Eigen::VectorXd scale = screening.gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
   Eigen::MatrixXd correlation = scale.cwiseInverse().asDiagonal() * screening.gram * scale.cwiseInverse().asDiagonal();
   correlation.diagonal().array() += kRidge;

@@ -50,9 +50,13 @@ struct FreeQuantity {
   [[nodiscard]] double in(const ModelValues& values) const;
 };
 
+/// Steps are no longer than this or, where samples are further apart, than the shortest distance between two of them, so
+/// that no event of the input is stepped over.
+inline constexpr double kLongestStep_s = 0.25;
+
 struct SimulationOptions {
   double relative_tolerance = 5e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
-  double maximum_step_s = 0.25;      ///< so that no event of the input is stepped over
+  double maximum_step_s = 1e300;     ///< beside kLongestStep_s
   std::size_t maximum_steps = 200000;
   const Deadline* deadline = nullptr;  ///< when it passes the run ends, as an Error
 };

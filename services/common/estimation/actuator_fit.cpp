@@ -100,7 +100,7 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
     samples = std::max(samples, recorded.time_s.size());
     if (recorded.time_s.empty()) continue;
     const double duration_s = recorded.time_s.back() - recorded.time_s.front();
-    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / simulation.maximum_step_s);
+    fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / kLongestStep_s);
   }
   simulation.relative_tolerance = options.relative_tolerance;
   simulation.maximum_steps =

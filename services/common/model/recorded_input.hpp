@@ -61,6 +61,11 @@ class RecordedInput {
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<InputChannel>& channels() const { return channels_; }
+  [[nodiscard]] double shortest_distance_s() const {
+    double shortest = times_.back() - times_.front();
+    for (std::size_t row = 1; row < times_.size(); ++row) shortest = std::min(shortest, times_[row] - times_[row - 1]);
+    return shortest;
+  }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
   [[nodiscard]] double segment_begin(std::size_t segment) const { return segments_[segment]; }
   [[nodiscard]] double segment_end(std::size_t segment) const {

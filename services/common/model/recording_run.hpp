@@ -29,8 +29,9 @@
 namespace sealwatch {
 
 /// Where sensors have a low-pass or a lag, coarser recordings are simulated at points between their samples too,
-/// because these filters take the signal as linear from point to point.
+/// because these filters take the signal as linear from point to point. A log of minutes is that of a slow plant.
 inline constexpr double kLongestPointDistance_s = 0.0051;
+inline constexpr double kMostPoints = 20.0;  ///< between two samples
 /// After a jump of the input the integration starts anew, from the first order and a small step.
 inline constexpr std::size_t kStepsOfARestart = 30;
 inline constexpr std::size_t kManyJumps = 100;
@@ -53,7 +54,7 @@ class RecordingRun {
         deadline_(options.deadline),
         most_steps_(options.maximum_steps + kStepsOfARestart * (std::max<std::size_t>(input.segment_count(), 1) - 1)),
         integrator_(system_, static_cast<int>(columns_) - 1, scale_,
-                    {.maximum_step = options.maximum_step_s,
+                    {.maximum_step = std::min(options.maximum_step_s, longest_step_s(input)),
                      .maximum_steps = most_steps_,
                      .maximum_order = system_.maximum_order()}),
         point_(integrator_.size(), 0.0),
@@ -91,6 +92,10 @@ class RecordingRun {
   }
 
  private:
+  [[nodiscard]] static double longest_step_s(const RecordedInput& input) {
+    return std::max(kLongestStep_s, input.shortest_distance_s());
+  }
+
   [[nodiscard]] tl::unexpected<Error> no_start() const {
     return fail(Error{.file = {},
                       .place = "t = " + std::to_string(input_.times().front()) + " s",
@@ -172,7 +177,7 @@ class RecordingRun {
 
   [[nodiscard]] bool pass_points(double begin, double end) {
     const double distance = end - begin;
-    const int points = filtered_ ? static_cast<int>(std::ceil(distance / kLongestPointDistance_s)) : 1;
+    const int points = filtered_ ? static_cast<int>(std::min(std::ceil(distance / kLongestPointDistance_s), kMostPoints)) : 1;
     for (int k = 1; k <= points; ++k)
       if (!advance_to(k == points ? end : begin + distance * k / points, distance / points)) return false;
     return true;

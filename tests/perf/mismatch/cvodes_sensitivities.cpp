@@ -113,7 +113,7 @@ CvodesRun sensitivities_by_cvodes(const ModelValues& values, const TimeSeries& r
   CVodeSetLinearSolver(cvodes, solver, matrix);
   CVodeSetJacFn(cvodes, jacobian);
   CVodeSetMaxNumSteps(cvodes, 200000);
-  CVodeSetMaxStep(cvodes, SimulationOptions{}.maximum_step_s);
+  CVodeSetMaxStep(cvodes, kLongestStep_s);
   N_Vector* s = N_VCloneVectorArray(columns, y);
   for (int c = 0; c < columns; ++c) N_VConst(0.0, s[c]);
   CVodeSensInit(cvodes, columns, CV_STAGGERED, sensitivity_rates, s);

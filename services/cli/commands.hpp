@@ -64,6 +64,7 @@ int run_plant_import(const PlantImportOptions& options);
 struct PlantExportOptions {
   std::string asset_file;
   std::string fmu;  ///< to write
+  int fmi = 2;      ///< version of the standard: 2 or 3
 };
 int run_plant_export(const PlantExportOptions& options);
 

@@ -41,11 +41,12 @@ int run_plant_export(const PlantExportOptions& options) {
   if (!plant) return complain(plant.error()), kBadInput;
   const auto read = equations_of(**plant);
   if (!read) return complain(read.error().front()), kBadInput;
-  const auto model = fmi::export_model(read->built.plant, *asset);
+  const auto model = fmi::export_model(read->built.plant, *asset,
+                                       options.fmi == 3 ? fmi::Version::fmi3 : fmi::Version::fmi2);
   if (!model) return complain(model.error()), kBadInput;
   const auto written = fmi::write_fmu(options.fmu, *model);
   if (!written) return complain(written.error()), kBadInput;
-  std::printf("%s: FMI 2.0 for Model Exchange, with C source%s%s\n", options.fmu.c_str(),
+  std::printf("%s: FMI %d.0 for Model Exchange, with C source%s%s\n", options.fmu.c_str(), options.fmi,
               written->binary ? " and a binary for Linux on x86-64" : " alone: ", written->without_binary.c_str());
   for (const std::string& what : model->left_out) std::printf("left out: %s\n", what.c_str());
   return kOk;

@@ -10,6 +10,7 @@
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/fmi/export/fmu_writer.hpp"
 #include "services/common/fmi/export/law_code.hpp"
+#include "services/common/fmi/import_fmu.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
 #include "tests/unit/model/recording_for_tests.hpp"
@@ -207,10 +208,11 @@ TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {
 /// The asset's plant with its laws, exported and imported again, simulates as the asset does. `hidden`: states of laws, as
 /// an imported plant names them.
 void expect_same_exported(const TestFolder& folder, const std::string& plant_file, const AssetConfig& asset,
-                          const std::string& name, const std::string& hidden) {
+                          const std::string& name, const std::string& hidden,
+                          Version version = Version::fmi2) {
   const auto read = read_plant_file(plant_file);
   ASSERT_TRUE(read) << read.error().front().describe();
-  const auto model = export_model(read->built.plant, asset);
+  const auto model = export_model(read->built.plant, asset, version);
   ASSERT_TRUE(model) << model.error().describe();
   const auto fmu = write_fmu((folder / "out.fmu").string(), *model);
   ASSERT_TRUE(fmu) << fmu.error().describe();
@@ -252,6 +254,22 @@ TEST(ExportedFmu, SimulatesAsThePlantWithItsLaws) {
   expect_same_exported(
       folder, text_file(), asset, "exported",
       "  bristle: {variable: piston.presliding_friction.bristle, unit: \"1\", start: \"0\", own: false, size: 1.0}\n");
+}
+
+TEST(ExportedFmu, OfFmi3SimulatesAsThePlantWithItsLaws) {
+  const TestFolder folder;
+  ASSERT_TRUE(load_plant(text_file()));
+  AssetConfig asset = nominal_asset("spring_in_text");
+  asset.physics = {law_at("piston", "stribeck_friction", "spring_in_text"),
+                   law_at("piston", "presliding_friction", "spring_in_text"),
+                   law_at("driver", "driver_dead_time", "spring_in_text")};
+  expect_same_exported(
+      folder, text_file(), asset, "exported_by_3",
+      "  bristle: {variable: piston.presliding_friction.bristle, unit: \"1\", start: \"0\", own: false, size: 1.0}\n",
+      Version::fmi3);
+  const auto fmu = FmuFile::open((folder / "out.fmu").string());
+  ASSERT_TRUE(fmu) << fmu.error().describe();
+  EXPECT_EQ((*fmu)->description().version, Version::fmi3);
 }
 
 TEST(ExportedFmu, HasTheLawsThatThePlantBringsItself) {

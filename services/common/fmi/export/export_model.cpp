@@ -41,7 +41,8 @@ std::string escaped(const std::string& text) {
 
 class Exporter {
  public:
-  Exporter(const RuntimePlant& plant, const AssetConfig& asset) : plant_(plant), asset_(asset) {}
+  Exporter(const RuntimePlant& plant, const AssetConfig& asset, Version version)
+      : plant_(plant), asset_(asset), version_(version) {}
 
   Result<ExportedModel> write() {
     const auto* text = dynamic_cast<const equations::TextEquations*>(plant_.equations.get());
@@ -56,7 +57,8 @@ class Exporter {
     if (!terms) return fail(terms.error());
     terms_ = std::move(*terms);
     if (const Status rows = collect(*text); !rows) return fail(rows.error());
-    ExportedModel model{.identifier = plant_.description.name,
+    ExportedModel model{.version = version_,
+                        .identifier = plant_.description.name,
                         .source = {},
                         .description = {},
                         .left_out = left_out(terms_),
@@ -66,8 +68,9 @@ class Exporter {
     const auto equations = source();
     if (!equations) return fail(equations.error());
     token_ = "{sealwatch-" + content_hash(*equations) + "}";
-    model.source = head() + *equations + std::string(fmi2_shell_text());
-    model.description = description(model.identifier);
+    model.source = head() + *equations + std::string(version_ == Version::fmi3 ? fmi3_shell_text() : fmi2_shell_text());
+    model.description =
+        version_ == Version::fmi3 ? description3(model.identifier) : description(model.identifier);
     return model;
   }
 
@@ -205,9 +208,49 @@ static void model_outputs(double t, const double* x, const double* u, const doub
     return out.str();
   }
 
+  // FMI 3.0: variables are elements of their type, which others name by their value references.
+  [[nodiscard]] std::string description3(const std::string& identifier) const {
+    std::ostringstream out;
+    out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" modelName=\""
+        << escaped(plant_.description.name) << "\" instantiationToken=\"" << token_ << "\" description=\""
+        << escaped(plant_.description.meaning) << "\" generationTool=\"sealwatch\">\n<ModelExchange modelIdentifier=\""
+        << identifier << "\"/>\n";
+    units(out);
+    out << "<ModelVariables>\n<Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" "
+           "variability=\"continuous\" unit=\"s\"/>\n";
+    rows3(out, states_, 1000, "causality=\"local\" variability=\"continuous\" initial=\"exact\"", true);
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      out << "<Float64 name=\"der(" << escaped(states_[k].name) << ")\" valueReference=\"" << 2000 + k
+          << "\" causality=\"local\" variability=\"continuous\" initial=\"calculated\" derivative=\"" << 1000 + k
+          << "\"/>\n";
+    rows3(out, inputs_, 3000, "causality=\"input\" variability=\"continuous\"", true);
+    rows3(out, parameters_, 4000, "causality=\"parameter\" variability=\"tunable\" initial=\"exact\"", true);
+    rows3(out, outputs_, 5000, "causality=\"output\" variability=\"continuous\" initial=\"calculated\"", false);
+    out << "</ModelVariables>\n<ModelStructure>\n";
+    const auto unknowns = [&](const char* element, std::size_t from, std::size_t count) {
+      for (std::size_t k = 0; k < count; ++k) out << "<" << element << " valueReference=\"" << from + k << "\"/>";
+    };
+    unknowns("Output", 5000, outputs_.size()), unknowns("ContinuousStateDerivative", 2000, states_.size());
+    unknowns("InitialUnknown", 2000, states_.size()), unknowns("InitialUnknown", 5000, outputs_.size());
+    out << "\n</ModelStructure>\n</fmiModelDescription>\n";
+    return out.str();
+  }
+
+  static void rows3(std::ostringstream& out, const std::vector<Row>& list, std::size_t reference,
+                    const char* attributes, bool with_start) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      out << "<Float64 name=\"" << escaped(list[k].name) << "\" valueReference=\"" << reference + k
+          << "\" description=\"" << escaped(list[k].meaning) << "\" " << attributes << " unit=\""
+          << escaped(list[k].unit) << "\"";
+      if (with_start) out << " start=\"" << c_number(list[k].start) << "\"";
+      out << "/>\n";
+    }
+  }
+
   // Units whose powers are whole; others are named without their meaning.
   void units(std::ostringstream& out) const {
     std::vector<std::string> names;
+    if (version_ == Version::fmi3) names.emplace_back("s");  // of time
     for (const auto* list : {&states_, &inputs_, &parameters_, &outputs_})
       for (const Row& row : *list)
         if (std::ranges::find(names, row.unit) == names.end()) names.push_back(row.unit);
@@ -237,6 +280,7 @@ static void model_outputs(double t, const double* x, const double* u, const doub
 
   const RuntimePlant& plant_;
   const AssetConfig& asset_;
+  Version version_;
   const equations::TextEquationsParts* parts_ = nullptr;
   PhysicsTerms terms_;
   std::vector<Row> states_, inputs_, parameters_, outputs_;
@@ -246,10 +290,16 @@ static void model_outputs(double t, const double* x, const double* u, const doub
 
 }  // namespace
 
-Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset) {
-  if (const auto* unit = dynamic_cast<const FmuEquations*>(plant.equations.get()))
-    return export_wrapper(plant, *unit, asset);
-  return Exporter(plant, asset).write();
+Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset, Version version) {
+  const auto* unit = dynamic_cast<const FmuEquations*>(plant.equations.get());
+  if (unit == nullptr) return Exporter(plant, asset, version).write();
+  if (version == Version::fmi3)
+    return fail(Error{.file = plant.description.file,
+                      .place = {},
+                      .value = plant.description.name,
+                      .rule = "has an imported FMU, which is handed back by FMI 2.0 alone",
+                      .advice = "leave out --fmi 3"});
+  return export_wrapper(plant, *unit, asset);
 }
 
 }  // namespace sealwatch::fmi

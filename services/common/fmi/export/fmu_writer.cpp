@@ -56,6 +56,15 @@ bool carry(zip_t* from, zip_t* to) {
   return zip_dir_add(to, "resources/inner/resources", ZIP_FL_ENC_UTF_8) >= 0;
 }
 
+/// FMI 3.0 says beside the sources how they are built.
+std::string build_description(const ExportedModel& model) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n<BuildConfiguration "
+         "modelIdentifier=\"" +
+         model.identifier +
+         "\">\n<SourceFileSet language=\"C99\"><SourceFile name=\"model.c\"/></SourceFileSet>\n"
+         "<Library name=\"m\" external=\"true\"/>\n</BuildConfiguration>\n</fmiBuildDescription>\n";
+}
+
 }  // namespace
 
 Result<WrittenFmu> write_fmu(const std::string& file, const ExportedModel& model) {
@@ -75,8 +84,11 @@ Result<WrittenFmu> write_fmu(const std::string& file, const ExportedModel& model
   };
   add("modelDescription.xml", zip_source_buffer(archive, model.description.data(), model.description.size(), 0));
   add("sources/model.c", zip_source_buffer(archive, model.source.data(), model.source.size(), 0));
+  const bool third = model.version == Version::fmi3;
+  const std::string build = third ? build_description(model) : "";
+  if (third) add("sources/buildDescription.xml", zip_source_buffer(archive, build.data(), build.size(), 0));
   if (written.binary)
-    add("binaries/linux64/" + model.identifier + ".so", zip_source_file(archive, binary.c_str(), 0, -1));
+    add((third ? "binaries/x86_64-linux/" : "binaries/linux64/") + model.identifier + ".so", zip_source_file(archive, binary.c_str(), 0, -1));
   const Archive carried(model.carried.empty() ? nullptr : zip_open(model.carried.c_str(), ZIP_RDONLY, &code));
   if (!model.carried.empty()) sound = sound && carried && carry(carried.get(), archive);
   if (sound && zip_close(archive) == 0) return written;

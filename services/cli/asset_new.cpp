@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -248,6 +249,34 @@ void print_table(const Understood& log) {
   if (const std::string aside = left_aside(log); !aside.empty()) std::printf("  left aside: %s\n", aside.c_str());
 }
 
+/// Whether an input mostly stays as it is and else jumps, as a switch does: between two samples it is then no ramp.
+bool is_switched(const Series& input) {
+  constexpr double kJump = 0.1;  // of the range
+  constexpr std::size_t kFewestJumps = 3;
+  const auto [least, most] = std::ranges::minmax(input.values);
+  std::size_t stays = 0, jumps = 0, in_a_row = 0;
+  bool jumped = false;
+  for (std::size_t k = 1; k < input.values.size(); ++k) {
+    const double change = std::abs(input.values[k] - input.values[k - 1]);
+    const bool jump = change > kJump * (most - least);
+    stays += change == 0.0 ? 1 : 0;
+    jumps += jump ? 1 : 0;
+    in_a_row += jump && jumped ? 1 : 0;
+    jumped = jump;
+  }
+  return jumps >= kFewestJumps && jumps <= stays && 4 * in_a_row <= jumps && stays + jumps + 1 == input.values.size();
+}
+
+void note_switched_inputs(Understood& log) {
+  for (const ChannelDescription& channel : log.plant->channels) {
+    const Series* series = log.tests.front().samples.find(channel.name);
+    if (channel.input && !channel.hold && series != nullptr && is_switched(*series))
+      log.remarks.push_back(channel.name +
+                            " stays and jumps, as a switch does, and is taken as a ramp from sample to sample: where "
+                            "it holds until the next sample, write 'course: held' in the plant's file");
+  }
+}
+
 /// A file that is there may have been completed by hand: it is never written over.
 Status write_new(const std::string& file, const std::string& text) {
   std::FILE* stream = std::fopen(file.c_str(), "wx");
@@ -307,6 +336,7 @@ Result<Understood> understand(const AssetNewOptions& options) {
                   text::separated(columns, ", ") + "; " + suggest("", names)});
   }
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
+  note_switched_inputs(log);
   return log;
 }
 

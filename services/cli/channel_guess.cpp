@@ -86,10 +86,23 @@ bool has_numbers(const Offer& offer, std::size_t column) {
   });
 }
 
+/// The unit in which a column may be a channel's: the one that is said; else the header's last word, "Speed_rpm", where
+/// it is a unit of that channel and no letter, which may be a chamber's; "1" where the channel is a plain number and
+/// what is said is no unit: [on/off].
+std::string unit_for(const OfferedColumn& column, const ChannelDescription& channel) {
+  const std::string said = unit_of(column);
+  const bool plain = channel.unit.empty() || channel.unit == "1";
+  if (!said.empty()) return plain && !is_unit(said) ? "1" : said;
+  const std::size_t begin = column.text.find_last_of(" _");
+  const std::string last = begin == std::string::npos ? "" : column.text.substr(begin + 1);
+  const bool fits = plain ? last == "%" : last.size() > 1 && convert_unit(last, channel.unit).has_value();
+  return fits ? last : "";
+}
+
 /// How much speaks for it; 0: nothing, or its unit speaks against it.
 double score_of(const Offer& offer, std::size_t column, const ChannelDescription& channel) {
   constexpr double kUnit = 1.0, kName = 2.0, kQuantity = 1.0, kRange = 0.25;
-  const std::string si = channel.unit.empty() ? "1" : channel.unit, unit = unit_of(offer.columns[column]);
+  const std::string si = channel.unit.empty() ? "1" : channel.unit, unit = unit_for(offer.columns[column], channel);
   const Result<UnitConversion> to_si = convert_unit(unit, si);
   if (!to_si) return 0.0;
   if (!has_numbers(offer, column)) return 0.0;
@@ -120,7 +133,7 @@ void add_by_unit_alone(const Offer& offer, const PlantDescription& plant, const 
     const std::vector<std::size_t> columns = columns_of_unit(offer, channel, time_column, guesses);
     for (const std::size_t column : columns) channels_of[column].push_back(channel.name);
     if (columns.size() == 1)
-      only.push_back({channel.name, columns.front(), unit_of(offer.columns[columns.front()]), 0.0, false});
+      only.push_back({channel.name, columns.front(), unit_for(offer.columns[columns.front()], channel), 0.0, false});
   }
   for (const ChannelGuess& guess : only)
     if (channels_of.at(guess.column).size() == 1) guesses.push_back(guess);
@@ -132,7 +145,7 @@ std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescri
                                          const std::string& time_column, const std::vector<ChannelGuess>& guesses) {
   std::vector<std::size_t> columns;
   for (std::size_t column = 0; column < offer.columns.size(); ++column) {
-    const std::string unit = unit_of(offer.columns[column]);
+    const std::string unit = unit_for(offer.columns[column], channel);
     if (offer.columns[column].text == time_column || is_taken(guesses, column) || unit.empty() || unit == "1") continue;
     if (convert_unit(unit, channel.unit.empty() ? "1" : channel.unit) && has_numbers(offer, column))
       columns.push_back(column);
@@ -147,7 +160,7 @@ std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescript
     if (offer.columns[column].text == time_column) continue;
     for (const ChannelDescription& channel : plant.channels)
       if (const double score = score_of(offer, column, channel); score > kEnough)
-        all.push_back({channel.name, column, unit_of(offer.columns[column]), score, true});
+        all.push_back({channel.name, column, unit_for(offer.columns[column], channel), score, true});
   }
   std::ranges::stable_sort(all, [](const ChannelGuess& a, const ChannelGuess& b) { return a.score > b.score; });
   std::vector<ChannelGuess> taken;

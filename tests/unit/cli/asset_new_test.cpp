@@ -85,6 +85,35 @@ law_sizes: {N m: 1, N m s/rad: 1, rad/s: 1}
   EXPECT_EQ(recording->samples.find("torque")->values.back(), 1.6);
 }
 
+// "Drehzahl_rpm", "Zulauf %": the unit is the header's last word; a switch has none, and is no ramp between samples.
+TEST_F(AssetNew, AUnitAtTheEndOfAHeaderIsSeenAndASwitchIsNamed) {
+  std::ofstream(path("oven.yaml")) << R"(name: oven_of_asset_new
+meaning: an oven with a fan
+inputs: {heater: {unit: "1"}, damper: {unit: "1"}, fan_speed: {unit: rad/s}}
+outputs: {pressure: {value: p, unit: Pa, noise_std: 10}}
+parameters: {a: {value: 0.1, unit: Pa/s}, b: {value: 0.1, unit: Pa}}
+states: {p: {der: "a*(heater - damper) - b*fan_speed", unit: Pa, start: pressure}}
+elements: {}
+law_sizes: {}
+)";
+  constexpr const char* kLog =
+      "t s,Heater [on/off],Damper %,fan_speed_rpm,PT-1 psig\n0,1,5,60,1\n1,1,6,60,1.1\n2,0,7,61,1.2\n3,0,8,62,1.1\n"
+      "4,1,8,60,1.0\n5,1,8,60,1.1\n6,0,8,60,1.1\n7,0,8,60,1.1\n";
+  ASSERT_EQ(make(kLog, path("oven.yaml")), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  const auto recording = read_recording(path("log.csv"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  EXPECT_NEAR(recording->samples.find("damper")->values.front(), 0.05, 1e-12);
+  EXPECT_NEAR(recording->samples.find("fan_speed")->values.front(), 6.2832, 1e-3);
+  EXPECT_NEAR(recording->samples.find("pressure")->values.front(), 101325.0 + 6894.757, 0.1);
+  EXPECT_EQ(recording->samples.find("heater")->values.front(), 1.0);
+  std::ifstream written(path("a.yaml"));
+  const std::string text{std::istreambuf_iterator<char>(written), {}};
+  EXPECT_THAT(text, ::testing::HasSubstr("heater stays and jumps"));
+  EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("damper stays")));
+}
+
 // Whatever columns are called: a unit that only one of them and only one channel has says which is which; where several
 // have it, the file names them.
 TEST_F(AssetNew, UnitsTellColumnsThatNamesDoNot) {

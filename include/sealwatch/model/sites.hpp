@@ -33,11 +33,18 @@ struct NoExtra {
   constexpr None operator[](std::size_t) const { return {}; }
 };
 
+/// Of a site of kind own, whose words are the plant's.
+struct SiteSignal {
+  std::string_view name, unit;
+};
+
 /// One site of a plant. Its index in the plant's table is its place in `extra`.
 struct Site {
   std::string_view element;  ///< of the plant's description
   SiteKind kind;
   Feeds feeds = Feeds::anything;  ///< of a command's voltage
+  std::string_view unit = {};     ///< of a site of kind own
+  std::array<SiteSignal, kSiteSignals> signals = {};
 };
 
 /// Whether a law is asked at a site.

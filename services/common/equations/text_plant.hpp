@@ -2,6 +2,7 @@
 // a program. build_plant() understands its expressions, checks names and units and makes a RuntimePlant of it.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -49,7 +50,14 @@ struct TextSite {
   std::vector<TextSignal> signals;
   std::vector<std::pair<std::string, std::string>> adds_to;  ///< state and factor
   std::string key;                                           ///< where it stands: "elements.piston.sites[0]"
-  [[nodiscard]] Site site() const { return {kept(element), kind, feeds}; }
+  [[nodiscard]] Site site() const {
+    Site site{kept(element), kind, feeds};
+    if (kind != SiteKind::own) return site;
+    site.unit = kept(unit);
+    for (std::size_t k = 0; k < std::min(signals.size(), kSiteSignals); ++k)
+      site.signals[k] = {kept(signals[k].name), kept(signals[k].unit)};
+    return site;
+  }
 };
 
 struct TextLawParameter {

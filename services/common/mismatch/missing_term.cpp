@@ -107,9 +107,11 @@ Status describe_site(const SimulatedPoint& at, SiteKind kind, const Law* law, st
   for (const auto& signals : path->signals) state.push_back(signals[signal]);
   term.state_value = hat_means(knots, path->time_s, state);
   if (law != nullptr) term.law = hat_means(knots, path->time_s, path->contribution);
-  term.unit = words_of(kind).unit;
-  term.state = words_of(kind).signals[signal].name;
-  term.state_unit = words_of(kind).signals[signal].unit;
+  const PlantDescription& plant = at.problem->recordings[at.recording].simulation->plant();
+  const SiteWords words = words_at(plant, term.element, kind);
+  term.unit = words.unit;
+  term.state = words.signals[signal].name;
+  term.state_unit = words.signals[signal].unit;
   return {};
 }
 

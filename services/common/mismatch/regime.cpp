@@ -278,7 +278,7 @@ std::string regime_of(std::span<const TermPath> recordings, SiteKind kind) {
 
 std::array<SignalWords, kSiteSignals> signals_of(const PlantSimulation& simulation, const std::string& element,
                                                  SiteKind kind) {
-  std::array<SignalWords, kSiteSignals> signals = words_of(kind).signals;
+  std::array<SignalWords, kSiteSignals> signals = words_at(simulation.plant(), element, kind).signals;
   const std::size_t channel = is_sensor(kind) ? channel_of(simulation, element) : simulation.channels().size();
   if (channel == simulation.channels().size()) return signals;
   if (const auto* description = simulation.plant().find_channel(simulation.channels()[channel]))

@@ -1,5 +1,7 @@
 #include "services/common/mismatch/site_words.hpp"
 
+#include <algorithm>
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -87,6 +89,17 @@ const SiteWords& words_of(SiteKind kind) {
       return kRecording;
   }
   return kSensor;
+}
+
+SiteWords words_at(const PlantDescription& plant, std::string_view element, SiteKind kind) {
+  SiteWords words = words_of(kind);
+  const auto site = std::ranges::find_if(
+      plant.sites, [&](const Site& one) { return one.kind == kind && one.element == element; });
+  if (kind != SiteKind::own || site == plant.sites.end()) return words;
+  words.unit = site->unit;
+  for (std::size_t k = 0; k < kSiteSignals; ++k)
+    words.signals[k] = {site->signals[k].name, site->signals[k].unit, site->signals[k].name};
+  return words;
 }
 
 MotionWords motion_of(SiteKind kind) {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "sealwatch/model/physics.hpp"
+#include "sealwatch/model/plant_description.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -21,6 +22,8 @@ struct SiteWords {
 };
 
 [[nodiscard]] const SiteWords& words_of(SiteKind kind);
+/// With the plant's own names and units where the site is of kind own.
+[[nodiscard]] SiteWords words_at(const PlantDescription& plant, std::string_view element, SiteKind kind);
 
 /// The signal that says whether and which way something moves, with its words; none: a kind at which nothing does.
 struct MotionWords {

@@ -65,6 +65,7 @@ constexpr std::array kPrefixes = {Prefix{'G', 1e9},  Prefix{'M', 1e6},  Prefix{'
                                   Prefix{'m', 1e-3}, Prefix{'u', 1e-6}, Prefix{'n', 1e-9}};
 
 std::optional<Dimension> unit_named(std::string_view name) {
+  if (name.ends_with("Ohm")) return unit_named(std::string(name.substr(0, name.size() - 3)) + "ohm");
   for (const KnownUnit& unit : kUnits)
     if (unit.name == name) return Dimension{unit.power, unit.scale};
   for (const KnownUnit& unit : kUnits)
@@ -110,7 +111,8 @@ class UnitReader {
                       .place = {},
                       .value = std::string(text_),
                       .rule = wrong_ == text_ || wrong_.empty() ? "is not a unit" : "is not a unit: '" + wrong_ + "'",
-                      .advice = apart ? "write a product with blanks: " + *apart : suggest(wrong_, names)});
+                      .advice = wrong_.find_first_of("0123456789") == 0 ? "write a power that is not whole with ^: m^2.5"
+                                : apart ? "write a product with blanks: " + *apart : suggest(wrong_, names)});
   }
 
   void skip() {

@@ -43,7 +43,11 @@ std::string nearest_channel(std::string_view name, const PlantDescription& plant
 bool is_utf8(std::string_view text) { return is_valid_utf8(text); }
 
 std::string printable(std::string_view text) {
-  std::string out(text.substr(0, kLongestPrinted));
+  std::size_t length = std::min(text.size(), kLongestPrinted);
+  const auto goes_on = [&](std::size_t at) { return at < text.size() && (text[at] & 0xc0) == 0x80; };
+  while (length > 0 && goes_on(length)) --length;  // no letter is cut
+  std::string out(text.substr(0, length));
+  if (is_visible(out)) return text.size() > length ? out + "..." : out;
   for (char& letter : out)
     if (static_cast<unsigned char>(letter) < 0x20 || static_cast<unsigned char>(letter) >= 0x7f) letter = '?';
   return text.size() > kLongestPrinted ? out + "..." : out;

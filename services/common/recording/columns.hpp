@@ -31,7 +31,8 @@ struct ColumnarSamples {
 /// Whether `text` is UTF-8, as everything that goes into messages must be.
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// `text` as fit to be printed: whatever is not printable ASCII replaced by '?', at most 60 characters.
+/// `text` as fit to be printed: where it is no visible UTF-8, all but printable ASCII replaced by '?'; at most
+/// 60 bytes.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// An error at a place of a file that the caller names.

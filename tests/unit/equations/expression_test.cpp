@@ -164,6 +164,7 @@ TEST(Units, AreProductsOfPowers) {
   EXPECT_TRUE(same("m3/(s Pa^0.5)", "m^3.5 kg^-0.5"));
   EXPECT_TRUE(same("N m s/rad", "J s"));
   EXPECT_TRUE(same("ohm/A2", "V/A3"));
+  EXPECT_TRUE(same("kOhm", "kohm"));
   EXPECT_TRUE(same("V^0.5/s", "V^0.5 Hz"));
   EXPECT_FALSE(same("N/m", "N m"));
   EXPECT_DOUBLE_EQ(find_dimension("bar")->scale, 1e5);
@@ -191,6 +192,7 @@ TEST(Faults, NameThePlaceAndWhatWouldMendIt) {
       {"a^x", "exponent in m"},
       {"a/0", "divides by zero"},
       {"2[metre]", "is not a unit"},
+      {"2[m2.5/s]", "with ^: m^2.5"},
       {"2[m", "unit without its end"},
       {"sqrt(a, p)", "one argument"},
       {"1e999", "is not a number"},

@@ -78,6 +78,11 @@ TEST(Summary, SaysWhereMuchIsLeft) {
       << summary_of(found);
   position.rms_after = position.weighed_rms_after = 1.02;
   EXPECT_EQ(summary_of(found).find("Not all"), std::string::npos);
+  position.rms_after = 14.5;  // of the samples that count next to nothing is left
+  EXPECT_NE(summary_of(found).find("What the input did between samples may account for the rest: position still "
+                                   "misses by 14.5 times the noise"),
+            std::string::npos)
+      << summary_of(found);
 }
 
 TEST(FarthestOff, IsAChannelOfWhichLessThanHalfIsReproducedFarAboveTheNoise) {

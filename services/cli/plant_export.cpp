@@ -41,8 +41,8 @@ int run_plant_export(const PlantExportOptions& options) {
   if (!plant) return complain(plant.error()), kBadInput;
   const auto read = equations_of(**plant);
   if (!read) return complain(read.error().front()), kBadInput;
-  const auto model = fmi::export_model(read->built.plant, *asset,
-                                       options.fmi == 3 ? fmi::Version::fmi3 : fmi::Version::fmi2);
+  const auto model =
+      fmi::export_model(read->built.plant, *asset, options.fmi == 3 ? fmi::Version::fmi3 : fmi::Version::fmi2);
   if (!model) return complain(model.error()), kBadInput;
   const auto written = fmi::write_fmu(options.fmu, *model);
   if (!written) return complain(written.error()), kBadInput;

@@ -111,8 +111,10 @@ class UnitReader {
                       .place = {},
                       .value = std::string(text_),
                       .rule = wrong_ == text_ || wrong_.empty() ? "is not a unit" : "is not a unit: '" + wrong_ + "'",
-                      .advice = wrong_.find_first_of("0123456789") == 0 ? "write a power that is not whole with ^: m^2.5"
-                                : apart ? "write a product with blanks: " + *apart : suggest(wrong_, names)});
+                      .advice = wrong_.find_first_of("0123456789") == 0
+                                    ? "write a power that is not whole with ^: m^2.5"
+                                : apart ? "write a product with blanks: " + *apart
+                                        : suggest(wrong_, names)});
   }
 
   void skip() {

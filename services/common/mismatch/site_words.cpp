@@ -93,8 +93,8 @@ const SiteWords& words_of(SiteKind kind) {
 
 SiteWords words_at(const PlantDescription& plant, std::string_view element, SiteKind kind) {
   SiteWords words = words_of(kind);
-  const auto site = std::ranges::find_if(
-      plant.sites, [&](const Site& one) { return one.kind == kind && one.element == element; });
+  const auto site =
+      std::ranges::find_if(plant.sites, [&](const Site& one) { return one.kind == kind && one.element == element; });
   if (kind != SiteKind::own || site == plant.sites.end()) return words;
   words.unit = site->unit;
   for (std::size_t k = 0; k < kSiteSignals; ++k)

@@ -177,7 +177,8 @@ class RecordingRun {
 
   [[nodiscard]] bool pass_points(double begin, double end) {
     const double distance = end - begin;
-    const int points = filtered_ ? static_cast<int>(std::min(std::ceil(distance / kLongestPointDistance_s), kMostPoints)) : 1;
+    const int points =
+        filtered_ ? static_cast<int>(std::min(std::ceil(distance / kLongestPointDistance_s), kMostPoints)) : 1;
     for (int k = 1; k <= points; ++k)
       if (!advance_to(k == points ? end : begin + distance * k / points, distance / points)) return false;
     return true;

@@ -208,8 +208,7 @@ TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {
 /// The asset's plant with its laws, exported and imported again, simulates as the asset does. `hidden`: states of laws, as
 /// an imported plant names them.
 void expect_same_exported(const TestFolder& folder, const std::string& plant_file, const AssetConfig& asset,
-                          const std::string& name, const std::string& hidden,
-                          Version version = Version::fmi2) {
+                          const std::string& name, const std::string& hidden, Version version = Version::fmi2) {
   const auto read = read_plant_file(plant_file);
   ASSERT_TRUE(read) << read.error().front().describe();
   const auto model = export_model(read->built.plant, asset, version);

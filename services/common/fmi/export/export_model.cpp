@@ -69,8 +69,7 @@ class Exporter {
     if (!equations) return fail(equations.error());
     token_ = "{sealwatch-" + content_hash(*equations) + "}";
     model.source = head() + *equations + std::string(version_ == Version::fmi3 ? fmi3_shell_text() : fmi2_shell_text());
-    model.description =
-        version_ == Version::fmi3 ? description3(model.identifier) : description(model.identifier);
+    model.description = version_ == Version::fmi3 ? description3(model.identifier) : description(model.identifier);
     return model;
   }
 

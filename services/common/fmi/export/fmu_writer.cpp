@@ -88,7 +88,8 @@ Result<WrittenFmu> write_fmu(const std::string& file, const ExportedModel& model
   const std::string build = third ? build_description(model) : "";
   if (third) add("sources/buildDescription.xml", zip_source_buffer(archive, build.data(), build.size(), 0));
   if (written.binary)
-    add((third ? "binaries/x86_64-linux/" : "binaries/linux64/") + model.identifier + ".so", zip_source_file(archive, binary.c_str(), 0, -1));
+    add((third ? "binaries/x86_64-linux/" : "binaries/linux64/") + model.identifier + ".so",
+        zip_source_file(archive, binary.c_str(), 0, -1));
   const Archive carried(model.carried.empty() ? nullptr : zip_open(model.carried.c_str(), ZIP_RDONLY, &code));
   if (!model.carried.empty()) sound = sound && carried && carry(carried.get(), archive);
   if (sound && zip_close(archive) == 0) return written;

@@ -50,8 +50,8 @@ struct FreeQuantity {
   [[nodiscard]] double in(const ModelValues& values) const;
 };
 
-/// Steps are no longer than this or, where samples are further apart, than the shortest distance between two of them, so
-/// that no event of the input is stepped over.
+/// Steps are no longer than this or, where samples are far apart, than a sixteenth of the shortest distance between two of
+/// them, so that no event of the input is stepped over.
 inline constexpr double kLongestStep_s = 0.25;
 
 struct SimulationOptions {

@@ -35,6 +35,7 @@ struct Understood {
   std::vector<ChannelGuess> guesses;
   std::vector<Recording> tests;
   std::vector<std::string> remarks;
+  std::string asset_id;  ///< as the log's sidecar has it: only then do the file and the log go together
 };
 
 const char* word_of(char sign) {
@@ -70,10 +71,10 @@ Status read_by_map(const std::string& file, Understood& log) {
     if (rule.starts_with("time goes back") && log.map.log.time_resets == "refuse") {
       log.map.log.time_resets = "split";
       log.remarks.emplace_back(
-          "its time starts anew: each time is taken as another test (time_resets: split, or join)");
+          "its time restarts: each restart begins another test (time_resets: split; or join)");
     } else if (rule == "the cell is empty" && log.map.log.incomplete_rows == "refuse") {
       log.map.log.incomplete_rows = "skip";
-      log.remarks.emplace_back("rows with an empty cell in a column that is used are left out (incomplete_rows: skip)");
+      log.remarks.emplace_back("rows with an empty cell in a used column are left out (incomplete_rows: skip)");
     } else {
       return fail(tests.error());
     }
@@ -170,7 +171,8 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
   std::string out = "# From " + fs::path(options.log).filename().string() +
                     ": what sealwatch understood of it. Correct what is wrong; docs/logs.md, docs/asset-file.md.\n";
   for (const std::string& remark : log.remarks) out += "# " + remark + "\n";
-  const std::string id = options.asset_id.empty() ? fs::path(options.log).stem().string() : options.asset_id;
+  const std::string& named = options.asset_id.empty() ? log.asset_id : options.asset_id;
+  const std::string id = named.empty() ? fs::path(options.log).stem().string() : named;
   out += "asset_id: " + text::quoted(id) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
   out += "# The plant's own values hold until yours stand here, in SI units:\n# parameters: {";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, log.plant->parameters.size()); ++k)
@@ -188,7 +190,10 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
     }
     const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
     out += "  " + channel.name + ": " + mapping_text(mapping->second) + "  # " + range_text(log.tests, channel.name);
-    out += guess != log.guesses.end() && !guess->sure ? "; uncertain, check it\n" : "\n";
+    if (guess != log.guesses.end() && guess->unit.empty() && channel.unit != "1")
+      out += "; the log gives no unit: taken for " + channel.unit + ", check it\n";
+    else
+      out += guess != log.guesses.end() && !guess->sure ? "; uncertain, check it\n" : "\n";
   }
   const LogLayout& layout = log.map.log;
   if (log.offer.text) {
@@ -204,7 +209,7 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
 }
 
 std::string page_of(const Understood& log, const std::string& file) {
-  report::Table table({"channel", "column of the log", "unit", "from to", "noise from sample to sample"});
+  report::Table table({"channel", "column of the log", "unit", "range", "noise from sample to sample"});
   std::string plots;
   const Recording& test = log.tests.front();
   for (const Series& channel : test.samples.channels) {
@@ -239,12 +244,12 @@ void print_table(const Understood& log) {
                 found.decimal == ',' ? "comma" : "point", found.header_row, found.first_row);
   std::printf("plant %s, %s of %zu samples\n", log.plant->name.c_str(), count_of(log.tests.size(), "test").c_str(),
               log.tests.front().samples.time_s.size());
-  std::printf("  %-24s %-30s %-12s %s\n", "channel", "column", "unit", "from to");
+  std::printf("  %-24s %-30s %-12s %s\n", "channel", "column", "unit", "range");
   for (const auto& [channel, mapping] : log.map.columns)
     std::printf("  %s %s %-12s %s\n", padded(channel, 24).c_str(), padded(mapping.column, 30).c_str(),
                 mapping.unit.c_str(), channel == "time" ? "" : range_text(log.tests, channel).c_str());
   if (const std::string drives = missing_inputs(log); !drives.empty())
-    std::printf("  inputs that were not found: %s; map them by hand in the file\n", drives.c_str());
+    std::printf("  inputs not found in the log: %s; map them by hand in the file\n", drives.c_str());
   for (const std::string& remark : log.remarks) std::printf("  %s\n", remark.c_str());
   if (const std::string aside = left_aside(log); !aside.empty()) std::printf("  left aside: %s\n", aside.c_str());
 }
@@ -291,6 +296,13 @@ Status write_new(const std::string& file, const std::string& text) {
                     .advice = there ? "give another name with --out" : ""});
 }
 
+/// Whether `file` would be read as the sidecar of `log`: an asset file there makes the log unreadable.
+bool is_sidecar(const std::string& file, const std::string& log) {
+  std::error_code ignored;
+  const fs::path sidecar = fs::path(log).replace_extension(".yaml");
+  return fs::weakly_canonical(file, ignored) == fs::weakly_canonical(sidecar, ignored);
+}
+
 /// A plant that is built in, or a plant file.
 Result<const PlantDescription*> named_plant(const std::string& model) {
   if (!is_plant_file(model)) return find_plant(model);
@@ -314,11 +326,11 @@ Result<Understood> understand(const AssetNewOptions& options) {
   if (!wanted) return fail(wanted.error());
   log.plant = *wanted;
   if (options.model.empty())
-    log.remarks.push_back("the plant that is built in and fits best, " + log.plant->name +
-                          ", is a guess: for a plant file of your own say --model FILE.yaml");
+    log.remarks.push_back("plant " + log.plant->name +
+                          " is a guess, the built-in plant that fits best; for your own plant give --model FILE.yaml");
   if (const ColumnMapping& clock = log.map.columns["time"];
       clock.unit == "s" && unit_of(log.offer.columns[*find_offered(log.offer.columns, clock.column)]).empty())
-    log.remarks.emplace_back("the unit of the time is not said: taken for s");
+    log.remarks.emplace_back("the log gives no unit for the time: taken for s");
   log.guesses = guess_channels(log.offer, *log.plant, time);
   if (!options.yes && isatty(STDIN_FILENO) != 0) ask(log);
   set_layout(log);
@@ -337,12 +349,22 @@ Result<Understood> understand(const AssetNewOptions& options) {
   }
   if (const Status read = read_by_map(options.log, log); !read) return fail(read.error());
   note_switched_inputs(log);
+  const Result<std::string> recorded = recorded_asset_id(options.log);
+  if (!recorded) return fail(recorded.error());
+  log.asset_id = *recorded;
   return log;
 }
 
 }  // namespace
 
 int run_asset_new(const AssetNewOptions& options) {
+  if (is_sidecar(options.file, options.log))
+    return complain(Error{.file = options.file,
+                          .place = {},
+                          .value = {},
+                          .rule = "is the name of this log's sidecar (docs/recordings.md)",
+                          .advice = "give another name with --out"}),
+           kBadInput;
   const Result<Understood> log = understand(options);
   if (!log) return complain(log.error()), kBadInput;
   if (const Status written = write_new(options.file, yaml_of(*log, options)); !written)
@@ -351,7 +373,7 @@ int run_asset_new(const AssetNewOptions& options) {
   const std::string page = fs::path(options.file).replace_extension(".html").string();
   std::ofstream(page, std::ios::binary) << page_of(*log, options.log);
   print_table(*log);
-  std::printf("in %s and, as a picture, %s. Correct what is wrong, then for instance:\n  sealwatch fit --asset %s %s\n",
+  std::printf("written: %s, with plots in %s. Correct what is wrong, then for instance:\n  sealwatch fit --asset %s %s\n",
               options.file.c_str(), page.c_str(), options.file.c_str(), options.log.c_str());
   return kOk;
 }

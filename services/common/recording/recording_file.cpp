@@ -121,7 +121,10 @@ Result<Sidecar> read_sidecar(const std::string& path, const PlantDescription& pl
   const Result<std::string> text = read_sidecar_text(file);
   if (!text) return fail(text.error());
   Result<Sidecar> sidecar = parse_sidecar(*text, plant);
-  return sidecar ? sidecar : fail_in(file, sidecar.error());
+  if (sidecar) return sidecar;
+  Error error = sidecar.error();
+  error.advice.append(error.advice.empty() ? "" : "; ").append("this file is read as the sidecar of ").append(path);
+  return fail_in(file, error);
 }
 
 }  // namespace

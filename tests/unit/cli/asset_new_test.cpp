@@ -141,6 +141,31 @@ law_sizes: {}
   EXPECT_THAT(text, ::testing::HasSubstr("uncertain"));
 }
 
+// The command that is offered next must work: the log's sidecar says whose test it is, and an asset file in its place
+// would be read for it.
+TEST_F(AssetNew, TheFileGoesWithTheSidecarOfItsLog) {
+  std::ofstream(path("log.yaml")) << "asset_id: MV2\n";
+  constexpr const char* kLog = "t [s],motor_voltage [V],position [mm]\n0,1,60\n1,1,59\n2,1,58\n";
+  ASSERT_EQ(make(kLog), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->asset_id, "MV2");
+  std::filesystem::remove(path("log.yaml"));
+  EXPECT_EQ(run_asset_new({.log = path("log.csv"), .file = path("log.yaml"), .model = {}, .asset_id = {}, .yes = true}),
+            kBadInput);
+  std::ofstream(path("log.yaml")) << "asset_id: MV2\nmodel: eha\n";
+  const auto recording = read_recording(path("log.csv"), **find_plant("eha"), asset->channel_map);
+  ASSERT_FALSE(recording);
+  EXPECT_THAT(recording.error().describe(), ::testing::HasSubstr("is read as the sidecar of " + path("log.csv")));
+}
+
+TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {
+  ASSERT_EQ(make("t [s],motor_voltage [V],position\n0,1,2048\n1,1,2049\n2,1,2050\n"), kOk);
+  std::ifstream written(path("a.yaml"));
+  const std::string text{std::istreambuf_iterator<char>(written), {}};
+  EXPECT_THAT(text, ::testing::HasSubstr("the log gives no unit: taken for m"));
+}
+
 TEST_F(AssetNew, NothingIsWrittenOverAndNothingIsMadeUp) {
   ASSERT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kOk);
   EXPECT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kBadInput) << "the file is there already";

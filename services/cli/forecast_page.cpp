@@ -113,7 +113,7 @@ Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answe
             const std::vector<ConditionForecast>& conditions) {
   const double threshold = question.request.threshold;
   Plot plot{.title = "Seal condition, index derived from leakage (new seal: 100)",
-            .x = {.label = "year", .unit = "1", .range = view_of(question, conditions)},
+            .x = {.label = "year", .unit = "1", .range = view_of(question, conditions), .whole = true},
             .y = {.label = "condition", .unit = "%"},
             .marks = {},
             .width = kWide,
@@ -173,14 +173,14 @@ std::string methods_note(const ForecastPanel::Answer& answer) {
     return std::ranges::any_of(answer.forecasts, [&](const Forecast& forecast) { return forecast.method == method; });
   };
   for (const auto& [method, meaning] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
-           {"state_space", "state space: the law by which seals age, followed through all tests"},
-           {"fleet", "fleet: the same, with the seal held for one of a known kind"},
+           {"state_space", "state space: the law of ageing, followed through all tests"},
+           {"fleet", "fleet: the same, assuming that the seal belongs to a known population"},
            {"ols",
             "ols: a straight line through the tests of the last so many months, whose own interval is too narrow "
             "for an ageing seal"},
            {"ols_drift", "ols drift: the same line, whose slope may change"},
            {"ols_log_time", "ols log time: a straight line over the logarithm of time"},
-           {"average", "average: of methods, weighed by how well they forecast this seal before"}})
+           {"average", "average: of methods, weighted by how well they forecast this seal before"}})
     if (any(method)) list.append("<li>").append(meaning);
   return report::paragraph(
              "Months count from the last test. The primary forecaster is in bold; the others stand beside it.",
@@ -223,7 +223,7 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
   if (answer.windows_disagree) list.append("<li>Windows disagree: ").append(report::escaped(answer.disagreement));
   if (question.without_error > 0)
     list.append("<li>Standard errors are not known of " + std::to_string(question.without_error) + " of " +
-                std::to_string(question.request.history.size()) + " tests; how the tests scatter stands for them.");
+                std::to_string(question.request.history.size()) + " tests; the scatter of the tests replaces them.");
   list_samples(question.vague, "left out as too vague", list);
   list_samples(answer.left_out, "left out as an isolated outlier", list);
   for (const TestNotCounted& test : question.not_counted)
@@ -235,8 +235,9 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
 /// "37 months left (80 %: 35 to 39), end of life about 2021-04-15", or why there is no such forecast.
 std::string outlook(const Forecast& forecast) {
   if (forecast.state != ForecastState::ok) return text::in_words(name_of(forecast.state)) + ": " + forecast.explanation;
-  return text::in_months(forecast.rul_months) + " left (80 %: " + text::in_months(forecast.rul_p10_months) + " to " +
-         text::in_months(forecast.rul_p90_months) + "), end of life about " + date(forecast.end_of_life_ns);
+  return text::in_months(forecast.rul_months) + " left (80 %: " +
+         text::range_in_months(forecast.rul_p10_months, forecast.rul_p90_months) + "), end of life about " +
+         date(forecast.end_of_life_ns);
 }
 
 /// The colour of what is to be done; of the forecast alone where the services gave no advice.
@@ -306,8 +307,7 @@ Headline headline_without_advice(const ForecastQuestion& question, const Forecas
       return {"Book a vessel by " + day(primary.rul_p10_months - question.months_to_vessel) +
                   " to replace the seal before " + day(primary.rul_p10_months) + ".",
               why + " By that day one seal in ten would have failed; a vessel takes " +
-                  number(question.months_to_vessel, 3) +
-                  " months. The advisory of the services may differ: it needs confirmation by several tests."};
+                  text::in_months(question.months_to_vessel) + ". The advisory of the services may differ: it needs confirmation by several tests."};
     case ForecastState::past_threshold:
       return {"Replace the seal now: it has reached its limit.",
               why + " Follow the procedure for a valve that may not close."};
@@ -353,7 +353,8 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
   if (answer.forecasts.front().state == ForecastState::ok)
     conditions = (*primary)->predict_conditions(request, months_ahead(request.now, view_months(answer)));
   std::string body = head(question, answer);
-  body += report::to_svg(course(question, answer, conditions));
+  // On a phone the drawing keeps its size, and its newest part is what is seen first.
+  body += "<div class=\"scroll latest\">" + report::to_svg(course(question, answer, conditions)) + "</div>";
   body += report::folded_section(
       "Remaining life", "all methods side by side",
       remaining_life_table(answer) + methods_note(answer) + report::to_svg(side_by_side(answer)));

@@ -156,13 +156,20 @@ std::string banner(const Explanation& explanation) {
 }
 
 std::string next_steps(const Explanation& explanation) {
-  const bool found = explanation.verdict == Verdict::mismatch;
-  if (!found && explanation.next_test.empty()) return {};
-  const bool record = !found && explanation.asset_values.empty();
+  std::string steps = paragraph(explanation.next_test);
+  if (explanation.verdict == Verdict::mismatch)
+    steps = steps_after(explanation);
+  else if (explanation.verdict == Verdict::consistent)
+    steps = paragraph("Nothing has to be mended. Read below what these recordings could not have shown. " +
+                      explanation.next_test);
+  else if (explanation.next_test.empty())
+    return {};
+  const bool record = explanation.verdict == Verdict::undetermined && explanation.asset_values.empty() &&
+                      explanation.not_asked.empty();
   return std::string("<div class=\"steps\">\n<h2>")
       .append(record ? "What to record next" : "What to do next")
       .append("</h2>\n")
-      .append(found ? steps_after(explanation) : paragraph(explanation.next_test))
+      .append(steps)
       .append("</div>\n");
 }
 
@@ -190,8 +197,8 @@ std::string explanation_to_html(const Explanation& explanation) {
   body.append(escaped(explanation.asset_id)).append("</h1>\n");
   const bool nothing_found = explanation.effects.empty();
   body.append(banner(explanation)).append(first_screen(explanation));
-  if (nothing_found) body += asset_values_section(explanation);
   body += next_steps(explanation);
+  if (nothing_found) body += asset_values_section(explanation);
   if (nothing_found) body += power_section(explanation);  // what the silence is worth
   body.append(effects_section(explanation))
       .append(nothing_found ? std::string() : asset_values_section(explanation))

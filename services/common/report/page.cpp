@@ -76,7 +76,8 @@ margin:0;font-size:1.02rem;color:var(--text)}.part>summary span{margin-left:.7re
 .screen .drawing text{font-size:15px}.screen .drawing .letters{font-size:13px}
 .steps{border-left:.45rem solid var(--first);background:var(--soft);padding:.5rem 1.1rem;margin:.6rem 0 1.2rem;border-radius:.2rem}
 .steps h2{border:0;padding:0}.steps ol,.steps p{max-width:none;margin:.2rem 0}
-@media screen and (max-width:800px){.screen{grid-template-columns:1fr}}
+@media screen and (max-width:800px){.screen{grid-template-columns:1fr}.latest{direction:rtl}.latest>*{direction:ltr}
+.latest>svg[role]{width:800px;max-width:none}}
 @media print{:root{color-scheme:light;font-size:12px;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
 --second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
 @page{size:A4;margin:12mm}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}

@@ -177,6 +177,7 @@ std::vector<Tick> ticks_of(const Scale& scale, const Axis& axis, int about) {
     for (const double value : logarithmic_ticks(std::pow(10.0, scale.low), std::pow(10.0, scale.high)))
       ticks.push_back({at(std::log10(value)), text::number_text(value, 1)});
   } else {
+    if (axis.whole) about = std::min(about, std::max(1, static_cast<int>(scale.high - scale.low)));
     std::vector<double> values = nice_ticks(scale.low, scale.high, about);
     for (int more = about + 1; values.size() < 2 && more < 3 * about; ++more)  // one label says nothing of the scale
       values = nice_ticks(scale.low, scale.high, more);

@@ -1,4 +1,5 @@
 // What was found: where it sits, the laws that were added, why not others.
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -178,6 +179,17 @@ std::string rejected_html(const std::vector<mismatch::Rejected>& list) {
       .append(table.html());
 }
 
+/// A sensor or the recorded input is no part of the model.
+const char* heading_of(const Explanation& explanation) {
+  if (explanation.effects.empty())
+    return explanation.asset_values.empty() ? "What stands out" : "The value in question";
+  const bool recorded = std::ranges::all_of(explanation.effects, [](const FoundEffect& effect) {
+    return effect.what.element.starts_with("sensor:") || effect.what.element.starts_with("input:") ||
+           effect.what.element == "clock";
+  });
+  return recorded ? "What explains the difference" : "What the model lacks";
+}
+
 }  // namespace
 
 std::string first_screen(const Explanation& explanation) {
@@ -185,6 +197,13 @@ std::string first_screen(const Explanation& explanation) {
   if (!plant) return {};
   std::string found;
   for (const FoundEffect& effect : explanation.effects) found += effect_in_short(effect);
+  if (found.empty() && !explanation.asset_values.empty()) {
+    for (const mismatch::AssetValue& value : explanation.asset_values.front())
+      found += paragraph(value.name + " = " + text::readable_with_error(value.fitted, value.std_error, value.unit) +
+                         " fits; the asset file has " + text::readable(value.in_asset_file, value.unit, 4) + ".");
+    if (explanation.asset_values.size() > 1)
+      found += paragraph("Other values would explain as much: see the table below.", "small muted");
+  }
   if (found.empty()) {
     for (const mismatch::Location& place : explanation.location)
       found +=
@@ -192,7 +211,7 @@ std::string first_screen(const Explanation& explanation) {
     found += paragraph(explanation.location.empty() ? "No element stands out." : "No law is claimed for it.", "muted");
   }
   return std::string("<div class=\"screen\">\n<div>\n<h2>")
-      .append(explanation.effects.empty() ? "What stands out" : "What the model lacks")
+      .append(heading_of(explanation))
       .append("</h2>\n")
       .append(found)
       .append("</div>\n<div>\n")

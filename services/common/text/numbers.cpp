@@ -57,6 +57,11 @@ std::string in_months(double months) {
   return format("{:.{}f} months", months, std::abs(months) < 10.0 && !whole ? 1 : 0);
 }
 
+std::string range_in_months(double low, double high) {
+  const std::string from = in_months(low);
+  return from.substr(0, from.find(' ')) + " to " + in_months(high);
+}
+
 std::string in_days(double days) { return format("{:.{}f} days", days, std::abs(days) < 10.0 ? 1 : 0); }
 
 std::string as_condition(double condition) { return format("{:.3f}", condition); }

@@ -28,6 +28,8 @@ namespace sealwatch::text {
 
 /// 18.43 -> "18 months", 2.34 -> "2.3 months", 2.0 (an interval) -> "2 months", 1.0 -> "1 month".
 [[nodiscard]] std::string in_months(double months);
+/// "34.6", "39.1" -> "35 to 39 months".
+[[nodiscard]] std::string range_in_months(double low, double high);
 /// 12.3 -> "12 days", 2.34 -> "2.3 days".
 [[nodiscard]] std::string in_days(double days);
 

@@ -21,6 +21,8 @@ TEST(Numbers, OfTimesAreInDigitsThatMeanSomething) {
   EXPECT_EQ(in_months(2.34), "2.3 months");
   EXPECT_EQ(in_months(2.0), "2 months");
   EXPECT_EQ(in_months(1.0), "1 month");
+  EXPECT_EQ(range_in_months(34.6, 39.1), "35 to 39 months");
+  EXPECT_EQ(range_in_months(0.75, 1.0), "0.8 to 1 month");
   EXPECT_EQ(in_days(2.34), "2.3 days");
 }
 

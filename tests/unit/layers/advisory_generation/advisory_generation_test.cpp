@@ -80,7 +80,7 @@ TEST_F(AdvisoryGenerationTest, AdvisoryLeadsDownToTheWaveform) {
   EXPECT_EQ(advisory.action, AdvisoryAction::none);
   EXPECT_TRUE(advisory.request_for_work.empty());
   EXPECT_THAT(advisory.reasons,
-              Contains(HasSubstr("forecast (ols, 36 months): 90 months left (80 %: 85 months to 95 months)")));
+              Contains(HasSubstr("forecast (ols, 36 months): 90 months left (80 %: 85 to 95 months)")));
   EXPECT_THAT(advisory.reasons, Contains(HasSubstr("failure before summer 2019")));
 }
 

@@ -1,5 +1,7 @@
 #include "services/cli/trace_page.hpp"
 
+#include <filesystem>
+
 #include "services/cli/trace_words.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
@@ -38,7 +40,7 @@ report::Plot difference(const trace::TraceComparison& comparison, const ChannelC
 }
 
 std::string alteration_table(const std::vector<Alteration>& alterations) {
-  report::Table table({"~alteration", ">removes of the misfit", "leaves noise only"});
+  report::Table table({"~alteration", ">share of the misfit removed", "explains it"});
   for (const Alteration& alteration : alterations)
     table.row({alteration_text(alteration), text::percent_text(alteration.removed_share),
                alteration.would_do ? "yes" : "no"});
@@ -68,14 +70,16 @@ std::string channel_part(const trace::TraceComparison& comparison, const Channel
 
 std::string trace_page(const trace::TraceComparison& comparison, const std::string& recorded,
                        const std::string& simulated) {
-  std::string body = "<h1>" + report::escaped(simulated) + " beside " + report::escaped(recorded) + "</h1>";
+  const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  std::string body = "<h1>Simulated trace against recording</h1>";
+  body += report::paragraph("Simulated: " + name(simulated) + ". Recorded: " + name(recorded) + ".", "muted small");
   body.append("<div class=\"banner ").append(comparison.consistent ? "good" : "bad").append("\"><p class=\"verdict\">");
   body.append(report::escaped(trace_summary(comparison))).append("</p></div>");
   body += report::paragraph(trace_limit(), "muted");
   for (const ChannelComparison& channel : comparison.channels) body += channel_part(comparison, channel);
   if (!comparison.common.empty())
     body += report::section("One cause for all channels", alteration_table(comparison.common));
-  return report::html_page("Trace beside recording", body);
+  return report::html_page("Simulated trace against recording", body);
 }
 
 }  // namespace sealwatch::cli

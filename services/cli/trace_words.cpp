@@ -90,20 +90,19 @@ std::string trace_summary(const trace::TraceComparison& comparison) {
             "): the simulation was not given what the recording was, so its outputs prove nothing; simulate with the "
             "recorded input. ";
   if (comparison.answer.empty())
-    return text + "No gain, offset, delay, clock rate or sign of a channel or of the input would do.";
-  text += "This would do: ";
+    return text + "No gain, offset, delay, clock rate or sign of a channel or of the input explains it.";
+  text += "This explains it: ";
   for (const Alteration& alteration : comparison.answer)
     text.append(&alteration == comparison.answer.data() ? "" : "; ").append(alteration_text(alteration));
   text += ".";
   if (differing == 1 && comparison.channels.size() == 1 && comparison.answer.front().id == "sensor_lag")
-    text += " With one channel, a delay of the input is the same.";
+    text += " With a single channel, a delay of the input looks the same.";
   return text;
 }
 
 std::string trace_limit() {
-  return "A trace alone cannot name physics in the plant: what a plant lacks moves its balances, and a trace shows "
-         "only what came out. What would: the equations as a text plant or an FMU (sealwatch plant), and sealwatch "
-         "explain on the same recordings.";
+  return "A trace shows only what came out, so it cannot name missing physics. For that, give the equations as a text "
+         "plant or an FMU (sealwatch plant), and run sealwatch explain on the same recordings.";
 }
 
 std::string trace_json(const trace::TraceComparison& comparison, const std::string& recorded,

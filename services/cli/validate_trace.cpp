@@ -23,7 +23,7 @@ constexpr std::size_t kAlterationsShown = 6;
 void print_alterations(const std::vector<trace::Alteration>& alterations) {
   for (std::size_t k = 0; k < std::min(alterations.size(), kAlterationsShown); ++k)
     std::printf("    %6s  %-12s %s\n", text::percent_text(alterations[k].removed_share).c_str(),
-                alterations[k].would_do ? "would do" : "", alteration_text(alterations[k]).c_str());
+                alterations[k].would_do ? "explains it" : "", alteration_text(alterations[k]).c_str());
 }
 
 void print_channel(const trace::ChannelComparison& channel) {
@@ -37,7 +37,7 @@ void print_channel(const trace::ChannelComparison& channel) {
   if (!channel.differs) return;
   std::string by;
   for (const std::string& group : channel.by) by.append(by.empty() ? "" : "; ").append(group);
-  std::printf("    it goes with: %s\n", wrapped(by, kWidth, 4).c_str());
+  std::printf("    seen in: %s\n", wrapped(by, kWidth, 4).c_str());
   for (const trace::MisfitInterval& interval : channel.intervals)
     std::printf("    %6s of it from %s to %s s\n", text::percent_text(interval.misfit_share).c_str(),
                 number(interval.begin_s).c_str(), number(interval.end_s).c_str());
@@ -45,7 +45,7 @@ void print_channel(const trace::ChannelComparison& channel) {
     std::printf("    %6s of it %s (%s of the time), %s rms\n", text::percent_text(regime.misfit_share).c_str(),
                 regime.name.c_str(), text::percent_text(regime.time_share).c_str(),
                 text::readable(regime.rms, channel.unit).c_str());
-  std::printf("  removes of the misfit of %s:\n", text::in_words(channel.name).c_str());
+  std::printf("  share of the misfit of %s that each would remove:\n", text::in_words(channel.name).c_str());
   print_alterations(channel.alterations);
 }
 
@@ -53,7 +53,7 @@ void print_text(const trace::TraceComparison& comparison) {
   std::printf("%s\n", wrapped(trace_summary(comparison), kWidth, 0).c_str());
   for (const trace::ChannelComparison& channel : comparison.channels) print_channel(channel);
   if (!comparison.common.empty()) {
-    std::printf("\n  removes of all channels' misfit, one cause for all:\n");
+    std::printf("\n  share of all channels' misfit that one common cause would remove:\n");
     print_alterations(comparison.common);
   }
   const auto list = [](const char* where, const std::vector<std::string>& names) {

@@ -85,7 +85,7 @@ std::string trace(double gain, unsigned seed) {
   return text.str();
 }
 
-TEST_F(OwnPlantCommands, ATraceThatAgreesIsConsistentAndOneWithAGainSaysWhatWouldDo) {
+TEST_F(OwnPlantCommands, ATraceThatAgreesIsConsistentAndOneWithAGainSaysWhatExplainsIt) {
   const std::string recorded = write("recorded.csv", trace(1.0, 7));
   const Finished same =
       run({"sealwatch", "validate", "--simulated", write("same.csv", trace(1.0, 0)), recorded, "--json"});
@@ -95,7 +95,7 @@ TEST_F(OwnPlantCommands, ATraceThatAgreesIsConsistentAndOneWithAGainSaysWhatWoul
   const Finished other =
       run({"sealwatch", "validate", "--simulated", write("other.csv", trace(1.1, 0)), recorded, "--page", page});
   EXPECT_EQ(other.status, 1) << "the answer is no";
-  EXPECT_THAT(other.output, HasSubstr("would do"));
+  EXPECT_THAT(other.output, HasSubstr("explains it"));
   EXPECT_THAT(other.output, HasSubstr("gain"));
   std::ostringstream text;
   text << std::ifstream(page).rdbuf();

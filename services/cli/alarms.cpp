@@ -132,10 +132,10 @@ int run_shelve(const ShelveOptions& options) {
   });
   if (done != kOk) return done;
   if (back)
-    std::printf("received: it is in view again\n");
+    std::printf("received: it is shown again\n");
   else
     std::printf(
-        "received: shelved until %s, when it is in view again by itself; sooner: sealwatch unshelve %s %s --by NAME\n",
+        "received: shelved until %s; to show it sooner: sealwatch unshelve %s %s --by NAME\n",
         format_utc(*act.until).c_str(), shell_word(options.asset_id).c_str(), shell_word(options.alarm_id).c_str());
   return kOk;
 }
@@ -154,7 +154,7 @@ int run_out_of_service(const OutOfServiceOptions& options) {
     return options.back ? entry == nullptr : entry != nullptr && entry->out_of_service_by == options.by;
   });
   if (done != kOk) return done;
-  std::printf(options.back ? "received: %s is in service, its alarms are in view again\n"
+  std::printf(options.back ? "received: %s is in service, its alarms are shown again\n"
                            : "received: %s is out of service, its alarms are out of view until it is taken back; what "
                              "is concluded stays the same\n",
               options.asset_id.c_str());

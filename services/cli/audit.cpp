@@ -7,6 +7,7 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/state_journals.hpp"
+#include "services/cli/terminal.hpp"
 #include "services/common/store/audit_trail.hpp"
 
 namespace sealwatch::cli {
@@ -49,7 +50,7 @@ void print(const Trail& trail, const AuditOptions& options) {
   for (const AuditEntry& entry : trail.entries) {
     if (!is_asked_for(entry, options)) continue;
     const OperatorAct& act = entry.act;
-    std::string line = format_utc(act.at) + "  " + trail.service + " " + std::to_string(entry.sequence) + "  " +
+    std::string line = to_the_second(act.at) + "  " + trail.service + " " + std::to_string(entry.sequence) + "  " +
                        act.kind + "  " + act.asset_id + "  by " + act.who + "  " + act.subject;
     if (!act.text.empty()) line += "  (" + act.text + ")";
     if (act.outcome != "taken") line += "  refused: " + act.outcome;

@@ -122,11 +122,11 @@ std::string samples_words(const Header& header) {
   return is_expired(header.producer) ? " [its samples are kept no more]" : "";
 }
 
-/// Nothing where the sender's clock is kept, or nobody knows.
+/// Nothing where the sender's clock is kept, or nobody knows, or the recording gave the time: its replay's clock is none.
 std::string clock_words(const Header& header) {
   const bool is_kept =
       header.clock_quality == ClockQuality::synchronised || header.clock_quality == ClockQuality::unknown;
-  return is_kept ? "" : " [its sender's clock: " + std::string(name_of(header.clock_quality)) + "]";
+  return is_kept || header.replay ? "" : " [clock of its sender: " + std::string(name_of(header.clock_quality)) + "]";
 }
 
 }  // namespace

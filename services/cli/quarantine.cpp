@@ -54,12 +54,12 @@ nlohmann::ordered_json as_json(const std::string& service, const QuarantineDesk:
 void print(const std::string& service, const QuarantineDesk::Entry& entry) {
   const SetAside& message = entry.message;
   std::printf("%s  %s  since %s  %s\n  %s\n", service.c_str(), message.asset_id.c_str(),
-              format_utc({message.since_ns}).c_str(), message.message_id.c_str(),
+              to_the_second({message.since_ns}).c_str(), message.message_id.c_str(),
               wrapped("set aside: " + message.reason, 100, 2).c_str());
   if (entry.state == "retry")
     std::printf("  %s asked for another try, which has not begun yet\n", entry.asked_by.c_str());
   if (entry.state == "released")
-    std::printf("  tried again for %s at %s\n", entry.asked_by.c_str(), format_utc({entry.asked_ns}).c_str());
+    std::printf("  tried again for %s at %s\n", entry.asked_by.c_str(), to_the_second({entry.asked_ns}).c_str());
 }
 
 }  // namespace

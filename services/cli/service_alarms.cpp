@@ -7,6 +7,7 @@
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/alarm_state.hpp"
+#include "services/cli/terminal.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -63,9 +64,9 @@ std::string begin_of(const HeardAlarm& heard, UtcTime now) {
     case AlarmState::acknowledged:
       return "ALARM, acknowledged by " + entry.acknowledged_by;
     case AlarmState::returned:
-      return "RETURNED " + format_utc({entry.ended_ns}) + ", unacknowledged";
+      return "RETURNED " + to_the_second({entry.ended_ns}) + ", unacknowledged";
     case AlarmState::shelved:
-      return "SHELVED until " + format_utc({entry.shelved_until_ns}) + " by " + entry.shelved_by + ", " +
+      return "SHELVED until " + to_the_second({entry.shelved_until_ns}) + " by " + entry.shelved_by + ", " +
              entry.shelved_reason;
     case AlarmState::suppressed:
       return "SUPPRESSED by " + entry.suppressed_by;
@@ -151,7 +152,7 @@ std::string one_line(const HeardAlarm& heard, UtcTime now) {
   std::string line = begin_of(heard, now) + " (" + std::string(words(category_of(alarm.kind))) + ")  " + heard.service;
   if (!alarm.asset_id.empty()) line += "  " + alarm.asset_id;
   line += "  " + std::string(row == nullptr ? std::string_view(alarm.kind) : row->meaning);
-  if (alarm.since_ns != 0) line += " since " + format_utc({alarm.since_ns});
+  if (alarm.since_ns != 0) line += " since " + to_the_second({alarm.since_ns});
   line += ": " + (alarm.subject.empty() ? "" : alarm.subject + ": ") + alarm.text + command_for(heard, now);
   if (heard.untold > 0) line += "; and " + std::to_string(heard.untold) + " more: sealwatch quarantine list";
   return line;

@@ -208,7 +208,7 @@ std::string AssetView::screen(bool services_run) const {
   if (replaced_ns_) text += ", replaced on " + date(*replaced_ns_);
   if (tested) text += ", last test " + date(life_->header.event_time_ns);
   if (tests == 0 && replaced_ns_ && !tested) text += ", no test since";
-  if (tests > 0 || !replaced_ns_) text += ", " + count_of(tests, "test") + " in view";
+  if (tests > 0 || !replaced_ns_) text += ", " + count_of(tests, "test") + " shown";
   text += "\n";
   return text + seal_lines() + history_chart() + forecast_lines() + advisory_lines(services_run) + model_lines() +
          left_out_lines();

@@ -12,6 +12,11 @@ namespace sealwatch::cli {
 
 std::string date(std::int64_t time_ns) { return format_date(UtcTime{time_ns}); }
 
+std::string to_the_second(UtcTime time) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  return format_utc({time.nanoseconds - time.nanoseconds % kSecond_ns});
+}
+
 std::string bar(double share, std::size_t cells) {
   constexpr double kNothing = 0.0005;  // shown as 0.0 %
   if (!(share > 0.0)) share = 0.0;

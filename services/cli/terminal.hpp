@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sealwatch/core/time.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/text/words.hpp"
 
@@ -24,6 +25,9 @@ using text::wrapped;
 [[nodiscard]] inline std::string number(double value, int digits = 4) { return text::with_zeros(value, digits); }
 /// Date of a UTC time in nanoseconds, "2031-04-12".
 [[nodiscard]] std::string date(std::int64_t time_ns);
+
+/// UTC to the second, for a person: "2031-04-12T03:00:00Z".
+[[nodiscard]] std::string to_the_second(UtcTime time);
 
 /// "|#####               |": a share of one, cut to 0 .. 1. What is too little for a whole mark, but not nothing, is a
 /// dot.

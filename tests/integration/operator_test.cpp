@@ -169,7 +169,7 @@ TEST_F(Operator, IsToldWhatBecameOfIt) {
   const Finished again = replay({"--results", (folder_ / "again").string()});
   EXPECT_EQ(again.status, 0) << again.output;
   EXPECT_THAT(again.output, AllOf(HasSubstr("nothing was written to"), HasSubstr("replay --offline"),
-                                  HasSubstr("were known already"), ContainsRegex("[1-3] tests? in view")))
+                                  HasSubstr("were known already"), ContainsRegex("[1-3] tests? shown")))
       << "what was known is on the screen all the same";
 
   const Finished second = run({"sealwatch", "up", "--config", config(), "--state", state_directory("other").string()});

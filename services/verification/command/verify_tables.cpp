@@ -2,6 +2,7 @@
 
 #include "services/cli/terminal.hpp"
 #include "services/common/report/page.hpp"
+#include "services/common/text/readable.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -64,12 +65,12 @@ std::string verification_overview(const Summary& s) {
                      std::to_string(s.censored) + (s.censored == 1 ? " life outlasts" : " lives outlast") +
                      " the months of service and " + (s.censored == 1 ? "is" : "are") + " left out below. " +
                      number(100.0 * s.fails_in_8_to_20_years.value(), 3) +
-                     " % fail within 8 to 20 years; half of them by " + number(s.lifetime_years.at[2], 3) + " years. ";
-  text += "Estimates of the condition: standard error " + number(s.estimate_std.value, 2) +
-          " in the mean, mean squared error over its square " + number(s.estimate_chi_square.value, 3) +
-          " (1 when honest); of one test of each life " + percent_cell(s.estimate_within_95) +
-          " % within their 95 % interval. ";
-  text += "Of the estimate as a feature: monotonicity " + number(s.monotonicity, 3) + ", trendability " +
+                     " % fail within 8 to 20 years, half by " + number(s.lifetime_years.at[2], 3) + " years. ";
+  text += "The mean standard error of the condition is " + text::number_text(100.0 * s.estimate_std.value, 2) +
+          " %. Squared error over variance is " + number(s.estimate_chi_square.value, 3) +
+          " on average (1 if the standard errors are right). One test of each life: " +
+          percent_cell(s.estimate_within_95) + " % within the 95 % interval. ";
+  text += "The estimate over a life: monotonicity " + number(s.monotonicity, 3) + ", trendability " +
           number(s.trendability, 3) + ", prognosability " + number(s.prognosability, 3) + ".";
   return report::paragraph(text) +
          report::paragraph(

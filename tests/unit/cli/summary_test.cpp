@@ -43,7 +43,10 @@ TEST(OneLine, SaysWhatMattersWithUnits) {
   estimate.used_for_forecast = true;
   EXPECT_EQ(one_line(Message(estimate)), "2031-04-12  A  leakage_estimate  R_CL 1.00e+13 +- 2.0e+11 Pa s/m3");
   estimate.header.clock_quality = ClockQuality::stepped;
-  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3 [its sender's clock: stepped]"));
+  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3 [clock of its sender: stepped]"));
+  estimate.header.replay = true;
+  EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3")) << "dated by the recording";
+  estimate.header.replay = false;
   estimate.header.clock_quality = ClockQuality::synchronised;
   EXPECT_THAT(one_line(Message(estimate)), ::testing::EndsWith("Pa s/m3"));
   estimate.estimated = false;
@@ -185,7 +188,7 @@ TEST(AssetView, DoesNotSayNoTestSinceBesideALastTest) {
   view.take(Message(life));
   EXPECT_THAT(view.screen(), HasSubstr("== A, replaced on 2018-01-20, last test 2018-02-13\n"));
   view.take(Message(used_estimate("2018-02-13", 0.9)));
-  EXPECT_THAT(view.screen(), HasSubstr("last test 2018-02-13, 1 test in view\n"));
+  EXPECT_THAT(view.screen(), HasSubstr("last test 2018-02-13, 1 test shown\n"));
 }
 
 TEST(AssetView, DrawsTheFailureLimitOnlyWhereItIsKnown) {

@@ -55,8 +55,8 @@ void add_simulate(CommandLine& line) {
       ->capture_default_str();
   CLI::Option* input = simulate->add_option(
       "--input", options->inputs,
-      "files with the inputs of the asset's plant (text, FMU or built in): writes what it gives at their samples, "
-      "in place of the bench's tests; outputs that they have tell where states start");
+      "files with the inputs of the asset's plant: simulates it at their samples instead of the bench's tests; their "
+      "outputs, if any, set the initial state");
   simulate->add_flag("--noise", options->noise, "with --input: add the sensors' noise")->needs(input);
   CommandLine::add_map(simulate, options->map_file);
 }
@@ -86,8 +86,7 @@ void add_validate(CommandLine& line) {
   validate->add_option("--out", options->directory, "directory for the report (made if absent)");
   CLI::Option* simulated = validate->add_option(
       "--simulated", options->simulated,
-      "trace of your own simulation, compared with one recording without a model: whether they differ beyond noise, "
-      "when, and whether a gain, offset, delay, clock rate or sign explains it (exit status 1: they differ)");
+      "trace of your own simulation, to compare with one recording without a model (exit status 1: they differ)");
   validate->add_option("--page", options->page, "with --simulated: HTML file to write")->needs(simulated);
   validate
       ->add_option("--input", options->inputs,
@@ -243,12 +242,12 @@ void add_asset(CommandLine& line) {
   CLI::App* asset = line.holder("asset", "write an asset file from your own log",
                                 "sealwatch asset new --from log.csv --out asset.yaml");
   CLI::App* fresh =
-      line.nested(*asset, "new", "write an asset file with a channel map: guesses, asks, shows the result",
+      line.nested(*asset, "new", "write an asset file with a channel map guessed from the log",
                   "sealwatch asset new --from log.csv --out asset.yaml", [options] { return run_asset_new(*options); });
-  fresh->add_option("--from", options->log, "your log: text in columns, MATLAB or HDF5")->required();
-  fresh->add_option("--out", options->file, "asset file to write, with a picture beside it (.html)")->required();
+  fresh->add_option("--from", options->log, "your log: CSV or other text in columns, MATLAB or HDF5")->required();
+  fresh->add_option("--out", options->file, "asset file to write, with plots beside it (.html)")->required();
   fresh->add_option("--model", options->model, "built-in plant (default: best match to the columns), or a plant file");
-  fresh->add_option("--id", options->asset_id, "asset id (default: the log's name)");
+  fresh->add_option("--id", options->asset_id, "asset id (default: the sidecar's, else the log's name)");
   fresh->add_flag("--yes", options->yes, "accept the guess without asking");
 }
 

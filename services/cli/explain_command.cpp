@@ -226,13 +226,9 @@ bool good(const Status& status) {
 }  // namespace
 
 int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
-  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
+  const std::optional<AssetConfig> asset = load_asset_of_known_plant(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);
-  if (!plant) {
-    complain(plant.error());
-    return kBadInput;
-  }
   const auto fit = read_recordings(options.fit, *asset, **plant);
   if (!fit) return kBadInput;
   const auto holdout = read_recordings(options.holdout, *asset, **plant);

@@ -205,13 +205,9 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
 }  // namespace
 
 int run_fit(const FitOptions& options) {
-  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
+  const std::optional<AssetConfig> asset = load_asset_of_known_plant(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);
-  if (!plant) {
-    complain(plant.error());
-    return kBadInput;
-  }
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
   const std::optional<FitResult> fit = fit_as_asked(options, *asset, **plant, *recordings);

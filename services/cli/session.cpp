@@ -61,6 +61,14 @@ int with_output_written(int status) {
   return status == kInternalFailure ? status : kBadInput;
 }
 
+std::optional<AssetConfig> load_asset_of_known_plant(const std::string& path, const std::string& map_file) {
+  std::optional<AssetConfig> asset = load_asset_or_explain(path, map_file);
+  const Result<const PlantDescription*> plant = asset ? find_plant(asset->model) : nullptr;
+  if (plant) return asset;
+  complain(plant.error());
+  return std::nullopt;
+}
+
 std::optional<AssetConfig> load_asset_or_explain(const std::string& path, const std::string& map_file) {
   auto asset = check_asset(path);
   if (!asset) {

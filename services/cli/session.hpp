@@ -19,6 +19,10 @@ namespace sealwatch::cli {
 [[nodiscard]] std::optional<AssetConfig> load_asset_or_explain(const std::string& path,
                                                                const std::string& map_file = {});
 
+/// The same, where its plant is known too: find_plant(asset.model) succeeds.
+[[nodiscard]] std::optional<AssetConfig> load_asset_of_known_plant(const std::string& path,
+                                                                   const std::string& map_file = {});
+
 struct Session {
   Configuration configuration;
   std::unique_ptr<Bus> bus;

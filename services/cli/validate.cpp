@@ -90,13 +90,9 @@ int run_validate(const ValidateOptions& options) {
                     "--simulated SIM.csv"});
       return kBadInput;
     }
-  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
+  const std::optional<AssetConfig> asset = load_asset_of_known_plant(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);
-  if (!plant) {
-    complain(plant.error());
-    return kBadInput;
-  }
   const auto recordings = read_recordings(options.recordings, *asset, **plant);
   if (!recordings) return kBadInput;
   const auto validation = validate_model(*asset, *recordings, options.recordings, options.fit);

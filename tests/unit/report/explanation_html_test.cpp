@@ -66,6 +66,24 @@ TEST(ReportHtml, TellsWhichValueOfTheAssetFileMayBeWrongBeforeWhatCouldHaveBeenS
                            "dead volume of one chamber", "+3.0 %", "+20 %"})
     EXPECT_THAT(html, HasSubstr(part));
   EXPECT_LT(html.find("A value in the asset file may be wrong"), html.find("What these recordings could detect"));
+  EXPECT_THAT(html, HasSubstr(" fits; the asset file has "));
+  EXPECT_LT(html.find("What to do next"), html.find("A value in the asset file may be wrong"))
+      << "on the first screen, with the value";
+}
+
+TEST(ReportHtml, SaysWhatToDoNextWhateverTheVerdict) {
+  mismatch::Explanation cut_off = undetermined_example();
+  EXPECT_THAT(explanation_to_html(cut_off), HasSubstr("What to record next"));
+  cut_off.not_asked = {"laws"};
+  EXPECT_THAT(explanation_to_html(cut_off), HasSubstr("What to do next")) << "no recording is asked for";
+  EXPECT_THAT(explanation_to_html(consistent_example()), HasSubstr("What to do next"));
+}
+
+TEST(ReportHtml, ASensorIsNothingThatTheModelLacks) {
+  mismatch::Explanation explanation = example_explanation();
+  EXPECT_THAT(explanation_to_html(explanation), HasSubstr("What the model lacks"));
+  for (mismatch::FoundEffect& effect : explanation.effects) effect.what.element = "sensor:pressure_a";
+  EXPECT_THAT(explanation_to_html(explanation), HasSubstr("What explains the difference"));
 }
 
 TEST(ReportHtml, TellsWhatWasFound) {

@@ -64,9 +64,9 @@ void add_forecast(std::vector<std::string>& reasons, const RemainingLife& life) 
   if (forecast.state != ForecastState::ok) {
     reasons.push_back(name + in_words(name_of(forecast.state)) + ", " + forecast.explanation);
   } else {
-    reasons.push_back(name + in_months(forecast.rul_p50_months) + " left (80 %: " +
-                      text::range_in_months(forecast.rul_p10_months, forecast.rul_p90_months) + "), end of life " +
-                      format_date({forecast.end_of_life_ns}) + "; " + forecast.explanation);
+    reasons.push_back(name + in_months(forecast.rul_p50_months) +
+                      " left (80 %: " + text::range_in_months(forecast.rul_p10_months, forecast.rul_p90_months) +
+                      "), end of life " + format_date({forecast.end_of_life_ns}) + "; " + forecast.explanation);
     for (const FailureProbability& one : forecast.failure_probability) {
       reasons.push_back("failure before " + one.label + " (" + format_date({one.before_ns}) +
                         "): " + in_percent(one.probability));

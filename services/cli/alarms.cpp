@@ -134,9 +134,9 @@ int run_shelve(const ShelveOptions& options) {
   if (back)
     std::printf("received: it is shown again\n");
   else
-    std::printf(
-        "received: shelved until %s; to show it sooner: sealwatch unshelve %s %s --by NAME\n",
-        format_utc(*act.until).c_str(), shell_word(options.asset_id).c_str(), shell_word(options.alarm_id).c_str());
+    std::printf("received: shelved until %s; to show it sooner: sealwatch unshelve %s %s --by NAME\n",
+                format_utc(*act.until).c_str(), shell_word(options.asset_id).c_str(),
+                shell_word(options.alarm_id).c_str());
   return kOk;
 }
 

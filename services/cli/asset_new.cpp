@@ -70,8 +70,7 @@ Status read_by_map(const std::string& file, Understood& log) {
     const std::string& rule = tests.error().rule;
     if (rule.starts_with("time goes back") && log.map.log.time_resets == "refuse") {
       log.map.log.time_resets = "split";
-      log.remarks.emplace_back(
-          "its time restarts: each restart begins another test (time_resets: split; or join)");
+      log.remarks.emplace_back("its time restarts: each restart begins another test (time_resets: split; or join)");
     } else if (rule == "the cell is empty" && log.map.log.incomplete_rows == "refuse") {
       log.map.log.incomplete_rows = "skip";
       log.remarks.emplace_back("rows with an empty cell in a used column are left out (incomplete_rows: skip)");
@@ -373,8 +372,9 @@ int run_asset_new(const AssetNewOptions& options) {
   const std::string page = fs::path(options.file).replace_extension(".html").string();
   std::ofstream(page, std::ios::binary) << page_of(*log, options.log);
   print_table(*log);
-  std::printf("written: %s, with plots in %s. Correct what is wrong, then for instance:\n  sealwatch fit --asset %s %s\n",
-              options.file.c_str(), page.c_str(), options.file.c_str(), options.log.c_str());
+  std::printf(
+      "written: %s, with plots in %s. Correct what is wrong, then for instance:\n  sealwatch fit --asset %s %s\n",
+      options.file.c_str(), page.c_str(), options.file.c_str(), options.log.c_str());
   return kOk;
 }
 

@@ -235,9 +235,9 @@ std::string reasons_part(const ForecastQuestion& question, const ForecastPanel::
 /// "37 months left (80 %: 35 to 39), end of life about 2021-04-15", or why there is no such forecast.
 std::string outlook(const Forecast& forecast) {
   if (forecast.state != ForecastState::ok) return text::in_words(name_of(forecast.state)) + ": " + forecast.explanation;
-  return text::in_months(forecast.rul_months) + " left (80 %: " +
-         text::range_in_months(forecast.rul_p10_months, forecast.rul_p90_months) + "), end of life about " +
-         date(forecast.end_of_life_ns);
+  return text::in_months(forecast.rul_months) +
+         " left (80 %: " + text::range_in_months(forecast.rul_p10_months, forecast.rul_p90_months) +
+         "), end of life about " + date(forecast.end_of_life_ns);
 }
 
 /// The colour of what is to be done; of the forecast alone where the services gave no advice.
@@ -307,7 +307,8 @@ Headline headline_without_advice(const ForecastQuestion& question, const Forecas
       return {"Book a vessel by " + day(primary.rul_p10_months - question.months_to_vessel) +
                   " to replace the seal before " + day(primary.rul_p10_months) + ".",
               why + " By that day one seal in ten would have failed; a vessel takes " +
-                  text::in_months(question.months_to_vessel) + ". The advisory of the services may differ: it needs confirmation by several tests."};
+                  text::in_months(question.months_to_vessel) +
+                  ". The advisory of the services may differ: it needs confirmation by several tests."};
     case ForecastState::past_threshold:
       return {"Replace the seal now: it has reached its limit.",
               why + " Follow the procedure for a valve that may not close."};

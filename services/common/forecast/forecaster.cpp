@@ -46,8 +46,7 @@ std::vector<ConditionSample> take_unusable(std::vector<ConditionSample>& history
 
 std::string describe(const Forecast& forecast) {
   return "by its last " + std::to_string(forecast.window_months) + " months " +
-         text::in_months(forecast.rul_p50_months) +
-         " are left (95 %: " + 
+         text::in_months(forecast.rul_p50_months) + " are left (95 %: " +
          text::range_in_months(forecast.interval_95_low_months, forecast.interval_95_high_months) + ")";
 }
 

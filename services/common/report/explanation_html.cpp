@@ -164,8 +164,8 @@ std::string next_steps(const Explanation& explanation) {
                       explanation.next_test);
   else if (explanation.next_test.empty())
     return {};
-  const bool record = explanation.verdict == Verdict::undetermined && explanation.asset_values.empty() &&
-                      explanation.not_asked.empty();
+  const bool record =
+      explanation.verdict == Verdict::undetermined && explanation.asset_values.empty() && explanation.not_asked.empty();
   return std::string("<div class=\"steps\">\n<h2>")
       .append(record ? "What to record next" : "What to do next")
       .append("</h2>\n")

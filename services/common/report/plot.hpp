@@ -90,7 +90,7 @@ struct Axis {
   std::optional<std::pair<double, double>> range = {};  ///< SI; else what the marks need
   bool logarithmic = false;                             ///< marks at or below 0 are left out
   bool tick_labels = true;
-  bool whole = false;  ///< ticks at whole numbers only: years
+  bool whole = false;                        ///< ticks at whole numbers only: years
   std::vector<std::string> categories = {};  ///< names of the places 0, 1, 2, ... instead of numbers
 };
 

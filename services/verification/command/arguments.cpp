@@ -81,14 +81,12 @@ void add_verify_arguments(CLI::App& verify, VerifyOptions& options, const std::f
   add_rul(part(VerifyPart::rul, "rul", "Monte Carlo: random lives, monthly tests, estimates, forecasts until failure",
                "sealwatch verify rul --asset config/assets/xt03-mv2.yaml --lives 1000 --out verification"),
           options.rul);
-  add_mismatch(
-      part(VerifyPart::mismatch, "mismatch", "blind trial of explain on recordings with hidden physics",
-           "sealwatch verify mismatch --sets 40 --strata null,single --out trial"),
-      options.mismatch);
-  add_merge(
-      part(VerifyPart::merge, "merge", "merge the shards of one run; the result is that of an unsharded run",
-           "sealwatch verify merge shard1 shard2 --out verification"),
-      options.merge);
+  add_mismatch(part(VerifyPart::mismatch, "mismatch", "blind trial of explain on recordings with hidden physics",
+                    "sealwatch verify mismatch --sets 40 --strata null,single --out trial"),
+               options.mismatch);
+  add_merge(part(VerifyPart::merge, "merge", "merge the shards of one run; the result is that of an unsharded run",
+                 "sealwatch verify merge shard1 shard2 --out verification"),
+            options.merge);
 }
 
 }  // namespace sealwatch::cli

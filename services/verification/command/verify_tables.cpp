@@ -64,12 +64,13 @@ std::string verification_overview(const Summary& s) {
   std::string text = std::to_string(s.lives) + " lives, " + std::to_string(s.tests) + " tests. " +
                      std::to_string(s.censored) + (s.censored == 1 ? " life outlasts" : " lives outlast") +
                      " the months of service and " + (s.censored == 1 ? "is" : "are") + " left out below. " +
-                     number(100.0 * s.fails_in_8_to_20_years.value(), 3) +
-                     " % fail within 8 to 20 years, half by " + number(s.lifetime_years.at[2], 3) + " years. ";
-  text += "The mean standard error of the condition is " + text::number_text(100.0 * s.estimate_std.value, 2) +
-          " %. Squared error over variance is " + number(s.estimate_chi_square.value, 3) +
-          " on average (1 if the standard errors are right). One test of each life: " +
-          percent_cell(s.estimate_within_95) + " % within the 95 % interval. ";
+                     number(100.0 * s.fails_in_8_to_20_years.value(), 3) + " % fail within 8 to 20 years, half by " +
+                     number(s.lifetime_years.at[2], 3) + " years. ";
+  text +=
+      "The mean standard error of the condition is " + text::number_text(100.0 * s.estimate_std.value, 2) +
+      " %. Squared error over variance is " + number(s.estimate_chi_square.value, 3) +
+      " on average (1 if the standard errors are right). One test of each life: " + percent_cell(s.estimate_within_95) +
+      " % within the 95 % interval. ";
   text += "The estimate over a life: monotonicity " + number(s.monotonicity, 3) + ", trendability " +
           number(s.trendability, 3) + ", prognosability " + number(s.prognosability, 3) + ".";
   return report::paragraph(text) +

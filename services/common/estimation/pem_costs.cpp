@@ -62,8 +62,8 @@ bool RecordingCost::update(const double* shared, const double* own, bool may_kee
   std::copy_n(shared, shared_.size(), shared_.begin());
   std::copy_n(own, own_.size(), own_.begin());
   const bool keep = may_keep && kept_.any();
-  Result<Linearisation> result = linearise(problem_, recording_, shared_, own_,
-                                           keep ? Derivatives::by_what_is_not_known : Derivatives::by_all);
+  Result<Linearisation> result =
+      linearise(problem_, recording_, shared_, own_, keep ? Derivatives::by_what_is_not_known : Derivatives::by_all);
   known_ = result.has_value();
   if (!known_) return false;
   linearisation_ = std::move(*result);

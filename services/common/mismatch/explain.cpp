@@ -448,7 +448,7 @@ class Analysis {
   static void say_what_was_cut(Explanation& result) {
     if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of what was being fitted");
     result.summary += " The time limit cut the search: not everything was asked.";
-    result.notes.push_back("The time limit cut the search. Not asked: " + joined(result.not_asked, "; and ") + ".");
+    result.notes.push_back("Not asked, as time was up: " + joined(result.not_asked, "; and ") + ".");
   }
 
   void take_all_laws_back() {

@@ -175,10 +175,10 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
-    Result<FittedModel> model =
-        options.in_place_of.empty()
-            ? fit_model_beside(gross ? PemPoint{} : beside_all(added, share), asset, data, *from.model, kFirstRound, bound)
-            : sizes_first(asset, added, data, *from.model);
+    Result<FittedModel> model = options.in_place_of.empty()
+                                    ? fit_model_beside(gross ? PemPoint{} : beside_all(added, share), asset, data,
+                                                       *from.model, kFirstRound, bound)
+                                    : sizes_first(asset, added, data, *from.model);
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
   };

@@ -99,6 +99,25 @@ std::string next_test_of(const Explanation& explanation) {
          "recordings out.";
 }
 
+namespace {
+
+// A sensor, the recorded input and the clock are no part of the simulation.
+std::string found_in_words(const std::vector<FoundEffect>& effects) {
+  std::vector<std::string> physics, faults;
+  for (const FoundEffect& effect : effects) {
+    const std::string& element = effect.what.element;
+    const bool recorded = element.starts_with("sensor:") || element.starts_with("input:") || element == "clock";
+    (recorded ? faults : physics).push_back(law_in_words(effect.what));
+  }
+  std::string text;
+  if (!physics.empty()) text = "The simulation lacks " + joined(physics, " and ");
+  if (!faults.empty())
+    text += (physics.empty() ? "The recordings show " : ", and the recordings show ") + joined(faults, " and ");
+  return text + (effects.size() > 1 ? ". With them " : ". With it ");
+}
+
+}  // namespace
+
 std::string summary_of(const Explanation& explanation) {
   std::string text;
   const ChannelComparison* worst = worst_channel(explanation.fit);
@@ -109,9 +128,7 @@ std::string summary_of(const Explanation& explanation) {
     return text;
   }
   if (explanation.verdict == Verdict::mismatch) {
-    std::vector<std::string> laws;
-    for (const FoundEffect& effect : explanation.effects) laws.push_back(law_in_words(effect.what));
-    text = "The simulation lacks " + joined(laws, " and ") + (laws.size() > 1 ? ". With them " : ". With it ");
+    text = found_in_words(explanation.effects);
     if (const std::string proof = proof_in_words(explanation.holdout); !proof.empty())
       text += proof + "." + left_in_words(explanation.holdout);
     for (const FoundEffect& effect : explanation.effects) {

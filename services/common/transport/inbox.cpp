@@ -8,8 +8,14 @@ namespace {
 
 /// Names that are told apart of those who flood; a stranger may invent as many as it likes.
 constexpr std::size_t kMostNames = 16;
-/// Assets that share a take: of more each has one message of it all the same.
-constexpr std::size_t kMostAssets = 64;
+/// Writers and assets that are remembered of a topic: one writer more than one counts as many, and of more assets each
+/// has one message of a take all the same.
+constexpr std::size_t kMostHeard = 64;
+
+template <class Name>
+void note(std::map<Name, Inbox::Time>& heard, const Name& name, Inbox::Time now) {
+  if (heard.size() < kMostHeard || heard.contains(name)) heard[name] = now;
+}
 
 std::size_t index_of(const BusItem& item) {
   if (const auto* message = std::get_if<Message>(&item)) return message->index();
@@ -71,11 +77,8 @@ void Inbox::drop(const BusItem& item) {
 }
 
 void Inbox::note_heard(Writer writer, const BusItem& item, std::size_t topic, Time now) {
-  heard_[topic][writer] = now;
-  if (comes_again(item)) return;
-  std::map<std::string, Time>& assets = heard_assets_[topic];
-  const std::string& asset_id = asset_of(std::get<Message>(item));
-  if (assets.size() < kMostAssets || assets.contains(asset_id)) assets[asset_id] = now;
+  note(heard_[topic], writer, now);
+  if (!comes_again(item)) note(heard_assets_[topic], asset_of(std::get<Message>(item)), now);
 }
 
 void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {

@@ -102,6 +102,24 @@ TEST(ActuatorFit, CompressedProblemIsTheSameLeastSquaresProblem) {
   EXPECT_NEAR(small.col(5).squaredNorm(), full.residual.squaredNorm(), 1e-9);
 }
 
+// Columns 1 and 3 are of unknowns that are known beforehand.
+TEST(ActuatorFit, KeptDerivativesOfTheSamePointChangeNothing) {
+  PemProblem problem;
+  problem.shared.resize(4);
+  problem.shared[1].prior_std = problem.shared[3].prior_std = 1.0;
+  const Linearisation full{
+      .simulated = {}, .residual = Eigen::VectorXd::Random(300), .jacobian = RowMatrix::Random(300, 6)};
+  const KeptDerivatives kept = kept_derivatives(problem, full);
+  EXPECT_EQ(kept.jacobian.col(1), full.jacobian.col(3));
+  Linearisation others = full;
+  others.jacobian = not_known_jacobian(problem, full.jacobian);
+  ASSERT_EQ(others.jacobian.cols(), 4);
+  EXPECT_EQ(whole_jacobian(problem, others.jacobian, kept), full.jacobian);
+  const Eigen::MatrixXd with_kept = compress(problem, others, kept), of_all = compress(full);
+  constexpr double kRounding = 1e-12;
+  EXPECT_LT((with_kept.transpose() * with_kept - of_all.transpose() * of_all).norm(), kRounding * of_all.squaredNorm());
+}
+
 TEST(ActuatorFit, RecoversTheBenchsParameters) {
   const TimeSeries samples = bench_recording(1.0);
   const JointFit fit = fit_one(nominal_asset(), samples);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/mismatch/ranking.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
 namespace sealwatch::mismatch {
@@ -53,6 +54,81 @@ TEST(FittedModel, IsTheSameOnOneThreadAndOnThree) {
   EXPECT_EQ(one->misfit, three->misfit);
   EXPECT_EQ(one->optimum.point.shared, three->optimum.point.shared);
   EXPECT_EQ(one->optimum.point.own, three->optimum.point.own);
+}
+
+AssetConfig with_free_leakage() {
+  AssetConfig asset = nominal_asset("eha");
+  for (const char* name : {"R_PL", "f_M", "R_CL"}) asset.parameters.at(name).estimate = true;
+  return asset;
+}
+
+// Two loads of an actuator whose chamber A leaks outwards, which the model does not know, and values that are known within
+// their tolerance.
+Data with_leakage(double strength) {
+  AssetConfig truth = nominal_asset("eha");
+  truth.physics.push_back({.id = "external_leakage",
+                           .element = "chamber_a",
+                           .parameters = {{"G", {.value = strength, .min = 0.0, .max = 1e-10}}}});
+  Data data;
+  for (const double load : {0.8, 1.2}) {
+    AssetConfig loaded = truth;
+    loaded.parameters.at("phi").value *= load;
+    data.names.push_back(number(load));
+    data.samples.push_back(simulated(loaded, standard_pst(loaded, 50.0), 1.0));
+  }
+  for (const char* name : {"A_C", "k_V"}) {
+    const double value = truth.parameters.at(name).value;
+    data.known.push_back({.name = name, .value = value, .standard_deviation = 0.005 * std::abs(value)});
+  }
+  return data;
+}
+
+// From where the search of another model ended, whose derivatives by what is known are kept, and from the same values
+// without.
+TEST(FittedModel, KeptDerivativesEndInTheSamePlace) {
+  const Data data = with_leakage(0.0);
+  Result<FittedModel> early = fit_model(with_free_leakage(), data, nullptr, 2);
+  ASSERT_TRUE(early) << early.error().describe();
+  ASSERT_LT(early->misfit, 2.0 * early->residuals) << "derivatives are kept near the noise";
+  AssetConfig another = early->asset;
+  another.parameters.at("f_M").value *= 1.3;
+  another.parameters.at("f_C").estimate = true;
+  const Result<FittedModel> kept = fit_model(another, data, &*early, 2);
+  for (Linearisation& at : early->optimum.at_optimum) at.jacobian.resize(0, 0);
+  const Result<FittedModel> anew = fit_model(another, data, &*early, 2);
+  ASSERT_TRUE(kept && anew);
+  EXPECT_TRUE(kept->optimum.converged);
+  EXPECT_NEAR(kept->misfit, anew->misfit, 2.0) << "what does not count as a change, of a misfit";
+  for (const Linearisation& at : kept->optimum.at_optimum) EXPECT_FALSE(at.has_kept) << "the end is of its own";
+}
+
+TEST(FittedModel, ASearchEndsWhereItCannotComeToWhatIsKnown) {
+  const Data data = with_leakage(0.0);
+  const Result<FittedModel> start = fit_model(with_free_leakage(), data, nullptr, 2);
+  ASSERT_TRUE(start) << start.error().describe();
+  const SearchBound half{.cost = 0.25 * start->misfit};
+  AssetConfig another = start->asset;
+  another.parameters.at("f_C").estimate = true;
+  const Result<FittedModel> cut = fit_model_beside({}, another, data, *start, 30, half);
+  ASSERT_TRUE(cut) << cut.error().describe();
+  EXPECT_FALSE(cut->optimum.converged);
+  EXPECT_EQ(cut->optimum.iterations, 1);
+}
+
+// Unknowns that had taken on what the law does come on top of it where they do not give that back.
+TEST(FittedModel, ALawSetsOutBesideUnknownsThatGiveBackWhatItDoes) {
+  const Data data = with_leakage(1e-13);
+  const Result<FittedModel> without = fit_model(with_free_leakage(), data, nullptr, 2);
+  ASSERT_TRUE(without) << without.error().describe();
+  const Result<Screening> screening = screen(*without, data, {});
+  ASSERT_TRUE(screening) << screening.error().describe();
+  const LawStart law = ranked_laws(*screening, 1).front();
+  ASSERT_FALSE(law.beside.own.empty());
+  const AssetConfig with = with_law(without->asset, *law.effect.law, law.effect.element, law.parameters);
+  const Result<FittedModel> beside = fit_model_beside(law.beside, with, data, *without, 0, {}),
+                            on_top = fit_model_beside({}, with, data, *without, 0, {});
+  ASSERT_TRUE(beside && on_top);
+  EXPECT_LT(beside->misfit, on_top->misfit);
 }
 
 }  // namespace

@@ -107,12 +107,16 @@ TEST(FittedModel, ASearchEndsWhereItCannotComeToWhatIsKnown) {
   const Result<FittedModel> start = fit_model(with_free_leakage(), data, nullptr, 2);
   ASSERT_TRUE(start) << start.error().describe();
   const SearchBound half{.cost = 0.25 * start->misfit};
-  AssetConfig another = start->asset;
-  another.parameters.at("f_C").estimate = true;
-  const Result<FittedModel> cut = fit_model_beside({}, another, data, *start, 30, half);
+  PemPoint little{.shared = std::vector<double>(start->problem.shared.size(), 0.0), .own = start->optimum.point.own};
+  little.shared.front() = 0.01;
+  for (std::vector<double>& own : little.own) std::ranges::fill(own, 0.0);
+  const Result<FittedModel> cut = fit_model_beside(little, start->asset, data, *start, 30, half);
   ASSERT_TRUE(cut) << cut.error().describe();
   EXPECT_FALSE(cut->optimum.converged);
   EXPECT_EQ(cut->optimum.iterations, 1);
+  const Result<FittedModel> whole = fit_model_beside(little, start->asset, data, *start, 30, {});
+  ASSERT_TRUE(whole) << whole.error().describe();
+  EXPECT_TRUE(whole->optimum.converged);
 }
 
 // Unknowns that had taken on what the law does come on top of it where they do not give that back.

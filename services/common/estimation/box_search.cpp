@@ -136,7 +136,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
   LinearModel here = linear_model();
   // Where kept derivatives lead no further, those of the point itself decide.
   const auto renew = [&] {
-    if (!here.has_kept) return false;
+    if (!here.has_kept || passed(rule.deadline)) return false;
     const double cost = evaluate(false);
     if (!std::isfinite(cost)) return false;
     cost_ = cost;
@@ -154,7 +154,10 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
       if (renew()) continue;
       return SearchEnd::converged;
     }
-    if (rule.bound.is_out_of_reach(cost_, promised_)) return SearchEnd::out_of_reach;
+    if (rule.bound.is_out_of_reach(cost_, promised_)) {
+      if (renew()) continue;
+      return SearchEnd::out_of_reach;
+    }
     const Eigen::VectorXd limited = here.step(damping, radius);
     const bool promises = here.promised(limited) > tolerance;
     if (shortened && !promises) {  // the slope is known no better than that, or the way is barred
@@ -196,12 +199,13 @@ SearchEnd BoxSearch::run(const StoppingRule& rule, int maximum_iterations) {
     if (!hold_outside()) {
       if (end == SearchEnd::out_of_iterations || let_go_of_some) break;
       costs_.PrepareForEvaluation(true, true);  // a step that was taken back may have been the last one
-      if (!let_go(rule.at_cost(cost_))) break;
+      if (costs_.failed() || !let_go(rule.at_cost(cost_))) break;
       let_go_of_some = true;
     }
     end = descend(rule, maximum_iterations);
   }
-  if (end == SearchEnd::stuck) hold_outside();  // where the next search goes on
+  // Where the next search goes on, or what is told of this one.
+  if (end == SearchEnd::stuck || end == SearchEnd::out_of_reach) hold_outside();
   return end;
 }
 

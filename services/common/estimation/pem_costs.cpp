@@ -64,8 +64,11 @@ bool RecordingCost::update(const double* shared, const double* own, bool may_kee
   const bool keep = may_keep && kept_.any();
   Result<Linearisation> result =
       linearise(problem_, recording_, shared_, own_, keep ? Derivatives::by_what_is_not_known : Derivatives::by_all);
-  known_ = result.has_value();
-  if (!known_) return false;
+  if (!result) {
+    known_ = known_ && same;  // with what was kept
+    return false;
+  }
+  known_ = true;
   linearisation_ = std::move(*result);
   linearisation_.has_kept = keep;
   compressed_ = keep ? compress(problem_, linearisation_, kept_) : compress(linearisation_);

@@ -182,6 +182,7 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
   if (end == SearchEnd::stuck) end = search_on(ceres_problem, rule, options, problem, optimum);
   optimum.converged = end == SearchEnd::converged;
   optimum.hopeless = end == SearchEnd::hopeless;
+  optimum.out_of_reach = end == SearchEnd::out_of_reach;
   optimum.termination = in_words(end);
   for (std::size_t k = 0; k < costs.size(); ++k) {
     Result<Linearisation> linearisation = costs[k]->take_linearisation(optimum.point.shared, optimum.point.own[k]);

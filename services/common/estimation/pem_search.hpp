@@ -22,7 +22,8 @@ struct PemOptimum {
   double cost = 0.0;
   double promised = 0.0;  ///< fall of the cost by the linear model where the search ended; infinite: not known
   bool converged = false;
-  bool hopeless = false;  ///< given up far from the recording
+  bool hopeless = false;      ///< given up far from the recording
+  bool out_of_reach = false;  ///< given up as it cannot come to its bound (SearchBound)
   int iterations = 0;
   std::string termination;
 };

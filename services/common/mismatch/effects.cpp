@@ -192,7 +192,9 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
                                    .why_not = behind < kCannotTell
                                                   ? "These recordings cannot tell it from the law that was chosen."
                                               : contains ? kContains
-                                                         : "Refitted in its place it " + stands_behind(behind)});
+                                              : trial.model->optimum.out_of_reach
+                                                  ? "Cut when it could not win any more, it " + stands_behind(behind)
+                                                  : "Refitted in its place it " + stands_behind(behind)});
   }
   double all = 0.0, element = 0.0;
   for (const auto& [key, share] : weight) {
@@ -243,7 +245,7 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     for (const Trial& trial : naming.trials) {
       std::vector<Effect> rest = best.effects;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(slot));
-      if (same_effects(trial.effects, rest)) fewer = trial.model.get();
+      if (same_effects(trial.effects, rest) && !trial.model->optimum.out_of_reach) fewer = trial.model.get();
     }
     effect.delta_bic = criterion(*best.model, phi) - criterion(*fewer, phi);
     effects.push_back(std::move(effect));

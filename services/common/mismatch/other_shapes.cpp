@@ -90,7 +90,7 @@ std::optional<Trial> without_law(const Naming& naming, std::size_t slot, const D
   Trial fewer{.effects = naming.best.effects, .model = nullptr};
   fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
   for (const Trial& known : naming.trials)
-    if (same_effects(known.effects, fewer.effects)) fewer.model = known.model;
+    if (same_effects(known.effects, fewer.effects) && !known.model->optimum.out_of_reach) fewer.model = known.model;
   if (fewer.model != nullptr && !fewer.model->optimum.at_optimum.front().jacobian.size()) fewer.model = nullptr;
   if (fewer.model != nullptr) return fewer;
   AssetConfig asset = naming.best.model->asset;

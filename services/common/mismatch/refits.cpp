@@ -102,10 +102,9 @@ class GoesOn {
         best_(std::min(best.misfit, to_beat)),
         limit_(best_ + 2.0 * kWorthAnother * dispersion(best)) {}
 
-  /// The same for every iteration of a search, but in a gross misfit; a cost is half a misfit.
+  /// The same for every iteration of a search; a cost is half a misfit.
   [[nodiscard]] SearchBound bound() const {
-    if (gross_) return {};
-    return {.cost = 0.5 * limit_, .optimism = kOptimistic};
+    return {.cost = 0.5 * limit_, .optimism = gross_ ? kHopeful : kOptimistic};
   }
 
   [[nodiscard]] bool at_first(const FittedModel& model) const {
@@ -175,17 +174,21 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       for (const std::size_t k : strengths_of(*law.effect.law)) parameters[k] *= share;
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
-    Result<FittedModel> model = options.in_place_of.empty()
-                                    ? fit_model_beside(gross ? PemPoint{} : beside_all(added, share), asset, data,
-                                                       *from.model, kFirstRound, bound)
-                                    : sizes_first(asset, added, data, *from.model);
+    const auto set_out = [&](const PemPoint& beside) {
+      return fit_model_beside(beside, asset, data, *from.model, kFirstRound, bound);
+    };
+    const PemPoint beside = gross ? PemPoint{} : beside_all(added, share);
+    Result<FittedModel> model =
+        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, data, *from.model);
+    if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
   };
   // With a strength of nothing a law leaves what was there before: one that leaves more set out too far.
   const auto one = [&](const std::vector<LawStart>& added) -> Refit {
     Refit refit = start(added, 1.0);
-    const bool worse = options.again_smaller && options.in_place_of.empty() && excess(*from.model) < kFar &&
+    const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
+    const bool worse = options.again_smaller && !cut && options.in_place_of.empty() && excess(*from.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from.model->misfit);
     if (!worse) return refit;
     Refit again = start(added, kSmaller);

@@ -11,10 +11,19 @@ constexpr std::size_t kMostNames = 16;
 /// Writers and assets that are remembered of a topic: one writer more than one counts as many, and of more assets each
 /// has one message of a take all the same.
 constexpr std::size_t kMostHeard = 64;
+/// Of one asset in a take: a sender of many assets sends several blocks of one after the other, and all the others'
+/// behind them wait for the next take.
+constexpr std::size_t kSmallestShare = 8;
 
-template <class Name>
-void note(std::map<Name, Inbox::Time>& heard, const Name& name, Inbox::Time now) {
+void note(std::map<std::string, Inbox::Time>& heard, const std::string& name, Inbox::Time now) {
   if (heard.size() < kMostHeard || heard.contains(name)) heard[name] = now;
+}
+
+// A sender that starts again is the same one, though DDS sees another writer.
+std::string name_of(const BusItem& item, Inbox::Writer writer) {
+  const auto* message = std::get_if<Message>(&item);
+  const auto* raw = message == nullptr ? nullptr : std::get_if<RawSamples>(message);
+  return raw != nullptr && !raw->source_id.empty() ? raw->source_id : "writer " + std::to_string(writer);
 }
 
 std::size_t index_of(const BusItem& item) {
@@ -77,7 +86,7 @@ void Inbox::drop(const BusItem& item) {
 }
 
 void Inbox::note_heard(Writer writer, const BusItem& item, std::size_t topic, Time now) {
-  note(heard_[topic], writer, now);
+  note(heard_[topic], name_of(item, writer), now);
   if (!comes_again(item)) note(heard_assets_[topic], asset_of(std::get<Message>(item)), now);
 }
 
@@ -90,14 +99,16 @@ void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
   std::deque<BusItem>& queue = place->second;
   if (is_new && !key.first) ++writers_[topic];
   if (replaces(queue, item)) return;
-  if (!key.first && comes_again(item) && is_left_out(queue, topic, limit)) {
+  const bool again = comes_again(item);
+  const bool is_left = !key.first && again && is_left_out(queue, topic, limit);
+  const bool is_flood = !key.first && !again && is_beyond_share(queue, topic, 2 * limit) && !is_alone(topic, now);
+  if (is_left || is_flood) {
+    if (is_flood) drop(item);
     if (!is_new) return;
-    --writers_[topic];
+    --writers_[topic];  // no queue is empty
     queues_.erase(place);
     return;
   }
-  const bool is_flood = !key.first && !comes_again(item) && is_beyond_share(queue, topic, 2 * limit);
-  if (is_flood && !is_alone(topic, now)) return drop(item);
   ++(key.first ? strangers_waiting_ : waiting_[topic]);
   queue.push_back(std::move(item));
   if (is_new) turns_.push_back(key);
@@ -120,7 +131,7 @@ BusItem Inbox::take_one(const Key& key) {
 
 std::size_t Inbox::share_of_asset(std::size_t topic, std::size_t most, Time now) {
   std::erase_if(heard_assets_[topic], [now](const auto& asset) { return now - asset.second > kForgotten; });
-  return std::max<std::size_t>(most / std::max<std::size_t>(heard_assets_[topic].size(), 1), 1);
+  return std::max<std::size_t>(most / std::max<std::size_t>(heard_assets_[topic].size(), 1), kSmallestShare);
 }
 
 bool Inbox::is_in_share(const BusItem& item, Shares& taken, std::size_t most, Time now) {

@@ -84,7 +84,7 @@ class Inbox {
   std::deque<Key> turns_;                           ///< each queue once
   std::array<std::size_t, kTopicCount> waiting_{};  ///< by topic, as topic_types() counts them; without strangers'
   std::array<std::size_t, kTopicCount> writers_{};  ///< queues by topic, likewise
-  std::array<std::map<Writer, Time>, kTopicCount> heard_{};              ///< by topic, the last time; without strangers
+  std::array<std::map<std::string, Time>, kTopicCount> heard_{};         ///< by topic, the last time; without strangers
   std::array<std::map<std::string, Time>, kTopicCount> heard_assets_{};  ///< likewise, of what is not numbered
   std::size_t strangers_waiting_ = 0;
   double strangers_may_ = 0.0;  ///< how many may be taken now

@@ -7,7 +7,6 @@
 
 #include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/model/simulation.hpp"
-#include "services/common/estimation/pem_search.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/runtime/yaml_place.hpp"
 
@@ -167,7 +166,6 @@ TEST(OwnModel, StrokesBetweenLongPausesAreNotSteppedOver) {
   const JointFit fit = fit_actuator(guess, std::span(&recorded, 1), {});
   EXPECT_TRUE(fit.report.admissible) << (fit.report.reasons.empty() ? "" : fit.report.reasons.front());
   EXPECT_NEAR(value_of(fit.report, "k"), 50.0, 0.1);
-  EXPECT_LE(kLongestStep_s, 0.25) << "a push takes 0.64 s";
 }
 
 // A channel that never moves shows no noise, and a misfit without noise says nothing.

@@ -91,6 +91,36 @@ TEST_F(InboxTest, WhereOthersSendTooNobodyWaitsInDdsForAFloodOfAKnownSender) {
   EXPECT_TRUE(inbox_.is_full(kRaw, kLimit, later)) << "alone again";
 }
 
+TEST_F(InboxTest, ASenderThatStartsAgainIsStillAlone) {
+  inbox_.put(1, block("A", 1), kLimit, kNow);
+  EXPECT_THAT(inbox_.take(64, kNow), SizeIs(1));
+  for (std::uint64_t k = 2; k <= 3 * kLimit; ++k) inbox_.put(2, block("A", k), kLimit, kNow);
+  EXPECT_TRUE(inbox_.is_full(kRaw, kLimit, kNow)) << "the rest waits in DDS";
+  EXPECT_THAT(inbox_.floods(), SizeIs(0));
+}
+
+TEST_F(InboxTest, AWriterWhoseFirstBlockWasDroppedIsHeardLater) {
+  constexpr std::uint64_t kWriters = 2 * kLimit + 10;  // each has a share of less than one block
+  inbox_.put(0, block("B", 1), kLimit, kNow);
+  for (std::uint64_t writer = 1; writer <= kWriters; ++writer) inbox_.put(writer, block("A", 1), kLimit, kNow);
+  EXPECT_THAT(inbox_.floods(), SizeIs(1));
+  while (!inbox_.empty()) (void)inbox_.take(64, kNow);
+  for (std::uint64_t writer = 1; writer <= kWriters; ++writer) {
+    inbox_.put(writer, block("A", 2), kLimit, kNow);
+    EXPECT_THAT(inbox_.take(64, kNow), SizeIs(1)) << writer;
+  }
+}
+
+TEST_F(InboxTest, AGatewaysBlocksOfManyAssetsDoNotWaitForEachOther) {
+  Inbox open;
+  constexpr int kAssets = 50, kOfEach = 5;
+  for (int asset = 0; asset < kAssets; ++asset)
+    for (std::uint64_t k = 1; k <= kOfEach; ++k) open.put(1, block(std::to_string(asset), k), kLimit, kNow);
+  int takes = 0;
+  for (; !open.empty(); ++takes) (void)open.take(64, kNow);
+  EXPECT_LE(takes, 4);
+}
+
 TEST_F(InboxTest, AFloodOfOneAssetHasItsShareOfEachTake) {
   for (std::uint64_t k = 1; k <= 1000; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
   EXPECT_THAT(inbox_.take(64, kNow), SizeIs(64)) << "alone it is taken as fast as it comes";

@@ -30,4 +30,8 @@ struct Estimate {
 /// Mean weighted by 1 / std_error^2.
 [[nodiscard]] Estimate weighted_mean(std::span<const Estimate> estimates);
 
+/// P(chi^2 with that many degrees of freedom > statistic). 1 without any degree of freedom, and where the statistic is
+/// not a number.
+[[nodiscard]] double chi_squared_tail(double statistic, double degrees_of_freedom);
+
 }  // namespace sealwatch::signal

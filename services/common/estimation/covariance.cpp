@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "services/common/dense/dense.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -52,7 +54,7 @@ Covariance covariance_of(const Eigen::MatrixXd& root) {
     else
       unseen += direction.cwiseAbs2();
   }
-  result.matrix = scale.cwiseInverse().asDiagonal() * result.matrix * scale.cwiseInverse().asDiagonal();
+  result.matrix = dense::scaled(result.matrix, scale.cwiseInverse());
   for (Eigen::Index j = 0; j < n; ++j) {
     if (unseen(j) <= kShareInUnseenDirection) continue;
     result.identified[static_cast<std::size_t>(j)] = false;
@@ -64,11 +66,11 @@ Covariance covariance_of(const Eigen::MatrixXd& root) {
 }
 
 Eigen::MatrixXd long_run_variance(const Eigen::MatrixXd& scores) {
-  Eigen::MatrixXd sum = scores.transpose() * scores;
+  Eigen::MatrixXd sum = dense::transposed_product(scores, scores);
   const Eigen::Index bandwidth = bartlett_bandwidth(scores);
   for (Eigen::Index lag = 1; lag <= bandwidth; ++lag) {
     const Eigen::Index rows = scores.rows() - lag;
-    const Eigen::MatrixXd product = scores.bottomRows(rows).transpose() * scores.topRows(rows);
+    const Eigen::MatrixXd product = dense::transposed_product(scores.bottomRows(rows), scores.topRows(rows));
     const double weight = 1.0 - static_cast<double>(lag) / static_cast<double>(bandwidth + 1);
     sum += weight * (product + product.transpose());
   }
@@ -81,7 +83,7 @@ double inflate_for_coloured_residuals(Covariance& covariance, const Eigen::Matri
   Eigen::MatrixXd finite = covariance.matrix;
   for (Eigen::Index j = 0; j < n; ++j)
     if (!covariance.identified[static_cast<std::size_t>(j)]) finite(j, j) = 0.0;
-  const Eigen::MatrixXd sandwich = finite * long_run_variance(scores) * finite;
+  const Eigen::MatrixXd sandwich = dense::product(dense::product(finite, long_run_variance(scores)), finite);
   Eigen::VectorXd factor = Eigen::VectorXd::Ones(n);
   for (Eigen::Index j = 0; j < n; ++j)
     if (finite(j, j) > 0.0) factor(j) = std::sqrt(std::max(1.0, sandwich(j, j) / finite(j, j)));

@@ -1,7 +1,8 @@
 #include "services/common/estimation/minimum_in_box.hpp"
 
-#include <Eigen/Cholesky>
 #include <vector>
+
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch {
 namespace {
@@ -22,7 +23,7 @@ Eigen::VectorXd free_minimum(const Eigen::MatrixXd& gram, const Eigen::VectorXd&
   Eigen::VectorXd target = rest;
   if (free.empty()) return target;
   const Eigen::VectorXd right = -(gradient + gram * rest);
-  const Eigen::VectorXd solution = gram(free, free).eval().ldlt().solve(right(free));
+  const Eigen::VectorXd solution = dense::Symmetric(gram(free, free)).solve(Eigen::VectorXd(right(free)));
   for (std::size_t k = 0; k < free.size(); ++k) target(free[k]) = solution(static_cast<Eigen::Index>(k));
   return target;
 }

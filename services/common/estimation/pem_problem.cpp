@@ -1,11 +1,11 @@
 #include "services/common/estimation/pem_problem.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "sealwatch/model/law_sizes.hpp"
+#include "services/common/dense/dense.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 
 namespace sealwatch {
@@ -335,12 +335,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& gram) {
   for (double& value : scale)
     if (!(value > 0.0)) value = 1.0;
   // Pivoted, so that columns that depend on each other only make a zero row.
-  const Eigen::LDLT<Eigen::MatrixXd> factor(scale.cwiseInverse().asDiagonal() * gram *
-                                            scale.cwiseInverse().asDiagonal());
-  const Eigen::VectorXd root = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
-  Eigen::MatrixXd result = factor.transpositionsP() * Eigen::MatrixXd(scale.asDiagonal());
-  result = factor.matrixU() * result;
-  return root.asDiagonal() * result;
+  return dense::Symmetric(dense::scaled(gram, scale.cwiseInverse())).root() * scale.asDiagonal();
 }
 
 }  // namespace
@@ -348,7 +343,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& gram) {
 KeptDerivatives kept_derivatives(const PemProblem& problem, const Linearisation& linearisation) {
   const Places of = places(problem, linearisation.jacobian.cols());
   KeptDerivatives kept{.jacobian = linearisation.jacobian(Eigen::all, of.known), .gram = {}};
-  kept.gram.noalias() = kept.jacobian.transpose() * kept.jacobian;
+  kept.gram = dense::product_transposed(kept.jacobian.transpose(), kept.jacobian.transpose());
   return kept;
 }
 
@@ -368,7 +363,7 @@ Eigen::MatrixXd compress(const Linearisation& linearisation) {
   const RowMatrix& jacobian = linearisation.jacobian;
   const Eigen::Index n = jacobian.cols();
   Eigen::MatrixXd gram(n + 1, n + 1);
-  gram.topLeftCorner(n, n).noalias() = jacobian.transpose() * jacobian;
+  gram.topLeftCorner(n, n) = dense::product_transposed(jacobian.transpose(), jacobian.transpose());
   gram.col(n).head(n).noalias() = jacobian.transpose() * linearisation.residual;
   gram.row(n).head(n) = gram.col(n).head(n).transpose();
   gram(n, n) = linearisation.residual.squaredNorm();
@@ -381,9 +376,9 @@ Eigen::MatrixXd compress(const PemProblem& problem, const Linearisation& not_kno
   of.others.push_back(n);  // the residual
   RowMatrix moving(not_known.jacobian.rows(), not_known.jacobian.cols() + 1);
   moving << not_known.jacobian, not_known.residual;
-  const Eigen::MatrixXd mixed = moving.transpose() * kept.jacobian;
+  const Eigen::MatrixXd mixed = dense::product_transposed(moving.transpose(), kept.jacobian.transpose());
   Eigen::MatrixXd gram(n + 1, n + 1);
-  gram(of.others, of.others) = moving.transpose() * moving;
+  gram(of.others, of.others) = dense::product_transposed(moving.transpose(), moving.transpose());
   gram(of.others, of.known) = mixed;
   gram(of.known, of.others) = mixed.transpose();
   gram(of.known, of.known) = kept.gram;

@@ -1,10 +1,10 @@
 #include "sealwatch/estimation/residual_statistics.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <limits>
+
+#include "sealwatch/signal/statistics.hpp"
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch {
 namespace {
@@ -14,12 +14,6 @@ constexpr double kRounding = 1e-12;
 
 constexpr std::size_t kFewestSamples = 8;
 constexpr double kCollinearity = 1e-9;  // of the largest column: below it a lagged input says nothing new
-
-double chi_squared_p(double statistic, std::size_t degrees_of_freedom) {
-  if (degrees_of_freedom == 0 || !std::isfinite(statistic)) return std::isnan(statistic) ? 1.0 : 0.0;
-  const boost::math::chi_squared distribution(static_cast<double>(degrees_of_freedom));
-  return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, statistic)));
-}
 
 Eigen::VectorXd centred(std::span<const double> values) {
   const Eigen::Map<const Eigen::VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -55,7 +49,7 @@ double whiteness_p(std::span<const double> residual, std::size_t lags) {
     const double rho = e.head(e.size() - k).dot(e.tail(e.size() - k)) / variance;
     q += rho * rho / (n - static_cast<double>(k));
   }
-  return chi_squared_p(n * (n + 2.0) * q, static_cast<std::size_t>(last));
+  return signal::chi_squared_tail(n * (n + 2.0) * q, static_cast<double>(last));
 }
 
 PastInput::PastInput(std::span<const double> input, std::size_t span, std::size_t lags) {
@@ -67,10 +61,7 @@ PastInput::PastInput(std::span<const double> input, std::size_t span, std::size_
   Eigen::MatrixXd lagged(rows, lags);
   for (std::size_t k = 0; k < lags; ++k)
     lagged.col(static_cast<Eigen::Index>(k)) = centred(input.subspan(first_ - k * spacing, rows));
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(lagged);
-  qr.setThreshold(kCollinearity);
-  if (qr.maxPivot() > std::numeric_limits<double>::min())
-    basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(rows), qr.rank());
+  basis_ = dense::orthonormal_basis(lagged, kCollinearity);
 }
 
 double PastInput::independence_p(std::span<const double> residual) const {
@@ -79,7 +70,7 @@ double PastInput::independence_p(std::span<const double> residual) const {
   const double variance = e.squaredNorm();
   if (!(variance > 0.0)) return 1.0;
   const double explained = (basis_.transpose() * e).squaredNorm() / variance;
-  return chi_squared_p(explained * static_cast<double>(e.size()), static_cast<std::size_t>(basis_.cols()));
+  return signal::chi_squared_tail(explained * static_cast<double>(e.size()), static_cast<double>(basis_.cols()));
 }
 
 }  // namespace sealwatch

@@ -1,8 +1,9 @@
 #include "services/common/mismatch/balance_problem.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -111,7 +112,7 @@ Eigen::MatrixXd BalanceProblem::jacobian(const BalanceModel& model, const Stacke
 }
 
 Eigen::MatrixXd BalanceProblem::normal(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& weight) {
-  Eigen::MatrixXd matrix = jacobian.transpose() * weight.asDiagonal() * jacobian;
+  Eigen::MatrixXd matrix = dense::transposed_product(jacobian, weight.asDiagonal() * jacobian);
   matrix.diagonal().array() += kPull;
   return matrix;
 }
@@ -131,7 +132,7 @@ void BalanceProblem::fit(BalanceModel& model, int iterations) const {
       Eigen::MatrixXd damped = matrix;
       damped.diagonal() *= 1.0 + damping;
       BalanceModel moved = model;
-      move(moved, damped.ldlt().solve(gradient));
+      move(moved, dense::Symmetric(damped).solve(gradient));
       after = balance_loss(balances->residuals(moved));
       damping *= after < before ? 0.2 : 10.0;
       if (after < before) model = std::move(moved);

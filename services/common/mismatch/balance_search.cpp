@@ -1,11 +1,10 @@
 #include "services/common/mismatch/balance_search.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/balance_options.hpp"
 
 namespace sealwatch::mismatch {
@@ -90,7 +89,7 @@ class Search {
     const StackedBalances here = stack(residuals, errors);
     const Eigen::VectorXd root = here.weight.cwiseSqrt();
     const Eigen::MatrixXd j = root.asDiagonal() * problem_.jacobian(fit_.model, here, errors);
-    const Eigen::LDLT<Eigen::MatrixXd> factor(BalanceProblem::normal(j, Eigen::VectorXd::Ones(j.rows())));
+    const dense::Symmetric factor(BalanceProblem::normal(j, Eigen::VectorXd::Ones(j.rows())));
     const Eigen::VectorXd r = root.cwiseProduct(here.residual);
     std::array<std::vector<std::pair<double, const BalanceOption*>>, SwitchedBalances::kBalances.size()> gains;
     for (const BalanceOption& option : options_) {
@@ -98,7 +97,7 @@ class Search {
       BalanceModel model = fit_.model;
       if (option.term) model.asset.physics.push_back(*option.term);
       Eigen::VectorXd s = root.cwiseProduct(problem_.column(model, option.unknown, here, errors));
-      s -= j * factor.solve(j.transpose() * s);
+      s -= j * factor.solve(Eigen::VectorXd(j.transpose() * s));
       Eigen::Index at = 0;
       for (std::size_t b = 0; b < gains.size(); at += residuals[b++].size()) {
         const auto part = s.segment(at, residuals[b].size());
@@ -206,7 +205,7 @@ class Search {
     const Eigen::VectorXd ones = Eigen::VectorXd::Ones(here.weight.size());
     const Eigen::MatrixXd matrix =
         BalanceProblem::normal(problem_.jacobian(fit_.model, here, errors), ones) / kCorrelatedBlocks;
-    const Eigen::MatrixXd covariance = matrix.inverse();
+    const Eigen::MatrixXd covariance = dense::inverse(matrix);
     std::vector<double> found;
     for (std::size_t k = 0; k < problem_.unknowns.size(); ++k) {
       const BalanceUnknown& unknown = problem_.unknowns[k];

@@ -5,6 +5,7 @@
 #include <future>
 #include <limits>
 
+#include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/normal_equations.hpp"
@@ -106,12 +107,12 @@ double promised_gain(NormalEquations all, const FittedModel& model, Eigen::Index
     all.gradient(k) -= unknown.prior_residual(model.optimum.point.shared[at]) / unknown.prior_std;
   }
   const Eigen::VectorXd scale = all.gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd gram = scale.asDiagonal() * all.gram * scale.asDiagonal();
+  const Eigen::MatrixXd gram = dense::scaled(all.gram, scale);
   const Eigen::VectorXd gradient = scale.cwiseProduct(all.gradient);
   Eigen::MatrixXd known = gram(estimated, estimated);
   known.diagonal().array() += kRidge;
   const Eigen::VectorXd across = gram(estimated, value);
-  const Eigen::VectorXd weights = known.ldlt().solve(across);
+  const Eigen::VectorXd weights = dense::Symmetric(known).solve(across);
   const double h = gradient(value) - weights.dot(gradient(estimated));
   const double s = gram(value, value) - weights.dot(across);
   if (!(s > kNotShown)) return 0.0;

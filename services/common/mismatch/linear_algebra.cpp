@@ -17,7 +17,7 @@ LinearStep bounded_step(const Eigen::MatrixXd& gram, const Eigen::VectorXd& grad
       if (held[k]) g.row(row).setZero(), g.col(row).setZero(), right(row) = 0.0;
       g(row, row) = held[k] ? 1.0 : diagonal * (1.0 + kRidge);
     }
-    step.strength = g.ldlt().solve(right);
+    step.strength = dense::Symmetric(g).solve(right);
     step.gain = right.dot(step.strength);
     bool violated = false;
     for (std::size_t k = 0; k < held.size(); ++k)
@@ -31,10 +31,10 @@ LinearStep bounded_step(const Eigen::MatrixXd& gram, const Eigen::VectorXd& grad
 
 double quadratic(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& vector) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  Eigen::MatrixXd scaled = dense::scaled(matrix, scale);
   scaled.diagonal().array() += 1e-9;
   const Eigen::VectorXd right = scale.asDiagonal() * vector;
-  return right.dot(scaled.ldlt().solve(right));
+  return right.dot(dense::Symmetric(scaled).solve(right));
 }
 
 Eigen::MatrixXd submatrix(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& at) {

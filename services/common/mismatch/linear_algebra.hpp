@@ -1,10 +1,10 @@
 // Small least-squares problems of the screening, scaled so that columns of any size go together.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <vector>
 
 #include "sealwatch/model/simulation.hpp"
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -16,27 +16,28 @@ class NormalMatrix {
  public:
   explicit NormalMatrix(const Eigen::MatrixXd& gram)
       : scale_(gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
-    Eigen::MatrixXd scaled = scale_.asDiagonal() * gram * scale_.asDiagonal();
+    Eigen::MatrixXd scaled = dense::scaled(gram, scale_);
     scaled.diagonal().array() += kRidge;
-    factor_.compute(scaled);
+    factor_ = dense::Symmetric(scaled);
   }
-  template <class Y>
-  [[nodiscard]] Eigen::MatrixXd solve(const Y& right) const {
-    return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * right);
+  [[nodiscard]] Eigen::MatrixXd solve(const dense::View& right) const {
+    return scale_.asDiagonal() * factor_.solve_columns(scale_.asDiagonal() * right);
   }
 
  private:
   Eigen::VectorXd scale_;
-  Eigen::LDLT<Eigen::MatrixXd> factor_;
+  dense::Symmetric factor_;
 };
 
 // X (X'X)^-1 X'Y taken off Y, in place.
 class Projection {
  public:
-  explicit Projection(const RowMatrix& x) : x_(x), normal_(x.transpose() * x) {}
+  explicit Projection(const RowMatrix& x) : x_(x), normal_(dense::product_transposed(x.transpose(), x.transpose())) {}
   template <class Y>
   void remove_from(Y& y) const {
-    if (x_.cols() > 0) y.noalias() -= x_ * normal_.solve(x_.transpose() * y);
+    if (x_.cols() == 0) return;
+    const Eigen::MatrixXd share = normal_.solve(dense::product_transposed(x_.transpose(), y.transpose()));
+    dense::subtract_product(y.transpose(), share.transpose(), x_.transpose());
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sealwatch/signal/noise_floor.hpp"
+#include "services/common/dense/dense.hpp"
 #include "services/common/text/format.hpp"
 #include "services/common/text/words.hpp"
 
@@ -29,7 +30,12 @@ const Eigen::MatrixXd& polynomials() {
     for (Eigen::Index row = 0; row < kPiece; ++row)
       for (Eigen::Index k = 0; k < kPolynomials; ++k)
         powers(row, k) = std::pow(2.0 * static_cast<double>(row) / (kPiece - 1) - 1.0, static_cast<double>(k));
-    return Eigen::MatrixXd(powers.householderQr().householderQ() * Eigen::MatrixXd::Identity(kPiece, kPolynomials));
+    for (Eigen::Index k = 0; k < kPolynomials; ++k) {
+      for (Eigen::Index lower = 0; lower < k; ++lower)
+        powers.col(k) -= powers.col(lower).dot(powers.col(k)) * powers.col(lower);
+      powers.col(k).normalize();
+    }
+    return powers;
   }();
   return matrix;
 }
@@ -37,7 +43,7 @@ const Eigen::MatrixXd& polynomials() {
 // Takes them off a piece.
 const Eigen::MatrixXd& detrending() {
   static const Eigen::MatrixXd matrix =
-      Eigen::MatrixXd::Identity(kPiece, kPiece) - polynomials() * polynomials().transpose();
+      Eigen::MatrixXd::Identity(kPiece, kPiece) - dense::product_transposed(polynomials(), polynomials());
   return matrix;
 }
 
@@ -79,7 +85,7 @@ ChannelColour autoregression(const Covariances& covariance) {
     for (Eigen::Index k = 0; k < kOrder; ++k)
       matrix(j, k) = covariance[static_cast<std::size_t>(std::abs(j - k))] / covariance[0];
   }
-  const Eigen::Matrix<double, kOrder, 1> a = matrix.ldlt().solve(right);
+  const Eigen::Matrix<double, kOrder, 1> a = dense::Symmetric(matrix).solve(Eigen::VectorXd(right));
   return {.coefficients = {a.begin(), a.end()}, .innovation_std = std::sqrt(std::max(1e-6, 1.0 - a.dot(right)))};
 }
 
@@ -94,7 +100,7 @@ Covariances after_detrending(const Covariances& covariance) {
   Eigen::MatrixXd c(kPiece, kPiece);
   for (Eigen::Index j = 0; j < kPiece; ++j)
     for (Eigen::Index k = 0; k < kPiece; ++k) c(j, k) = all[static_cast<std::size_t>(std::abs(j - k))];
-  const Eigen::MatrixXd left = detrending() * c * detrending();
+  const Eigen::MatrixXd left = dense::product(dense::product(detrending(), c), detrending());
   Covariances seen{};
   for (Eigen::Index lag = 0; lag <= kOrder; ++lag)
     seen[static_cast<std::size_t>(lag)] = left.diagonal(lag).sum() / static_cast<double>(kPiece - lag);

@@ -1,14 +1,14 @@
 #include "services/common/mismatch/screening_scores.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <utility>
 
+#include "sealwatch/signal/statistics.hpp"
+#include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
-#include "services/common/mismatch/tail.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -52,7 +52,7 @@ Eigen::MatrixXd variance_without(const Screening& screening, const Variant& vari
     rest.col(j) = screening.block_scores.col(variant.columns[static_cast<std::size_t>(j)]) -
                   block_gram.middleCols(j * n, n) * strength;
   rest.rowwise() -= rest.colwise().mean().eval();
-  return rest.transpose() * rest;
+  return dense::transposed_product(rest, rest);
 }
 
 // The smaller of two scores: by the scatter between blocks, which knows noise of any colour but not from a few blocks,
@@ -86,7 +86,7 @@ void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen
     // With an input that is itself measured only what a law could be counts: its sign, and no absurd size.
     const bool possible = step.free && step.strength.cwiseAbs().maxCoeff() < kAbsurd;
     if ((resolution.share > kMeasured && !possible) || !std::isfinite(variant.score)) variant.score = 0.0;
-    variant.p_value = chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
+    variant.p_value = signal::chi_squared_tail(variant.score, static_cast<double>(variant.columns.size()));
     variant.gain = std::isfinite(step.gain) ? step.gain : 0.0;  // columns of zeros: the law cannot act here
     variant.physical = step.free;
     for (Eigen::Index k = 0; k < step.strength.size(); ++k)
@@ -103,10 +103,10 @@ void evaluate(Screening& screening, const Eigen::VectorXd& raw_norm, const Eigen
 void calibrate(Screening& screening, const ScreeningOptions& options) {
   if (screening.variants.empty()) return;  // no law fits: a plant whose sites have no closed forms
   const Eigen::VectorXd scale = screening.gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
-  Eigen::MatrixXd correlation = scale.cwiseInverse().asDiagonal() * screening.gram * scale.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd correlation = dense::scaled(screening.gram, scale.cwiseInverse());
   correlation.diagonal().array() += kRidge;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(correlation);
-  const Eigen::VectorXd roots = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
+  const dense::Symmetric factor(correlation);
+  const Eigen::VectorXd roots = factor.pivots().cwiseMax(0.0).cwiseSqrt();
   std::mt19937_64 random(options.seed);
   std::normal_distribution<double> normal;
   std::vector<double> smallest;
@@ -114,17 +114,16 @@ void calibrate(Screening& screening, const ScreeningOptions& options) {
   for (const Variant& variant : screening.variants) {
     Eigen::MatrixXd own = submatrix(correlation, variant.columns);
     own.diagonal().array() += 1e-9;
-    inverse.push_back(own.inverse());
+    inverse.push_back(dense::inverse(own));
   }
   for (int draw = 0; draw < options.draws; ++draw) {
     Eigen::VectorXd white(roots.size());
     for (double& value : white) value = normal(random);
-    const Eigen::VectorXd drawn =
-        factor.transpositionsP().transpose() * Eigen::VectorXd(factor.matrixL() * roots.cwiseProduct(white));
+    const Eigen::VectorXd drawn = factor.lower_times(roots.cwiseProduct(white));
     double least = 1.0;
     for (std::size_t k = 0; k < screening.variants.size(); ++k) {
       const Eigen::VectorXd g = subvector(drawn, screening.variants[k].columns);
-      least = std::min(least, chi_squared_tail(g.dot(inverse[k] * g), static_cast<double>(g.size())));
+      least = std::min(least, signal::chi_squared_tail(g.dot(inverse[k] * g), static_cast<double>(g.size())));
     }
     smallest.push_back(least);
   }

@@ -1,11 +1,12 @@
 #include "services/common/mismatch/smooth_input.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -19,21 +20,18 @@ constexpr double kLowestLambda = -8.0, kHighestLambda = 10.0, kLambdaStep = 0.25
 // Takes what the columns of `own` explain off; how many of them are independent.
 Eigen::Index take_off(const RowMatrix& own, RowMatrix& hats, Eigen::VectorXd& residual) {
   if (own.cols() == 0) return 0;
-  Eigen::MatrixXd scaled = own;
-  for (Eigen::Index k = 0; k < scaled.cols(); ++k)
-    if (const double norm = scaled.col(k).norm(); norm > 0.0) scaled.col(k) /= norm;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(scaled);
-  const Eigen::MatrixXd basis = factor.householderQ() * Eigen::MatrixXd::Identity(scaled.rows(), factor.rank());
-  hats -= basis * (basis.transpose() * hats).eval();
-  residual -= basis * (basis.transpose() * residual).eval();
-  return factor.rank();
+  const Eigen::MatrixXd basis = dense::orthonormal_basis_of_scaled(Eigen::MatrixXd(own));
+  const Eigen::MatrixXd like_own = dense::product(hats.transpose(), basis);
+  dense::subtract_product(hats.transpose(), like_own, basis.transpose());
+  residual -= basis * Eigen::VectorXd(basis.transpose() * residual);
+  return basis.cols();
 }
 
 // D'D of second differences.
 Eigen::MatrixXd roughness(Eigen::Index knots) {
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(knots - 2, knots);
   for (Eigen::Index k = 0; k + 2 < knots; ++k) difference.row(k).segment(k, 3) << 1.0, -2.0, 1.0;
-  return difference.transpose() * difference;
+  return dense::transposed_product(difference, difference);
 }
 
 // The normal equations, in units in which the mean diagonal of the data's part is 1.
@@ -138,12 +136,10 @@ Result<SmoothInput> smooth_input(RowMatrix hats, const RowMatrix& own, Eigen::Ve
   if (!(unit > 0.0) || !std::isfinite(unit)) return fail("the recording does not depend on this input");
   const Eigen::Index rank = take_off(own, hats, residual);
   hats /= unit;
-  Normal normal{.gram = Eigen::MatrixXd::Zero(knots, knots),
+  Normal normal{.gram = dense::product_transposed(hats.transpose(), hats.transpose()),
                 .gradient = hats.transpose() * residual,
                 .residual_square = residual.squaredNorm(),
                 .freedom = static_cast<double>(residual.size() - rank)};
-  normal.gram.selfadjointView<Eigen::Lower>().rankUpdate(hats.transpose());
-  normal.gram = Eigen::MatrixXd(normal.gram.selfadjointView<Eigen::Lower>());
   const double level_after = constant.dot(normal.gram * constant) * unit * unit;
   normal.level_known = level_after > kLevelShown * level_before;
 
@@ -157,7 +153,7 @@ Result<SmoothInput> smooth_input(RowMatrix hats, const RowMatrix& own, Eigen::Ve
     const Eigen::MatrixXd centre =
         Eigen::MatrixXd::Identity(knots, knots) - Eigen::MatrixXd::Constant(knots, knots, 1.0 / count);
     result.value = (centre * result.value).eval();
-    ridge->covariance = (centre * ridge->covariance * centre).eval();
+    ridge->covariance = dense::product(dense::product(centre, ridge->covariance), centre);
   }
   result.value /= unit;
   result.standard_error =

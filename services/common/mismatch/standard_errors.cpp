@@ -1,10 +1,10 @@
 #include "services/common/mismatch/standard_errors.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 
@@ -25,7 +25,7 @@ void add_recording(const Linearisation& at, const std::vector<double>& time_s, N
   RowMatrix jacobian = at.jacobian.leftCols(shared);
   const RowMatrix own = at.jacobian.rightCols(at.jacobian.cols() - shared);
   Projection(own).remove_from(jacobian);
-  normal.information.noalias() += jacobian.transpose() * jacobian;
+  normal.information += dense::product_transposed(jacobian.transpose(), jacobian.transpose());
   const double spacing_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   const auto samples = static_cast<Eigen::Index>(std::max(kLeastBlock, std::round(kBlock_s / spacing_s)));
   const Eigen::Index rows = samples * at.simulated.cols();
@@ -71,12 +71,13 @@ std::vector<double> standard_errors(const FittedModel& model) {
   const std::vector<Eigen::Index> told = told_by_data(model, information);
   const Eigen::VectorXd scale = subvector(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(), told);
   const auto scaled = [&](const Eigen::MatrixXd& matrix) -> Eigen::MatrixXd {
-    return scale.asDiagonal() * submatrix(matrix, told) * scale.asDiagonal();
+    return dense::scaled(submatrix(matrix, told), scale);
   };
   Eigen::MatrixXd a = scaled(information);
   a.diagonal().array() += 1e-12;
-  const Eigen::MatrixXd inverse = a.inverse();
-  const Eigen::MatrixXd by_scores = inverse * scaled(normal.scores / (phi * phi) + prior) * inverse;
+  const Eigen::MatrixXd inverse = dense::inverse(a);
+  const Eigen::MatrixXd by_scores =
+      dense::product(dense::product(inverse, scaled(normal.scores / (phi * phi) + prior)), inverse);
   std::vector<double> errors(model.problem.shared.size(), std::numeric_limits<double>::infinity());
   for (std::size_t j = 0; j < told.size(); ++j) {
     const auto at = static_cast<Eigen::Index>(j);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/normal_equations.hpp"
 
@@ -69,12 +70,13 @@ double occam_factor(const FittedModel& model, const std::vector<KnownValue>& of,
     gram.col(k) *= unknown->prior_std;
   }
   const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd given_way = submatrix(scale.asDiagonal() * gram * scale.asDiagonal(), others);
+  Eigen::MatrixXd given_way = submatrix(dense::scaled(gram, scale), others);
   given_way.diagonal().array() += kRidge;
   const Eigen::MatrixXd across = scale(others).asDiagonal() * gram(others, asked);
-  Eigen::MatrixXd left = submatrix(gram, asked) - across.transpose() * given_way.ldlt().solve(across);
+  Eigen::MatrixXd left =
+      submatrix(gram, asked) - dense::transposed_product(across, dense::Symmetric(given_way).solve_columns(across));
   left.diagonal().array() += 1.0;
-  return left.ldlt().vectorD().cwiseMax(1.0).array().log().sum();
+  return dense::Symmetric(left).pivots().cwiseMax(1.0).array().log().sum();
 }
 
 std::string tolerated_name(const Effect& effect) {
@@ -94,7 +96,7 @@ std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const Fi
   if (!all) return {};
   const NormalEquations equations = normal_equations(*all);
   const Eigen::VectorXd scale = equations.gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd gram = scale.asDiagonal() * equations.gram * scale.asDiagonal();
+  const Eigen::MatrixXd gram = dense::scaled(equations.gram, scale);
   std::vector<Eigen::Index> estimated;
   for (Eigen::Index k = 0; k < gram.cols(); ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -102,7 +104,7 @@ std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const Fi
   }
   Eigen::MatrixXd given_way = submatrix(gram, estimated);
   given_way.diagonal().array() += kRidge;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(given_way);
+  const dense::Symmetric factor(given_way);
   std::vector<KnownValue> shown;
   for (std::size_t k = 0; k < all->problem.shared.size(); ++k) {
     const Unknown& unknown = all->problem.shared[k];

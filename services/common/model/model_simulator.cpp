@@ -1,7 +1,8 @@
 #include "services/common/model/model_simulator.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
+
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch {
 namespace {
@@ -58,9 +59,9 @@ LinearisedFit linearise(const PlantSimulation& simulation, const Eigen::VectorXd
 Eigen::VectorXd newton_step(const LinearisedFit& fit) {
   constexpr double kRidge = 1e-10;
   const Eigen::VectorXd scale = fit.hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * fit.hessian * scale.asDiagonal();
+  Eigen::MatrixXd scaled = dense::scaled(fit.hessian, scale);
   scaled.diagonal().array() += kRidge;
-  return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * fit.gradient);
+  return scale.asDiagonal() * dense::Symmetric(scaled).solve(Eigen::VectorXd(scale.asDiagonal() * fit.gradient));
 }
 
 ModelValues moved(ModelValues values, std::span<const FreeQuantity> free, const Eigen::VectorXd& step) {

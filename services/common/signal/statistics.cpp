@@ -1,6 +1,7 @@
 #include "sealwatch/signal/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -82,6 +83,14 @@ Estimate weighted_mean(std::span<const Estimate> estimates) {
     sum += weight * estimate.value;
   }
   return {sum / weights, 1.0 / std::sqrt(weights)};
+}
+
+double chi_squared_tail(double statistic, double degrees_of_freedom) {
+  if (!(statistic > 0.0) || !(degrees_of_freedom > 0.0)) return 1.0;
+  if (std::isinf(statistic)) return 0.0;
+  if (degrees_of_freedom == 1.0) return std::erfc(std::sqrt(0.5 * statistic));  // these two are most of the calls
+  if (degrees_of_freedom == 2.0) return std::exp(-0.5 * statistic);
+  return boost::math::gamma_q(0.5 * degrees_of_freedom, 0.5 * statistic);
 }
 
 }  // namespace sealwatch::signal

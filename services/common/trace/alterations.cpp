@@ -1,7 +1,5 @@
 #include "services/common/trace/alterations.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include <tuple>
 
 #include "sealwatch/trace/coloured_regression.hpp"
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch::trace {
 namespace {
@@ -181,7 +180,7 @@ class Problem {
       const MatrixXd design = whitened(slopes, noises_[c], kLargestOrder);
       const double variance =
           std::max(white.squaredNorm() / static_cast<double>(white.size()), channels_[c].least_variance);
-      normal += design.transpose() * design / variance;
+      normal += dense::transposed_product(design, design) / variance;
       gradient += design.transpose() * white / variance;
       criterion += static_cast<double>(time_s_.size()) * std::log(variance);
     }
@@ -203,7 +202,7 @@ class Problem {
     VectorXd gradient;
     double criterion = linearise(theta, normal, gradient);
     for (int round = 0; round < kSteps && freedom_.count() > 0; ++round) {
-      const VectorXd step = normal.ldlt().solve(gradient);
+      const VectorXd step = dense::Symmetric(normal).solve(gradient);
       if (!step.allFinite()) break;
       bool better = false;
       for (double share = 1.0; share > 0.01 && !better; share *= 0.5) {
@@ -218,7 +217,7 @@ class Problem {
       }
       if (!better) break;
     }
-    covariance_ = freedom_.count() > 0 ? MatrixXd(normal.inverse()) : MatrixXd();
+    covariance_ = freedom_.count() > 0 ? dense::inverse(normal) : MatrixXd();
     return criterion;
   }
 

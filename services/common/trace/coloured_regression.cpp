@@ -1,10 +1,11 @@
 #include "sealwatch/trace/coloured_regression.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch::trace {
 namespace {
@@ -86,16 +87,9 @@ ColouredFit fit_coloured(const VectorXd& y, const MatrixXd& X, std::size_t order
     const MatrixXd design = whitened(X, fit.coefficients, first);
     const VectorXd target = whitened(y, fit.coefficients, first);
     if (X.cols() > 0) {
-      const Eigen::ColPivHouseholderQR<MatrixXd> qr(design);
-      fit.beta = qr.solve(target);
-      const Index rank = qr.rank();
-      const MatrixXd inverse = qr.matrixR()
-                                   .topLeftCorner(rank, rank)
-                                   .template triangularView<Eigen::Upper>()
-                                   .solve(MatrixXd::Identity(rank, rank));
-      MatrixXd permuted = MatrixXd::Zero(X.cols(), X.cols());
-      permuted.topLeftCorner(rank, rank) = inverse * inverse.transpose();
-      fit.covariance = qr.colsPermutation() * permuted * qr.colsPermutation().transpose();
+      dense::LeastSquares least = dense::least_squares(design, target);
+      fit.beta = std::move(least.solution);
+      fit.covariance = std::move(least.unscaled_covariance);
     }
     fit.residual = y - X * fit.beta;
     fit.innovation_variance =

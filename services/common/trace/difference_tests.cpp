@@ -1,11 +1,11 @@
 #include "services/common/trace/difference_tests.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "sealwatch/signal/statistics.hpp"
 #include "sealwatch/trace/coloured_regression.hpp"
+#include "services/common/dense/dense.hpp"
 
 namespace sealwatch::trace {
 namespace {
@@ -19,21 +19,11 @@ constexpr Index kSamplesAnOrder = 20;
 constexpr double kCollinear = 1e-8;  // of the largest column: below it a column says nothing new
 
 double chi_squared_p(double statistic, Index degrees) {
-  if (degrees == 0 || !(statistic > 0.0)) return 1.0;
-  const boost::math::chi_squared distribution(static_cast<double>(degrees));
-  return boost::math::cdf(boost::math::complement(distribution, statistic));
+  return signal::chi_squared_tail(statistic, static_cast<double>(degrees));
 }
 
 /// Orthonormal columns that span the same; fewer where some say nothing new.
-MatrixXd independent(const MatrixXd& columns) {
-  if (columns.cols() == 0) return columns;
-  MatrixXd scaled = columns;
-  for (Index k = 0; k < scaled.cols(); ++k)
-    if (const double size = scaled.col(k).norm(); size > 0.0) scaled.col(k) /= size;
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
-  qr.setThreshold(kCollinear);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
-}
+MatrixXd independent(const MatrixXd& columns) { return dense::orthonormal_basis_of_scaled(columns, kCollinear); }
 
 std::size_t order_of(const VectorXd& noise) {
   const auto largest = std::min<std::size_t>(kLargestOrder, static_cast<std::size_t>(noise.size() / kSamplesAnOrder));

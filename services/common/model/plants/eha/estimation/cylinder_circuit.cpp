@@ -1,6 +1,5 @@
 #include "sealwatch/estimation/cylinder_circuit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "sealwatch/estimation/covariance.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
+#include "services/common/dense/dense.hpp"
 #include "services/common/estimation/cannot_fit.hpp"
 #include "services/common/model/plants/eha/estimation/chamber_pressure.hpp"
 #include "services/common/model/plants/eha/estimation/volume_balance.hpp"
@@ -48,7 +48,7 @@ Bounds reciprocal_bounds(const AssetConfig& asset, Eigen::Index size) {
 
 // Minimises |y - X c| over the box. At most two unknowns: the free optimum, else the best with some held at a bound.
 Eigen::VectorXd solve_in_box(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right, const Bounds& bounds) {
-  Eigen::VectorXd c = normal.ldlt().solve(right);
+  Eigen::VectorXd c = dense::Symmetric(normal).solve(right);
   // Coordinate descent on a convex quadratic in a box converges; two coordinates need few sweeps.
   const auto inside = [&] {
     return (c.array() >= bounds.lower.array()).all() && (c.array() <= bounds.upper.array()).all();

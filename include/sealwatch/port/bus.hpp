@@ -26,12 +26,12 @@ struct Flood {
 /// One participant's view of the bus. Not thread-safe but for wake(): one thread publishes and receives (the heartbeat
 /// thread of a daemon owns a second Bus).
 ///
-/// Contract: messages of one publisher on one topic arrive in order; between publishers and subscribers that are
-/// connected nothing is lost of what is not numbered, but what is told as a flood, and of what is numbered
-/// (Header::stream_sequence) and of service topics only what a subscriber that does not call receive cannot hold; a
-/// late subscriber gets the last message of every asset of every publisher still alive; a publisher's end removes
-/// nothing that was delivered. A publish never waits for longer than 20 ms. An Error says that the bus did not take the
-/// message now: it may have reached some of its readers; publish it again.
+/// Contract: messages of one publisher on one topic arrive in order, of raw samples that are not numbered those about
+/// one asset; between publishers and subscribers that are connected nothing is lost of what is not numbered, but what is
+/// told as a flood, and of what is numbered (Header::stream_sequence) and of service topics only what a subscriber that
+/// does not call receive cannot hold; a late subscriber gets the last message of every asset of every publisher still
+/// alive; a publisher's end removes nothing that was delivered. A publish never waits for longer than 20 ms. An Error
+/// says that the bus did not take the message now: it may have reached some of its readers; publish it again.
 class Bus {
  public:
   virtual ~Bus() = default;
@@ -49,6 +49,8 @@ class Bus {
   [[nodiscard]] virtual Status publish(const ResendRequest& request) = 0;
   /// Waits until something arrives, wake() is called or the time is over, and takes at most `most` items.
   [[nodiscard]] virtual std::vector<BusItem> receive(std::chrono::milliseconds timeout, std::size_t most = 64) = 0;
+  /// Whether the last receive, though it gave fewer than it might, left something that the next may give at once.
+  [[nodiscard]] virtual bool has_more() { return false; }
   /// Makes a receive that waits in another thread (or a signal handler) return.
   virtual void wake() = 0;
   /// What was dropped since the last call.

@@ -101,7 +101,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   const bool may_resend = !resends_.empty() && resends_.may_send(steady_clock::now());
   const bool work_waits = !ready_.empty() || may_resend;
   std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);
-  if (items.size() < kBatch)
+  if (items.size() < kBatch && !bus_.has_more())
     full_since_.reset();
   else if (!full_since_)
     full_since_ = steady_clock::now();

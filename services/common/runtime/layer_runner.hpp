@@ -275,7 +275,7 @@ class LayerRunner {
   ResendQueue resends_;
   Admission admission_;
   bool took_local_ = false;  ///< of the running batch: inputs that came from no bus
-  std::optional<std::chrono::steady_clock::time_point> full_since_;  ///< the bus had more than was taken at each look
+  std::optional<std::chrono::steady_clock::time_point> full_since_;  ///< the bus had more after each take
   std::chrono::steady_clock::time_point asked_{};                    ///< last look at what is missing
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
   std::string last_error_;                 ///< with its time

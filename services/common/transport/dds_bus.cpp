@@ -78,6 +78,8 @@ class CycloneBus final : public DdsBus {
     }
   }
 
+  bool has_more() override { return has_more_; }
+
   std::vector<Flood> floods() override {
     const std::lock_guard lock(inbox_.mutex);
     return inbox_.floods();
@@ -107,7 +109,9 @@ class CycloneBus final : public DdsBus {
     const bool all = inbox_.empty();  // what DDS keeps for a client it goes on thinning out until all is asked for
     for (Channel& channel : channels_)
       if (channel.subscribed() && (all || channel.takes_at_once())) channel.take();
-    return inbox_.take(most, Clock::now());
+    std::vector<BusItem> taken = inbox_.take(most, Clock::now());
+    has_more_ = inbox_.has_more();
+    return taken;
   }
 
   [[nodiscard]] Clock::duration longest_wait() {
@@ -119,6 +123,7 @@ class CycloneBus final : public DdsBus {
   transport::Inbox inbox_;         // both outlive the participant,
   std::vector<Channel> channels_;  // whose listeners use them
   transport::Participant participant_;
+  bool has_more_ = false;  ///< after the last take
 };
 
 }  // namespace

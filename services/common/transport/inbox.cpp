@@ -39,15 +39,61 @@ bool comes_again(const BusItem& item) {
 }
 
 /// In the place of that writer's earlier word about the same service.
-bool replaces(std::deque<BusItem>& queue, BusItem& item) {
+bool replaces(std::deque<BusItem>* line, BusItem& item) {
   const auto* status = std::get_if<ServiceStatus>(&item);
-  if (status == nullptr) return false;
-  for (BusItem& earlier : queue)
+  if (status == nullptr || line == nullptr) return false;
+  for (BusItem& earlier : *line)
     if (std::get<ServiceStatus>(earlier).service == status->service) return earlier = std::move(item), true;
   return false;
 }
 
+/// Which of its writer's lines it stands in: the order of raw samples counts within an asset alone.
+std::string line_of(const BusItem& item) {
+  const auto* message = std::get_if<Message>(&item);
+  const auto* raw = message == nullptr ? nullptr : std::get_if<RawSamples>(message);
+  return raw == nullptr || comes_again(item) ? std::string() : raw->asset_id;
+}
+
 }  // namespace
+
+std::size_t Inbox::Queue::size_of(const std::string& line) const {
+  const auto found = lines_.find(line);
+  return found == lines_.end() ? 0 : found->second.size();
+}
+
+Inbox::Line* Inbox::Queue::find(const std::string& line) {
+  const auto found = lines_.find(line);
+  return found == lines_.end() ? nullptr : &found->second;
+}
+
+void Inbox::Queue::add(const std::string& line, BusItem item) {
+  const auto [place, is_new] = lines_.try_emplace(line);
+  place->second.push_back(std::move(item));
+  ++size_;
+  if (is_new) turns_.push_back(line);
+}
+
+bool Inbox::Queue::turn_to(const std::function<bool(const BusItem&)>& may_be_taken) {
+  for (std::size_t k = 0; k < turns_.size(); ++k) {
+    if (may_be_taken(lines_.at(turns_.front()).front())) return true;
+    turns_.push_back(std::move(turns_.front()));
+    turns_.pop_front();
+  }
+  return false;
+}
+
+BusItem Inbox::Queue::take() {
+  const auto place = lines_.find(turns_.front());
+  turns_.pop_front();
+  BusItem item = std::move(place->second.front());
+  place->second.pop_front();
+  --size_;
+  if (place->second.empty())
+    lines_.erase(place);
+  else
+    turns_.push_back(place->first);
+  return item;
+}
 
 void Inbox::know(std::set<std::string> assets, std::set<std::string> senders) {
   assets_ = std::move(assets);
@@ -61,12 +107,14 @@ bool Inbox::is_strangers(const BusItem& item) const {
   return !assets_.contains(asset_of(message)) && !(raw != nullptr && senders_.contains(raw->source_id));
 }
 
-bool Inbox::is_beyond_share(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const {
-  return waiting_[topic] >= limit && queue.size() >= limit / std::max<std::size_t>(writers_[topic], 1);
+bool Inbox::is_beyond_share(const Queue& queue, const std::string& line, std::size_t topic, std::size_t limit) const {
+  const std::size_t share = limit / std::max<std::size_t>(writers_[topic], 1);
+  if (waiting_[topic] < limit || queue.size() < share) return false;
+  return queue.size_of(line) >= share / std::max<std::size_t>(queue.lines(), 1);  // 0 where assets are invented
 }
 
-bool Inbox::is_left_out(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const {
-  return topic == kServiceStatusIndex ? queue.size() >= kMostStatuses : is_beyond_share(queue, topic, limit);
+bool Inbox::is_left_out(const Queue& queue, std::size_t topic, std::size_t limit) const {
+  return topic == kServiceStatusIndex ? queue.size() >= kMostStatuses : is_beyond_share(queue, {}, topic, limit);
 }
 
 bool Inbox::is_alone(std::size_t topic, Time now) {
@@ -96,12 +144,13 @@ void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
   if (key.first && strangers_waiting_ >= kMostOfStrangers) return drop(item);
   if (!key.first) note_heard(writer, item, topic, now);
   const auto [place, is_new] = queues_.try_emplace(key);
-  std::deque<BusItem>& queue = place->second;
-  if (is_new && !key.first) ++writers_[topic];
-  if (replaces(queue, item)) return;
+  Queue& queue = place->second;
+  if (is_new) ++(key.first ? strangers_queues_ : writers_[topic]);
+  const std::string line = key.first ? std::string() : line_of(item);
+  if (replaces(queue.find(line), item)) return;
   const bool again = comes_again(item);
   const bool is_left = !key.first && again && is_left_out(queue, topic, limit);
-  const bool is_flood = !key.first && !again && is_beyond_share(queue, topic, 2 * limit) && !is_alone(topic, now);
+  const bool is_flood = !key.first && !again && is_beyond_share(queue, line, topic, 2 * limit) && !is_alone(topic, now);
   if (is_left || is_flood) {
     if (is_flood) drop(item);
     if (!is_new) return;
@@ -110,18 +159,17 @@ void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
     return;
   }
   ++(key.first ? strangers_waiting_ : waiting_[topic]);
-  queue.push_back(std::move(item));
+  queue.add(line, std::move(item));
   if (is_new) turns_.push_back(key);
 }
 
 BusItem Inbox::take_one(const Key& key) {
   const auto place = queues_.find(key);
-  BusItem item = std::move(place->second.front());
-  place->second.pop_front();
+  BusItem item = place->second.take();
   const std::size_t topic = index_of(item);
   --(key.first ? strangers_waiting_ : waiting_[topic]);
   if (place->second.empty()) {
-    if (!key.first) --writers_[topic];
+    --(key.first ? strangers_queues_ : writers_[topic]);
     queues_.erase(place);
   } else {
     turns_.push_back(key);
@@ -154,7 +202,8 @@ std::vector<BusItem> Inbox::take(std::size_t most, Time now) {
   while (taken.size() < most && !turns_.empty()) {
     const Key key = turns_.front();
     turns_.pop_front();
-    const bool may = key.first ? strangers_may_ >= 1.0 : is_in_share(queues_.at(key).front(), of_assets, most, now);
+    const auto in_share = [&](const BusItem& item) { return is_in_share(item, of_assets, most, now); };
+    const bool may = key.first ? strangers_may_ >= 1.0 : queues_.at(key).turn_to(in_share);
     if (!may) {
       later.push_back(key);
       continue;

@@ -9,6 +9,8 @@
 //                   in one line: where others send on that topic too, they would wait with it. So then what is beyond
 //                   its sender's share is dropped and counted. Of one asset a take gives no more than its share, as all
 //                   that is taken at once is waited for at once
+//   raw samples     that are not numbered: the assets of a writer take turns too, as a gateway has many, and beyond the
+//                   writer's share those are dropped first of which more than their part of it waits
 //   of strangers    that is, not numbered, about no configured asset and from no configured sender: so many a second are
 //                   taken, whoever sends them, and so many wait; the rest is dropped and counted
 #pragma once
@@ -18,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -49,24 +52,47 @@ class Inbox {
   void know(std::set<std::string> assets, std::set<std::string> senders);
 
   [[nodiscard]] bool empty() const { return turns_.empty(); }
+  /// Whether anything waits that the next take may give: strangers' messages are not counted.
+  [[nodiscard]] bool has_more() const { return !empty() && queues_.size() > strangers_queues_; }
   /// Whether strangers' messages wait until more of them may be taken.
   [[nodiscard]] bool strangers_wait() const { return strangers_waiting_ > 0; }
   /// Whether nothing more of that topic should be taken from DDS.
   [[nodiscard]] bool is_full(std::size_t topic, std::size_t limit, Time now);
   /// Adds it, or leaves it out.
   void put(Writer writer, BusItem item, std::size_t limit, Time now);
-  /// At most `most`, writers in turn; those of one writer in the order in which they came. Fewer where more would be
-  /// beyond an asset's share: at least one, where any may be taken.
+  /// At most `most`, writers in turn; those of one writer, of raw samples those of one of its assets, in the order in
+  /// which they came. Fewer where more would be beyond an asset's share: at least one, where any may be taken.
   [[nodiscard]] std::vector<BusItem> take(std::size_t most, Time now);
   /// What was dropped since the last call.
   [[nodiscard]] std::vector<Flood> floods();
 
  private:
   using Key = std::pair<bool, Writer>;  ///< whether it is a stranger's
+  using Line = std::deque<BusItem>;     ///< in the order in which they came
+  /// What waits of one writer, in lines that take turns.
+  class Queue {
+   public:
+    [[nodiscard]] bool empty() const { return turns_.empty(); }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t lines() const { return turns_.size(); }
+    [[nodiscard]] std::size_t size_of(const std::string& line) const;
+    [[nodiscard]] Line* find(const std::string& line);
+    void add(const std::string& line, BusItem item);
+    /// Turns to the next line whose first may be taken; false where there is none.
+    [[nodiscard]] bool turn_to(const std::function<bool(const BusItem&)>& may_be_taken);
+    /// The first of the line whose turn it is.
+    [[nodiscard]] BusItem take();
+
+   private:
+    std::map<std::string, Line> lines_;  ///< none is empty
+    std::deque<std::string> turns_;      ///< each line once
+    std::size_t size_ = 0;
+  };
   [[nodiscard]] bool is_strangers(const BusItem& item) const;
-  /// Whether that many wait, and in this queue more than its writer's share of them.
-  [[nodiscard]] bool is_beyond_share(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const;
-  [[nodiscard]] bool is_left_out(const std::deque<BusItem>& queue, std::size_t topic, std::size_t limit) const;
+  /// Whether that many wait, and in this queue more than its writer's share of them, and in this line more than its part.
+  [[nodiscard]] bool is_beyond_share(const Queue& queue, const std::string& line, std::size_t topic,
+                                     std::size_t limit) const;
+  [[nodiscard]] bool is_left_out(const Queue& queue, std::size_t topic, std::size_t limit) const;
   /// Whether one writer at most sends on that topic.
   [[nodiscard]] bool is_alone(std::size_t topic, Time now);
   void note_heard(Writer writer, const BusItem& item, std::size_t topic, Time now);
@@ -80,13 +106,14 @@ class Inbox {
 
   std::set<std::string> assets_;
   std::set<std::string> senders_;
-  std::map<Key, std::deque<BusItem>> queues_;       ///< none is empty
+  std::map<Key, Queue> queues_;                     ///< none is empty
   std::deque<Key> turns_;                           ///< each queue once
   std::array<std::size_t, kTopicCount> waiting_{};  ///< by topic, as topic_types() counts them; without strangers'
   std::array<std::size_t, kTopicCount> writers_{};  ///< queues by topic, likewise
   std::array<std::map<std::string, Time>, kTopicCount> heard_{};         ///< by topic, the last time; without strangers
   std::array<std::map<std::string, Time>, kTopicCount> heard_assets_{};  ///< likewise, of what is not numbered
   std::size_t strangers_waiting_ = 0;
+  std::size_t strangers_queues_ = 0;
   double strangers_may_ = 0.0;  ///< how many may be taken now
   Time strangers_looked_{};
   std::map<std::string, std::uint64_t> dropped_;  ///< by who sent it

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace sealwatch::transport {
 namespace {
 
@@ -119,6 +121,49 @@ TEST_F(InboxTest, AGatewaysBlocksOfManyAssetsDoNotWaitForEachOther) {
   int takes = 0;
   for (; !open.empty(); ++takes) (void)open.take(64, kNow);
   EXPECT_LE(takes, 4);
+}
+
+TEST_F(InboxTest, AFloodOfOneAssetDelaysNoOtherOfItsWriter) {
+  for (std::uint64_t k = 1; k <= 1000; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 3; ++k) inbox_.put(1, block("B", k), kLimit, kNow);
+  std::map<std::string, std::vector<std::uint64_t>> numbers;
+  for (const BusItem& item : take(8)) numbers[asset_of(item)].push_back(number_of(item));
+  EXPECT_THAT(numbers["A"], ElementsAre(1, 2, 3, 4, 5));
+  EXPECT_THAT(numbers["B"], ElementsAre(1, 2, 3));
+}
+
+TEST_F(InboxTest, BeyondItsWritersShareAnAssetsFloodIsDroppedAndNoOthersBlocks) {
+  inbox_.put(2, block("B", 1), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 20 * kLimit; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 100; ++k) inbox_.put(1, block("B", 100 + k), kLimit, kNow);
+  const auto floods = inbox_.floods();
+  ASSERT_THAT(floods, SizeIs(1));
+  EXPECT_EQ(floods[0].source, "sender of A");
+  std::size_t others = 0;
+  for (const BusItem& item : inbox_.take(256, kNow)) others += number_of(item) > 100 && asset_of(item) == "B" ? 1 : 0;
+  EXPECT_EQ(others, 100U);
+}
+
+TEST_F(InboxTest, AWriterThatInventsAssetsHasTwiceItsShareAtMost) {
+  Inbox open;  // where nothing is configured nobody is a stranger
+  open.put(2, block("B", 1), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 20 * kLimit; ++k) open.put(1, block(std::to_string(k), 1), kLimit, kNow);
+  std::size_t waited = 0;
+  for (; !open.empty();) waited += open.take(64, kNow).size();
+  EXPECT_LE(waited, 1 + 2 * 2 * kLimit);
+}
+
+TEST_F(InboxTest, SaysWhetherATakeThatGaveFewHasLeftMore) {
+  for (std::uint64_t k = 1; k <= 100; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
+  inbox_.put(2, block("B", 1), kLimit, kNow);
+  EXPECT_THAT(inbox_.take(64, kNow), SizeIs(33)) << "of A its share";
+  EXPECT_TRUE(inbox_.has_more());
+  while (inbox_.has_more()) (void)inbox_.take(64, kNow);
+  EXPECT_TRUE(inbox_.empty());
+  for (std::uint64_t k = 1; k <= 1000; ++k) inbox_.put(7, block("UNKNOWN", k), kLimit, kNow);
+  (void)inbox_.take(64, kNow);
+  EXPECT_TRUE(inbox_.strangers_wait());
+  EXPECT_FALSE(inbox_.has_more()) << "what strangers may not send yet is no work";
 }
 
 TEST_F(InboxTest, AFloodOfOneAssetHasItsShareOfEachTake) {

@@ -46,12 +46,16 @@ Status HostProcess::launch() {
   }
   header_ = new (host->memory) SharedHeader;
   header_->heap_bytes = memory_bytes_ - sizeof(SharedHeader);
+  owner_ = getpid();
   child_ = host->process, life_ = host->life, output_ = host->output;
   alive_ = true;
   return {};
 }
 
+bool HostProcess::alive() const { return alive_ && (local_ || owner_ == getpid()); }
+
 HostProcess::~HostProcess() {
+  if (child_ > 0 && owner_ != getpid()) alive_ = false, child_ = -1;  // it is another's
   if (alive_) {
     constexpr double kPatience_s = 2.0;  // a licence is given back, and the like
     static_cast<void>(request(Operation::end, "ending", kPatience_s));
@@ -80,7 +84,7 @@ std::span<std::byte> HostProcess::heap() const {
 Status HostProcess::request(Operation operation, const char* what, double seconds, double time_s,
                             const std::function<void()>& look) {
   using Clock = std::chrono::steady_clock;
-  if (!alive_) return fail(failure(place_of(what, time_s), "the process that ran the FMU has ended", "start anew"));
+  if (!alive()) return fail(failure(place_of(what, time_s), "the process that ran the FMU has ended", "start anew"));
   if (local_) return request_here(operation, what, time_s);
   const std::uint32_t number = header_->requests.load() + 1;
   header_->operation = operation;

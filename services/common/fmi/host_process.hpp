@@ -42,7 +42,8 @@ class HostProcess {
  public:
   HostProcess(const HostProcess&) = delete;
   HostProcess& operator=(const HostProcess&) = delete;
-  [[nodiscard]] bool alive() const { return alive_; }
+  /// Not in a copy of the process that started it: two who ask at once would get each other's answers.
+  [[nodiscard]] bool alive() const;
 
  protected:
   static constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
@@ -77,6 +78,7 @@ class HostProcess {
   ProcessLimits limits_;
   std::size_t memory_bytes_ = 0;
   SharedHeader* header_ = nullptr;
+  pid_t owner_ = -1;
   pid_t child_ = -1;
   int life_ = -1, output_ = -1;
   bool alive_ = false;

@@ -22,13 +22,14 @@ std::vector<double> state_steps(const FmuBlock& block) {
 Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std::size_t slots) {
   {
     const std::scoped_lock lock(mutex_);
-    const auto fits = std::ranges::find_if(idle_, [&](const auto& process) { return process->most_slots() >= slots; });
+    const auto fits = std::ranges::find_if(
+        idle_, [&](const auto& process) { return process->alive() && process->most_slots() >= slots; });
     if (fits != idle_.end()) {
       std::unique_ptr<FmuProcess> process = std::move(*fits);
       idle_.erase(fits);
       return process;
     }
-    idle_.clear();  // too small for what is asked now
+    idle_.clear();  // too small, or of the process that this one is a copy of
   }
   return FmuProcess::start(block.file->name(), block.setup, slots);
 }

@@ -5,6 +5,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,8 @@
 
 namespace sealwatch {
 namespace {
+
+std::atomic<bool> is_silent = false;
 
 std::shared_ptr<spdlog::logger>& logger() {
   static std::shared_ptr<spdlog::logger> instance;
@@ -104,7 +107,9 @@ Status start_logging(const LoggingConfig& config, const std::string& service) {
 
 void stop_logging() { logger().reset(); }
 
-bool logs(LogLevel level) { return logger() != nullptr && logger()->should_log(spdlog_level(level)); }
+void silence_log() { is_silent = true; }
+
+bool logs(LogLevel level) { return !is_silent && logger() != nullptr && logger()->should_log(spdlog_level(level)); }
 
 void log_event(LogLevel level, std::string_view event, const LogFields& fields) {
   if (!logs(level)) return;

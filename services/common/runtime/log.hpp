@@ -25,6 +25,8 @@ using LogFields = std::vector<std::pair<std::string_view, std::string>>;
 /// standard error gets warnings and errors alone). A full file is renamed to "<service>.1.log" and so on. Before this
 /// call nothing is logged.
 [[nodiscard]] Status start_logging(const LoggingConfig& config, const std::string& service);
+/// Nothing is logged any more. For a copy of a process: a thread that it has not got may have been within a line.
+void silence_log();
 /// Writes what is buffered and closes the file.
 void stop_logging();
 

@@ -5,12 +5,16 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstring>
 #include <exception>
 #include <fstream>
+
+#include "services/common/runtime/log.hpp"
+#include "services/common/runtime/workers.hpp"
 
 namespace sealwatch {
 namespace {
@@ -48,6 +52,7 @@ void say(int words, const char* text) { [[maybe_unused]] const auto written = ::
   const rlimit data{memory + kMostMemory, memory + kMostMemory};
   if (!memory_is_shadowed()) ::setrlimit(RLIMIT_DATA, &data);
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT}) ::signal(signal, SIG_DFL);
+  silence_log();
   try {
     work();
   } catch (const std::bad_alloc&) {
@@ -81,7 +86,7 @@ std::unique_ptr<Trial> Trial::begin(const std::function<void()>& work, std::chro
 }
 
 Trial::Trial(pid_t process, int words, std::chrono::milliseconds deadline)
-    : process_(process), words_(words), end_(std::chrono::steady_clock::now() + deadline), deadline_(deadline) {}
+    : process_(process), words_(words), begun_(std::chrono::steady_clock::now()), deadline_(deadline) {}
 
 Trial::~Trial() {
   if (process_ > 0) {
@@ -97,11 +102,19 @@ std::string Trial::told() const {
   return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : "it ended in an unknown way";
 }
 
+bool Trial::is_overdue() const {
+  if (std::chrono::steady_clock::now() - begun_ > Workers::kByTheClock * deadline_) return true;
+  clockid_t clock{};
+  timespec used{};
+  if (::clock_getcpuclockid(process_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return false;
+  return std::chrono::seconds(used.tv_sec) + std::chrono::nanoseconds(used.tv_nsec) > deadline_;
+}
+
 std::optional<std::string> Trial::result() {
   int status = 0;
   const pid_t ended = ::waitpid(process_, &status, WNOHANG);
   if (ended == 0) {
-    if (std::chrono::steady_clock::now() < end_) return std::nullopt;
+    if (!is_overdue()) return std::nullopt;
     return "it did not end within " + std::to_string(deadline_.count() / 1000) + " s";
   }
   process_ = -1;

@@ -1,5 +1,7 @@
 // A piece of work tried in a copy of this process, so that nothing it does can end this one: what it concludes there is
-// thrown away, only how it ended counts. The copy has this thread alone and no open file, and ends with its maker.
+// thrown away, only how it ended counts. The copy has this thread alone and no open file, and ends with its maker. What
+// other threads had locked stays locked in it: memory and streams the C library sees to, the log is silent, FMUs get
+// processes of their own, and so a layer may do there whatever it does here but lock what other layers lock.
 #pragma once
 
 #include <sys/types.h>
@@ -14,7 +16,8 @@ namespace sealwatch {
 
 class Trial {
  public:
-  /// None where no process can be made.
+  /// `deadline`: of a processor's time, or five times as much by the clock, as for other work (workers.hpp). None where
+  /// no process can be made.
   [[nodiscard]] static std::unique_ptr<Trial> begin(const std::function<void()>& work,
                                                     std::chrono::milliseconds deadline);
   ~Trial();
@@ -26,10 +29,11 @@ class Trial {
  private:
   Trial(pid_t process, int words, std::chrono::milliseconds deadline);
   [[nodiscard]] std::string told() const;
+  [[nodiscard]] bool is_overdue() const;
 
   pid_t process_;
   int words_;  ///< what it says before it ends
-  std::chrono::steady_clock::time_point end_;
+  std::chrono::steady_clock::time_point begun_;
   std::chrono::milliseconds deadline_;
 };
 

@@ -80,7 +80,6 @@ void Workers::run(Worker& worker, Crew& crew) {
 }
 
 bool Workers::is_overdue(const Worker& worker, Clock::time_point now) const {
-  constexpr int kByTheClock = 5;
   if (now - worker.begun > kByTheClock * limits_.deadline) return true;
   if (now - worker.begun < limits_.deadline) return false;  // saves asking for processor time
   const double used_s =

@@ -37,6 +37,9 @@ class Workers {
     std::stop_source stop = {};
   };
 
+  /// As many times the deadline may pass by the clock.
+  static constexpr int kByTheClock = 5;
+
   explicit Workers(const Limits& limits) : limits_(limits) {}
   /// Asks all to stop, forgets what has not begun, and waits for the rest.
   ~Workers();

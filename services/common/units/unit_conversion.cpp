@@ -71,6 +71,8 @@ class UnitSystem {
 
  private:
   UnitSystem() {
+    // A copy of the process (runtime/trial.cpp) has no thread that would unlock it.
+    pthread_atfork([] { get().mutex.lock(); }, [] { get().mutex.unlock(); }, [] { get().mutex.unlock(); });
     ut_set_error_message_handler(&ut_ignore);
     system_ = ut_read_xml(nullptr);
     for (const Addition& added : kAdditions) {

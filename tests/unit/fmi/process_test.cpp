@@ -1,6 +1,8 @@
 // A binary at work in its own process: values, derivatives and events of both versions; and everything that a binary
 // can do wrong is an error here.
 #include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -127,6 +129,23 @@ std::string trouble(const TestFolder& folder, const char* binary, const ProcessL
   EXPECT_FALSE(fmu.process->alive());
   EXPECT_FALSE(fmu.process->evaluate(0.1, std::array{0.0, 0.0}, std::array{0.0}, {})) << "asked after its end";
   return late.error().describe();
+}
+
+/// As where a test is tried in a copy of its service: asked by both at once, each would get the other's answers.
+TEST_F(FmuProcessTest, ACopyOfTheProcessDoesNotAskItAndLeavesItAlive) {
+  const Running fmu = start(folder_.build(spring_return("fmu_spring_return2")));
+  ASSERT_TRUE(begin_spring(*fmu.process));
+  const auto evaluated = [&] { return fmu.process->evaluate(0.1, std::array{0.0, 0.0}, std::array{0.0}, {}); };
+  const pid_t copy = fork();
+  if (copy == 0) {
+    const bool was_answered = static_cast<bool>(evaluated());
+    const_cast<Running&>(fmu).process.reset();
+    _exit(was_answered ? 1 : 0);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(copy, &status, 0), copy);
+  EXPECT_EQ(status, 0) << "it was answered";
+  EXPECT_TRUE(evaluated());
 }
 
 TEST_F(FmuProcessTest, ACrashIsAnError) {

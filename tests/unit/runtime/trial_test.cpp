@@ -1,0 +1,92 @@
+// What other threads had locked when a copy of the process was made does not hold up what is tried in it.
+#include "services/common/runtime/trial.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <thread>
+
+#include "services/common/runtime/log.hpp"
+#include "services/common/units/unit_conversion.hpp"
+
+namespace sealwatch::testing {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::string result_of(const std::function<void()>& work, milliseconds deadline = milliseconds(10'000)) {
+  const auto trial = Trial::begin(work, deadline);
+  for (;;) {
+    if (const auto result = trial->result()) return *result;
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+}
+
+/// Standard error as a pipe that nobody reads and that is full: who logs waits within its line.
+class FullStandardError {
+ public:
+  FullStandardError() : before_(::dup(STDERR_FILENO)) {
+    EXPECT_EQ(::pipe2(ends_.data(), O_CLOEXEC), 0);
+    ::fcntl(ends_[1], F_SETFL, O_NONBLOCK);
+    const std::array<char, 4096> page{};
+    while (::write(ends_[1], page.data(), page.size()) > 0) continue;
+    while (::write(ends_[1], page.data(), 1) > 0) continue;
+    ::fcntl(ends_[1], F_SETFL, 0);
+    ::dup2(ends_[1], STDERR_FILENO);
+  }
+  void drain() {
+    ::dup2(before_, STDERR_FILENO);
+    ::close(ends_[1]);
+    std::array<char, 4096> page{};
+    while (::read(ends_[0], page.data(), page.size()) > 0) continue;
+    ::close(ends_[0]);
+    ::close(before_);
+  }
+
+ private:
+  int before_;
+  std::array<int, 2> ends_{};
+};
+
+TEST(TrialTest, WhatLogsIsNotHeldUpByAThreadThatWasWithinALine) {
+  ASSERT_TRUE(start_logging({}, "state_detection"));
+  FullStandardError full;
+  std::thread logging([] { log_event(LogLevel::warn, "a line that waits"); });
+  std::this_thread::sleep_for(milliseconds(200));
+  const std::string result = result_of([] { log_event(LogLevel::warn, "another"); });
+  full.drain();
+  logging.join();
+  stop_logging();
+  EXPECT_EQ(result, "");
+}
+
+TEST(TrialTest, WhatConvertsUnitsIsNotHeldUpByAThreadThatDid) {
+  std::atomic<bool> over = false;
+  std::thread converting([&over] {
+    while (!over) (void)convert_unit("furlong/fortnight", "m/s");
+  });
+  std::string result;
+  for (int k = 0; k < 20 && result.empty(); ++k)
+    result = result_of([] { EXPECT_TRUE(convert_unit("furlong/fortnight", "m/s")); });
+  over = true;
+  converting.join();
+  EXPECT_EQ(result, "");
+}
+
+TEST(TrialTest, WhatWaitsForAProcessorIsNotOverdueButWhatComputesIs) {
+  EXPECT_EQ(result_of([] { std::this_thread::sleep_for(milliseconds(600)); }, milliseconds(500)), "");
+  const auto computes = [] {
+    for (volatile bool for_ever = true; for_ever;) continue;
+  };
+  EXPECT_EQ(result_of(computes, milliseconds(1000)), "it did not end within 1 s");
+}
+
+TEST(TrialTest, AFailureIsNotHiddenByTheSilentLog) {
+  EXPECT_EQ(result_of([] { throw std::runtime_error("no such phase"); }), "no such phase");
+}
+
+}  // namespace
+}  // namespace sealwatch::testing

@@ -55,6 +55,7 @@ int replay_offline(const LayerSet& layers, ReplaySource& source, ReplayLog& log,
   };
   auto pipeline = std::make_unique<InProcessPipeline>(
       layers.makers(), [&log](const Message& message) { log.take(message); }, set_aside);
+  pipeline->stop_when(interrupted);
   for (std::vector<RawSamples> blocks = source.next(); !blocks.empty() && !interrupted(); blocks = source.next())
     for (RawSamples& block : blocks) pipeline->push(Message(std::move(block)));
   hangs = pipeline->hangs();
@@ -284,7 +285,7 @@ int run_replay(const ReplayOptions& options) {
     }
   }
   ReplayLog log(options, source->tests());
-  catch_interrupts();
+  catch_interrupts(options.with_services ? kSupervisorStops : kCommandStops);
   bool hangs = false;
   int result = options.offline ? replay_offline(*layers, *source, log, hangs)
                                : replay_live(options, *layers, *source, log, *speed);

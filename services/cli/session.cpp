@@ -27,6 +27,7 @@ namespace sealwatch::cli {
 namespace {
 
 std::atomic<bool> interrupt_seen{false};
+std::chrono::milliseconds patience_after_interrupt{};  ///< set before the first signal is caught
 
 }  // namespace
 
@@ -126,11 +127,12 @@ bool free_to_start(Session& session, const std::vector<std::string>& wanted) {
   return false;
 }
 
-void catch_interrupts() {
+void catch_interrupts(std::chrono::milliseconds patience) {
   prepare_process_end();
+  patience_after_interrupt = patience;
   const auto remember = [](int signal) {
     interrupt_seen = true;
-    end_process_in(kCommandStops, 128 + signal);
+    end_process_in(patience_after_interrupt, 128 + signal);
   };
   std::signal(SIGINT, remember);
   std::signal(SIGTERM, remember);

@@ -1,6 +1,7 @@
 // What every live command needs: the validated configuration, the bus, a way to be interrupted.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/port/bus.hpp"
+#include "services/common/runtime/process_end.hpp"
 
 namespace sealwatch::cli {
 
@@ -45,8 +47,8 @@ void complain(const Error& error);
 /// of a full disk.
 [[nodiscard]] int with_output_written(int status);
 
-/// Makes Ctrl-C and SIGTERM set interrupted() instead of ending the program at once: it has until kCommandStops to end.
-void catch_interrupts();
+/// Makes Ctrl-C and SIGTERM set interrupted() instead of ending the program at once: it has so long to end by itself.
+void catch_interrupts(std::chrono::milliseconds patience = kCommandStops);
 [[nodiscard]] bool interrupted();
 
 /// A name for this run of a command that no other run has: "replay-4f21c09a".

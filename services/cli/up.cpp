@@ -85,7 +85,7 @@ int run_up(const UpOptions& options) {
       complain(taken.error());
       return kBadInput;
     }
-  catch_interrupts();
+  catch_interrupts(kSupervisorStops);
   if (!free_to_start(*session, names_of(programs))) return kBadInput;
   if (session->configuration.assets.empty())
     std::fprintf(stderr, "sealwatch: %s: no asset is configured: every recording will be passed over\n",

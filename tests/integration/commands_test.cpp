@@ -14,6 +14,7 @@
 
 #include "sealwatch/core/time.hpp"
 #include "tests/integration/six_services.hpp"
+#include "tests/unit/fmi/fmu_builder.hpp"
 
 namespace sealwatch::testing {
 namespace {
@@ -536,53 +537,119 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
   EXPECT_THAT(empty.output, HasSubstr("no asset is configured"));
 }
 
-/// Commands that run for minutes, and those that may be caught at whatever they do.
-TEST_F(Commands, EndAtSigterm) {
-  const auto [recording, truth] = worn_test();
-  const std::string out = (folder_ / "out").string();
-  const std::string falling = history(60, 0.003);
-  std::vector<std::string> fit = {"sealwatch", "fit", "--asset", asset()};
-  fit.insert(fit.end(), 40, recording);
-  struct Case {
-    std::vector<std::string> arguments;
-    std::chrono::milliseconds after;
-  };
-  const auto told_at = [](int ms) { return std::chrono::milliseconds(ms); };
-  const std::vector<Case> cases = {
-      {{"sealwatch", "verify", "rul", "--asset", asset(), "--lives", "100000", "--out", out + "1"}, told_at(1500)},
-      {{"sealwatch", "verify", "mismatch", "--sets", "1000", "--out", out + "2"}, told_at(1500)},
-      {{"sealwatch", "simulate", "--asset", asset(), "--months", "600", "--rate", "5000", "--out", out + "3"},
-       told_at(1500)},
-      {{"sealwatch", "explain", "--asset", asset(), "--fit", recording, recording, "--out", out + "4"}, told_at(1000)},
-      {fit, told_at(1000)},
-      {{"sealwatch", "replay", "--offline", "--config", config(), recording}, told_at(200)},
-      {{"sealwatch", "validate", "--simulated", recording, recording}, told_at(100)},
-      {{"sealwatch", "fleet", "fit", falling, falling}, told_at(100)},
-      {{"sealwatch", "forecast", "--history", falling}, told_at(100)},
-      {{"sealwatch", "show", "XT03-MV2", "--config", config()}, told_at(20)},
-      {{"sealwatch", "watch", "--config", config()}, told_at(1500)},
-      {{"sealwatch", "up", "--config", config(), "--state", out + "5"}, told_at(1500)}};
-  for (const Case& one : cases) {
-    SCOPED_TRACE(one.arguments[1] + " " + one.arguments[2]);
-    const pid_t command = start(one.arguments, folder_ / "endless.log");
-    std::this_thread::sleep_for(one.after);
+/// Processes that this one started and that still run.
+std::set<pid_t> children_of(pid_t parent) {
+  std::set<pid_t> children;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "stat");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t name_end = text.rfind(')');
+    if (name_end == std::string::npos) continue;
+    std::istringstream rest(text.substr(name_end + 1));
+    char state = 0;
+    pid_t of = 0;
+    if (rest >> state >> of && of == parent && state != 'Z') children.insert(std::stoi(text));
+  }
+  return children;
+}
+
+bool runs(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return !text.empty() && text.find(") Z ") == std::string::npos;
+}
+
+struct Told {
+  std::vector<std::string> words;  ///< behind "sealwatch"
+  int after_ms = 1500;             ///< when it is told to end
+  bool for_ever = true;            ///< it is at work then, on any machine
+};
+
+class EndAtSigterm : public Commands {
+ protected:
+  /// Ended within two seconds, and all that it had started with it.
+  void tell(const Told& told) {
+    std::vector<std::string> arguments = told.words;
+    arguments.insert(arguments.begin(), "sealwatch");
+    SCOPED_TRACE(told.words[0] + " " + (told.words.size() > 1 ? told.words[1] : ""));
+    const pid_t command = start(arguments, folder_ / "endless.log");
+    std::this_thread::sleep_for(std::chrono::milliseconds(told.after_ms));
     int status = 0;
     if (waitpid(command, &status, WNOHANG) == command) {
-      std::cout << one.arguments[1] << " " << one.arguments[2] << " was done already\n";
-      continue;
+      std::ifstream log(folder_ / "endless.log");
+      EXPECT_FALSE(told.for_ever) << "it was done: " << log.rdbuf();
+      return;
     }
+    const std::set<pid_t> children = children_of(command);
+    const auto begin = std::chrono::steady_clock::now();
     kill(command, SIGTERM);
     // As long as a process that sleeps for two seconds, on this machine, now.
     const pid_t sleeper = start({"/bin/sleep", "2"}, folder_ / "sleeper.log");
-    bool ended = false;
+    const auto all_ended = [&] {
+      return waitpid(command, &status, WNOHANG) != 0 && std::ranges::none_of(children, runs);
+    };
+    bool ended = all_ended();
     while (!ended && waitpid(sleeper, nullptr, WNOHANG) == 0) {
-      ended = waitpid(command, &status, WNOHANG) == command;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      ended = all_ended();
     }
     EXPECT_TRUE(ended) << "it goes on after two seconds";
+    const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begin);
+    std::cout << told.words[0] << " " << told.words[1] << ": " << took.count() << " ms, " << children.size()
+              << " children\n";
     if (!ended) kill(command, SIGKILL);
     kill(sleeper, SIGKILL);
+    waitpid(sleeper, nullptr, 0);
   }
+  /// As many rows as a test may have, `times` times over.
+  [[nodiscard]] std::string large(int times) const {
+    const std::string file = (folder_ / ("large" + std::to_string(times) + ".csv")).string();
+    std::ofstream out(file);
+    out << "time[s],position[m],voltage[V],flow[m3/s]\n";
+    for (int row = 0; row < times * 500'000; ++row)
+      out << 1e-3 * row << ',' << 1e-6 * (row % 50'000) << ',' << row % 7 << ',' << 1e-9 * (row % 1000) << '\n';
+    return file;
+  }
+};
+
+TEST_F(EndAtSigterm, EveryCommandThatComputesOrWaits) {
+  const auto [recording, truth] = worn_test();
+  const std::string falling = history(60, 0.003), out = (folder_ / "out").string();
+  const fmi::TestFolder fmus;
+  const std::string hanging = fmus.build(fmi::spring_return("fmu_spring_hang2"));
+  std::vector<std::string> fit = {"fit", "--asset", asset()};
+  fit.insert(fit.end(), 40, recording);
+  const std::vector<std::string> by = {"--by", "J. Silva", "--config", config()};
+  const auto said_by = [&by](std::vector<std::string> words) {
+    words.insert(words.end(), by.begin(), by.end());
+    return words;
+  };
+  const std::vector<Told> all = {
+      {{"verify", "rul", "--asset", asset(), "--lives", "100000", "--out", out + "1"}},
+      {{"verify", "mismatch", "--sets", "1000", "--out", out + "2"}},
+      {{"simulate", "--asset", asset(), "--months", "600", "--rate", "5000", "--out", out + "3"}},
+      {{"simulate", "--asset", asset(), "--ageing", "--months", "600", "--rate", "5000", "--out", out + "4"}},
+      {{"explain", "--asset", asset(), "--fit", recording, "--out", out + "5"}, 1000},
+      {fit, 1000},
+      {{"validate", "--fit", "--asset", asset(), recording, recording, "--out", out + "6"}, 300, false},
+      {{"validate", "--simulated", large(1), large(1)}, 200, false},
+      {{"asset", "new", "--from", large(4), "--out", out + "7.yaml"}, 200, false},
+      {{"plant", "import", hanging, "--out", out + "8.yaml"}},
+      {{"replay", "--offline", "--config", config(), recording}, 200, false},
+      {{"replay", "--with-services", "--config", config(), "--state", out + "9", "--speed", "1", recording}, 3000},
+      {{"fleet", "fit", falling, falling}, 100, false},
+      {{"forecast", "--history", falling}, 50, false},
+      {{"show", "XT03-MV2", "--config", config(), "--state", out + "9"}, 20, false},
+      {{"audit", "--state", out + "9"}, 20, false},
+      {{"backup", "--state", out + "9", "--to", out + "10"}, 20, false},
+      {{"watch", "--config", config()}},
+      {{"status", "--config", config(), "--seconds", "60"}},
+      {{"publish", "--config", config(), "--writer", "plc"}, 1500, false},
+      {said_by({"retract", "XT03-MV2", "--since", "2031-01-01", "--reason", "a trial"}), 500, false},
+      {said_by({"replaced", "XT03-MV2", "--at", "2018-06-10"}), 500, false},
+      {said_by({"acknowledge", "XT03-MV2", "advisory/1", "--remark", "a trial"}), 500, false},
+      {{"up", "--config", config(), "--state", out + "11"}, 3000}};
+  for (const Told& told : all) tell(told);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ constexpr int kInternalFailure = 3;
 /// of the lanes, it looks after itself.
 constexpr std::chrono::milliseconds kHangs{60'000};
 /// What still computes so long after a stop is cut: it is done again from the journal.
-constexpr std::chrono::milliseconds kPatienceAtEnd{500};
+constexpr std::chrono::milliseconds kPatienceAtEnd{100};
 
 struct Arguments {
   std::string config = "config";

@@ -55,7 +55,7 @@ InProcessPipeline::~InProcessPipeline() = default;
 
 void InProcessPipeline::push(const Message& message) {
   waiting_.push_back(without_stamps(message));
-  while (!waiting_.empty()) {
+  while (!waiting_.empty() && !is_over_()) {
     const Message next = std::move(waiting_.front());
     waiting_.pop_front();
     for (const auto& reader : readers_) {
@@ -93,7 +93,12 @@ void InProcessPipeline::conclude(Reader& reader, const std::string& asset_id) {
       begin_anew(reader, asset_id);
     }
     for (LaneResult& result : reader.lanes.take_results()) take(reader, std::move(result));
-    if (reader.lanes.open() > 0) reader.lanes.wait(kLook);
+    if (reader.lanes.open() == 0) return;
+    if (is_over_()) {
+      hangs_ = true;
+      return;
+    }
+    reader.lanes.wait(kLook);
   }
 }
 

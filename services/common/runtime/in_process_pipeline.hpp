@@ -29,6 +29,8 @@ class InProcessPipeline {
   ~InProcessPipeline();
   /// Takes one message from outside and all that follows from it.
   void push(const Message& message);
+  /// What is asked some times a second while layers compute: once it is true, push leaves the rest undone.
+  void stop_when(std::function<bool()> is_over) { is_over_ = std::move(is_over); }
   /// Whether a computation that did not end goes on in a thread: destroying this would wait for it.
   [[nodiscard]] bool hangs() const { return hangs_; }
 
@@ -44,6 +46,7 @@ class InProcessPipeline {
   OnSetAside on_set_aside_;
   std::set<std::string> concluded_;
   std::deque<Message> waiting_;
+  std::function<bool()> is_over_ = [] { return false; };
   bool hangs_ = false;
 };
 

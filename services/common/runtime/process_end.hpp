@@ -8,8 +8,10 @@ namespace sealwatch {
 
 /// A service that was told to stop has this long to stop by itself.
 inline constexpr std::chrono::milliseconds kServiceStops{1000};
-/// A command has a little longer: it waits for the services that it started.
-inline constexpr std::chrono::milliseconds kCommandStops{1800};
+/// A command that started services has a little longer, as it waits for them.
+inline constexpr std::chrono::milliseconds kSupervisorStops{1700};
+/// What any other command still computes is lost all the same.
+inline constexpr std::chrono::milliseconds kCommandStops{300};
 
 /// Once, before end_process_in.
 void prepare_process_end();

@@ -86,6 +86,7 @@ class FailingLayer final : public Layer {
     ++tests_;
     const std::string& test = header_of(input).pst_id;
     if (test == "A test 1") throw std::runtime_error("no such phase");
+    if (test == "A test 2") waits = true;
     while (test == "A test 2" && !released.load()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     HealthReport report;
     report.asset_id = asset_of(input);
@@ -94,6 +95,7 @@ class FailingLayer final : public Layer {
     return {{report}, {header_of(input).message_id}};
   }
   inline static std::atomic<bool> released = false;
+  inline static std::atomic<bool> waits = false;  ///< on that which does not end
 
  private:
   static constexpr std::array kInputs = {Topic::test_features};
@@ -127,6 +129,20 @@ TEST(InProcessPipelineTest, SetsAsideWhatFailsTwiceAndGoesOn) {
                                                 "B test 2: test 3", "A test 3: test 2", "B test 3: test 4"));
   EXPECT_THAT(set_aside, ::testing::ElementsAre("health_assessment A test 1: no such phase",
                                                 ::testing::StartsWith("health_assessment A test 2: it did not end")));
+}
+
+TEST(InProcessPipelineTest, LeavesTheRestUndoneWhereItIsToldTo) {
+  const std::vector<LayerMaker> layers = {[](const std::string&) { return std::make_unique<CuttingLayer>(); },
+                                          [](const std::string&) { return std::make_unique<FailingLayer>(); }};
+  FailingLayer::released = FailingLayer::waits = false;
+  std::size_t reports = 0;
+  InProcessPipeline pipeline(
+      layers, [&reports](const Message& message) { reports += topic_of(message) == Topic::health_report ? 1 : 0; });
+  pipeline.stop_when([] { return FailingLayer::waits.load(); });
+  for (const RawSamples& block : blocks_of_tests(4, {"A"})) pipeline.push(Message(block));
+  EXPECT_TRUE(pipeline.hangs());
+  EXPECT_EQ(reports, 1U) << "of the first test; the second fails, the third does not end";
+  FailingLayer::released = true;  // or the end of the pipeline would wait for it
 }
 
 }  // namespace

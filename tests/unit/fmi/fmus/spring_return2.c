@@ -9,6 +9,12 @@
   callbacks->logger(callbacks->environment, "test", 3, "licence", "no %s for %d days", "licence", 30); \
   return NULL;
 #endif
+#ifdef HANGS
+static volatile int for_ever = 1;
+#define MODEL_BEFORE_INSTANTIATE(callbacks) \
+  while (for_ever) {                        \
+  }
+#endif
 #include "services/common/fmi/export/fmi2_shell.c"
 #ifdef DIRECTIONAL
 #ifdef LIE

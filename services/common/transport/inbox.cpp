@@ -108,9 +108,11 @@ bool Inbox::is_strangers(const BusItem& item) const {
 }
 
 bool Inbox::is_beyond_share(const Queue& queue, const std::string& line, std::size_t topic, std::size_t limit) const {
-  const std::size_t share = limit / std::max<std::size_t>(writers_[topic], 1);
-  if (waiting_[topic] < limit || queue.size() < share) return false;
-  return queue.size_of(line) >= share / std::max<std::size_t>(queue.lines(), 1);  // 0 where assets are invented
+  const std::size_t added = queue.size_of(line) == 0 ? 1 : 0, lines = queue.lines() + added;
+  // A gateway of many assets may have as much of each as a sender of one. Where assets can be invented, senders count.
+  const std::size_t share =
+      assets_.empty() ? limit / std::max<std::size_t>(writers_[topic], 1) : limit * lines / (lines_[topic] + added);
+  return waiting_[topic] >= limit && queue.size() >= share && queue.size_of(line) >= share / lines;
 }
 
 bool Inbox::is_left_out(const Queue& queue, std::size_t topic, std::size_t limit) const {
@@ -159,14 +161,17 @@ void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
     return;
   }
   ++(key.first ? strangers_waiting_ : waiting_[topic]);
+  if (queue.find(line) == nullptr && !key.first) ++lines_[topic];
   queue.add(line, std::move(item));
   if (is_new) turns_.push_back(key);
 }
 
 BusItem Inbox::take_one(const Key& key) {
   const auto place = queues_.find(key);
+  const std::size_t lines = place->second.lines();
   BusItem item = place->second.take();
   const std::size_t topic = index_of(item);
+  if (!key.first) lines_[topic] -= lines - place->second.lines();
   --(key.first ? strangers_waiting_ : waiting_[topic]);
   if (place->second.empty()) {
     --(key.first ? strangers_queues_ : writers_[topic]);

@@ -110,6 +110,7 @@ class Inbox {
   std::deque<Key> turns_;                           ///< each queue once
   std::array<std::size_t, kTopicCount> waiting_{};  ///< by topic, as topic_types() counts them; without strangers'
   std::array<std::size_t, kTopicCount> writers_{};  ///< queues by topic, likewise
+  std::array<std::size_t, kTopicCount> lines_{};    ///< and their lines
   std::array<std::map<std::string, Time>, kTopicCount> heard_{};         ///< by topic, the last time; without strangers
   std::array<std::map<std::string, Time>, kTopicCount> heard_assets_{};  ///< likewise, of what is not numbered
   std::size_t strangers_waiting_ = 0;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 namespace sealwatch::transport {
 namespace {
@@ -142,6 +143,24 @@ TEST_F(InboxTest, BeyondItsWritersShareAnAssetsFloodIsDroppedAndNoOthersBlocks) 
   std::size_t others = 0;
   for (const BusItem& item : inbox_.take(256, kNow)) others += number_of(item) > 100 && asset_of(item) == "B" ? 1 : 0;
   EXPECT_EQ(others, 100U);
+}
+
+TEST_F(InboxTest, AGatewayHasTheShareOfAllItsAssets) {
+  Inbox inbox;
+  std::set<std::string> assets = {"A"};
+  for (int asset = 0; asset < 10; ++asset) assets.insert(std::to_string(asset));
+  inbox.know(assets, {});
+  inbox.put(2, block("0", 1), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 20 * kLimit; ++k) inbox.put(1, block("A", k), kLimit, kNow);
+  for (std::uint64_t k = 2; k <= 80; ++k)
+    for (int asset = 0; asset < 10; ++asset) inbox.put(2, block(std::to_string(asset), k), kLimit, kNow);
+  const auto floods = inbox.floods();
+  ASSERT_THAT(floods, SizeIs(1));
+  EXPECT_EQ(floods[0].source, "sender of A");
+  for (std::uint64_t k = 1; k <= 20 * kLimit; ++k) inbox.put(1, block("A", k), kLimit, kNow);
+  (void)inbox.floods();
+  inbox.put(3, block("9", 100), kLimit, kNow);
+  EXPECT_THAT(inbox.floods(), SizeIs(0)) << "whoever has nothing waiting is taken";
 }
 
 TEST_F(InboxTest, AWriterThatInventsAssetsHasTwiceItsShareAtMost) {

@@ -541,8 +541,9 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
 std::set<pid_t> children_of(pid_t parent) {
   std::set<pid_t> children;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    if (std::isdigit(static_cast<unsigned char>(entry.path().filename().string()[0])) == 0) continue;
     std::ifstream file(entry.path() / "stat");
-    std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
     const std::size_t name_end = text.rfind(')');
     if (name_end == std::string::npos) continue;
     std::istringstream rest(text.substr(name_end + 1));
@@ -595,8 +596,7 @@ class EndAtSigterm : public Commands {
     }
     EXPECT_TRUE(ended) << "it goes on after two seconds";
     const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begin);
-    std::cout << told.words[0] << " " << told.words[1] << ": " << took.count() << " ms, " << children.size()
-              << " children\n";
+    std::cout << told.words[0] << ": " << took.count() << " ms, " << children.size() << " children\n";
     if (!ended) kill(command, SIGKILL);
     kill(sleeper, SIGKILL);
     waitpid(sleeper, nullptr, 0);

@@ -177,9 +177,8 @@ void add_plant_export(CommandLine& line, CLI::App& plant) {
                                [options] { return run_plant_export(*options); });
   back->add_option("--asset", options->asset_file, "asset file")->required()->check(an_asset_file, "FILE");
   back->add_option("--fmu", options->fmu, "FMU to write (Model Exchange)")->required();
-  back->add_option("--fmi", options->fmi, "version of the standard; an imported FMU is handed back by 2 alone")
-      ->check(CLI::IsMember({2, 3}))
-      ->capture_default_str();
+  back->add_option("--fmi", options->fmi, "version of the standard, 2 unless given; an imported FMU keeps its own")
+      ->check(CLI::IsMember({2, 3}));
 }
 
 void add_plant_check(CommandLine& line, CLI::App& plant) {

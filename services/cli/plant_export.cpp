@@ -1,6 +1,7 @@
 // `sealwatch plant export`: an asset's plant, with the laws that were found, as an FMU for the tool that models come from.
 #include <cstdio>
 #include <fstream>
+#include <optional>
 
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
@@ -41,12 +42,14 @@ int run_plant_export(const PlantExportOptions& options) {
   if (!plant) return complain(plant.error()), kBadInput;
   const auto read = equations_of(**plant);
   if (!read) return complain(read.error().front()), kBadInput;
-  const auto model =
-      fmi::export_model(read->built.plant, *asset, options.fmi == 3 ? fmi::Version::fmi3 : fmi::Version::fmi2);
+  std::optional<fmi::Version> version;
+  if (options.fmi) version = *options.fmi == 3 ? fmi::Version::fmi3 : fmi::Version::fmi2;
+  const auto model = fmi::export_model(read->built.plant, *asset, version);
   if (!model) return complain(model.error()), kBadInput;
   const auto written = fmi::write_fmu(options.fmu, *model);
   if (!written) return complain(written.error()), kBadInput;
-  std::printf("%s: FMI %d.0 for Model Exchange, with C source%s%s\n", options.fmu.c_str(), options.fmi,
+  std::printf("%s: FMI %d.0 for Model Exchange, with C source%s%s\n", options.fmu.c_str(),
+              model->version == fmi::Version::fmi3 ? 3 : 2,
               written->binary ? " and a binary for Linux on x86-64" : " alone: ", written->without_binary.c_str());
   for (const std::string& what : model->left_out) std::printf("left out: %s\n", what.c_str());
   return kOk;

@@ -189,7 +189,8 @@ TEST(ExplainedFmu, HasThePlantsInputsAndParametersWhereTheUnitsFollowFromThem) {
 }
 
 TEST(ExplainedFmu, PassesEventsOn) {
-  const Exported exported(bouncing("fmu_bouncing2"), R"yaml(
+  for (const char* binary : {"fmu_bouncing2", "fmu_bouncing3"}) {
+    const Exported exported(bouncing(binary), R"yaml(
 meaning: a ball
 fmu:
   file: model.fmu
@@ -208,14 +209,15 @@ elements:
       - {kind: piston_force, adds_to: {v: "-1[1/kg]"}, signals: {speed: v, position: h}}
 law_sizes: {N: 1.0, m: 1.0, m/s: 1.0, N/m: 1.0, N/m2: 1.0, N s/m: 1.0, N s2/m2: 1.0}
 )yaml",
-                          [](AssetConfig& asset) {
-                            asset.physics = {term("quadratic_drag", "air", {{"k", 0.1}})};
-                          });
-  expect_same(exported, "height", "height", 1e-6);
+                            [](AssetConfig& asset) {
+                              asset.physics = {term("quadratic_drag", "air", {{"k", 0.1}})};
+                            });
+    expect_same(exported, "height", "height", 1e-6);
+  }
 }
 
-TEST(ExplainedFmu, PassesTypedInputsAndSettingsOn) {
-  const std::string plant = R"yaml(
+const std::string& typed_plant() {
+  static const std::string plant = R"yaml(
 meaning: a unit of all types
 fmu:
   file: model.fmu
@@ -240,13 +242,39 @@ states:
 elements: {}
 law_sizes: {}
 )yaml";
-  const Exported exported(mixed("fmu_mixed2"), plant, [](AssetConfig& asset) { asset.parameters["x0"].value = 3.0; });
-  const auto whole = [](double t) { return std::floor(3.0 * t); };
-  const RowMatrix x = exported.simulated_again("x", whole);
-  ASSERT_EQ(x.rows(), 301);
-  EXPECT_NEAR(x(100, 0), 3.0 * std::exp(-1.0), 1e-7);
-  EXPECT_EQ(exported.simulated_again("y_integer", whole), exported.simulated("y_integer", whole));
-  EXPECT_EQ(exported.simulated_again("length", whole)(5, 0), 7.0);
+  return plant;
+}
+
+TEST(ExplainedFmu, PassesTypedInputsAndSettingsOn) {
+  for (const char* binary : {"fmu_mixed2", "fmu_mixed3"}) {
+    const Exported exported(mixed(binary), typed_plant(),
+                            [](AssetConfig& asset) { asset.parameters["x0"].value = 3.0; });
+    ASSERT_EQ(exported.refusal(), "");
+    const auto whole = [](double t) { return std::floor(3.0 * t); };
+    const RowMatrix x = exported.simulated_again("x", whole);
+    ASSERT_EQ(x.rows(), 301);
+    EXPECT_NEAR(x(100, 0), 3.0 * std::exp(-1.0), 1e-7);
+    EXPECT_EQ(exported.simulated_again("y_integer", whole), exported.simulated("y_integer", whole));
+    EXPECT_EQ(exported.simulated_again("length", whole)(5, 0), 7.0);
+  }
+}
+
+// The same laws, inputs, parameters and events within a unit of FMI 3.0, which is handed back as one of FMI 3.0.
+TEST(ExplainedFmu, OfFmi3IsHandedBackAsFmi3) {
+  const auto explain = [](AssetConfig& asset) {
+    asset.parameters["M"].value = 23.0;
+    asset.physics = {term("presliding_friction", "piston", {{"F_c", 40.0}, {"delta", 1e-4}}),
+                     term("driver_dead_time", "driver", {{"V_z", 0.4}, {"u_s", 0.3}})};
+  };
+  const Exported third(spring_return("fmu_spring_return3"), spring("2 * drive_voltage - u_lost", "k_s / 2"), explain);
+  ASSERT_EQ(third.refusal(), "");
+  EXPECT_THAT(third.text(),
+              AllOf(HasSubstr("(FMI 3.0, Model Exchange"), HasSubstr("piston.presliding_friction.bristle"),
+                    HasSubstr("\"drive_voltage\": drive_voltage"), HasSubstr("value: 23.0")));
+  expect_same(third, "position", "position", 1e-7);
+  const Exported second(spring_return("fmu_spring_return2"), spring("2 * drive_voltage - u_lost", "k_s / 2"), explain);
+  EXPECT_NEAR(third.simulated_again("position", &ramps)(200, 0), second.simulated_again("position", &ramps)(200, 0),
+              1e-7);
 }
 
 TEST(ExplainedFmu, AUnitThatCannotBeWrappedIsRefusedByName) {
@@ -268,8 +296,9 @@ parameters:
   k: {value: 2.0, unit: "1"}
 )yaml"),
               AllOf(HasSubstr("model.fmu"), HasSubstr("Co-Simulation"), HasSubstr("no law can be added")));
-  EXPECT_THAT(refusal(spring_return("fmu_spring_return3"), spring("drive_voltage - u_lost", "k_s")),
-              HasSubstr("FMI 3.0"));
+  TestUnit wide = mixed("fmu_mixed3");
+  wide.variables.replace(wide.variables.find("<Int32 name=\"u_integer\""), 6, "<Int64");
+  EXPECT_THAT(refusal(wide, typed_plant()), AllOf(HasSubstr("u_integer"), HasSubstr("int64")));
 }
 
 }  // namespace

@@ -289,15 +289,18 @@ static void model_outputs(double t, const double* x, const double* u, const doub
 
 }  // namespace
 
-Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset, Version version) {
+Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset,
+                                   std::optional<Version> version) {
   const auto* unit = dynamic_cast<const FmuEquations*>(plant.equations.get());
-  if (unit == nullptr) return Exporter(plant, asset, version).write();
-  if (version == Version::fmi3)
+  if (unit == nullptr) return Exporter(plant, asset, version.value_or(Version::fmi2)).write();
+  const Version imported = unit->block().file->description().version;
+  if (version && *version != imported)
     return fail(Error{.file = plant.description.file,
                       .place = {},
                       .value = plant.description.name,
-                      .rule = "has an imported FMU, which is handed back by FMI 2.0 alone",
-                      .advice = "leave out --fmi 3"});
+                      .rule = std::string("has an imported FMU of FMI ") + (imported == Version::fmi3 ? "3.0" : "2.0") +
+                              ", which is handed back by that version alone",
+                      .advice = "leave out --fmi"});
   return export_wrapper(plant, *unit, asset);
 }
 

@@ -8,6 +8,7 @@
 // stay out; so does a recording's own load factor.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct ExportedModel {
   std::string carried;  ///< an FMU that goes into resources/inner; "": none
 };
 
-/// An Error where something cannot be written in C: tables. An imported FMU is handed back by FMI 2.0 alone.
+/// An Error where something cannot be written in C: tables. FMI 2.0 where no version is asked for; an imported FMU is
+/// handed back by its own version alone.
 [[nodiscard]] Result<ExportedModel> export_model(const RuntimePlant& plant, const AssetConfig& asset,
-                                                 Version version = Version::fmi2);
+                                                 std::optional<Version> version = {});
 
 }  // namespace sealwatch::fmi

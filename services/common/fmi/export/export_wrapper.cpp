@@ -31,9 +31,8 @@ class WrapperExporter {
     if (block_.setup.co_simulation != 0)
       return refuse("is run for Co-Simulation, where no law can be added to a derivative",
                     "export the model for Model Exchange from its tool; laws.c and laws.mo have the laws");
-    if (inner.version != Version::fmi2)
-      return refuse("is of FMI 3.0, around which sealwatch writes no FMU",
-                    "export the model as FMI 2.0 from its tool; laws.c and laws.mo have the laws");
+    if (const std::string fault = fault_of_types(); !fault.empty())
+      return refuse(fault, "leave it out of the plant file, or export the model as FMI 2.0 from its tool");
     auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);
     if (!terms) return fail(terms.error());
     terms_ = std::move(*terms);
@@ -52,8 +51,10 @@ class WrapperExporter {
     description_.identifier = inner.model_exchange->model_identifier + "_explained";
     auto description = wrapper_description(*block_.file, description_);
     if (!description) return fail(description.error());
-    return ExportedModel{.identifier = description_.identifier,
-                         .source = head() + *equations + std::string(fmi2_wrapper_text()),
+    const std::string functions{inner.version == Version::fmi3 ? fmi3_wrapper_text() : std::string_view()};
+    return ExportedModel{.version = inner.version,
+                         .identifier = description_.identifier,
+                         .source = head() + *equations + std::string(fmi2_wrapper_text()) + functions,
                          .description = std::move(*description),
                          .left_out = left_out(terms_),
                          .carried = block_.file->name()};
@@ -66,6 +67,29 @@ class WrapperExporter {
                       .value = plant_.description.name,
                       .rule = std::move(rule),
                       .advice = std::move(advice)});
+  }
+
+  /// FMI 3.0 has more types and arrays; what goes in and out of the plant is to be what FMI 2.0 has too.
+  [[nodiscard]] std::string fault_of_types() const {
+    const ModelDescription& inner = block_.file->description();
+    if (inner.version != Version::fmi3) return "";
+    const auto fault = [](const Variable& variable, bool text_too) -> std::string {
+      if (variable.size != 1) return "has an array, around which sealwatch writes no FMU: " + variable.name;
+      const bool plain = variable.type == FmiType::float64 || variable.type == FmiType::int32 ||
+                         variable.type == FmiType::boolean || (text_too && variable.type == FmiType::string);
+      if (plain && variable.causality != FmiCausality::structuralParameter) return "";
+      return "has a variable of a kind around which sealwatch writes no FMU: " + variable.name + " (" +
+             std::string(plain ? name_of(variable.causality) : name_of(variable.type)) + ")";
+    };
+    for (const auto* handles :
+         {&block_.setup.states, &block_.setup.parameters, &block_.setup.inputs, &block_.setup.outputs})
+      for (const Handle& handle : *handles) {
+        const auto variable = std::ranges::find(inner.variables, handle.reference, &Variable::reference);
+        if (std::string found = fault(*variable, false); !found.empty()) return found;
+      }
+    for (const auto& [name, value] : block_.file->settings())
+      if (std::string found = fault(*inner.find(name), true); !found.empty()) return found;
+    return "";
   }
 
   // References of what the other unit does not have, in the order in which fmi2_wrapper.c numbers them.
@@ -219,8 +243,9 @@ class WrapperExporter {
     out << "/* " << plant_.description.name << " of " << asset_.asset_id
         << ", written by sealwatch: the unit in resources/inner with the laws that were found. */\n"
         << "#include <math.h>\n#include <stddef.h>\n#include <string.h>\n"
-        << "#define MODEL_TOKEN " << c_text(description_.token) << "\n#define INNER_TOKEN " << c_text(inner.token)
-        << "\n#define INNER_NAME " << c_text(inner.model_exchange->model_identifier) << "\n";
+        << (inner.version == Version::fmi3 ? "#define FMI3\n" : "") << "#define MODEL_TOKEN "
+        << c_text(description_.token) << "\n#define INNER_TOKEN " << c_text(inner.token) << "\n#define INNER_NAME "
+        << c_text(inner.model_exchange->model_identifier) << "\n";
     for (const auto& [name, count] :
          std::initializer_list<std::pair<const char*, std::size_t>>{{"STATES", block_.states.size()},
                                                                     {"VARIABLES", block_.variables.size()},

@@ -1,5 +1,6 @@
-// An imported FMU with the laws of an asset in it, handed back as an FMU: FMI 2.0 for Model Exchange, with C source. It
-// carries the imported one, as it came, and adds the laws to its derivatives and inputs (fmi2_wrapper.c).
+// An imported FMU with the laws of an asset in it, handed back as an FMU of the same version of FMI for Model Exchange,
+// with C source. It carries the imported one, as it came, and adds the laws to its derivatives and inputs
+// (fmi2_wrapper.c, fmi3_wrapper.c).
 //
 // Its description is the imported one's, so that it takes that one's place in the tool where it is used:
 //
@@ -14,7 +15,8 @@
 
 namespace sealwatch::fmi {
 
-/// An Error for an FMU for Co-Simulation, which has no derivatives to add to, and for one of FMI 3.0.
+/// An Error for an FMU for Co-Simulation, which has no derivatives to add to, and for one of FMI 3.0 whose arrays
+/// or types (integers other than Int32, Float32) the plant file uses.
 [[nodiscard]] Result<ExportedModel> export_wrapper(const RuntimePlant& plant, const FmuEquations& equations,
                                                    const AssetConfig& asset);
 

@@ -21,22 +21,42 @@
  *                         double* hidden_rates);       what laws add, into the end of e; calls inner_values()
  *
  * All of these are SI: SI = factor * value + offset, by the port of a value.
+ *
+ * With FMI3 defined the other unit is one of FMI 3.0, and so is this one: fmi3_wrapper.c, behind this text, has the
+ * functions of that standard, and these work for them.
  */
 #if defined(_WIN32)
 #include <windows.h>
 #define API __declspec(dllexport)
+#if defined(FMI3)
+#define PLATFORM (sizeof(void*) == 8 ? "x86_64-windows" : "x86-windows")
+#else
 #define PLATFORM (sizeof(void*) == 8 ? "win64" : "win32")
+#endif
 #define SUFFIX ".dll"
 #else
 #include <dlfcn.h>
 #define API __attribute__((visibility("default")))
 #if defined(__APPLE__)
-#define PLATFORM "darwin64"
 #define SUFFIX ".dylib"
 #else
-#define PLATFORM (sizeof(void*) == 8 ? "linux64" : "linux32")
 #define SUFFIX ".so"
 #endif
+#if defined(FMI3) && defined(__APPLE__)
+#define PLATFORM "x86_64-darwin"
+#elif defined(FMI3) && defined(__aarch64__)
+#define PLATFORM "aarch64-linux"
+#elif defined(FMI3)
+#define PLATFORM (sizeof(void*) == 8 ? "x86_64-linux" : "x86-linux")
+#elif defined(__APPLE__)
+#define PLATFORM "darwin64"
+#else
+#define PLATFORM (sizeof(void*) == 8 ? "linux64" : "linux32")
+#endif
+#endif
+#if defined(FMI3)
+#undef API
+#define API static
 #endif
 #include <stdlib.h>
 #include <string.h>
@@ -185,24 +205,29 @@ static int reset(Model* m) {
   return push_parameters(m);
 }
 
-/* A path from a URI; some tools give the path itself. */
+/* A path from a URI; some tools give the path itself, and so does FMI 3.0. */
+#if defined(FMI3)
+enum { kMayBeUri = 0 };
+#else
+enum { kMayBeUri = 1 };
+#endif
 static char* path_of(const char* location, const char* behind) {
   char* path = malloc(strlen(location) + strlen(behind) + 2);
   size_t n = 0;
   if (path == NULL) return NULL;
-  if (strncmp(location, "file://", 7) == 0)
+  if (kMayBeUri && strncmp(location, "file://", 7) == 0)
     location += 7;
-  else if (strncmp(location, "file:", 5) == 0)
+  else if (kMayBeUri && strncmp(location, "file:", 5) == 0)
     location += 5;
-  if (strncmp(location, "localhost/", 10) == 0) location += 9;
+  if (kMayBeUri && strncmp(location, "localhost/", 10) == 0) location += 9;
 #if defined(_WIN32)
-  if (location[0] == '/') ++location;
+  if (kMayBeUri && location[0] == '/') ++location;
 #endif
   for (; *location != '\0'; ++location) {
     const char code[3] = {location[1], location[0] == '%' && location[1] != '\0' ? location[2] : '\0', '\0'};
     char* end = NULL;
     const long letter = *location == '%' ? strtol(code, &end, 16) : 0;
-    if (*location == '%' && end == code + 2)
+    if (kMayBeUri && *location == '%' && end == code + 2)
       path[n++] = (char)letter, location += 2;
     else
       path[n++] = *location;
@@ -213,28 +238,41 @@ static char* path_of(const char* location, const char* behind) {
 }
 
 typedef void AnyFunction(void);
-static const char* load(const char* resources) {
-  char* path = path_of(resources, "/inner/binaries/");
-  char* file = path == NULL ? NULL : malloc(strlen(path) + strlen(INNER_NAME) + 32);
-  const char* missing = NULL;
-  if (file == NULL) return free(path), "memory";
-  strcat(strcat(strcat(strcat(strcpy(file, path), PLATFORM), "/"), INNER_NAME), SUFFIX);
+static AnyFunction* symbol(void* library, const char* name) {
 #if defined(_WIN32)
-  HMODULE library = LoadLibraryA(file);
-#define SYMBOL(name) (AnyFunction*)GetProcAddress(library, name)
+  return (AnyFunction*)GetProcAddress((HMODULE)library, name);
 #else
-  void* library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-#define SYMBOL(name) (AnyFunction*)dlsym(library, name)
+  return (AnyFunction*)dlsym(library, name);
 #endif
-  free(path), free(file);
-  if (library == NULL) return "its binary in resources/inner";
-#define LOOK_UP(type, name) inner.name = (type##Type*)SYMBOL("fmi2" #name);
+}
+#if defined(FMI3)
+static const char* look_up(void* library);
+#else
+static const char* look_up(void* library) {
+  const char* missing = NULL;
+#define LOOK_UP(type, name) inner.name = (type##Type*)symbol(library, "fmi2" #name);
 #define NEED(type, name) \
   if (inner.name == NULL) missing = "its function fmi2" #name;
   EACH_FUNCTION(LOOK_UP) EACH_RARE_FUNCTION(LOOK_UP) EACH_FUNCTION(NEED)
   return missing;
 }
+#endif
+static const char* load(const char* resources) {
+  char* path = path_of(resources, "/inner/binaries/");
+  char* file = path == NULL ? NULL : malloc(strlen(path) + strlen(INNER_NAME) + 32);
+  void* library = NULL;
+  if (file == NULL) return free(path), "memory";
+  strcat(strcat(strcat(strcat(strcpy(file, path), PLATFORM), "/"), INNER_NAME), SUFFIX);
+#if defined(_WIN32)
+  library = (void*)LoadLibraryA(file);
+#else
+  library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
+#endif
+  free(path), free(file);
+  return library == NULL ? "its binary in resources/inner" : look_up(library);
+}
 
+#if !defined(FMI3)
 API const char* fmi2GetTypesPlatform(void) { return "default"; }
 API const char* fmi2GetVersion(void) { return "2.0"; }
 
@@ -259,6 +297,7 @@ API void* fmi2Instantiate(const char* name, int kind, const char* guid, const ch
   if (m != NULL && m->inner != NULL) inner.FreeInstance(m->inner);
   return free(m), NULL;
 }
+#endif
 API void fmi2FreeInstance(void* c) {
   if (c == NULL) return;
   inner.FreeInstance(((Model*)c)->inner);
@@ -268,6 +307,7 @@ API int fmi2Reset(void* c) {
   const int status = inner.Reset == NULL ? kError : inner.Reset(((Model*)c)->inner);
   return good(status) ? reset(c) : status;
 }
+#if !defined(FMI3)
 API int fmi2SetDebugLogging(void* c, int on, size_t n, const char* const* names) {
   return inner.SetDebugLogging == NULL ? kOk : inner.SetDebugLogging(((Model*)c)->inner, on, n, names);
 }
@@ -280,6 +320,7 @@ API int fmi2EnterInitializationMode(void* c) {
   ((Model*)c)->mode = kInitialising, ((Model*)c)->known = 0;
   return inner.EnterInitializationMode(((Model*)c)->inner);
 }
+#endif
 API int fmi2ExitInitializationMode(void* c) {
   if (refresh(c) != kOk) return kError;
   ((Model*)c)->mode = kRunning, ((Model*)c)->known = 0;
@@ -412,6 +453,7 @@ API int fmi2SetReal(void* c, const unsigned* references, size_t n, const double*
     for (k = 0; k < n && good(status); ++k) keep(c, kind, references[k], values[k], &status);   \
     return good(status) ? inner.Set##name(((Model*)c)->inner, references, n, values) : status;  \
   }
+#if !defined(FMI3)
 WHOLE(Integer, kInteger)
 WHOLE(Boolean, kBoolean)
 API int fmi2GetString(void* c, const unsigned* references, size_t n, const char** values) {
@@ -440,3 +482,4 @@ API int fmi2SerializeFMUstate(void* c, void* state, char* bytes, size_t size) {
 API int fmi2DeSerializeFMUstate(void* c, const char* bytes, size_t size, void** state) {
   return (void)c, (void)bytes, (void)size, (void)state, kError;
 }
+#endif

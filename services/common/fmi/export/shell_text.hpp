@@ -1,5 +1,5 @@
-// The texts of fmi2_shell.c, fmi3_shell.c and fmi2_wrapper.c, one of which goes into every exported FMU (made by CMake
-// from shell_text.cpp.in).
+// The texts of fmi2_shell.c, fmi3_shell.c, fmi2_wrapper.c and, behind that, fmi3_wrapper.c, of which every exported FMU
+// has what it needs (made by CMake from shell_text.cpp.in).
 #pragma once
 
 #include <string_view>
@@ -9,5 +9,6 @@ namespace sealwatch::fmi {
 [[nodiscard]] std::string_view fmi2_shell_text();
 [[nodiscard]] std::string_view fmi3_shell_text();
 [[nodiscard]] std::string_view fmi2_wrapper_text();
+[[nodiscard]] std::string_view fmi3_wrapper_text();
 
 }  // namespace sealwatch::fmi

@@ -1,5 +1,6 @@
 #include "services/common/fmi/export/wrapper_description.hpp"
 
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <pugixml.hpp>
@@ -27,7 +28,8 @@ xml_node child_behind(xml_node parent, const char* name, const char* before) {
 
 class Rewriter {
  public:
-  Rewriter(const FmuFile& inner, const WrapperVariables& own) : inner_(inner), own_(own) {}
+  Rewriter(const FmuFile& inner, const WrapperVariables& own)
+      : inner_(inner), own_(own), third_(inner.description().version == Version::fmi3) {}
 
   Result<std::string> write() {
     std::ifstream stream(inner_.unpacked().path_of(kDescriptionName), std::ios::binary);
@@ -49,21 +51,38 @@ class Rewriter {
   }
 
  private:
-  static std::vector<xml_node> variables_of(const xml_node& root) {
-    const auto range = root.child("ModelVariables").children("ScalarVariable");
-    return {range.begin(), range.end()};
+  // FMI 3.0 names a variable's element by its type, FMI 2.0 has an element of the type in it.
+  [[nodiscard]] std::vector<xml_node> variables_of(const xml_node& root) const {
+    std::vector<xml_node> variables;
+    for (const xml_node& node : root.child("ModelVariables").children())
+      if (third_ ? node.type() == pugi::node_element : std::string_view(node.name()) == "ScalarVariable")
+        variables.push_back(node);
+    return variables;
+  }
+  [[nodiscard]] xml_node typed(std::size_t place) const {
+    return third_ ? variables_[place] : variables_[place].first_child();
+  }
+  void set_start(std::size_t place, const std::string& value) const {
+    const bool text = third_ && std::string_view(variables_[place].name()) == "String";
+    xml_node node = typed(place);
+    if (text && !node.child("Start")) node.append_child("Start");
+    set(text ? node.child("Start") : node, text ? "value" : "start", value);
   }
 
   void head() {
-    set(root_, "guid", own_.token);
+    set(root_, third_ ? "instantiationToken" : "guid", own_.token);
     set(root_, "modelName", std::string(root_.attribute("modelName").value()) + "_explained");
     const std::string tool = inner_.description().tool;
     set(root_, "generationTool", (tool.empty() ? "" : tool + ", ") + "laws added by sealwatch");
-    root_.remove_child("CoSimulation");
+    for (const char* interface : {"CoSimulation", "ScheduledExecution"}) root_.remove_child(interface);
     xml_node exchange = root_.child("ModelExchange");
     set(exchange, "modelIdentifier", own_.identifier);
-    for (const char* name : {"providesDirectionalDerivative", "canGetAndSetFMUstate", "canSerializeFMUstate"})
+    for (const char* name :
+         {"providesDirectionalDerivative", "canGetAndSetFMUstate", "canSerializeFMUstate",  // of FMI 2.0
+          "providesDirectionalDerivatives", "providesAdjointDerivatives", "providesPerElementDependencies",
+          "canGetAndSetFMUState", "canSerializeFMUState"})
       exchange.remove_attribute(name);
+    if (third_) return;  // sources are described beside them
     exchange.remove_child("SourceFiles");
     exchange.prepend_child("SourceFiles").append_child("File").append_attribute("name").set_value("model.c");
   }
@@ -85,20 +104,20 @@ class Rewriter {
   }
 
   void change_variables() {
-    for (const auto& [place, value] : own_.starts) set(variables_[place].first_child(), "start", c_number(value));
+    for (const auto& [place, value] : own_.starts) set_start(place, c_number(value));
     for (const std::size_t place : own_.local_inputs) {
       set(variables_[place], "causality", "local");
-      variables_[place].first_child().remove_attribute("start");
+      typed(place).remove_attribute("start");
     }
     for (const std::size_t place : own_.calculated) {
       set(variables_[place], "causality", "calculatedParameter");
       set(variables_[place], "initial", "calculated");
-      variables_[place].first_child().remove_attribute("start");
+      typed(place).remove_attribute("start");
     }
     for (const auto& [name, text] : inner_.settings()) {
       const auto place =
           static_cast<std::size_t>(inner_.description().find(name) - inner_.description().variables.data());
-      set(variables_[place].first_child(), "start", text);
+      set_start(place, text);
     }
   }
 
@@ -107,14 +126,14 @@ class Rewriter {
                   bool with_start) {
     std::string name = row.name;
     while (!names_.insert(name).second) name += "_";
-    xml_node variable = root_.child("ModelVariables").append_child("ScalarVariable");
+    xml_node variable = root_.child("ModelVariables").append_child(third_ ? "Float64" : "ScalarVariable");
     variable.append_attribute("name").set_value(name.c_str());
     variable.append_attribute("valueReference").set_value(row.reference);
     variable.append_attribute("description").set_value(row.meaning.c_str());
     variable.append_attribute("causality").set_value(causality);
     variable.append_attribute("variability").set_value(variability);
     if (initial != nullptr) variable.append_attribute("initial").set_value(initial);
-    xml_node real = variable.append_child("Real");
+    xml_node real = third_ ? variable : variable.append_child("Real");
     if (!row.unit.empty()) real.append_attribute("unit").set_value(row.unit.c_str());
     if (with_start) real.append_attribute("start").set_value(c_number(row.start).c_str());
     variables_.push_back(variable);
@@ -130,24 +149,53 @@ class Rewriter {
     unknown.append_attribute("index").set_value(static_cast<unsigned long long>(index));
   }
 
+  // FMI 3.0: one list of elements, of each kind together and in this order, which name variables by their references.
+  void add_unknown3(xml_node structure, const std::string& kind, std::size_t place) const {
+    constexpr std::array kOrder = {"Output", "ContinuousStateDerivative", "ClockedState", "InitialUnknown",
+                                   "EventIndicator"};
+    const std::string reference = variables_[place].attribute("valueReference").value();
+    if (structure.find_child_by_attribute(kind.c_str(), "valueReference", reference.c_str())) return;
+    xml_node last;
+    for (const char* one : kOrder) {
+      for (const xml_node& node : structure.children(one)) last = node;
+      if (kind == one) break;
+    }
+    xml_node unknown = last ? structure.insert_child_after(kind.c_str(), last) : structure.prepend_child(kind.c_str());
+    unknown.append_attribute("valueReference").set_value(reference.c_str());
+  }
+
+  void add_unknowns3(xml_node structure, const std::vector<std::size_t>& rates,
+                     const std::vector<std::size_t>& outputs) const {
+    for (const std::size_t index : outputs) add_unknown3(structure, "Output", index - 1);
+    for (const std::size_t index : rates) add_unknown3(structure, "ContinuousStateDerivative", index - 1);
+    for (const auto* list : {&rates, &outputs})
+      for (const std::size_t index : *list) add_unknown3(structure, "InitialUnknown", index - 1);
+    for (const std::size_t place : own_.calculated) add_unknown3(structure, "InitialUnknown", place);
+  }
+
+  static void forget_dependencies(xml_node unknown) {
+    unknown.remove_attribute("dependencies"), unknown.remove_attribute("dependenciesKind");
+  }
+
   void add_variables() {
     xml_node structure = root_.child("ModelStructure");
-    for (xml_node& list : children(structure))
-      for (xml_node& unknown : children(list))
-        unknown.remove_attribute("dependencies"), unknown.remove_attribute("dependenciesKind");
+    for (xml_node& list : children(structure)) {
+      forget_dependencies(list);
+      for (xml_node& unknown : children(list)) forget_dependencies(unknown);
+    }
     std::vector<std::size_t> states, rates, outputs;
     for (const OwnVariable& row : own_.hidden) states.push_back(add(row, "local", "continuous", "exact", true));
     for (std::size_t k = 0; k < own_.hidden_rates.size(); ++k) {
       rates.push_back(add(own_.hidden_rates[k], "local", "continuous", "calculated", false));
-      variables_.back()
-          .first_child()
+      typed(variables_.size() - 1)
           .append_attribute("derivative")
-          .set_value(static_cast<unsigned long long>(states[k]));
+          .set_value(static_cast<unsigned long long>(third_ ? own_.hidden[k].reference : states[k]));
     }
     for (const OwnVariable& row : own_.inputs) add(row, "input", "continuous", nullptr, true);
     for (const OwnVariable& row : own_.parameters) add(row, "parameter", "tunable", "exact", true);
     for (const OwnVariable& row : own_.outputs)
       outputs.push_back(add(row, "output", "continuous", "calculated", false));
+    if (third_) return add_unknowns3(structure, rates, outputs);
     if (!outputs.empty()) {
       xml_node list = structure.child("Outputs");
       if (!list) list = structure.prepend_child("Outputs");
@@ -170,6 +218,7 @@ class Rewriter {
 
   const FmuFile& inner_;
   const WrapperVariables& own_;
+  bool third_;  ///< FMI 3.0
   xml_node root_;
   std::vector<xml_node> variables_;
   std::set<std::string> names_;

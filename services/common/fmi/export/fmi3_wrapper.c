@@ -1,0 +1,298 @@
+/* The functions of FMI 3.0 for Model Exchange around another unit of FMI 3.0, with laws added: fmi2_wrapper.c, which stands
+ * before this text, does the work. Here what it calls of the other unit becomes a call of FMI 3.0, and what importers call
+ * of FMI 3.0 becomes a call of its functions. Variables that drive the plant are single numbers of the types Float64, Int32
+ * and Boolean; all others are the other unit's alone. */
+#include <stdbool.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#endif
+
+typedef uint32_t Ref;
+typedef const char* Text;
+typedef void (*Log)(void* environment, int status, const char* category, const char* message);
+
+typedef void* Instantiate3Type(const char*, const char*, const char*, bool, bool, void*, Log);
+typedef int Logging3Type(void*, bool, size_t, const char* const*);
+typedef int Initialise3Type(void*, bool, double, double, bool, double);
+typedef int Update3Type(void*, bool*, bool*, bool*, bool*, bool*, double*);
+typedef int Step3Type(void*, bool, bool*, bool*);
+typedef int Count3Type(void*, size_t*);
+#define TYPED(type, name)                                                      \
+  typedef int Get##name##Type(void*, const Ref*, size_t, type*, size_t);        \
+  typedef int Set##name##Type(void*, const Ref*, size_t, const type*, size_t);
+/* Types of variables that the other unit alone has. */
+#define EACH_OTHER_TYPE(X)                                                                                \
+  X(float, Float32) X(int8_t, Int8) X(uint8_t, UInt8) X(int16_t, Int16) X(uint16_t, UInt16)                \
+  X(uint32_t, UInt32) X(int64_t, Int64) X(uint64_t, UInt64)
+#define EACH_TYPE(X) X(double, Float64) X(int32_t, Int32) X(bool, Boolean) X(Text, String) EACH_OTHER_TYPE(X)
+EACH_TYPE(TYPED)
+
+#define EACH_NEEDED3(X)                                                                              \
+  X(Instantiate3, InstantiateModelExchange) X(Initialise3, EnterInitializationMode)                   \
+  X(Update3, UpdateDiscreteStates) X(Step3, CompletedIntegratorStep) X(GetFloat64, GetFloat64)        \
+  X(SetFloat64, SetFloat64)
+static struct {
+  Instantiate3Type* InstantiateModelExchange;
+  Initialise3Type* EnterInitializationMode;
+  Update3Type* UpdateDiscreteStates;
+  Step3Type* CompletedIntegratorStep;
+  Logging3Type* SetDebugLogging;
+  Count3Type* GetNumberOfEventIndicators;
+  PlainType* EvaluateDiscreteStates;
+#define TYPED_FIELD(type, name) \
+  Get##name##Type* Get##name;   \
+  Set##name##Type* Set##name;
+  EACH_TYPE(TYPED_FIELD)
+} inner3;
+
+/* The other unit, as fmi2_wrapper.c calls it. */
+static int get_real(void* c, const unsigned* references, size_t n, double* values) {
+  return inner3.GetFloat64(c, references, n, values, n);
+}
+static int set_real(void* c, const unsigned* references, size_t n, const double* values) {
+  return inner3.SetFloat64(c, references, n, values, n);
+}
+static int get_integer(void* c, const unsigned* references, size_t n, int* values) {
+  size_t k;
+  int status = inner3.GetInt32 == NULL ? kError : kOk;
+  for (k = 0; k < n && good(status); ++k) {
+    int32_t value = 0;
+    status = inner3.GetInt32(c, &references[k], 1, &value, 1);
+    values[k] = value;
+  }
+  return status;
+}
+static int set_integer(void* c, const unsigned* references, size_t n, const int* values) {
+  size_t k;
+  int status = inner3.SetInt32 == NULL ? kError : kOk;
+  for (k = 0; k < n && good(status); ++k) {
+    const int32_t value = values[k];
+    status = inner3.SetInt32(c, &references[k], 1, &value, 1);
+  }
+  return status;
+}
+static int get_boolean(void* c, const unsigned* references, size_t n, int* values) {
+  size_t k;
+  int status = inner3.GetBoolean == NULL ? kError : kOk;
+  for (k = 0; k < n && good(status); ++k) {
+    bool value = false;
+    status = inner3.GetBoolean(c, &references[k], 1, &value, 1);
+    values[k] = value ? 1 : 0;
+  }
+  return status;
+}
+static int set_boolean(void* c, const unsigned* references, size_t n, const int* values) {
+  size_t k;
+  int status = inner3.SetBoolean == NULL ? kError : kOk;
+  for (k = 0; k < n && good(status); ++k) {
+    const bool value = values[k] != 0;
+    status = inner3.SetBoolean(c, &references[k], 1, &value, 1);
+  }
+  return status;
+}
+static int set_text(void* c, const unsigned* references, size_t n, const char* const* values) {
+  return inner3.SetString == NULL ? kError : inner3.SetString(c, references, n, values, n);
+}
+static int new_discrete_states(void* c, EventInfo* info) {
+  bool again = false, terminate = false, nominals = false, values = false, next_defined = false;
+  double next = 0.0;
+  const int status = inner3.UpdateDiscreteStates(c, &again, &terminate, &nominals, &values, &next_defined, &next);
+  info->new_discrete_states_needed = again, info->terminate = terminate, info->nominals_changed = nominals;
+  info->values_changed = values, info->next_time_defined = next_defined, info->next_time = next;
+  return status;
+}
+static int completed_step(void* c, int no_return, int* event, int* terminate) {
+  bool enters = false, ends = false;
+  const int status = inner3.CompletedIntegratorStep(c, no_return != 0, &enters, &ends);
+  *event = enters, *terminate = ends;
+  return status;
+}
+
+static const char* look_up(void* library) {
+  const char* missing = NULL;
+#define FIND3(type, name) inner3.name = (type##Type*)symbol(library, "fmi3" #name);
+#define FIND3_TYPED(type, name)                                        \
+  inner3.Get##name = (Get##name##Type*)symbol(library, "fmi3Get" #name); \
+  inner3.Set##name = (Set##name##Type*)symbol(library, "fmi3Set" #name);
+#define NEED3(type, name) \
+  if (inner3.name == NULL) missing = "its function fmi3" #name;
+#define SAME3(type, name)                                        \
+  inner.name = (type##Type*)symbol(library, "fmi3" #name);        \
+  if (inner.name == NULL) missing = "its function fmi3" #name;
+  EACH_TYPE(FIND3_TYPED)
+  EACH_NEEDED3(FIND3)
+  FIND3(Logging3, SetDebugLogging) FIND3(Count3, GetNumberOfEventIndicators) FIND3(Plain, EvaluateDiscreteStates)
+  EACH_NEEDED3(NEED3)
+  SAME3(Free, FreeInstance) SAME3(Plain, ExitInitializationMode) SAME3(Plain, EnterEventMode)
+  SAME3(Plain, EnterContinuousTimeMode) SAME3(Time, SetTime)
+  SAME3(SetVector, SetContinuousStates) SAME3(GetVector, GetContinuousStates)
+  SAME3(GetVector, GetNominalsOfContinuousStates) SAME3(GetVector, GetEventIndicators)
+  inner.GetDerivatives = (GetVectorType*)symbol(library, "fmi3GetContinuousStateDerivatives");
+  if (inner.GetDerivatives == NULL) missing = "its function fmi3GetContinuousStateDerivatives";
+  inner.Terminate = (PlainType*)symbol(library, "fmi3Terminate"); /* what few tools call it may lack */
+  inner.Reset = (PlainType*)symbol(library, "fmi3Reset");
+  inner.GetReal = get_real, inner.SetReal = set_real, inner.GetInteger = get_integer, inner.SetInteger = set_integer;
+  inner.GetBoolean = get_boolean, inner.SetBoolean = set_boolean, inner.SetString = set_text;
+  inner.NewDiscreteStates = new_discrete_states, inner.CompletedIntegratorStep = completed_step;
+  return missing;
+}
+
+EXPORT const char* fmi3GetVersion(void) { return "3.0"; }
+
+EXPORT void* fmi3InstantiateModelExchange(const char* name, const char* token, const char* resources, bool visible,
+                                          bool logging, void* environment, Log log) {
+  Model* m = NULL;
+  char* location = NULL;
+  const char* missing = resources == NULL ? "resources" : load(resources);
+  if (missing != NULL && log != NULL) log(environment, kError, "the unit within lacks", missing);
+  if (missing != NULL || token == NULL || strcmp(token, MODEL_TOKEN) != 0) return NULL;
+  m = calloc(1, sizeof *m);
+  location = path_of(resources, "/inner/resources/");
+  if (m != NULL && location != NULL)
+    m->inner = inner3.InstantiateModelExchange(name, INNER_TOKEN, location, visible, logging, environment, log);
+  free(location);
+  if (m != NULL && m->inner != NULL && reset(m) == kOk) return m;
+  if (m != NULL && m->inner != NULL) inner.FreeInstance(m->inner);
+  return free(m), NULL;
+}
+EXPORT void* fmi3InstantiateCoSimulation(const char* name, const char* token, const char* resources, bool visible,
+                                         bool logging, bool event_mode, bool early_return, const Ref* intermediate,
+                                         size_t n, void* environment, Log log, void* update) {
+  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)event_mode, (void)early_return;
+  (void)intermediate, (void)n, (void)environment, (void)log, (void)update;
+  return NULL;
+}
+EXPORT void* fmi3InstantiateScheduledExecution(const char* name, const char* token, const char* resources, bool visible,
+                                               bool logging, void* environment, Log log, void* update, void* lock,
+                                               void* unlock) {
+  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment, (void)log;
+  (void)update, (void)lock, (void)unlock;
+  return NULL;
+}
+EXPORT void fmi3FreeInstance(void* c) { fmi2FreeInstance(c); }
+EXPORT int fmi3Reset(void* c) { return fmi2Reset(c); }
+EXPORT int fmi3SetDebugLogging(void* c, bool on, size_t n, const char* const* names) {
+  return inner3.SetDebugLogging == NULL ? kOk : inner3.SetDebugLogging(((Model*)c)->inner, on, n, names);
+}
+EXPORT int fmi3EnterInitializationMode(void* c, bool tolerance_defined, double tolerance, double start,
+                                       bool stop_defined, double stop) {
+  Model* m = c;
+  m->time = start, m->mode = kInitialising, m->known = 0;
+  return inner3.EnterInitializationMode(m->inner, tolerance_defined, tolerance, start, stop_defined, stop);
+}
+EXPORT int fmi3ExitInitializationMode(void* c) { return fmi2ExitInitializationMode(c); }
+EXPORT int fmi3EnterEventMode(void* c) { return fmi2EnterEventMode(c); }
+EXPORT int fmi3EnterContinuousTimeMode(void* c) { return fmi2EnterContinuousTimeMode(c); }
+EXPORT int fmi3Terminate(void* c) { return inner.Terminate == NULL ? kOk : fmi2Terminate(c); }
+EXPORT int fmi3EvaluateDiscreteStates(void* c) {
+  if (refresh(c) != kOk) return kError;
+  ((Model*)c)->known = 0;
+  return inner3.EvaluateDiscreteStates == NULL ? kOk : inner3.EvaluateDiscreteStates(((Model*)c)->inner);
+}
+EXPORT int fmi3UpdateDiscreteStates(void* c, bool* again, bool* terminate, bool* nominals, bool* values,
+                                    bool* next_defined, double* next) {
+  EventInfo info = {0};
+  const int status = fmi2NewDiscreteStates(c, &info);
+  *again = info.new_discrete_states_needed != 0, *terminate = info.terminate != 0;
+  *nominals = info.nominals_changed != 0, *values = info.values_changed != 0;
+  *next_defined = info.next_time_defined != 0, *next = info.next_time;
+  return status;
+}
+EXPORT int fmi3CompletedIntegratorStep(void* c, bool no_return, bool* event, bool* terminate) {
+  int enters = 0, ends = 0;
+  const int status = fmi2CompletedIntegratorStep(c, no_return, &enters, &ends);
+  *event = enters != 0, *terminate = ends != 0;
+  return status;
+}
+EXPORT int fmi3SetTime(void* c, double time) { return fmi2SetTime(c, time); }
+EXPORT int fmi3SetContinuousStates(void* c, const double* x, size_t n) { return fmi2SetContinuousStates(c, x, n); }
+EXPORT int fmi3GetContinuousStates(void* c, double* x, size_t n) { return fmi2GetContinuousStates(c, x, n); }
+EXPORT int fmi3GetNominalsOfContinuousStates(void* c, double* x, size_t n) {
+  return fmi2GetNominalsOfContinuousStates(c, x, n);
+}
+EXPORT int fmi3GetContinuousStateDerivatives(void* c, double* dx, size_t n) { return fmi2GetDerivatives(c, dx, n); }
+EXPORT int fmi3GetEventIndicators(void* c, double* z, size_t n) { return fmi2GetEventIndicators(c, z, n); }
+EXPORT int fmi3GetNumberOfContinuousStates(void* c, size_t* n) { return (void)c, *n = STATES + HIDDEN, kOk; }
+EXPORT int fmi3GetNumberOfEventIndicators(void* c, size_t* n) {
+  *n = 0;
+  return inner3.GetNumberOfEventIndicators == NULL ? kError
+                                                   : inner3.GetNumberOfEventIndicators(((Model*)c)->inner, n);
+}
+
+/* Arrays are the other unit's alone. */
+EXPORT int fmi3GetFloat64(void* c, const Ref* references, size_t n, double* values, size_t size) {
+  if (size == n) return fmi2GetReal(c, references, n, values);
+  return refresh(c) != kOk ? kError : inner3.GetFloat64(((Model*)c)->inner, references, n, values, size);
+}
+EXPORT int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double* values, size_t size) {
+  if (size == n) return fmi2SetReal(c, references, n, values);
+  ((Model*)c)->known = 0;
+  return inner3.SetFloat64(((Model*)c)->inner, references, n, values, size);
+}
+#define PASSED_ON(type, name)                                                                                   \
+  EXPORT int fmi3Get##name(void* c, const Ref* references, size_t n, type* values, size_t size) {                \
+    if (n > 0 && refresh(c) != kOk) return kError;                                                               \
+    return inner3.Get##name == NULL ? kError : inner3.Get##name(((Model*)c)->inner, references, n, values, size); \
+  }                                                                                                              \
+  static int set_##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {             \
+    ((Model*)c)->known = 0;                                                                                      \
+    return inner3.Set##name == NULL ? kError : inner3.Set##name(((Model*)c)->inner, references, n, values, size); \
+  }
+#define SET_ALONE(type, name)                                                                        \
+  EXPORT int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) { \
+    return set_##name(c, references, n, values, size);                                                \
+  }
+#define SET_KEPT(type, name, kind)                                                                            \
+  EXPORT int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {        \
+    size_t k;                                                                                                  \
+    int status = kOk;                                                                                          \
+    for (k = 0; size == n && k < n && good(status); ++k) keep(c, kind, references[k], values[k], &status);     \
+    return good(status) ? set_##name(c, references, n, values, size) : status;                                 \
+  }
+EACH_OTHER_TYPE(PASSED_ON) EACH_OTHER_TYPE(SET_ALONE)
+PASSED_ON(Text, String) SET_ALONE(Text, String)
+PASSED_ON(int32_t, Int32) SET_KEPT(int32_t, Int32, kInteger)
+PASSED_ON(bool, Boolean) SET_KEPT(bool, Boolean, kBoolean)
+
+/* Not offered (modelDescription.xml says so), and there as importers look for every function. */
+#define FAILS(name, ...) \
+  EXPORT int fmi3##name(void* c, __VA_ARGS__) { return (void)c, kError; }
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+FAILS(GetBinary, const Ref* references, size_t n, size_t* sizes, const uint8_t** values, size_t size)
+FAILS(SetBinary, const Ref* references, size_t n, const size_t* sizes, const uint8_t* const* values, size_t size)
+FAILS(GetClock, const Ref* references, size_t n, bool* values)
+FAILS(SetClock, const Ref* references, size_t n, const bool* values)
+FAILS(GetIntervalDecimal, const Ref* references, size_t n, double* intervals, int* qualifiers)
+FAILS(GetIntervalFraction, const Ref* references, size_t n, uint64_t* counters, uint64_t* resolutions, int* qualifiers)
+FAILS(GetShiftDecimal, const Ref* references, size_t n, double* shifts)
+FAILS(GetShiftFraction, const Ref* references, size_t n, uint64_t* counters, uint64_t* resolutions)
+FAILS(SetIntervalDecimal, const Ref* references, size_t n, const double* intervals)
+FAILS(SetIntervalFraction, const Ref* references, size_t n, const uint64_t* counters, const uint64_t* resolutions)
+FAILS(SetShiftDecimal, const Ref* references, size_t n, const double* shifts)
+FAILS(SetShiftFraction, const Ref* references, size_t n, const uint64_t* counters, const uint64_t* resolutions)
+FAILS(ActivateModelPartition, Ref clock, double activation)
+FAILS(GetNumberOfVariableDependencies, Ref reference, size_t* n)
+FAILS(GetVariableDependencies, Ref dependent, size_t* elements, Ref* independents, size_t* their_elements, int* kinds,
+      size_t n)
+FAILS(GetFMUState, void** state)
+FAILS(SetFMUState, void* state)
+FAILS(FreeFMUState, void** state)
+FAILS(SerializedFMUStateSize, void* state, size_t* size)
+FAILS(SerializeFMUState, void* state, uint8_t* bytes, size_t size)
+FAILS(DeserializeFMUState, const uint8_t* bytes, size_t size, void** state)
+FAILS(GetDirectionalDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
+      size_t n_seed, double* sensitivity, size_t n_sensitivity)
+FAILS(GetAdjointDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
+      size_t n_seed, double* sensitivity, size_t n_sensitivity)
+FAILS(GetOutputDerivatives, const Ref* references, size_t n, const int32_t* orders, double* values, size_t size)
+FAILS(DoStep, double time, double step, bool no_set_before, bool* event_needed, bool* terminate, bool* early,
+      double* last_time)
+EXPORT int fmi3EnterStepMode(void* c) { return (void)c, kError; }
+EXPORT int fmi3EnterConfigurationMode(void* c) { return (void)c, kError; }
+EXPORT int fmi3ExitConfigurationMode(void* c) { return (void)c, kError; }

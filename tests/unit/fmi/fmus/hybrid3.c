@@ -1,0 +1,1 @@
+#include "hybrid3.h"

@@ -144,13 +144,15 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   if (!problem) return failed(problem.error());
   problem->simulation_options = simulation_options(recordings, options);
   Result<PemOptimum> optimum = search_from_asset(*problem, asset, recordings, options);
-  if (optimum && !optimum->hopeless && add_interpolation_error(*problem, *optimum, asset, recordings)) {
+  const bool input_matters =
+      optimum && !optimum->hopeless && add_interpolation_error(*problem, *optimum, asset, recordings);
+  if (input_matters) {
     const int iterations = optimum->iterations;
     optimum = search(*problem, optimum->point, options);
     if (optimum) optimum->iterations += iterations;
   }
   if (!optimum) return failed(optimum.error());
-  JointFit fit = report_fit(asset, *problem, *optimum, recordings);
+  JointFit fit = report_fit(asset, *problem, *optimum, recordings, input_matters);
   judge_admissibility(fit.report, options.admissibility);
   // What the recording says of the seal where the model does not come near it.
   for (const TimeSeries& recorded : recordings)

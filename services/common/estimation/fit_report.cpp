@@ -6,6 +6,7 @@
 
 #include "sealwatch/estimation/covariance.hpp"
 #include "sealwatch/estimation/residual_statistics.hpp"
+#include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
@@ -135,9 +136,53 @@ Eigen::MatrixXd scores_of(const Linearisation& at) {
 struct Uncertainty {
   Covariance covariance;  // of the unknowns
   double inflation = 1.0;
+  double by_input = 1.0;  // largest factor by which the input's unrecorded course raised a standard error
 };
 
-Uncertainty uncertainty_of(const PemProblem& problem, const PemOptimum& optimum, bool coloured) {
+// Rows of J' d_b / noise of all pieces of all recordings (interpolation_error.hpp).
+Eigen::MatrixXd input_scores(const AssetConfig& asset, const PemProblem& problem, const PemOptimum& optimum,
+                             std::span<const TimeSeries> recordings, const Layout& layout,
+                             const std::vector<bool>& held) {
+  std::vector<Eigen::RowVectorXd> rows;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const PemRecording& part = problem.recordings[k];
+    for (const RowMatrix& change : changes_by_pieces(problem, k, optimum, asset, recordings[k])) {
+      Linearisation at{
+          .simulated = {}, .residual = Eigen::VectorXd(change.size()), .jacobian = optimum.at_optimum[k].jacobian};
+      for (Eigen::Index row = 0; row < change.size(); ++row)
+        at.residual(row) = change(row / change.cols(), row % change.cols()) / part.noise_std(row % change.cols());
+      rows.emplace_back(spread(at.residual.transpose() * at.jacobian, layout, k, held));
+    }
+  }
+  Eigen::MatrixXd scores(static_cast<Eigen::Index>(rows.size()), layout.size);
+  for (std::size_t row = 0; row < rows.size(); ++row) scores.row(static_cast<Eigen::Index>(row)) = rows[row];
+  return scores;
+}
+
+// Adds to the covariance of white noise what the input's course between samples does; residuals that are coloured may
+// have told more.
+void add_input(const Covariance& white, const Eigen::MatrixXd& scores, Uncertainty& uncertainty) {
+  constexpr double kShare = 1.0 / 3.0;
+  const Eigen::Index n = white.matrix.rows();
+  Eigen::MatrixXd finite = white.matrix;
+  for (Eigen::Index j = 0; j < n; ++j)
+    if (!white.identified[static_cast<std::size_t>(j)]) finite(j, j) = 0.0;
+  const Eigen::MatrixXd moved = scores * finite;
+  const Eigen::MatrixXd both = finite + kShare * moved.transpose() * moved;
+  Eigen::MatrixXd& matrix = uncertainty.covariance.matrix;
+  Eigen::VectorXd factor = Eigen::VectorXd::Ones(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (!(finite(j, j) > 0.0)) continue;
+    uncertainty.by_input = std::max(uncertainty.by_input, std::sqrt(std::max(1.0, both(j, j) / matrix(j, j))));
+    factor(j) = std::sqrt(std::max(1.0, matrix(j, j) / both(j, j)));
+  }
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (finite(j, j) > 0.0 && finite(k, k) > 0.0) matrix(j, k) = factor(j) * factor(k) * both(j, k);
+}
+
+Uncertainty uncertainty_of(const AssetConfig& asset, const PemProblem& problem, const PemOptimum& optimum,
+                           std::span<const TimeSeries> recordings, bool coloured, bool input_matters) {
   const Layout layout = lay_out(problem);
   std::vector<bool> held;
   for (std::size_t k = 0; k < problem.shared.size(); ++k)
@@ -161,7 +206,9 @@ Uncertainty uncertainty_of(const PemProblem& problem, const PemOptimum& optimum,
     return all;
   };
   Uncertainty result{.covariance = covariance_of(stack(roots, rows))};
+  const Covariance white = result.covariance;
   if (coloured) result.inflation = inflate_for_coloured_residuals(result.covariance, stack(scores, samples));
+  if (input_matters) add_input(white, input_scores(asset, problem, optimum, recordings, layout, held), result);
   return result;
 }
 
@@ -230,7 +277,7 @@ std::string unidentified(const std::vector<EstimatedParameter>& parameters) {
 }  // namespace
 
 JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const PemOptimum& optimum,
-                    std::span<const TimeSeries> recordings) {
+                    std::span<const TimeSeries> recordings, bool input_matters) {
   JointFit fit;
   fit.report.model = asset.model;
   fit.report.converged = optimum.converged;
@@ -240,7 +287,8 @@ JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const P
   const Layout layout = lay_out(problem);
   for (std::size_t k = 0; k < recordings.size(); ++k)
     fit.recordings.emplace_back().channels = channel_fits(problem.recordings[k], optimum.at_optimum[k], recordings[k]);
-  const Uncertainty uncertainty = uncertainty_of(problem, optimum, is_coloured(fit.recordings));
+  const Uncertainty uncertainty =
+      uncertainty_of(asset, problem, optimum, recordings, is_coloured(fit.recordings), input_matters);
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     const auto own = static_cast<Eigen::Index>(optimum.point.own[k].size());
     complete(fit.recordings[k], problem.recordings[k], optimum.at_optimum[k], recordings[k], optimum.point.own[k],
@@ -253,6 +301,10 @@ JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const P
   if (uncertainty.inflation > 1.0)
     fit.report.termination +=
         "; residuals are coloured, standard errors raised by up to " + text::significant(uncertainty.inflation);
+  if (uncertainty.by_input > 1.0)
+    fit.report.termination +=
+        "; what the input does between its samples is not recorded, standard errors raised by up to " +
+        text::significant(uncertainty.by_input);
   if (const std::string names = unidentified(fit.report.parameters); !names.empty())
     fit.report.termination += "; not identifiable from these channels: " + names;
   return fit;

@@ -8,7 +8,9 @@
 
 namespace sealwatch {
 
+/// `input_matters`: what the input does between its samples does more than little to the outputs, and so to the standard
+/// errors.
 [[nodiscard]] JointFit report_fit(const AssetConfig& asset, const PemProblem& problem, const PemOptimum& optimum,
-                                  std::span<const TimeSeries> recordings);
+                                  std::span<const TimeSeries> recordings, bool input_matters);
 
 }  // namespace sealwatch

@@ -29,7 +29,45 @@ TimeSeries every_second_sample(const TimeSeries& samples) {
   return result;
 }
 
+// Every second sample from `begin` to `end` is what is linear between its neighbours. Whether that changes anything.
+bool pass_over_every_second(TimeSeries& samples, const PlantDescription& plant, std::size_t begin, std::size_t end) {
+  bool changed = false;
+  for (Series& channel : samples.channels) {
+    const ChannelDescription* description = plant.find_channel(channel.name);
+    if (description == nullptr || !description->input) continue;
+    for (std::size_t k = begin + 1 - begin % 2; k < end && k + 1 < samples.time_s.size(); k += 2) {
+      const double share =
+          (samples.time_s[k] - samples.time_s[k - 1]) / (samples.time_s[k + 1] - samples.time_s[k - 1]);
+      const double between = channel.values[k - 1] + share * (channel.values[k + 1] - channel.values[k - 1]);
+      changed = changed || between != channel.values[k];
+      channel.values[k] = between;
+    }
+  }
+  return changed;
+}
+
 }  // namespace
+
+std::vector<RowMatrix> changes_by_pieces(const PemProblem& problem, std::size_t recording, const PemOptimum& optimum,
+                                         const AssetConfig& asset, const TimeSeries& recorded) {
+  constexpr std::size_t kPieces = 16;  // their sum is then known within a third
+  const PemRecording& part = problem.recordings[recording];
+  std::vector<RowMatrix> changes;
+  if (all_inputs_known(part.simulation->plant(), recorded)) return changes;
+  const ModelValues values = values_at(problem, recording, optimum.point.shared, optimum.point.own[recording]);
+  for (std::size_t piece = 0; piece < kPieces; ++piece) {
+    TimeSeries passed_over = recorded;
+    const std::size_t samples = recorded.time_s.size();
+    if (!pass_over_every_second(passed_over, part.simulation->plant(), piece * samples / kPieces,
+                                (piece + 1) * samples / kPieces))
+      continue;
+    const auto simulation = PlantSimulation::create(asset, passed_over);
+    if (!simulation) continue;
+    auto outputs = (*simulation)->run(values, {}, problem.simulation_options);
+    if (outputs) changes.push_back(outputs->values - optimum.at_optimum[recording].simulated);
+  }
+  return changes;
+}
 
 RowMatrix change_without_every_second_sample(const PemProblem& problem, std::size_t recording,
                                              const PemOptimum& optimum, const AssetConfig& asset,

@@ -155,11 +155,25 @@ std::string columns_text(const Understood& log, const std::vector<std::size_t>& 
   return text;
 }
 
+/// The first column in percent that no channel has; "": none.
+std::string column_in_percent(const Understood& log) {
+  for (std::size_t column = 0; column < log.offer.columns.size(); ++column)
+    if (unit_of(log.offer.columns[column]) == "%" &&
+        std::ranges::none_of(log.guesses, [&](const ChannelGuess& guess) { return guess.column == column; }))
+      return log.offer.columns[column].text;
+  return "";
+}
+
 /// What to write for a channel that was not found, and the columns that may be it.
 std::string by_hand(const Understood& log, const ChannelDescription& channel) {
   const std::vector<std::size_t> columns =
       columns_of_unit(log.offer, channel, log.map.columns.at("time").column, log.guesses);
-  if (columns.empty()) return "{column: NAME, scale: 1, unit: " + text::quoted(channel.unit) + "}";
+  if (columns.empty()) {
+    const std::string percent = column_in_percent(log);
+    return "{column: " + (percent.empty() ? std::string("NAME, scale: 1") : text::quoted(percent) + ", scale: 0.01") +
+           ", unit: " + text::quoted(channel.unit) +
+           (percent.empty() ? "}" : "}, with a hundredth of what 100 % is in place of 0.01");
+  }
   return mapping_text(
              {.column = log.offer.columns[columns.front()].text, .unit = unit_of(log.offer.columns[columns.front()])}) +
          (columns.size() > 1 ? "; of that unit: " + columns_text(log, columns) : "");

@@ -2,6 +2,7 @@
 
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -49,6 +50,19 @@ constexpr std::array kAdditions = {Addition{"gpm", "3.785411784e-3 m3/min"},  //
                                    Addition{"Nm", "N m"},
                                    Addition{"counts", "1"},
                                    Addition{"count", "1"}};
+
+/// What loggers write for a temperature, which UDUNITS takes for a charge, a capacitance or an angle with them.
+constexpr std::array kTemperatures = {
+    Addition{"C", "degC"},       Addition{"F", "degF"},         Addition{"deg C", "degC"}, Addition{"deg F", "degF"},
+    Addition{"deg. C", "degC"},  Addition{"deg. F", "degF"},    Addition{"Deg C", "degC"}, Addition{"Deg F", "degF"},
+    Addition{"DegC", "degC"},    Addition{"DegF", "degF"},      Addition{"DEGC", "degC"},  Addition{"DEGF", "degF"},
+    Addition{"Celsius", "degC"}, Addition{"Fahrenheit", "degF"}};
+
+std::string_view temperature_meant(std::string_view unit, std::string_view si_unit) {
+  const auto* found =
+      std::ranges::find(kTemperatures, unit, [](const Addition& one) { return std::string_view(one.name); });
+  return si_unit == "K" && found != kTemperatures.end() ? std::string_view(found->meaning) : unit;
+}
 
 /// UDUNITS keeps its errors and its parser in one place for the whole process: under `mutex`.
 class UnitSystem {
@@ -122,6 +136,7 @@ Result<UnitConversion> from_library(std::string_view unit, std::string_view si_u
 Result<UnitConversion> convert_unit(std::string_view unit, std::string_view si_unit) {
   if (unit.empty() || unit == si_unit) return UnitConversion{.scale = 1.0, .offset = 0.0, .si_unit = {}};
   if (unit.size() > kLongestUnit) return fail("is not a known unit");
+  unit = temperature_meant(unit, si_unit);
   Result<UnitConversion> known = find_unit(unit);  // exact definitions of the usual ones, without the library
   if (known && known->si_unit == si_unit) return known;
   Result<UnitConversion> converted = from_library(unit, si_unit);

@@ -1,6 +1,7 @@
 // Units as people write them, converted to a channel's SI unit by UDUNITS-2 (Unidata), which knows prefixes, powers and
 // products: "kPa", "m3/h", "lbf", "degF", "in". Added to it is what process plants write: gpm, lpm, cfm; barg, psig,
-// kPag (above the standard atmosphere, 101325 Pa) and bara, psia; rev; counts.
+// kPag (above the standard atmosphere, 101325 Pa) and bara, psia; rev; counts. Of a temperature C and F are degrees, no
+// coulomb and no farad.
 //
 //   value_SI = scale * value + offset
 //

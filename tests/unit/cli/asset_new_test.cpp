@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
@@ -58,6 +59,23 @@ TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {
   const auto tests = read_recordings(path("log.csv"), **find_plant(asset->model), asset->channel_map);
   ASSERT_TRUE(tests) << tests.error().describe();
   EXPECT_EQ(tests->size(), 2U);
+}
+
+TEST_F(AssetNew, AColumnInPercentIsOfferedWithItsScale) {
+  std::ofstream(path("plant.yaml")) << R"(name: block_of_asset_new
+meaning: a heated block
+inputs: {power: {unit: W}}
+outputs: {temperature: {value: T, unit: K, noise_std: 0.1}}
+parameters: {C: {value: 1000.0, unit: J/K}}
+states: {T: {der: power/C, unit: K, start: temperature}}
+)";
+  ASSERT_EQ(make("t [s],Heater [%],Block temp (C)\n0,1,60\n1,1,61\n2,1,62\n", path("plant.yaml")), kOk);
+  std::ostringstream text;
+  text << std::ifstream(path("a.yaml")).rdbuf();
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("{column: \"Heater [%]\", scale: 0.01, unit: \"W\"}"));
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("temperature").column, "Block temp (C)");
 }
 
 TEST_F(AssetNew, APlantFileIsNamedAsSeenFromTheAsset) {

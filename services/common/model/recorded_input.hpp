@@ -61,10 +61,14 @@ class RecordedInput {
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<InputChannel>& channels() const { return channels_; }
-  [[nodiscard]] double shortest_distance_s() const {
-    double shortest = times_.back() - times_.front();
-    for (std::size_t row = 1; row < times_.size(); ++row) shortest = std::min(shortest, times_[row] - times_[row - 1]);
-    return shortest;
+  /// Between two samples: half of the distances are shorter. One short distance among many says nothing of the plant.
+  [[nodiscard]] double usual_distance_s() const {
+    std::vector<double> distances;
+    for (std::size_t row = 1; row < times_.size(); ++row) distances.push_back(times_[row] - times_[row - 1]);
+    if (distances.empty()) return 0.0;
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return *middle;
   }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
   [[nodiscard]] double segment_begin(std::size_t segment) const { return segments_[segment]; }

@@ -35,7 +35,7 @@ inline constexpr double kMostPoints = 800.0;  ///< between two samples
 /// After a jump of the input the integration starts anew, from the first order and a small step.
 inline constexpr std::size_t kStepsOfARestart = 30;
 inline constexpr std::size_t kManyJumps = 100;
-/// Of the distance between samples: laws have corners, which longer steps run over.
+/// Of the usual distance between samples: laws have corners, which longer steps run over.
 inline constexpr double kShareOfDistance = 1.0 / 16.0;
 
 template <class System>
@@ -95,7 +95,7 @@ class RecordingRun {
 
  private:
   [[nodiscard]] static double longest_step_s(const RecordedInput& input) {
-    return std::max(kLongestStep_s, kShareOfDistance * input.shortest_distance_s());
+    return std::max(kLongestStep_s, kShareOfDistance * input.usual_distance_s());
   }
 
   [[nodiscard]] tl::unexpected<Error> no_start() const {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
+#include "sealwatch/model/simulation.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "tests/unit/model/recording_for_tests.hpp"
 
@@ -16,8 +17,10 @@ namespace {
 
 constexpr double kCapacity = 18000.0, kLoss = 9.0, kAmbient = 293.15, kPower = 1000.0, kEvery_s = 60.0;
 
-std::string heater(const std::string& course) {
-  const std::string name = "heater_" + course, file = testing::TempDir() + name + ".yaml";
+/// `own_name`: that of a course, with or without more behind it, so that each test has a plant of its own.
+std::string heater(const std::string& own_name) {
+  const std::string course = own_name.starts_with("held") ? "held" : own_name;
+  const std::string name = "heater_" + own_name, file = testing::TempDir() + name + ".yaml";
   std::ofstream(file) << "name: " << name << "\nmeaning: a heated block\ninputs:\n  power: {unit: W, course: " << course
                       << R"yaml(}
 outputs:
@@ -90,6 +93,21 @@ TEST(InputBetweenSamples, IsInTheStandardErrors) {
   EXPECT_LT(errors.largest, 3.5);
   EXPECT_LT(errors.squares, 1.7);  // 24 squares of 1, of which one is off by 2.4 times its spread
   EXPECT_GT(errors.squares, 0.4);
+}
+
+// A logger that writes one sample more than it should does not make a plant of hours step by quarters of a second.
+TEST(InputBetweenSamples, OneShortDistanceDoesNotShortenAllSteps) {
+  const std::string plant = heater("held_too");
+  const auto steps = [&](const TimeSeries& log) {
+    const auto simulation = PlantSimulation::create(nominal_asset(plant), log);
+    const auto outputs = (*simulation)->run((*simulation)->start(), {});
+    return outputs ? outputs->steps : 0;
+  };
+  TimeSeries log = log_of(1, true);
+  const auto before = steps(log);
+  log.time_s.insert(log.time_s.begin() + 100, log.time_s[100] - 0.5);
+  for (Series& channel : log.channels) channel.values.insert(channel.values.begin() + 100, channel.values[100]);
+  EXPECT_LT(steps(log), 2 * before);
 }
 
 TEST(InputBetweenSamples, IsNothingWhereItIsHeld) {

@@ -277,6 +277,16 @@ TEST(ExplainedFmu, OfFmi3IsHandedBackAsFmi3) {
               1e-7);
 }
 
+// The site of the driver has the rate of its command among its signals, which only some laws see.
+TEST(ExplainedFmu, AsksForARateOnlyWhereALawNeedsIt) {
+  const Exported without(spring_return("fmu_spring_return2"), spring("drive_voltage - u_lost", "k_s"),
+                         [](AssetConfig& asset) {
+                           asset.physics = {term("coulomb_friction", "piston", {{"F_c", 60.0}, {"v_s", 1e-3}})};
+                         });
+  EXPECT_THAT(without.text(), testing::Not(HasSubstr("_rate")));
+  expect_same(without, "position", "position", 1e-8);
+}
+
 TEST(ExplainedFmu, AUnitThatCannotBeWrappedIsRefusedByName) {
   const auto refusal = [](const TestUnit& unit, const std::string& plant) {
     return Exported(unit, plant, [](AssetConfig&) {}).refusal();

@@ -52,10 +52,11 @@ class Exporter {
                         .value = plant_.description.name,
                         .rule = "is not written as text, so that its equations cannot be written in C",
                         .advice = "write it as text (docs/tutorial-plant.md)"});
-    parts_ = &text->parts();
+    parts_ = text->parts();
     auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);
     if (!terms) return fail(terms.error());
     terms_ = std::move(*terms);
+    parts_.signals.values = signals_seen(parts_, terms_, 0);
     if (const Status rows = collect(*text); !rows) return fail(rows.error());
     ExportedModel model{.version = version_,
                         .identifier = plant_.description.name,
@@ -110,13 +111,13 @@ class Exporter {
 
   void add_rates() {
     std::vector<Node> all;
-    for (const auto* nodes : {&parts_->derivatives.values, &parts_->signals.values, &parts_->outputs.values})
+    for (const auto* nodes : {&parts_.derivatives.values, &parts_.signals.values, &parts_.outputs.values})
       all.insert(all.end(), nodes->begin(), nodes->end());
-    const std::vector<bool> used = parts_->expressions.variables_of(all, parts_->places.count);
+    const std::vector<bool> used = parts_.expressions.variables_of(all, parts_.places.count);
     const std::size_t plain = inputs_.size();
     for (std::size_t k = 0; k < plain; ++k) {
-      const std::size_t input = parts_->used_inputs[k];
-      if (!used[parts_->places.rates + input]) continue;
+      const std::size_t input = parts_.used_inputs[k];
+      if (!used[parts_.places.rates + input]) continue;
       rates_.push_back(input);
       inputs_.push_back({inputs_[k].name + "_rate", inputs_[k].unit + "/s", "rate of " + inputs_[k].name, 0.0});
     }
@@ -141,10 +142,10 @@ class Exporter {
 
   Result<std::string> source() {
     std::string text;
-    for (const auto& [name, nodes] : {std::pair{"plant_rates", &parts_->derivatives.values},
-                                      {"plant_signals", &parts_->signals.values},
-                                      {"plant_outputs", &parts_->outputs.values}}) {
-      const auto function = c_function(name, *parts_, *nodes, rates_);
+    for (const auto& [name, nodes] : {std::pair{"plant_rates", &parts_.derivatives.values},
+                                      {"plant_signals", &parts_.signals.values},
+                                      {"plant_outputs", &parts_.outputs.values}}) {
+      const auto function = c_function(name, parts_, *nodes, rates_);
       if (!function)
         return fail(Error{.file = plant_.description.file,
                           .place = {},
@@ -160,7 +161,7 @@ class Exporter {
          .signals = "  plant_signals(t, x, u, p, e, s);\n",
          .end = "}\n",
          .first_site = 0,
-         .signals_see_added = parts_->signals_see_added});
+         .signals_see_added = parts_.signals_see_added});
     if (!laws) return fail(laws.error());
     return text + helper_functions_c() + "\n" + *laws + R"c(
 static void model_derivatives(double t, const double* x, const double* u, const double* p, double* dx) {
@@ -280,7 +281,7 @@ static void model_outputs(double t, const double* x, const double* u, const doub
   const RuntimePlant& plant_;
   const AssetConfig& asset_;
   Version version_;
-  const equations::TextEquationsParts* parts_ = nullptr;
+  equations::TextEquationsParts parts_;  ///< its signals: those that laws in force see
   PhysicsTerms terms_;
   std::vector<Row> states_, inputs_, parameters_, outputs_;
   std::vector<std::size_t> rates_;

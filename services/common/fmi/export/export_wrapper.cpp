@@ -36,6 +36,7 @@ class WrapperExporter {
     auto terms = resolve_physics(plant_.description, plant_.description.sites, asset_);
     if (!terms) return fail(terms.error());
     terms_ = std::move(*terms);
+    parts_.signals.values = signals_seen(parts_, terms_, block_.states.size() + block_.variables.size());
     auto ports = wrapper_ports(unit_, parts_);
     if (!ports) return fail(ports.error());
     ports_ = std::move(*ports);
@@ -310,7 +311,7 @@ class WrapperExporter {
   const FmuEquations& unit_;
   const AssetConfig& asset_;
   const FmuBlock& block_;
-  const equations::TextEquationsParts& parts_;
+  equations::TextEquationsParts parts_;  ///< its signals: those that laws in force see
   PhysicsTerms terms_;
   WrapperPorts ports_;
   WrapperVariables description_;

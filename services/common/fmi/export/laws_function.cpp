@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -60,6 +61,36 @@ Result<std::string> laws_function(const PlantDescription& plant, const PhysicsTe
   }
   out << frame.end;
   return out.str();
+}
+
+namespace {
+
+/// Whether a formula has the name, whole.
+bool names(const std::string& formula, const std::string& name) {
+  const auto is_part = [&](std::size_t at) {
+    return at < formula.size() && (std::isalnum(static_cast<unsigned char>(formula[at])) != 0 || formula[at] == '_');
+  };
+  for (std::size_t at = formula.find(name); at != std::string::npos; at = formula.find(name, at + 1))
+    if ((at == 0 || !is_part(at - 1)) && !is_part(at + name.size())) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<equations::Node> signals_seen(equations::TextEquationsParts& parts, const PhysicsTerms& terms,
+                                          std::size_t first_site) {
+  std::vector<equations::Node> seen(parts.signals.values.size(), parts.expressions.constant(0.0));
+  for (const ActiveTerm& term : terms.active) {
+    const auto formula = written(*term.law);
+    for (const std::size_t site : term.sites)
+      for (std::size_t k = 0; k < kSiteSignals; ++k) {
+        const std::string name = "s" + std::to_string(k + 1);
+        const std::size_t at = kSiteSignals * (first_site + site) + k;
+        if (!formula || names(formula->contribution, name) || names(formula->rate, name))
+          seen[at] = parts.signals.values[at];
+      }
+  }
+  return seen;
 }
 
 std::vector<std::string> left_out(const PhysicsTerms& terms) {

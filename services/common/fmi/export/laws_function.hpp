@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sealwatch/core/result.hpp"
+#include "services/common/equations/text_equations.hpp"
 #include "services/common/model/physics_terms.hpp"
 
 namespace sealwatch::fmi {
@@ -21,6 +22,10 @@ struct LawsFrame {
 /// A function that fills e[] from `first_site` and the rates of the laws' hidden states, as RuntimeSystem::add_laws does.
 [[nodiscard]] Result<std::string> laws_function(const PlantDescription& plant, const PhysicsTerms& terms,
                                                 const LawsFrame& frame);
+
+/// The signals of all sites, with 0 for those that no law in force sees: what they are made of is then not needed.
+[[nodiscard]] std::vector<equations::Node> signals_seen(equations::TextEquationsParts& parts, const PhysicsTerms& terms,
+                                                        std::size_t first_site);
 
 /// Laws that belong to the recording and not to the plant, in words.
 [[nodiscard]] std::vector<std::string> left_out(const PhysicsTerms& terms);

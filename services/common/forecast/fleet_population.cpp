@@ -119,19 +119,27 @@ Moments maximise(const Moments& now, const std::vector<LifeEstimate>& estimates,
   return next;
 }
 
+/// Where the parabola through three points, of which the middle one is lowest, is lowest.
+double lowest_between(const std::array<double, 3>& x, const std::array<double, 3>& y) {
+  const double left = (y[1] - y[0]) / (x[1] - x[0]), right = (y[2] - y[1]) / (x[2] - x[1]);
+  return right > left ? 0.5 * (x[0] + x[1]) - left * 0.5 * (x[2] - x[0]) / (right - left) : x[1];
+}
+
+// Between the multiples by the parabola through the best and its neighbours: a fleet that is a little other has an
+// irregularity that is a little other, which its standard error by leaving lives out is made of.
 double best_irregularity(const std::vector<FleetLife>& lives, const FleetPopulation& reference) {
-  double best = reference.irregularity_std;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double scale : kIrregularityScales) {
+  std::array<double, kIrregularityScales.size()> logarithms{}, misfits{};
+  for (std::size_t k = 0; k < misfits.size(); ++k) {
     FleetPopulation trial = reference;
-    trial.irregularity_std *= scale;
-    double misfit = 0.0;
-    for (const LifeEstimate& one : estimate_all(lives, trial)) misfit += one.misfit();
-    if (misfit >= least) continue;
-    least = misfit;
-    best = trial.irregularity_std;
+    trial.irregularity_std *= kIrregularityScales[k];
+    logarithms[k] = std::log(kIrregularityScales[k]);
+    for (const LifeEstimate& one : estimate_all(lives, trial)) misfits[k] += one.misfit();
   }
-  return best;
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(misfits) - misfits.begin());
+  if (best == 0 || best + 1 == misfits.size()) return reference.irregularity_std * kIrregularityScales[best];
+  return reference.irregularity_std *
+         std::exp(lowest_between({logarithms[best - 1], logarithms[best], logarithms[best + 1]},
+                                 {misfits[best - 1], misfits[best], misfits[best + 1]}));
 }
 
 }  // namespace

@@ -30,9 +30,13 @@ FleetErrors fleet_errors(std::span<const FleetLife> fleet, const FleetFit& fit, 
     steepenings.push_back(without->population.steepening);
     irregularities.push_back(without->population.irregularity_std);
   }
-  if (rates.size() >= static_cast<std::size_t>(kFewestForJackknife))
-    return {jackknife(rates), jackknife(steepenings), jackknife(irregularities)};
   const double root = std::sqrt(fit.lives + reference_lives);
+  if (rates.size() >= static_cast<std::size_t>(kFewestForJackknife)) {
+    // At the least or the most that is tried it stays there whatever life is left out.
+    const double irregularity = jackknife(irregularities);
+    return {jackknife(rates), jackknife(steepenings),
+            irregularity > 0.0 ? irregularity : fit.population.irregularity_std / root};
+  }
   return {fit.population.initial_rate_std / root, fit.population.steepening_std / root,
           fit.population.irregularity_std / root};
 }

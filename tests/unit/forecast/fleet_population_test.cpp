@@ -111,6 +111,7 @@ TEST(FleetUncertainty, StandardErrorsAreTheScatterOfManyFleets) {
   constexpr int kFleets = 20, kLives = 8;
   const std::vector<FleetLife> all = fleet(kFleets * kLives, "reference");
   double mean = 0.0, squares = 0.0, claimed = 0.0;
+  double irregular = 0.0, irregular_squares = 0.0, irregular_claimed = 0.0;
   for (int k = 0; k < kFleets; ++k) {
     const std::span<const FleetLife> one(all.data() + k * kLives, kLives);
     const Result<FleetFit> fit = fit_population(one);
@@ -119,11 +120,18 @@ TEST(FleetUncertainty, StandardErrorsAreTheScatterOfManyFleets) {
     mean += fit->population.initial_rate / kFleets;
     squares += fit->population.initial_rate * fit->population.initial_rate / kFleets;
     claimed += errors.initial_rate / kFleets;
+    irregular += fit->population.irregularity_std / kFleets;
+    irregular_squares += fit->population.irregularity_std * fit->population.irregularity_std / kFleets;
+    irregular_claimed += errors.irregularity_std / kFleets;
+    EXPECT_GT(errors.irregularity_std, 0.0) << "fleet " << k;
     EXPECT_GT(constants_for_forecasts(fit->population, errors).initial_rate_std, fit->population.initial_rate_std);
   }
   const double scatter = std::sqrt(squares - mean * mean);
   EXPECT_GT(claimed / scatter, 0.6) << "of 20 fleets the scatter is good to a sixth, the jackknife of 8 to a quarter";
   EXPECT_LT(claimed / scatter, 1.7);
+  const double irregular_scatter = std::sqrt(irregular_squares - irregular * irregular);
+  EXPECT_GT(irregular_claimed / irregular_scatter, 0.6);
+  EXPECT_LT(irregular_claimed / irregular_scatter, 1.7);
 }
 
 TEST(FleetUncertainty, ForecastersTakeTheConfiguredFleet) {

@@ -1,6 +1,7 @@
 #include "services/common/runtime/yaml_map.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -241,7 +242,10 @@ void YamlMap::finish() const {
     if (!seen.insert(key).second)
       fault(key, key, "stands twice", "keep one of them");
     else if (std::ranges::find(known_, key) == known_.end())
-      fault(key, key, "is not a known key", suggest(key, known_));
+      // {scale: 10,5} reads as a key behind a comma.
+      const bool digits = std::ranges::all_of(key, [](unsigned char c) { return std::isdigit(c) != 0; });
+    fault(key, key, "is not a known key",
+          digits ? "numbers have a decimal point here: 10.5, not 10,5" : suggest(key, known_));
   }
 }
 

@@ -123,6 +123,9 @@ Result<UnitConversion> from_library(std::string_view unit, std::string_view si_u
   const Unit from = system.parse(unit);
   const Unit to = system.parse(si_unit);
   if (!from) return fail("is not a known unit");
+  if (unit == "%" && si_unit != "1")
+    return fail("is a share and no " + std::string(si_unit),
+                "in the map: unit: " + std::string(si_unit) + ", and as scale what 1 % is");
   if (!to || !same_dimension(*from, *to))
     return fail("cannot be converted to " + std::string(si_unit), "units of this channel: " + units_in_words(si_unit));
   const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(from.get(), to.get()));

@@ -80,6 +80,10 @@ INSTANTIATE_TEST_SUITE_P(
                "map.yaml: line 1, key channels.flow: needs a column; write {column: ..., unit: ...}"},
         BadMap{"no_scale", "channels: {flow: {column: F, scale: 0}}\n",
                "map.yaml: line 1, key channels.flow.scale: '0': must not be 0: every number would be the same"},
+        BadMap{
+            "decimal_comma", "channels: {flow: {column: F, scale: 10,5}}\n",
+            "map.yaml: line 1, key channels.flow.5: '5': is not a known key; numbers have a decimal point here: 10.5, "
+            "not 10,5"},
         BadMap{"delimiter", "log: {delimiter: ';'}\n",
                "map.yaml: line 1, key log.delimiter: ';': is not known; known are: comma, semicolon, tab, bar, blank"},
         BadMap{"two_commas", "log: {delimiter: comma, decimal: comma}\n",

@@ -68,15 +68,16 @@ TEST_P(Unknown, IsRefusedWithWhatWouldDo) {
   EXPECT_THAT(found.error().describe(), HasSubstr(GetParam().words));
 }
 
-INSTANTIATE_TEST_SUITE_P(Units, Unknown,
-                         ::testing::Values(Refused{"mpa", "Pa", "did you mean 'MPa'?"},
-                                           Refused{"mm", "Pa", "cannot be converted to Pa; units of this channel: Pa"},
-                                           Refused{"Hz", "rad/s", "cannot be converted to rad/s"},
-                                           Refused{"1/min", "rad/s", "cannot be converted to rad/s"},
-                                           Refused{"Hz", "s", "cannot be converted to s"},
-                                           Refused{"rad", "1", "cannot be converted to 1"},
-                                           Refused{"nonsense", "m", "is not a known unit"},
-                                           Refused{"V V", "V", "cannot be converted to V"}));
+INSTANTIATE_TEST_SUITE_P(
+    Units, Unknown,
+    ::testing::Values(Refused{"mpa", "Pa", "did you mean 'MPa'?"},
+                      Refused{"mm", "Pa", "cannot be converted to Pa; units of this channel: Pa"},
+                      Refused{"%", "W", "is a share and no W; in the map: unit: W, and as scale what 1 % is"},
+                      Refused{"Hz", "rad/s", "cannot be converted to rad/s"},
+                      Refused{"1/min", "rad/s", "cannot be converted to rad/s"},
+                      Refused{"Hz", "s", "cannot be converted to s"}, Refused{"rad", "1", "cannot be converted to 1"},
+                      Refused{"nonsense", "m", "is not a known unit"},
+                      Refused{"V V", "V", "cannot be converted to V"}));
 
 TEST(Conversion, MayBeAskedFromAnyThread) {
   std::vector<std::thread> threads;

@@ -236,16 +236,24 @@ std::vector<YAML::Node> YamlMap::list(const std::string& key) {
   return {node->begin(), node->end()};
 }
 
+namespace {
+
+constexpr const char* kDecimalPoint = "numbers have a decimal point here: 10.5, not 10,5";
+
+/// {scale: 10,5} reads as a key behind a comma.
+bool is_number_behind_comma(const std::string& key) {
+  return std::ranges::all_of(key, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+}  // namespace
+
 void YamlMap::finish() const {
   std::set<std::string> seen;
   for (const std::string& key : keys()) {
     if (!seen.insert(key).second)
       fault(key, key, "stands twice", "keep one of them");
     else if (std::ranges::find(known_, key) == known_.end())
-      // {scale: 10,5} reads as a key behind a comma.
-      const bool digits = std::ranges::all_of(key, [](unsigned char c) { return std::isdigit(c) != 0; });
-    fault(key, key, "is not a known key",
-          digits ? "numbers have a decimal point here: 10.5, not 10,5" : suggest(key, known_));
+      fault(key, key, "is not a known key", is_number_behind_comma(key) ? kDecimalPoint : suggest(key, known_));
   }
 }
 

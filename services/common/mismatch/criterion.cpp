@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unsupported/Eigen/FFT>
 
 namespace sealwatch::mismatch {
 namespace {
@@ -13,25 +14,34 @@ constexpr double kLeastPenalty = 2.0;
 // It decides where both do the same (a constant force, or an offset of the voltage that makes the force).
 constexpr double kOfRecording = 2.2;
 
+// Sums of products of a channel's residuals so many samples apart, of all channels and recordings, by their spectra
+// (Wiener and Khinchin): a slow course has thousands of lags that count.
+Eigen::VectorXd lagged_products(const std::vector<Linearisation>& parts, Eigen::Index longest) {
+  Eigen::Index size = 1;
+  while (size < 2 * longest) size *= 2;
+  Eigen::FFT<double> transform;
+  Eigen::VectorXcd spectrum, power = Eigen::VectorXcd::Zero(size);
+  for (const Linearisation& part : parts) {
+    const Eigen::Index channels = part.simulated.cols(), rows = part.simulated.rows();
+    for (Eigen::Index c = 0; c < channels; ++c) {
+      Eigen::VectorXd padded = Eigen::VectorXd::Zero(size);
+      padded.head(rows) = part.residual(Eigen::seqN(c, rows, channels));
+      transform.fwd(spectrum, padded);
+      power += spectrum.cwiseAbs2();
+    }
+  }
+  Eigen::VectorXd products;
+  transform.inv(products, power);
+  return products;
+}
+
 // tau: how many neighbouring whitened residuals say the same.
 double correlation_time(const FittedModel& model) {
-  std::vector<const Linearisation*> parts;
   Eigen::Index longest = 0;
-  for (const Linearisation& part : model.optimum.at_optimum) {
-    parts.push_back(&part);
-    longest = std::max(longest, part.simulated.rows());
-  }
-  double variance = 0.0, tau = 1.0;
-  for (Eigen::Index lag = 0; lag < longest / 2; ++lag) {
-    double products = 0.0;
-    for (const Linearisation* part : parts) {
-      const Eigen::Index pairs = part->residual.size() - lag * part->simulated.cols();
-      if (pairs > 0) products += part->residual.head(pairs).dot(part->residual.tail(pairs));
-    }
-    if (lag == 0) variance = products;
-    if (products <= 0.0) break;
-    if (lag > 0) tau += 2.0 * products / variance;
-  }
+  for (const Linearisation& part : model.optimum.at_optimum) longest = std::max(longest, part.simulated.rows());
+  const Eigen::VectorXd products = lagged_products(model.optimum.at_optimum, longest);
+  double tau = 1.0;
+  for (Eigen::Index lag = 1; lag < longest / 2 && products(lag) > 0.0; ++lag) tau += 2.0 * products(lag) / products(0);
   return tau;
 }
 

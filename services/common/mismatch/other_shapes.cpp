@@ -123,6 +123,11 @@ bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOpt
   Trial taken = polished(trial, data, options.threads);
   naming.trials.push_back(taken);
   Result<Screening> next = look(naming, taken.model, data, options);
+  if (!next && passed(data.deadline)) {
+    naming.not_asked.emplace_back("what the best of them leaves");
+    naming.best = std::move(taken);
+    return true;
+  }
   if (!next) {
     naming.remarks.push_back("A model with " + laws_in_words(taken.effects) +
                              " fits better, but what it leaves cannot be looked at (" + reason_in_words(next.error()) +

@@ -64,8 +64,8 @@ int run_plant_import(const PlantImportOptions& options);
 
 struct PlantExportOptions {
   std::string asset_file;
-  std::string fmu;         ///< to write
-  std::optional<int> fmi;  ///< version of the standard: 2 or 3; none: an imported FMU's own, else 2
+  std::string fmu;              ///< to write
+  std::optional<int> fmi = {};  ///< version of the standard: 2 or 3; none: an imported FMU's own, else 2
 };
 int run_plant_export(const PlantExportOptions& options);
 

@@ -28,7 +28,8 @@ void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions&
                                      const ExplainOptions& options);
 
 /// Goes on with the search for the trial's values; the trial becomes the best, with a new last screening. False, and a
-/// remark, where what it leaves cannot be looked at: then the best stays what it was.
+/// remark, where what it leaves cannot be looked at: then the best stays what it was. Where time is up before that, it is
+/// the best all the same, and `not_asked` says so.
 [[nodiscard]] bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options);
 
 /// phi of the best of all these models.

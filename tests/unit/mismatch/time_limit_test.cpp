@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
@@ -62,6 +64,28 @@ TEST(TimeLimit, CalledOffInTheMiddleItEndsWithoutAnAnswer) {
   ASSERT_FALSE(found);
   EXPECT_THAT(found.error().describe(), HasSubstr("called off"));
   EXPECT_LE(steps_after, 3U) << "what follows finds its time over";
+}
+
+// The right law was fitted, and time was up before what it leaves was looked at.
+TEST(TimeLimit, ALawThatWasFittedIsKept) {
+  const std::vector<Recording> recordings = two_tests();
+  Data data = data_of(recordings);
+  const auto fitted = [&](const AssetConfig& asset) {
+    return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
+  };
+  AssetConfig leaking = with_a_leak();
+  leaking.physics.front().parameters.at("G").estimate = true;
+  const Trial law{{{find_law("external_leakage", {"G"}).value(), "chamber_a"}}, fitted(leaking)};
+  Naming naming{.baseline = fitted(actuator()), .best = {}, .trials = {}, .first = {}, .last = {}};
+  naming.best = {{}, naming.baseline};
+  ASSERT_LT(law.model->misfit, 0.1 * naming.baseline->misfit);
+  Deadline deadline;
+  deadline.set_in(-1.0);
+  data.deadline = &deadline;
+  EXPECT_TRUE(take(naming, law, data, {}));
+  EXPECT_THAT(naming.best.effects, SizeIs(1));
+  EXPECT_THAT(naming.not_asked, SizeIs(1));
+  EXPECT_THAT(naming.remarks, IsEmpty());
 }
 
 TEST(TimeLimit, ASimulationThatRunsIsEnded) {

@@ -1,7 +1,6 @@
 #include "services/common/mismatch/carry_over.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -46,18 +45,6 @@ Worth CarryOver::of(const Trial& trial) const {
     worth.of_law.push_back(own ? std::accumulate(own->gain.begin(), own->gain.end(), 0.0) : 0.0);
   }
   return worth;
-}
-
-double CarryOver::most_to_gain(const Trial& trial) const {
-  const double unknown = std::numeric_limits<double>::infinity();
-  if (!held_out_.in_turn() || held_out_.window_s > 0.0) return unknown;
-  double gain = 0.0;
-  for (const Result<FittedModel>& model : predictions(nothing_)) {
-    if (!model) return unknown;
-    for (const Linearisation& at : model->optimum.at_optimum) gain += 0.5 * at.residual.squaredNorm();
-  }
-  for (const Linearisation& at : trial.model->optimum.at_optimum) gain -= 0.5 * at.residual.squaredNorm();
-  return gain;
 }
 
 bool CarryOver::predicts_as_well(const Trial& trial, const Trial& best) const {

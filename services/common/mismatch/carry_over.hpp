@@ -39,9 +39,6 @@ class CarryOver {
   /// Its worth as a whole: nothing of its laws yet.
   [[nodiscard]] Worth of_whole(const Trial& trial) const;
   [[nodiscard]] Worth of(const Trial& trial) const;
-  /// Of `trial`'s prediction at best: what a model misses on recordings that it was not fitted to is no less than what it
-  /// misses where it was. Infinite where they are not the same recordings.
-  [[nodiscard]] double most_to_gain(const Trial& trial) const;
   /// Whether `trial` predicts as well as `best`; not where it cannot be simulated, or the time for it is up.
   [[nodiscard]] bool predicts_as_well(const Trial& trial, const Trial& best) const;
 

@@ -37,15 +37,8 @@ double within_range(const Unknown& unknown, double value) {
   return unknown.max > unknown.min ? std::clamp(value, unknown.min, unknown.max) : value;
 }
 
-// Recordings of a fit that another one does not have: [first, end).
-struct LeftOut {
-  std::size_t first = 0, end = 0;
-  [[nodiscard]] std::size_t before(std::size_t left) const { return left < first ? left : left + (end - first); }
-};
-
 // Where another fit of the same recordings ended, changed by `beside`; empty: as it is.
-void continue_from(const FittedModel& start, const PemPoint& beside, const PemProblem& problem, PemPoint& point,
-                   const LeftOut& left_out = {}) {
+void continue_from(const FittedModel& start, const PemPoint& beside, const PemProblem& problem, PemPoint& point) {
   for (std::size_t k = 0; k < start.problem.shared.size(); ++k) {
     const auto same = std::ranges::find(problem.shared, start.problem.shared[k].name, &Unknown::name);
     if (same == problem.shared.end()) continue;
@@ -54,17 +47,14 @@ void continue_from(const FittedModel& start, const PemPoint& beside, const PemPr
     point.shared[static_cast<std::size_t>(same - problem.shared.begin())] =
         same->to_unknown(change == 0.0 ? value : within_range(*same, value));
   }
-  for (std::size_t r = 0; r < problem.recordings.size(); ++r) {
-    const std::size_t there = left_out.before(r);
-    if (there >= start.problem.recordings.size()) break;
+  for (std::size_t r = 0; r < problem.recordings.size() && r < start.problem.recordings.size(); ++r)
     for (std::size_t k = 0; k < problem.recordings[r].own.size(); ++k)
-      for (std::size_t j = 0; j < start.problem.recordings[there].own.size(); ++j) {
-        const Unknown& from = start.problem.recordings[there].own[j];
+      for (std::size_t j = 0; j < start.problem.recordings[r].own.size(); ++j) {
+        const Unknown& from = start.problem.recordings[r].own[j];
         if (from.name == problem.recordings[r].own[k].name)
           point.own[r][k] = problem.recordings[r].own[k].to_unknown(
-              from.to_value(start.optimum.point.own[there][j] + (beside.own.empty() ? 0.0 : beside.own[there][j])));
+              from.to_value(start.optimum.point.own[r][j] + (beside.own.empty() ? 0.0 : beside.own[r][j])));
       }
-  }
 }
 
 bool same_noise(const PemRecording& a, const PemRecording& b) {
@@ -185,19 +175,6 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
 Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
                                      const FittedModel& start, int iterations, const SearchBound& bound) {
   return fit_from(start, beside, asset, data, 1, iterations, bound);
-}
-
-Result<FittedModel> fit_to_others(const FittedModel& all, const Data& others, std::size_t first, std::size_t end,
-                                  int threads) {
-  constexpr int kIterations = 30;
-  const ActuatorFitOptions options = search_options(threads, kIterations);
-  Result<PemProblem> problem = problem_of(all.asset, others, options);
-  if (!problem) return fail(problem.error());
-  PemPoint point = start_point(*problem, 1.0);
-  continue_from(all, {}, *problem, point, {first, end});
-  Result<PemOptimum> optimum = search(*problem, std::move(point), options);
-  if (!optimum) return fail(optimum.error());
-  return model_at(all.asset, std::move(*problem), std::move(*optimum));
 }
 
 Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,

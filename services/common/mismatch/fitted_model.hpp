@@ -46,9 +46,6 @@ struct FittedModel {
 /// search sets out. `threads`: recordings that are simulated at once.
 [[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
                                             int threads, int iterations = 30);
-/// The same model fitted to the recordings that are left of those of `all` without [first, end), from its values.
-[[nodiscard]] Result<FittedModel> fit_to_others(const FittedModel& all, const Data& others, std::size_t first,
-                                                std::size_t end, int threads);
 /// The same from values that `beside` changes (of as many unknowns as `start` has; empty: none), until `bound` is out of
 /// reach.
 [[nodiscard]] Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,

@@ -37,12 +37,8 @@ Predictions predict_in_turn(const HeldOut& of, const Trial& trial) {
     while (end < count && part_of(end, count) == part_of(first, count)) ++end;
     Data rest = of.fit;
     for (std::size_t k = end; k-- > first;) rest = without(rest, k);
-    // From where all of them led, the search for the others' minimum is short.
-    const bool same_parts =
-        of.window_s == 0.0 && rest.own_parameter.empty() && trial.model->problem.recordings.size() == count;
     Result<FittedModel> refitted =
-        same_parts ? fit_to_others(*trial.model, rest, first, end, of.options.threads) : Result<FittedModel>(fail(""));
-    if (!refitted) refitted = fit_model(trial.model->asset, in_windows(rest, of.window_s), nullptr, of.options.threads);
+        fit_model(trial.model->asset, in_windows(rest, of.window_s), nullptr, of.options.threads);
     for (std::size_t k = first; k < end; ++k)
       models.push_back(refitted ? predict(of, *refitted, rest, of.fit, k)
                                 : Result<FittedModel>(fail(refitted.error())));

@@ -33,10 +33,8 @@ struct HeldOut {
                                          std::vector<RecordingComparison>* kept = nullptr) const;
   [[nodiscard]] Predictions predictions(const Trial& trial) const;
 
-  /// Without held-out recordings those that are fitted are left out in turn.
-  [[nodiscard]] bool in_turn() const { return holdout.samples.empty(); }
-
  private:
+  [[nodiscard]] bool in_turn() const { return holdout.samples.empty(); }
   [[nodiscard]] const Data& predicted() const { return in_turn() ? fit : holdout; }
 };
 

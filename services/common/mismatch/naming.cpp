@@ -14,13 +14,14 @@
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
-#include "services/common/mismatch/search_rules.hpp"
 #include "services/common/mismatch/tolerance.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr double kWorthRoughly = 2.0;  // criterion that a law must bring in a gross misfit
+constexpr std::size_t kSingles = 8;      // refits of single laws
+constexpr double kWorthRoughly = 2.0;    // criterion that a law must bring in a gross misfit
+constexpr std::size_t kClosedForms = 5;  // refits of closed forms
 
 bool same(const Effect& a, const Effect& b) { return a.law->id == b.law->id && a.element == b.element; }
 
@@ -100,7 +101,7 @@ void try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& op
     const auto screening = screen(*from.model, data, forms);
     if (!screening || !promising(*screening, *from.model)) continue;
     std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : ranked_laws(*screening, kSearch.closed_forms)) starts.push_back({std::move(start)});
+    for (LawStart& start : ranked_laws(*screening, kClosedForms)) starts.push_back({std::move(start)});
     for (Trial& trial : refit(from, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))
       trials.push_back(std::move(trial));
     if (naming.best.effects.empty()) break;
@@ -218,47 +219,41 @@ bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::ve
   return std::abs(*estimate_of(*trial.model, strength)) <= kWithinTolerance * known->standard_deviation;
 }
 
-// Refits with another law: first the single laws that promise most. Where none of them does, sensors that are not exact;
-// else the other laws, in a gross misfit from second starts too, then pairs without the best of the laws: what acts
-// beside that one is asked in the next round. Sensors that promise more than the laws come first, and only laws that
-// could do better are refitted.
+// Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
+// Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
+// the laws come first, and only laws that could do better are refitted.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
   const Screening& asked = naming.last;
-  InexactSensors sensors(*naming.best.model, data, options.threads);
-  const std::optional<double> least_gain = sensors.least_gain(asked);
-  std::vector<Trial> trials;
   std::vector<std::vector<LawStart>> singles;
-  for (LawStart& start : ranked_laws(asked, level == 0 || gross ? kSearch.singles : kSearch.singles / 2 + 1))
+  for (LawStart& start : ranked_laws(asked, level == 0 || gross ? kSingles : kSingles / 2 + 1))
     singles.push_back({std::move(start)});
-  const auto first = static_cast<std::ptrdiff_t>(nearly_as_promising(asked, singles.size(), least_gain.value_or(0.0)));
   if (gross)
     for (LawStart& start : second_starts(asked)) singles.push_back({std::move(start)});
+  std::vector<Trial> trials;
   const auto refit_also = [&](const std::vector<std::vector<LawStart>>& starts) {
     RefitOptions refits;
     for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
     for (Trial& trial : refit(naming.best, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
   };
+  InexactSensors sensors(*naming.best.model, data, options.threads);
   const auto are_inexact = [&] {
     naming.sensors_are_inexact = sensors.beat(trials);
     if (naming.sensors_are_inexact) naming.with_sensors = sensors.model();
     return naming.sensors_are_inexact;
   };
-  const auto to_be_taken = [&]() -> const Effect* {
-    const double phi = smallest_dispersion(trials, *naming.best.model), worth = gross ? 0.0 : kWorthAnother;
-    const Trial* best = best_of(trials, phi);
-    const bool better = best != nullptr && criterion(*best->model, phi) <= criterion(*naming.best.model, phi) - worth;
-    return better ? &best->effects.back() : nullptr;
-  };
+  const std::optional<double> least_gain = sensors.least_gain(asked);
   if (least_gain && by_gain(asked).front()->gain < *least_gain && are_inexact()) return trials;
+  const auto first = static_cast<std::ptrdiff_t>(
+      gross ? singles.size() : nearly_as_promising(asked, singles.size(), least_gain.value_or(0.0)));
   refit_also({singles.begin(), singles.begin() + first});
   if (least_gain && are_inexact()) return trials;
   if (!one_law_does(trials, naming, data, options)) {
     if (are_inexact()) return trials;
     refit_also({singles.begin() + first, singles.end()});
     if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
-      refit_also(ranked_pairs(asked, naming.best.model->misfit, to_be_taken()));
+      refit_also(ranked_pairs(asked, naming.best.model->misfit));
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return trials;

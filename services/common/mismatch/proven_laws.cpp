@@ -52,12 +52,9 @@ class Proving {
     const Data none;
     const CarryOver from_others = carry_over({of_.held_out.fit, none, of_.held_out.window_s, of_.held_out.options});
     std::vector<std::pair<double, Trial>> order;  // by the fall of the misfit that they predict
-    double best = 0.0;
     for (const Trial& trial : likeliest(of_.naming, kMostToCarryOver)) {
-      if (from_others.most_to_gain(trial) < best) continue;
       const Worth worth = from_others.of_whole(trial);
       if (worth.whole.low > 0.0) order.emplace_back(worth.whole.gain * dispersion(*trial.model), trial);
-      if (!order.empty()) best = std::max(best, order.back().first);
       time_.allow(1.0);
       if (!time_.in_time("which other explanation carries over better")) break;
     }
@@ -125,10 +122,8 @@ Trial without(const Trial& trial, std::size_t slot, const ToProve& of) {
   Trial fewer{.effects = trial.effects, .model = of.baseline};
   fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
   if (fewer.effects.empty()) return fewer;
-  for (const Trial& known : of.naming.trials) {
-    if (!same_effects(known.effects, fewer.effects) || known.model->optimum.out_of_reach) continue;
-    if (fewer.model == of.baseline || known.model->misfit < fewer.model->misfit) fewer.model = known.model;
-  }
+  for (const Trial& known : of.naming.trials)
+    if (same_effects(known.effects, fewer.effects)) fewer.model = known.model;
   if (fewer.model != of.baseline) return fewer;
   AssetConfig asset = trial.model->asset;
   asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));

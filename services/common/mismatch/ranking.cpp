@@ -114,22 +114,18 @@ std::vector<LawStart> second_starts(const Screening& screening) {
   return starts;
 }
 
-std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit, const Effect* found) {
+std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit) {
   struct Pair {
     const Variant *a, *b;
     double gain;
   };
   const std::vector<const Variant*> singles = best_of_each(screening);
-  const auto is_found = [found](const Candidate& one) {
-    return found != nullptr && one.law == found->law && one.element == found->element;
-  };
   std::vector<Pair> pairs;
   for (std::size_t j = 0; j < singles.size(); ++j)
     for (std::size_t k = j + 1; k < singles.size(); ++k) {
       const Candidate &a = screening.candidates[singles[j]->candidate],
                       &b = screening.candidates[singles[k]->candidate];
       if (overlap(*a.law, *b.law) && a.element == b.element) continue;
-      if (is_found(a) || is_found(b)) continue;
       pairs.push_back({singles[j], singles[k], pair_gain(screening, *singles[j], *singles[k])});
     }
   std::ranges::stable_sort(pairs, std::greater<>(), &Pair::gain);

@@ -9,10 +9,19 @@
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/in_parallel.hpp"
-#include "services/common/mismatch/search_rules.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
+
+constexpr int kFirstRound = 8;           // iterations of every refit
+constexpr int kRound = 10, kRounds = 3;  // iterations of those that go on, so often
+constexpr std::size_t kGoOn = 5;         // refits that go on after the first round
+constexpr std::size_t kAhead = 2;        // refits that come first: what they come to is to be reached by the others
+// In a gross misfit a refit does not go on that is further off than so many times the best, or than so many times what
+// its linear model promises, nor where a round leaves more than that share of the distance to the best.
+constexpr double kHopeful = 10.0, kNearer = 0.5;
+constexpr double kFar = 100.0;    // times the noise: a model that misses by more says nothing of sizes
+constexpr double kSmaller = 0.1;  // strength with which one starts again that set out too far
 
 // Whether a strength of the laws added last has come to an end of its range: nothing depends on their shapes there.
 bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added) {
@@ -28,21 +37,19 @@ bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added
 }
 
 // The laws added last (`added`) with their shapes held at their start values until the sizes fit, then free: let free
-// at once, beside sizes that are far off, a shape drifts to the end of its range and stays there. What is known within
-// its tolerance waits too. Where that leaves nothing of a law, the shape was a wrong one, and is free from the start.
+// at once, beside sizes that are far off, a shape drifts to the end of its range and stays there. Where that leaves
+// nothing of a law, the shape was a wrong one, and is free from the start.
 Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& added, const Data& data,
-                                const FittedModel& from, const SearchBound& bound) {
+                                const FittedModel& from) {
   const AssetConfig free = asset;
-  Data held = data;
-  held.known.clear();
   for (std::size_t k = 0; k < added.size(); ++k)
     for (const LawParameter& parameter : added[k].effect.law->parameters)
       if (!parameter.strength)
         asset.physics[asset.physics.size() - added.size() + k].parameters.at(std::string(parameter.name)).estimate =
             false;
-  const Result<FittedModel> sized = fit_model(asset, held, &from, 1, kSearch.first_round);
+  const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
   const bool sizes_fit = sized && !came_to_an_end(*sized, added);
-  return fit_model_beside({}, free, data, sizes_fit ? *sized : from, kSearch.first_round, bound);
+  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound);
 }
 
 // What changes beside all of them; empty where that is not known. In a gross misfit the linear model says too little.
@@ -97,20 +104,20 @@ class GoesOn {
 
   /// The same for every iteration of a search; a cost is half a misfit.
   [[nodiscard]] SearchBound bound() const {
-    return {.cost = 0.5 * limit_, .optimism = gross_ ? kSearch.hopeful : kOptimistic};
+    return {.cost = 0.5 * limit_, .optimism = gross_ ? kHopeful : kOptimistic};
   }
 
   [[nodiscard]] bool at_first(const FittedModel& model) const {
-    return may_come_near(model) && (!gross_ || model.misfit <= kSearch.hopeful * best_);
+    return may_come_near(model) && (!gross_ || model.misfit <= kHopeful * best_);
   }
   [[nodiscard]] bool after(const FittedModel& before, const FittedModel& model) const {
-    const bool nearer = model.misfit - best_ <= kSearch.nearer * std::max(before.misfit - best_, 0.0);
+    const bool nearer = model.misfit - best_ <= kNearer * std::max(before.misfit - best_, 0.0);
     return may_come_near(model) && (!gross_ || nearer);
   }
 
  private:
   [[nodiscard]] bool may_come_near(const FittedModel& model) const {
-    return !model.optimum.converged && could_reach(model, gross_ ? kSearch.hopeful : kOptimistic) <= limit_;
+    return !model.optimum.converged && could_reach(model, gross_ ? kHopeful : kOptimistic) <= limit_;
   }
 
   bool gross_;
@@ -168,11 +175,11 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
       asset = with_law(std::move(asset), *law.effect.law, law.effect.element, parameters);
     }
     const auto set_out = [&](const PemPoint& beside) {
-      return fit_model_beside(beside, asset, data, *from.model, kSearch.first_round, bound);
+      return fit_model_beside(beside, asset, data, *from.model, kFirstRound, bound);
     };
     const PemPoint beside = gross ? PemPoint{} : beside_all(added, share);
     Result<FittedModel> model =
-        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, data, *from.model, bound);
+        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, data, *from.model);
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;
@@ -181,17 +188,16 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
   const auto one = [&](const std::vector<LawStart>& added) -> Refit {
     Refit refit = start(added, 1.0);
     const bool cut = refit.model != nullptr && refit.model->optimum.out_of_reach;
-    const bool worse = options.again_smaller && !cut && options.in_place_of.empty() &&
-                       excess(*from.model) < kSearch.far &&
+    const bool worse = options.again_smaller && !cut && options.in_place_of.empty() && excess(*from.model) < kFar &&
                        (refit.model == nullptr || refit.model->misfit > from.model->misfit);
     if (!worse) return refit;
-    Refit again = start(added, kSearch.smaller);
+    Refit again = start(added, kSmaller);
     const bool better = again.model != nullptr && (refit.model == nullptr || again.model->misfit < refit.model->misfit);
     return better ? again : refit;
   };
   std::vector<Refit> refits;
   for (std::size_t begin = 0, count = 0; begin < laws.size(); begin += count) {
-    count = std::min(begin == 0 ? kSearch.ahead : laws.size(), laws.size() - begin);
+    count = std::min(begin == 0 ? kAhead : laws.size(), laws.size() - begin);
     for (Refit& refit : in_parallel<Refit>(count, threads, [&](std::size_t k) { return one(laws[begin + k]); }))
       if (refit.model != nullptr) refits.push_back(std::move(refit));
     if (refits.empty()) continue;
@@ -202,17 +208,17 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
   const GoesOn goes_on(*refits.front().model, options.to_beat);
   const auto further = [&](Refit refit) -> Refit {
     bool open = goes_on.at_first(*refit.model);
-    for (int round = 0; round < kSearch.rounds && open; ++round) {
-      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kSearch.round, bound);
+    for (int round = 0; round < kRounds && open; ++round) {
+      Result<FittedModel> model = continue_fit(*refit.model, data, 1, kRound, bound);
       if (!model || model->misfit > refit.model->misfit) break;
       open = goes_on.after(*refit.model, *model);
       refit.model = std::make_shared<FittedModel>(std::move(*model));
     }
     return refit;
   };
-  std::ranges::move(in_parallel<Refit>(std::min(refits.size(), kSearch.go_on), threads,
-                                       [&](std::size_t k) { return further(refits[k]); }),
-                    refits.begin());
+  std::ranges::move(
+      in_parallel<Refit>(std::min(refits.size(), kGoOn), threads, [&](std::size_t k) { return further(refits[k]); }),
+      refits.begin());
   std::erase_if(refits, lost_its_core);
   return trials_of(std::move(refits));
 }

@@ -1,5 +1,8 @@
 #include "services/common/mismatch/held_out.hpp"
 
+#include <algorithm>
+
+#include "sealwatch/model/physics.hpp"
 #include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
@@ -28,6 +31,31 @@ Result<FittedModel> predict(const HeldOut& of, const FittedModel& model, const D
   return fit_model(with_fixed_parameters(asset), one, nullptr, 1);
 }
 
+bool is_strength(const PhysicsTerm& term, const std::string& parameter) {
+  return std::ranges::any_of(all_laws(), [&](const Law& law) {
+    const auto of_law = std::ranges::find(law.parameters, parameter, &LawParameter::name);
+    return law.id == term.id && of_law != law.parameters.end() && of_law->strength;
+  });
+}
+
+// A law that changes nothing in the recordings that a model was fitted to keeps the strength that another one gave it:
+// they say nothing of it, and it is no prediction of theirs.
+void leave_out_untold(FittedModel& model) {
+  constexpr double kTold = 0.01;  // of the misfit, to first order: a hundredth of what one sample's noise makes
+  for (PhysicsTerm& term : model.asset.physics)
+    for (auto& [parameter, setting] : term.parameters) {
+      const std::string name = physics_parameter_name(term.element, term.id, parameter);
+      const auto unknown = std::ranges::find(model.problem.shared, name, &Unknown::name);
+      if (unknown == model.problem.shared.end() || !is_strength(term, parameter)) continue;
+      const auto k = unknown - model.problem.shared.begin();
+      const double size = unknown->logarithmic ? 1.0 : model.optimum.point.shared[static_cast<std::size_t>(k)];
+      double change = 0.0;
+      for (const Linearisation& at : model.optimum.at_optimum)
+        change += at.jacobian.cols() > k ? at.jacobian.col(k).squaredNorm() * size * size : 2.0 * kTold;
+      if (change < kTold) setting.value = 0.0;
+    }
+}
+
 // Each part of the fitted recordings by the model that is fitted to the others.
 Predictions predict_in_turn(const HeldOut& of, const Trial& trial) {
   Predictions models;
@@ -39,6 +67,7 @@ Predictions predict_in_turn(const HeldOut& of, const Trial& trial) {
     for (std::size_t k = end; k-- > first;) rest = without(rest, k);
     Result<FittedModel> refitted =
         fit_model(trial.model->asset, in_windows(rest, of.window_s), nullptr, of.options.threads);
+    if (refitted) leave_out_untold(*refitted);
     for (std::size_t k = first; k < end; ++k)
       models.push_back(refitted ? predict(of, *refitted, rest, of.fit, k)
                                 : Result<FittedModel>(fail(refitted.error())));

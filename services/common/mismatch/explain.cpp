@@ -139,8 +139,19 @@ class Analysis {
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
     say_how_likely_by_noise(naming_.first);
+    look_at_what_is_left();
+    if (!seal_ || !result_.statistically_significant || !is_preferred(*seal_, best_)) {
+      seal_.reset();
+      return {};
+    }
+    if (!seal_->wears) ask_values_in_place_of_seals();
+    if (!why_none_) take_over(*seal_);
+    return {};
+  }
+
+  // The best of a search that was cut: what it leaves has not been looked at.
+  void look_at_what_is_left() {
     time_.add_not_asked(naming_.not_asked);
-    // The best of a search that was cut: what it leaves has not been looked at.
     if (!naming_.not_asked.empty() && !naming_.best.effects.empty()) {
       time_.allow(1.0);
       auto last = screen(*naming_.best.model, prepared(fit_), {.seed = options_.seed, .threads = options_.threads});
@@ -151,13 +162,6 @@ class Analysis {
       time_.allow(kSearchShare);
     }
     best_ = naming_.best;
-    if (!seal_ || !result_.statistically_significant || !is_preferred(*seal_, best_)) {
-      seal_.reset();
-      return {};
-    }
-    if (!seal_->wears) ask_values_in_place_of_seals();
-    if (!why_none_) take_over(*seal_);
-    return {};
   }
 
   // What was found is asked again beside sensors that are off by no more than they may be.
@@ -311,7 +315,8 @@ class Analysis {
     Result<Naming> naming = name_effects(baseline_, prepared(fit_), options_, progress_);
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
-    best_ = naming_.best;
+    look_at_what_is_left();
+    time_.allow(1.0);
     proven_ = false;
     result_.notes.emplace_back(
         "All models miss grossly: laws were weighed by the colour of what the fitted model leaves.");

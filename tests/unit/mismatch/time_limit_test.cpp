@@ -70,6 +70,8 @@ TEST(TimeLimit, CalledOffInTheMiddleItEndsWithoutAnAnswer) {
 TEST(TimeLimit, ALawThatWasFittedIsKept) {
   const std::vector<Recording> recordings = two_tests();
   Data data = data_of(recordings);
+  Deadline deadline;
+  data.deadline = &deadline;
   const auto fitted = [&](const AssetConfig& asset) {
     return std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
   };
@@ -79,9 +81,7 @@ TEST(TimeLimit, ALawThatWasFittedIsKept) {
   Naming naming{.baseline = fitted(actuator()), .best = {}, .trials = {}, .first = {}, .last = {}};
   naming.best = {{}, naming.baseline};
   ASSERT_LT(law.model->misfit, 0.1 * naming.baseline->misfit);
-  Deadline deadline;
   deadline.set_in(-1.0);
-  data.deadline = &deadline;
   EXPECT_TRUE(take(naming, law, data, {}));
   EXPECT_THAT(naming.best.effects, SizeIs(1));
   EXPECT_THAT(naming.not_asked, SizeIs(1));

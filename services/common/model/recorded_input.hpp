@@ -61,14 +61,16 @@ class RecordedInput {
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<InputChannel>& channels() const { return channels_; }
-  /// Between two samples: half of the distances are shorter. One short distance among many says nothing of the plant.
-  [[nodiscard]] double usual_distance_s() const {
-    std::vector<double> distances;
-    for (std::size_t row = 1; row < times_.size(); ++row) distances.push_back(times_[row] - times_[row - 1]);
-    if (distances.empty()) return 0.0;
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return *middle;
+  /// Between two samples, on the mean, where they are closest together. One short distance alone says nothing of the
+  /// plant; a burst of samples in a slow log has something to show.
+  [[nodiscard]] double shortest_distance_s() const {
+    constexpr std::size_t kBurst = 8;
+    const std::size_t burst = std::min(kBurst, times_.size() - 1);
+    if (burst == 0) return 0.0;
+    double shortest = times_.back() - times_.front();
+    for (std::size_t row = burst; row < times_.size(); ++row)
+      shortest = std::min(shortest, times_[row] - times_[row - burst]);
+    return shortest / static_cast<double>(burst);
   }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
   [[nodiscard]] double segment_begin(std::size_t segment) const { return segments_[segment]; }

@@ -95,7 +95,7 @@ class RecordingRun {
 
  private:
   [[nodiscard]] static double longest_step_s(const RecordedInput& input) {
-    return std::max(kLongestStep_s, kShareOfDistance * input.usual_distance_s());
+    return std::max(kLongestStep_s, kShareOfDistance * input.shortest_distance_s());
   }
 
   [[nodiscard]] tl::unexpected<Error> no_start() const {

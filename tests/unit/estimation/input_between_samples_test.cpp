@@ -19,7 +19,7 @@ constexpr double kCapacity = 18000.0, kLoss = 9.0, kAmbient = 293.15, kPower = 1
 
 /// `own_name`: that of a course, with or without more behind it, so that each test has a plant of its own.
 std::string heater(const std::string& own_name) {
-  const std::string course = own_name.starts_with("held") ? "held" : own_name;
+  const std::string course = own_name.starts_with("held") ? "held" : "as_recorded";
   const std::string name = "heater_" + own_name, file = testing::TempDir() + name + ".yaml";
   std::ofstream(file) << "name: " << name << "\nmeaning: a heated block\ninputs:\n  power: {unit: W, course: " << course
                       << R"yaml(}
@@ -108,6 +108,29 @@ TEST(InputBetweenSamples, OneShortDistanceDoesNotShortenAllSteps) {
   log.time_s.insert(log.time_s.begin() + 100, log.time_s[100] - 0.5);
   for (Series& channel : log.channels) channel.values.insert(channel.values.begin() + 100, channel.values[100]);
   EXPECT_LT(steps(log), 2 * before);
+}
+
+// A slow log that was triggered: what the input did within the burst is not stepped over.
+TEST(InputBetweenSamples, ABurstInASlowLogIsNotSteppedOver) {
+  const std::string plant = heater("as_recorded_burst");
+  TimeSeries log;
+  log.channels = {{"power", "W", 0.0, {}}, {"temperature", "K", 0.02, {}}};
+  double energy_J = 0.0;
+  const auto add = [&](double t, double power) {
+    if (!log.time_s.empty()) energy_J += 0.5 * (power + log.channels[0].values.back()) * (t - log.time_s.back());
+    log.time_s.push_back(t);
+    log.channels[0].values.push_back(power);
+    log.channels[1].values.push_back(kAmbient);
+  };
+  for (int row = 0; row <= 60; ++row) add(60.0 * row, 0.0);
+  for (int row = 1; row <= 40; ++row) add(3630.0 + 0.1 * row, row > 15 && row < 25 ? 1e5 : 0.0);
+  for (int row = 61; row <= 63; ++row) add(60.0 * row, 0.0);
+  const auto simulation = PlantSimulation::create(nominal_asset(plant), log);
+  ASSERT_TRUE(simulation) << simulation.error().describe();
+  const auto outputs = (*simulation)->run((*simulation)->start(), {});
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  const double rise = outputs->values.col(outputs->values.cols() - 1).maxCoeff() - kAmbient;
+  EXPECT_NEAR(rise, energy_J / 15000.0, 0.02 * energy_J / 15000.0);
 }
 
 TEST(InputBetweenSamples, IsNothingWhereItIsHeld) {

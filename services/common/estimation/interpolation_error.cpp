@@ -34,7 +34,7 @@ bool pass_over_every_second(TimeSeries& samples, const PlantDescription& plant, 
   bool changed = false;
   for (Series& channel : samples.channels) {
     const ChannelDescription* description = plant.find_channel(channel.name);
-    if (description == nullptr || !description->input) continue;
+    if (description == nullptr || !description->input || description->hold || description->band_limited) continue;
     for (std::size_t k = begin + 1 - begin % 2; k < end && k + 1 < samples.time_s.size(); k += 2) {
       const double share =
           (samples.time_s[k] - samples.time_s[k - 1]) / (samples.time_s[k + 1] - samples.time_s[k - 1]);
@@ -55,17 +55,22 @@ std::vector<RowMatrix> changes_by_pieces(const PemProblem& problem, std::size_t 
   std::vector<RowMatrix> changes;
   if (all_inputs_known(part.simulation->plant(), recorded)) return changes;
   const ModelValues values = values_at(problem, recording, optimum.point.shared, optimum.point.own[recording]);
+  std::size_t asked = 0;
   for (std::size_t piece = 0; piece < kPieces; ++piece) {
     TimeSeries passed_over = recorded;
     const std::size_t samples = recorded.time_s.size();
     if (!pass_over_every_second(passed_over, part.simulation->plant(), piece * samples / kPieces,
                                 (piece + 1) * samples / kPieces))
       continue;
+    ++asked;
     const auto simulation = PlantSimulation::create(asset, passed_over);
     if (!simulation) continue;
     auto outputs = (*simulation)->run(values, {}, problem.simulation_options);
     if (outputs) changes.push_back(outputs->values - optimum.at_optimum[recording].simulated);
   }
+  // Those that cannot be simulated are taken to move as much as the others.
+  const double missing = changes.empty() ? 1.0 : static_cast<double>(asked) / static_cast<double>(changes.size());
+  for (RowMatrix& change : changes) change *= std::sqrt(missing);
   return changes;
 }
 

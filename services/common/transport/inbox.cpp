@@ -47,13 +47,6 @@ bool replaces(std::deque<BusItem>* line, BusItem& item) {
   return false;
 }
 
-/// Which of its writer's lines it stands in: the order of raw samples counts within an asset alone.
-std::string line_of(const BusItem& item) {
-  const auto* message = std::get_if<Message>(&item);
-  const auto* raw = message == nullptr ? nullptr : std::get_if<RawSamples>(message);
-  return raw == nullptr || comes_again(item) ? std::string() : raw->asset_id;
-}
-
 }  // namespace
 
 std::size_t Inbox::Queue::size_of(const std::string& line) const {
@@ -110,13 +103,23 @@ bool Inbox::is_strangers(const BusItem& item) const {
 bool Inbox::is_beyond_share(const Queue& queue, const std::string& line, std::size_t topic, std::size_t limit) const {
   const std::size_t added = queue.size_of(line) == 0 ? 1 : 0, lines = queue.lines() + added;
   // A gateway of many assets may have as much of each as a sender of one. Where assets can be invented, senders count.
-  const std::size_t share =
-      assets_.empty() ? limit / std::max<std::size_t>(writers_[topic], 1) : limit * lines / (lines_[topic] + added);
-  return waiting_[topic] >= limit && queue.size() >= share && queue.size_of(line) >= share / lines;
+  const std::size_t share = assets_.empty() ? limit / writers_[topic] : limit * lines / (lines_[topic] + added);
+  // Of many assets each has one all the same.
+  const std::size_t part = std::max<std::size_t>(share / lines, 1);
+  return waiting_[topic] >= limit && queue.size() >= share && queue.size_of(line) >= part;
 }
 
 bool Inbox::is_left_out(const Queue& queue, std::size_t topic, std::size_t limit) const {
-  return topic == kServiceStatusIndex ? queue.size() >= kMostStatuses : is_beyond_share(queue, {}, topic, limit);
+  if (topic == kServiceStatusIndex) return queue.size() >= kMostStatuses;
+  return waiting_[topic] >= limit && queue.size() >= limit / writers_[topic];
+}
+
+// Assets that are not configured share one line: a sender may invent as many as it likes.
+std::string Inbox::line_of(const BusItem& item) const {
+  const auto* message = std::get_if<Message>(&item);
+  const auto* raw = message == nullptr ? nullptr : std::get_if<RawSamples>(message);
+  const bool has_own = raw != nullptr && !comes_again(item) && (assets_.empty() || assets_.contains(raw->asset_id));
+  return has_own ? raw->asset_id : std::string();
 }
 
 bool Inbox::is_alone(std::size_t topic, Time now) {

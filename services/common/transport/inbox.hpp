@@ -92,6 +92,8 @@ class Inbox {
   /// Whether that many wait, and in this queue more than its writer's share of them, and in this line more than its part.
   [[nodiscard]] bool is_beyond_share(const Queue& queue, const std::string& line, std::size_t topic,
                                      std::size_t limit) const;
+  /// Which of its writer's lines it stands in: the order of raw samples counts within an asset alone.
+  [[nodiscard]] std::string line_of(const BusItem& item) const;
   [[nodiscard]] bool is_left_out(const Queue& queue, std::size_t topic, std::size_t limit) const;
   /// Whether one writer at most sends on that topic.
   [[nodiscard]] bool is_alone(std::size_t topic, Time now);

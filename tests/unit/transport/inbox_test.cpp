@@ -172,6 +172,45 @@ TEST_F(InboxTest, AWriterThatInventsAssetsHasTwiceItsShareAtMost) {
   EXPECT_LE(waited, 1 + 2 * 2 * kLimit);
 }
 
+std::set<std::string> fleet(int assets) {
+  std::set<std::string> names = {"A", "B"};
+  for (int asset = 0; asset < assets; ++asset) names.insert(std::to_string(asset));
+  return names;
+}
+
+TEST_F(InboxTest, OfNumberedMessagesSendersShareHoweverManyAssetsAnotherHas) {
+  Inbox inbox;
+  inbox.know(fleet(50), {});
+  for (int asset = 0; asset < 50; ++asset)
+    for (std::uint64_t k = 1; k <= 12; ++k) inbox.put(1, block(std::to_string(asset), k), kLimit, kNow);
+  constexpr std::size_t kNumbered = 200;
+  for (std::uint64_t k = 1; k <= kNumbered; ++k) inbox.put(2, block("A", k, "gateway"), kLimit, kNow);
+  std::size_t numbered = 0;
+  while (!inbox.empty())
+    for (const BusItem& item : inbox.take(64, kNow)) numbered += asset_of(item) == "A" ? 1 : 0;
+  EXPECT_EQ(numbered, kNumbered) << "none is asked for again";
+}
+
+TEST_F(InboxTest, AConfiguredSenderThatInventsAssetsHasTheShareOfOne) {
+  inbox_.put(2, block("B", 1), kLimit, kNow);
+  for (std::uint64_t k = 1; k <= 20 * kLimit; ++k) {
+    BusItem invented = block("run " + std::to_string(k), 1);
+    std::get<RawSamples>(std::get<Message>(invented)).source_id = "sender of CONFIGURED";
+    inbox_.put(1, std::move(invented), kLimit, kNow);
+  }
+  ASSERT_THAT(inbox_.floods(), SizeIs(1));
+  for (std::uint64_t k = 1; k <= 100; ++k) inbox_.put(3, block("A", k), kLimit, kNow);
+  EXPECT_THAT(inbox_.floods(), SizeIs(0)) << "nothing of others is dropped for it";
+}
+
+TEST_F(InboxTest, OfAFleetLargerThanTheQueueEachAssetHasOneBlock) {
+  Inbox inbox;
+  inbox.know(fleet(3000), {});
+  inbox.put(2, block("B", 1), kLimit, kNow);
+  for (int asset = 0; asset < 3000; ++asset) inbox.put(1, block(std::to_string(asset), 1), kLimit, kNow);
+  EXPECT_THAT(inbox.floods(), SizeIs(0));
+}
+
 TEST_F(InboxTest, SaysWhetherATakeThatGaveFewHasLeftMore) {
   for (std::uint64_t k = 1; k <= 100; ++k) inbox_.put(1, block("A", k), kLimit, kNow);
   inbox_.put(2, block("B", 1), kLimit, kNow);

@@ -87,9 +87,12 @@ Result<SimulatedOutputs> RunProcess::run(const RuntimeRun& run) {
 
 Result<std::unique_ptr<RunProcess>> HostedRuns::take(const RuntimeRun& run) {
   const std::size_t needed = bytes_for(run);
+  std::vector<std::unique_ptr<RunProcess>> gone;  // they take a while to end, in which nobody should wait
   {
     const std::scoped_lock lock(mutex_);
-    std::erase_if(idle_, [&](const auto& process) { return !process->alive() || process->room_bytes() < needed; });
+    const auto fit = [&](const auto& process) { return process->alive() && process->room_bytes() >= needed; };
+    std::move(std::stable_partition(idle_.begin(), idle_.end(), fit), idle_.end(), std::back_inserter(gone));
+    std::erase(idle_, nullptr);
     auto chosen = std::ranges::find_if(idle_, [&](const auto& process) { return process->knows(run.simulation); });
     if (chosen == idle_.end() && !idle_.empty()) chosen = idle_.begin();
     if (chosen != idle_.end()) {

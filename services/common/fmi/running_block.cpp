@@ -20,6 +20,7 @@ std::vector<double> state_steps(const FmuBlock& block) {
 }  // namespace
 
 Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std::size_t slots) {
+  std::vector<std::unique_ptr<FmuProcess>> gone;  // they take a while to end, in which nobody should wait
   {
     const std::scoped_lock lock(mutex_);
     const auto fits = std::ranges::find_if(
@@ -29,7 +30,7 @@ Result<std::unique_ptr<FmuProcess>> ProcessPool::take(const FmuBlock& block, std
       idle_.erase(fits);
       return process;
     }
-    idle_.clear();  // too small, or of the process that this one is a copy of
+    gone.swap(idle_);  // too small, or of the process that this one is a copy of
   }
   return FmuProcess::start(block.file->name(), block.setup, slots);
 }

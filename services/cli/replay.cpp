@@ -285,7 +285,7 @@ int run_replay(const ReplayOptions& options) {
     }
   }
   ReplayLog log(options, source->tests());
-  catch_interrupts(options.with_services ? kSupervisorStops : kCommandStops);
+  catch_interrupts(options.offline ? kCommandStops : kSupervisorStops);
   bool hangs = false;
   int result = options.offline ? replay_offline(*layers, *source, log, hangs)
                                : replay_live(options, *layers, *source, log, *speed);

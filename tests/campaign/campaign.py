@@ -434,8 +434,8 @@ class Campaign:
             # To a file: a pipe is full within half a second, and a reader that then stops holds up who sends.
             arrived = self.folder / f"arrived-{what}"
             with open(arrived, "w") as output:
-                reader = subprocess.Popen([perf, "receive", str(3 * seconds + 16)], env=world.environment, stdout=output)
-            sender = subprocess.Popen([perf, "send", "spread", str(self.arguments.live), str(2 * seconds + 4)], env=world.environment)
+                reader = subprocess.Popen([perf, "receive", str(2 * seconds + 24)], env=world.environment, stdout=output)
+            sender = subprocess.Popen([perf, "send", "spread", str(self.arguments.live), str(2 * seconds + 12)], env=world.environment)
             time.sleep(6.0 + seconds)  # joined, every layer has met its first blocks, and what there is without a flood
             before, flood_ns = world.sizes(), time.time_ns()
             stranger = None if what == "nothing" else subprocess.Popen(
@@ -455,6 +455,8 @@ class Campaign:
             alone = [ms for sampled, ms in places if flood_ns - seconds * 10**9 <= sampled < flood_ns]
             if ended := world.keep_up():
                 raise Failed(f"flood of {what}: ended: {ended}")
+        if not alone or not beside:
+            raise Failed(f"flood of {what}: {len(alone)} live blocks before it and {len(beside)} beside it")
         # What fits into the queues for strangers is no flood.
         if what in ("raw", "known") and sent > 5000 and not re.search(r'"kind":\s*"flood"', status):
             raise Failed(f"flood of {what}: {sent} messages, and nobody said so")

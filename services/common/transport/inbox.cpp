@@ -104,9 +104,7 @@ bool Inbox::is_beyond_share(const Queue& queue, const std::string& line, std::si
   const std::size_t added = queue.size_of(line) == 0 ? 1 : 0, lines = queue.lines() + added;
   // A gateway of many assets may have as much of each as a sender of one. Where assets can be invented, senders count.
   const std::size_t share = assets_.empty() ? limit / writers_[topic] : limit * lines / (lines_[topic] + added);
-  // Of many assets each has one all the same.
-  const std::size_t part = std::max<std::size_t>(share / lines, 1);
-  return waiting_[topic] >= limit && queue.size() >= share && queue.size_of(line) >= part;
+  return waiting_[topic] >= limit && queue.size() >= share && queue.size_of(line) >= share / lines;
 }
 
 bool Inbox::is_left_out(const Queue& queue, std::size_t topic, std::size_t limit) const {
@@ -155,7 +153,8 @@ void Inbox::put(Writer writer, BusItem item, std::size_t limit, Time now) {
   if (replaces(queue.find(line), item)) return;
   const bool again = comes_again(item);
   const bool is_left = !key.first && again && is_left_out(queue, topic, limit);
-  const bool is_flood = !key.first && !again && is_beyond_share(queue, line, topic, 2 * limit) && !is_alone(topic, now);
+  const std::size_t most = std::max(2 * limit, assets_.size());  // one block of each, however large the fleet
+  const bool is_flood = !key.first && !again && is_beyond_share(queue, line, topic, most) && !is_alone(topic, now);
   if (is_left || is_flood) {
     if (is_flood) drop(item);
     if (!is_new) return;

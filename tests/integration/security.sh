@@ -154,7 +154,7 @@ check_test() {
     ! grep -q '"topic":"advisory"' "$scratch/watched" || break
     sleep 0.1
   done
-  kill "$watcher"
+  pkill -P "$watcher" || kill "$watcher"  # the program, not the shell that waits for it
   wait "$watcher" || true
   watcher=
   advisory=$(grep -o '"advisory_id":"[^"]*"' "$scratch/watched" | head -1 | cut -d'"' -f4)

@@ -10,7 +10,8 @@
 //                   its sender's share is dropped and counted. Of one asset a take gives no more than its share, as all
 //                   that is taken at once is waited for at once
 //   raw samples     that are not numbered: the assets of a writer take turns too, as a gateway has many, and beyond the
-//                   writer's share those are dropped first of which more than their part of it waits
+//                   writer's share those are dropped first of which more than their part of it waits. Assets that are
+//                   not configured count as one; of each that is, one block is kept, however large the fleet
 //   of strangers    that is, not numbered, about no configured asset and from no configured sender: so many a second are
 //                   taken, whoever sends them, and so many wait; the rest is dropped and counted
 #pragma once

@@ -257,8 +257,7 @@ int run_replaced(const ReplacedOptions& options) {
   const std::string known_id = known ? prognostic_assessment::replacement_of(*known).id : std::string();
   if (known && known->replaced_ns == at->nanoseconds && may_report(known_id, options.asset_id, message.kind))
     message.header.message_id = known_id;
-  const int sent =
-      later ? kOk : send(session, message, {"state_detection", "prognostic_assessment", "advisory_generation"});
+  const int sent = later ? kOk : send(session, message, kReadersOfMaintenance);
   if (sent == kOk && known && known->replaced_ns >= at->nanoseconds) {
     const std::string day = date(known->replaced_ns);
     complain(Error{.file = {},

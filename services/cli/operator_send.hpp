@@ -16,6 +16,11 @@ namespace sealwatch::cli {
 /// In place of an asset, where an alarm is about none.
 inline constexpr const char* kNoAsset = "-";
 
+/// Every layer that reads topic maintenance_event. A report that one of them missed would count in some layers only,
+/// and its confirmation would be refused there.
+inline const std::vector<std::string> kReadersOfMaintenance = {"data_acquisition", "state_detection",
+                                                               "prognostic_assessment", "advisory_generation"};
+
 /// The bus, where somebody speaks of an asset that there is; else what is wrong is said on standard error.
 [[nodiscard]] std::optional<Session> open_for(const std::string& config, const std::string& asset_id,
                                               const std::string& who);

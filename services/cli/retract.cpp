@@ -57,8 +57,7 @@ int run_retract(const RetractOptions& options) {
   if (!event) return kBadInput;
   std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
-  const int sent =
-      send(session, *event, {"data_acquisition", "state_detection", "prognostic_assessment", "advisory_generation"});
+  const int sent = send(session, *event, kReadersOfMaintenance);
   if (sent != kOk || says_that_it_waits(*session, *event)) return sent;
   const bool withdrawn = event->kind == kRetractionWithdrawn;
   const char* const what = !withdrawn                              ? "these tests no longer count"

@@ -132,6 +132,20 @@ TEST_F(Operator, IsToldOfAServiceThatHangs) {
   EXPECT_EQ(state_of(machine.output).at("state_detection")["trouble"], "");
 }
 
+/// Whichever of them misses a replacement would count other tests than the rest, and refuse its confirmation.
+TEST_F(Operator, IsToldWhichLayerDidNotReceiveAReplacement) {
+  std::map<std::string, pid_t> processes;
+  const json status = json::parse(run({"sealwatch", "status", "--config", config(), "--json"}).output);
+  for (const json& service : status["services"]) processes[service["service"]] = service["process_id"].get<pid_t>();
+  const pid_t stopped = processes.at("data_acquisition");
+  kill(stopped, SIGSTOP);
+  const Finished said =
+      run({"sealwatch", "replaced", "--config", config(), "XT03-MV2", "--at", "2020-01-01", "--by", "J. Silva"});
+  kill(stopped, SIGCONT);
+  EXPECT_EQ(said.status, 1) << said.output;
+  EXPECT_THAT(said.output, HasSubstr("was not received by data_acquisition"));
+}
+
 TEST_F(Operator, IsToldThatAnEarlierTestLeavesTheAdvice) {
   const auto state = state_directory("late");
   const auto play = [&](std::size_t k) {

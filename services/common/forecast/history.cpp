@@ -109,10 +109,11 @@ class HistoryParser {
         return fail(at({}, columns_.header[i], "is not a column of a history", "did you mean '" + meant + "'?"));
     }
     const auto time = find("time[iso8601]");
-    if (!time) return fail(at({}, line, "has no column time[iso8601]", suggest("time[iso8601]", columns_.header)));
+    const std::string needs = "a history needs time[iso8601] and theta[1] or " + worn + ", one row per test";
+    if (!time) return fail(at({}, line, "has no column time[iso8601]", needs));
     const auto theta = find("theta[1]");
     const auto resistance = find(worn);
-    if (!theta && !resistance) return fail(at({}, line, "has neither column theta[1] nor " + worn, {}));
+    if (!theta && !resistance) return fail(at({}, line, "has neither column theta[1] nor " + worn, needs));
     columns_.time = *time;
     columns_.resistance = !theta;
     columns_.value = theta ? *theta : *resistance;

@@ -98,6 +98,18 @@ TEST(History, RefusesResistancesThatAreNoCondition) {
       AllOf(HasSubstr("row 3"), HasSubstr("R_CL[Pa s/m3]"), HasSubstr("1e300"), HasSubstr("above 2")));
 }
 
+TEST(History, OfAnotherFileSaysWhatAHistoryNeedsAndWhatTheFileHas) {
+  for (const std::string header : {"time[s],pressure_a[Pa]", "time[iso8601],pressure_a[Pa]"}) {
+    const auto history = parse_history(header + "\n0,1\n", "recording.csv", std::nullopt);
+    ASSERT_FALSE(history);
+    EXPECT_EQ(history.error().file, "recording.csv");
+    EXPECT_EQ(history.error().value, header);
+    EXPECT_NE(history.error().advice.find("needs time[iso8601] and theta[1] or R_CL[Pa s/m3]"), std::string::npos)
+        << history.error().advice;
+    EXPECT_EQ(history.error().advice.find("did you mean"), std::string::npos) << history.error().advice;
+  }
+}
+
 TEST(History, RefusesFilesWithoutTheColumns) {
   EXPECT_THAT(error_of(""), HasSubstr("empty"));
   EXPECT_THAT(error_of(kHeader), HasSubstr("no row"));

@@ -19,6 +19,7 @@ namespace sealwatch::cli {
 namespace {
 
 constexpr const char* kServiceStatus = "service_status";
+constexpr const char* kAnyService = "any service";  ///< each writes its status
 /// A service that runs is heard within its heartbeat's second and a little.
 constexpr std::chrono::milliseconds kPatience{1800};
 
@@ -67,10 +68,14 @@ class Writers {
   explicit Writers(const Selection& selection) {
     for (const Topic topic : selection.topics)
       if (const std::string writer = writer_of(topic); !writer.empty()) silent_.insert(writer);
+    if (selection.service_status && silent_.empty()) silent_.insert(kAnyService);
     expected_ = silent_.size();
   }
   void take(const BusItem& item) {
-    if (const auto* status = std::get_if<ServiceStatus>(&item)) silent_.erase(status->service);
+    if (const auto* status = std::get_if<ServiceStatus>(&item)) {
+      silent_.erase(status->service);
+      silent_.erase(kAnyService);
+    }
     if (const auto* message = std::get_if<Message>(&item)) silent_.erase(writer_of(topic_of(*message)));
   }
   void tell(std::chrono::steady_clock::time_point now, std::int32_t domain) {

@@ -485,6 +485,8 @@ TEST_F(Commands, WatchSaysThatNobodyWritesWhatIsWatched) {
   EXPECT_THAT(run({"sealwatch", "watch", "--config", config(), "--seconds", "2.2", "raw_samples"}).output,
               ::testing::IsEmpty())
       << "a control system writes these";
+  EXPECT_THAT(run({"sealwatch", "watch", "--config", config(), "--seconds", "2.2", "service_status"}).output,
+              HasSubstr("no heartbeat from any service"));
 }
 
 TEST_F(Commands, ReplayWithoutServicesSaysWhatToDo) {

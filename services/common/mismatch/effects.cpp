@@ -9,6 +9,7 @@
 #include "sealwatch/forecast/fleet_population.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
@@ -64,11 +65,9 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   if (best.effects.size() > 1 || !asked) {
     Result<Screening> screening = naming.first;
     if (!others.empty()) {
-      AssetConfig asset = best.model->asset;
-      asset.physics.erase(asset.physics.begin() + static_cast<std::ptrdiff_t>(place_of(best, slot)));
-      Result<FittedModel> fewer = fit_model(asset, data, best.model.get(), options.threads);
+      std::optional<Trial> fewer = without_law(naming, best, slot, data, options.threads);
       if (!fewer) return found;
-      from.model = std::make_shared<const FittedModel>(std::move(*fewer));
+      from = std::move(*fewer);
       screening = screen(*from.model, data, {.seed = options.seed, .threads = options.threads});
     }
     if (!screening) return found;

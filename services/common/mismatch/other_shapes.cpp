@@ -85,22 +85,6 @@ bool is_at_the_noise(const Naming& naming, const ExplainOptions& options) {
   return model.misfit < kLeft * model.residuals && !differs(naming.last.p_value, model, options.false_alarm_rate);
 }
 
-// The model without one of its laws.
-std::optional<Trial> without_law(const Naming& naming, std::size_t slot, const Data& data, int threads) {
-  Trial fewer{.effects = naming.best.effects, .model = nullptr};
-  fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
-  for (const Trial& known : naming.trials)
-    if (same_effects(known.effects, fewer.effects) && !known.model->optimum.out_of_reach) fewer.model = known.model;
-  if (fewer.model != nullptr && !fewer.model->optimum.at_optimum.front().jacobian.size()) fewer.model = nullptr;
-  if (fewer.model != nullptr) return fewer;
-  AssetConfig asset = naming.best.model->asset;
-  asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(naming.best.effects.size() - slot));
-  Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
-  if (!model) return std::nullopt;
-  fewer.model = std::make_shared<const FittedModel>(std::move(*model));
-  return fewer;
-}
-
 std::string laws_in_words(const std::vector<Effect>& effects) {
   std::vector<std::string> laws;
   for (const Effect& effect : effects) laws.push_back(law_in_words(law_at(effect)));
@@ -108,6 +92,25 @@ std::string laws_in_words(const std::vector<Effect>& effects) {
 }
 
 }  // namespace
+
+std::optional<Trial> without_law(const Naming& naming, const Trial& trial, std::size_t slot, const Data& data,
+                                 int threads) {
+  Trial fewer{.effects = trial.effects, .model = nullptr};
+  fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
+  for (const Trial& known : naming.trials) {
+    const bool kept = known.model->optimum.converged && known.model->optimum.at_optimum.front().jacobian.size() > 0;
+    if (kept && same_effects(known.effects, fewer.effects) &&
+        (fewer.model == nullptr || known.model->misfit < fewer.model->misfit))
+      fewer.model = known.model;
+  }
+  if (fewer.model != nullptr) return fewer;
+  AssetConfig asset = trial.model->asset;
+  asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));
+  Result<FittedModel> model = fit_model(asset, data, trial.model.get(), threads);
+  if (!model) return std::nullopt;
+  fewer.model = std::make_shared<const FittedModel>(std::move(*model));
+  return fewer;
+}
 
 Result<Screening> look(Naming& naming, const std::shared_ptr<const FittedModel>& model, const Data& data,
                        const ExplainOptions& options) {
@@ -173,7 +176,7 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
   if (naming.best.effects.size() < 2 || is_at_the_noise(naming, options)) return;
   std::vector<Trial> trials;
   for (std::size_t slot = 0; slot + 1 < naming.best.effects.size(); ++slot) {
-    const std::optional<Trial> fewer = without_law(naming, slot, data, options.threads);
+    const std::optional<Trial> fewer = without_law(naming, naming.best, slot, data, options.threads);
     if (!fewer) continue;
     const auto left = screen(*fewer->model, data, {.seed = options.seed, .threads = options.threads});
     if (!left) continue;

@@ -2,6 +2,7 @@
 // and asks others to fill what it leaves.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "services/common/mismatch/naming.hpp"
@@ -22,6 +23,11 @@ void another_law_for_each(Naming& naming, const Data& data, const ExplainOptions
 /// Several laws at one element may be parts of one (dry friction, drag and friction by pressure: a Stribeck curve):
 /// each law of the element is asked for what they do together, and stays where several are not worth another law.
 void one_law_for_several(Naming& naming, const Data& data, const ExplainOptions& options);
+
+/// A trial without one of its laws: as the search fitted it already, where that converged, else fitted from the trial.
+/// None where that cannot be simulated or time is up.
+[[nodiscard]] std::optional<Trial> without_law(const Naming& naming, const Trial& trial, std::size_t slot,
+                                               const Data& data, int threads);
 
 /// What a model leaves; that of the last one asked is remembered, as a search asks twice before it takes a model.
 [[nodiscard]] Result<Screening> look(Naming& naming, const std::shared_ptr<const FittedModel>& model, const Data& data,

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "sealwatch/forecast/fleet_population.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
@@ -46,9 +48,9 @@ std::vector<std::vector<LawStart>> twins_of(const Naming& naming, const Trial& b
   return starts;
 }
 
-// Trials that differ from `best` in the effect `slot` alone.
-std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std::size_t slot, const Data& data,
-                                   const ExplainOptions& options) {
+// Trials that differ from `best` in the effect `slot` alone; `fewer`: the model without that effect, where there is one.
+std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std::size_t slot,
+                                   const std::optional<Trial>& fewer, const Data& data, const ExplainOptions& options) {
   std::vector<Effect> others = best.effects;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(slot));
   std::vector<Trial> found;
@@ -57,27 +59,22 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
     std::vector<Effect> first(trial.effects.begin(), trial.effects.end() - 1);
     if (same_effects(first, others)) found.push_back(trial);
   }
-  Trial from{others, naming.baseline};
+  if (!fewer) return found;
   std::vector<std::vector<LawStart>> starts;
   // A search that began with this law has not asked for others in its place.
   const bool asked = std::ranges::any_of(
       found, [&](const Trial& trial) { return trial.effects.back().law->id != best.effects[slot].law->id; });
-  if (best.effects.size() > 1 || !asked) {
-    Result<Screening> screening = naming.first;
-    if (!others.empty()) {
-      std::optional<Trial> fewer = without_law(naming, best, slot, data, options.threads);
-      if (!fewer) return found;
-      from = std::move(*fewer);
-      screening = screen(*from.model, data, {.seed = options.seed, .threads = options.threads});
-    }
+  if (!others.empty() || !asked) {
+    const Result<Screening> screening =
+        others.empty() ? naming.first : screen(*fewer->model, data, {.seed = options.seed, .threads = options.threads});
     if (!screening) return found;
     for (LawStart& start : ranked_laws(*screening, kAlternatives))
       if (!same(start.effect, best.effects[slot])) starts.push_back({std::move(start)});
   }
   const RefitOptions rivals{.again_smaller = true, .to_beat = best.model->misfit};
-  for (Trial& trial : refit(from, starts, data, options.threads, rivals)) found.push_back(std::move(trial));
+  for (Trial& trial : refit(*fewer, starts, data, options.threads, rivals)) found.push_back(std::move(trial));
   constexpr double kNear = 1.01;  // times the misfit: further off a twin is told apart without its last iterations
-  for (Trial& twin : refit(from, twins_of(naming, best, slot), data, options.threads, rivals))
+  for (Trial& twin : refit(*fewer, twins_of(naming, best, slot), data, options.threads, rivals))
     found.push_back(twin.model->misfit < kNear * best.model->misfit ? polished(std::move(twin), data, options.threads)
                                                                     : std::move(twin));
   return found;
@@ -229,25 +226,23 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
   const std::vector<double> errors = standard_errors(*best.model);
   const PlantDescription& plant = best.model->problem.recordings.front().simulation->plant();
   const Resolution resolution = resolution_of(data, plant);
-  std::vector<FoundEffect> effects;
-  for (std::size_t slot = 0; slot < best.effects.size(); ++slot) {
-    const std::vector<Trial> alternatives = alternatives_of(naming, best, slot, data, options);
-    double phi = dispersion(*best.model);
-    for (const Trial& trial : alternatives) phi = std::min(phi, dispersion(*trial.model));
+  const auto describe_effect = [&](std::size_t slot) {
+    const std::optional<Trial> fewer = without_law(naming, best, slot, data, options.threads);
+    const std::vector<Trial> alternatives = alternatives_of(naming, best, slot, fewer, data, options);
+    const double phi = smallest_dispersion(alternatives, *best.model);
     FoundEffect effect;
     effect.what = law_at(best.effects[slot]);
     effect.parameters = parameters_of(best.effects[slot], *best.model, errors, resolution);
     effect.engineering_share = engineering_share(effect, best.effects[slot], naming.first.candidates, plant);
     weigh(effect, best.effects[slot], alternatives, how_far_behind(alternatives, best, phi, carry_over),
           best.model->misfit, phi);
-    const FittedModel* fewer = naming.baseline.get();
-    for (const Trial& trial : naming.trials) {
-      std::vector<Effect> rest = best.effects;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(slot));
-      if (same_effects(trial.effects, rest) && !trial.model->optimum.out_of_reach) fewer = trial.model.get();
-    }
-    effect.delta_bic = criterion(*best.model, phi) - criterion(*fewer, phi);
-    effects.push_back(std::move(effect));
+    effect.delta_bic = criterion(*best.model, phi) - criterion(fewer ? *fewer->model : *naming.baseline, phi);
+    return effect;
+  };
+  std::vector<FoundEffect> effects;
+  for (std::size_t slot = best.effects.size(); slot-- > 0;) {
+    effects.insert(effects.begin(), describe_effect(slot));
+    if (best.effects.size() > 1 && excess(*best.model) <= kGross && could_sit_anywhere(effects.front())) return effects;
   }
   std::ranges::stable_sort(effects, std::greater<>(), &FoundEffect::probability);
   return effects;

@@ -97,6 +97,7 @@ std::optional<Trial> without_law(const Naming& naming, const Trial& trial, std::
                                  int threads) {
   Trial fewer{.effects = trial.effects, .model = nullptr};
   fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
+  if (fewer.effects.empty()) return Trial{{}, naming.baseline};
   for (const Trial& known : naming.trials) {
     const bool kept = known.model->optimum.converged && known.model->optimum.at_optimum.front().jacobian.size() > 0;
     if (kept && same_effects(known.effects, fewer.effects) &&

@@ -13,7 +13,7 @@ constexpr double kFormHere = 2e-2, kFormElsewhere = 2e-3;  // of the largest law
 
 double gain_of(const FoundEffect& effect) { return -effect.delta_bic; }
 
-std::string could_sit_anywhere(const FoundEffect& effect) {
+std::string sits_anywhere_in_words(const FoundEffect& effect) {
   std::vector<std::string> places = {element_in_words(effect.what.element)};
   for (const std::string& other : effect.same_elements) places.push_back(element_in_words(other));
   return "A remainder beyond the noise could sit at " + joined(places, " or at ") +
@@ -30,10 +30,12 @@ std::string may_be_the_form(const FoundEffect& largest, const FoundEffect& effec
 
 bool same_place(const LawAt& a, const LawAt& b) { return a.id == b.id && a.element == b.element; }
 
+bool could_sit_anywhere(const FoundEffect& effect) { return effect.same_elements.size() >= kAnywhere; }
+
 std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last) {
   for (const FoundEffect& effect : effects)
-    if (same_place(effect.what, last) && effect.same_elements.size() >= kAnywhere)
-      return Remainder{effect.what, could_sit_anywhere(effect)};
+    if (same_place(effect.what, last) && could_sit_anywhere(effect))
+      return Remainder{effect.what, sits_anywhere_in_words(effect)};
   const FoundEffect& largest = *std::ranges::max_element(effects, {}, gain_of);
   const FoundEffect* least = nullptr;
   for (const FoundEffect& effect : effects) {

@@ -24,6 +24,9 @@ struct Remainder {
 /// Of the laws of one model, described; `last`: the one that was added last. Nothing where each says what it is.
 [[nodiscard]] std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last);
 
+/// Whether it fits at three other elements as well.
+[[nodiscard]] bool could_sit_anywhere(const FoundEffect& effect);
+
 /// The same law at the same element, whatever its form.
 [[nodiscard]] bool same_place(const LawAt& a, const LawAt& b);
 

@@ -147,6 +147,16 @@ Result<Products> products_of(const FittedModel& model, std::size_t recording, co
   return products;
 }
 
+// Recordings whose passes are kept at once: those of one long test would take as much memory as all else.
+int passes_at_once(const FittedModel& model, std::size_t columns, int threads) {
+  constexpr double kMost_bytes = 256e6;
+  double largest_bytes = 1.0;
+  for (const PemRecording& part : model.problem.recordings)
+    largest_bytes = std::max(largest_bytes, static_cast<double>(part.simulation->recorded().size() * sizeof(double)) *
+                                                static_cast<double>(columns));
+  return std::clamp(static_cast<int>(kMost_bytes / largest_bytes), 1, threads);
+}
+
 // What one recording adds to the normal equations of the shared unknowns, S, and [r L], its own unknowns taken off.
 struct Normal {
   Eigen::MatrixXd gram, cross;
@@ -275,7 +285,8 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
     for (const Eigen::Index index : layout.of_pass[k])
       screening.unit[static_cast<std::size_t>(index)] = columns[k].unit;
   using Part = std::optional<Result<Products>>;
-  std::vector<Part> parts = in_parallel<Part>(recordings, options.threads, [&](std::size_t k) {
+  const int threads = passes_at_once(model, columns.size(), options.threads);
+  std::vector<Part> parts = in_parallel<Part>(recordings, threads, [&](std::size_t k) {
     return products_of(model, k, screening.candidates, columns, layout, screening.variants, options.block_s);
   });
   for (const Part& part : parts)

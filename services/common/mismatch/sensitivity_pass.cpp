@@ -29,9 +29,10 @@ std::vector<LawColumn> law_columns(const std::vector<Candidate>& candidates, con
 
 // d(channel)/d(strength) of a sensor's law: 1, the channel, minus its slope, or minus what exceeds the end of the
 // range.
-void fill_sensor_column(const Candidate& candidate, const PassColumn& column, const RowMatrix& simulated,
-                        const std::vector<double>& time_s, Eigen::Index channel, Eigen::Ref<Eigen::VectorXd> result) {
+Eigen::VectorXd sensor_column(const Candidate& candidate, const PassColumn& column, const RowMatrix& simulated,
+                              const std::vector<double>& time_s, Eigen::Index channel) {
   const Eigen::Index last = simulated.rows() - 1;
+  Eigen::VectorXd result(simulated.rows());
   for (Eigen::Index row = 0; row <= last; ++row) {
     double slope = 1.0;
     if (candidate.law->kind == SiteKind::sensor_gain) slope = simulated(row, channel);
@@ -44,6 +45,7 @@ void fill_sensor_column(const Candidate& candidate, const PassColumn& column, co
     }
     result(row) = column.unit * slope;
   }
+  return result;
 }
 
 // d(channels)/d(strength) of a law of the recording, by two simulations. No column, so that the law is not asked, where
@@ -89,8 +91,8 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
   SimulationOptions options = model.problem.simulation_options;
   if (std::ranges::any_of(candidates, [](const Candidate& candidate) { return candidate.law->hidden.has_value(); }))
     options.maximum_step_s = std::min(options.maximum_step_s, kHiddenStep_s);
-  auto outputs =
-      part.simulation->run(values_at(model.problem, recording, shared, own), free.quantity, options, &injected);
+  const ModelValues values = values_at(model.problem, recording, shared, own);
+  auto outputs = part.simulation->run(values, free.quantity, options, &injected);
   if (!outputs) return fail(outputs.error());
 
   const Eigen::Index samples = outputs->values.rows(), channels = outputs->values.cols();
@@ -110,32 +112,35 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
   Pass pass;
   pass.part_ = &part;
   pass.channels = channels;
-  const auto other_laws = std::ranges::count_if(
-      columns, [&](const PassColumn& column) { return candidates[column.candidate].sites.empty(); });
-  auto others = std::make_shared<RowMatrix>(RowMatrix::Zero(samples * channels, other_laws));
+  const auto is_recorded = [&](const Candidate& candidate) {
+    return is_of_recording(candidate.law->kind) ||
+           std::ranges::find(part.simulation->inputs(), candidate.channel) != part.simulation->inputs().end();
+  };
+  const auto of_recording = std::ranges::count_if(columns, [&](const PassColumn& column) {
+    const Candidate& candidate = candidates[column.candidate];
+    return candidate.sites.empty() && is_recorded(candidate);
+  });
+  auto recorded = std::make_shared<RowMatrix>(samples * channels, of_recording);
   pass.simulated_ = std::make_shared<const RowMatrix>(std::move(outputs->sensitivities));
-  pass.others_ = others;
-  Eigen::Index next_simulated = frees, next_other = 0;
-  Eigen::VectorXd values(samples);
+  pass.of_recording_ = recorded;
+  pass.of_sensor_.resize(static_cast<std::size_t>(channels));
+  Eigen::Index next_simulated = frees, next_recorded = 0;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const PassColumn& column = columns[k];
     const Candidate& candidate = candidates[column.candidate];
-    const bool in_plant = !candidate.sites.empty();
-    pass.add_column(in_plant ? *pass.simulated_ : *others, in_plant ? next_simulated++ : next_other++, k);
-    if (in_plant) continue;
-    const Eigen::Index other = next_other - 1;
-    const auto inputs = part.simulation->inputs();
-    if (is_of_recording(candidate.law->kind) || std::ranges::find(inputs, candidate.channel) != inputs.end()) {
-      const RowMatrix change =
-          recording_column(part, values_at(model.problem, recording, shared, own), candidate, options);
-      others->col(other) = column.unit * change.reshaped<Eigen::RowMajor>();
-      continue;
-    }
-    for (Eigen::Index c = 0; c < channels; ++c) {
-      if (part.simulation->channels()[static_cast<std::size_t>(c)] != candidate.channel) continue;
-      fill_sensor_column(candidate, column, known.simulated, part.time_s, c, values);
-      for (Eigen::Index sample = 0; sample < samples; ++sample)
-        (*others)(sample * channels + c, other) = values(sample);
+    if (!candidate.sites.empty()) {
+      pass.add_column(*pass.simulated_, next_simulated++, k);
+    } else if (is_recorded(candidate)) {
+      recorded->col(next_recorded) =
+          column.unit * recording_column(part, values, candidate, options).reshaped<Eigen::RowMajor>();
+      pass.add_column(*recorded, next_recorded++, k);
+    } else {
+      const auto& names = part.simulation->channels();
+      const auto channel = std::ranges::find(names, candidate.channel) - names.begin();
+      if (channel < channels)
+        pass.of_sensor_[static_cast<std::size_t>(channel)].push_back(
+            {static_cast<Eigen::Index>(k),
+             sensor_column(candidate, column, known.simulated, part.time_s, static_cast<Eigen::Index>(channel))});
     }
   }
   whiten(part.colour, known);
@@ -146,10 +151,15 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
 }
 
 void Pass::add_column(const RowMatrix& from, Eigen::Index column, std::size_t place) {
-  if (!runs_.empty() && runs_.back().from == &from && runs_.back().first + runs_.back().count == column)
-    ++runs_.back().count;
-  else
-    runs_.push_back({&from, column, static_cast<Eigen::Index>(place), 1});
+  const auto at = static_cast<Eigen::Index>(place);
+  if (!runs_.empty()) {
+    Run& last = runs_.back();
+    if (last.from == &from && last.first + last.count == column && last.place + last.count == at) {
+      ++last.count;
+      return;
+    }
+  }
+  runs_.push_back({&from, column, at, 1});
 }
 
 void Pass::add_law_row(Eigen::Index row, double factor, double* columns) const {
@@ -158,6 +168,8 @@ void Pass::add_law_row(Eigen::Index row, double factor, double* columns) const {
     double* to = columns + run.place;
     for (Eigen::Index k = 0; k < run.count; ++k) to[k] += factor * from[k];
   }
+  for (const SensorColumn& sensor : of_sensor_[static_cast<std::size_t>(row % channels)])
+    columns[sensor.place] += factor * sensor.values(row / channels);
 }
 
 void Pass::law_row(Eigen::Index row, Eigen::Index columns, double* values) const {

@@ -41,13 +41,19 @@ class Pass {
     const RowMatrix* from;
     Eigen::Index first, place, count;
   };
+  /// A law of one channel's sensor: its column is zero in all others.
+  struct SensorColumn {
+    Eigen::Index place;
+    Eigen::VectorXd values;  ///< per sample
+  };
   void add_column(const RowMatrix& from, Eigen::Index column, std::size_t place);
   void add_law_row(Eigen::Index row, double factor, double* columns) const;
 
   const PemRecording* part_ = nullptr;
-  std::shared_ptr<const RowMatrix> simulated_;  ///< laws that act in the plant, unwhitened
-  std::shared_ptr<const RowMatrix> others_;     ///< and those of sensors and of the recording
+  std::shared_ptr<const RowMatrix> simulated_;     ///< laws that act in the plant, unwhitened
+  std::shared_ptr<const RowMatrix> of_recording_;  ///< and those of the recording
   std::vector<Run> runs_;
+  std::vector<std::vector<SensorColumn>> of_sensor_;  ///< per channel
 };
 
 [[nodiscard]] Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording,

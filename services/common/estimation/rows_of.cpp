@@ -4,10 +4,12 @@
 
 namespace sealwatch {
 
-TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end) {
+TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end, std::size_t step) {
   const auto cut = [&](const std::vector<double>& values) {
-    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                               values.begin() + static_cast<std::ptrdiff_t>(end));
+    std::vector<double> kept;
+    kept.reserve((end - begin + step - 1) / step);
+    for (std::size_t row = begin; row < end; row += step) kept.push_back(values[row]);
+    return kept;
   };
   TimeSeries piece{.time_s = cut(samples.time_s), .channels = {}, .input_hold = samples.input_hold};
   for (const Series& channel : samples.channels)

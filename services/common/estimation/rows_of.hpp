@@ -7,7 +7,7 @@
 
 namespace sealwatch {
 
-/// Samples begin, begin + 1, ... before end.
-[[nodiscard]] TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end);
+/// Samples begin, begin + step, ... before end.
+[[nodiscard]] TimeSeries rows_of(const TimeSeries& samples, std::size_t begin, std::size_t end, std::size_t step = 1);
 
 }  // namespace sealwatch

@@ -609,12 +609,15 @@ Result<Explanation> explain(const AssetConfig& asset, std::span<const Recording>
                             const Progress& progress) {
   if (const Status status = options.validate(); !status) return fail(status.error());
   if (const Status status = check(asset, fit, holdout); !status) return fail(status.error());
-  const auto analyse = [&](std::span<const Recording> fitted) {
-    return Analysis(asset, data_of(fitted, holdout), data_of(holdout, fitted), options, progress).run();
-  };
-  const std::vector<Recording> halves = halves_of_one(asset, fit, holdout);
-  Result<Explanation> found = halves.empty() ? analyse(fit) : analyse(halves);
+  std::vector<std::string> notes;
+  const std::vector<Recording> kept_aside = thinned(holdout, notes);
+  std::vector<Recording> fitted = thinned(fit, notes);
+  std::vector<Recording> halves = halves_of_one(asset, fitted, kept_aside);
+  if (!halves.empty()) fitted = halves;
+  Result<Explanation> found =
+      Analysis(asset, data_of(fitted, kept_aside), data_of(kept_aside, fitted), options, progress).run();
   if (!found) return found;
+  std::ranges::move(notes, std::back_inserter(found->notes));
   if (!halves.empty())
     found->notes.push_back(
         "The one recording is long enough to be two, a correlation time apart: each half is left out "

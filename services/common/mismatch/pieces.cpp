@@ -70,4 +70,17 @@ std::vector<Recording> in_halves(const Recording& recording, std::span<const std
           piece_of(recording, static_cast<std::size_t>(begin), time_s.size())};
 }
 
+std::vector<Recording> thinned(std::span<const Recording> recordings, std::vector<std::string>& notes) {
+  std::vector<Recording> result(recordings.begin(), recordings.end());
+  for (Recording& recording : result) {
+    const std::size_t rows = recording.samples.time_s.size(), numbers = rows * (1 + recording.samples.channels.size()),
+                      step = (numbers + kMostNumbersAnalysed - 1) / kMostNumbersAnalysed;
+    if (step <= 1) continue;
+    recording.samples = rows_of(recording.samples, 0, rows, step);
+    notes.push_back(recording.file + ": one row in " + std::to_string(step) + " was analysed, as its " +
+                    std::to_string(numbers) + " numbers are more than " + std::to_string(kMostNumbersAnalysed) + ".");
+  }
+  return result;
+}
+
 }  // namespace sealwatch::mismatch

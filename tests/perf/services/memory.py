@@ -72,7 +72,7 @@ def commands(sealwatch, recording, folder):
     return {
         "replay --offline": [sealwatch, "replay", "--offline", "--quiet", recording],
         "fit": [sealwatch, "fit", "--asset", ASSET, recording],
-        "explain": [sealwatch, "explain", "--asset", ASSET, "--fit", recording, "--out", out, "--time-limit", "20"],
+        "explain": [sealwatch, "explain", "--asset", ASSET, "--fit", recording, "--out", out, "--time-limit", "300"],
         "validate": [sealwatch, "validate", "--asset", ASSET, "--out", out, recording],
         "validate --simulated": [sealwatch, "validate", "--simulated", recording, recording],
         "asset new": [sealwatch, "asset", "new", "--from", recording, "--out", folder / "new.yaml"],

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "services/common/estimation/rows_of.hpp"
 #include "services/common/mismatch/pieces.hpp"
 
 namespace sealwatch::mismatch {
@@ -60,6 +61,22 @@ TEST(Pieces, AShortRecordingOrOneAtRestStaysOne) {
   Recording rest = drifting(0.0, 1000);
   for (double& value : rest.samples.channels[0].values) value = 1.0;
   EXPECT_THAT(in_halves(rest, kOutputs), IsEmpty());
+}
+
+TEST(Pieces, OfMoreNumbersThanAreAnalysedEveryFewRowsAreLeft) {
+  Recording slow, fast;
+  slow.file = "slow.csv";
+  fast.file = "fast.csv";
+  for (int k = 0; k < 300'000; ++k) fast.samples.time_s.push_back(1e-4 * k);
+  fast.samples.channels.push_back({"position", "m", 0.0, fast.samples.time_s});
+  slow.samples = rows_of(fast.samples, 0, 1000);
+  std::vector<std::string> notes;
+  const std::vector<Recording> kept = thinned(std::vector{slow, fast}, notes);
+  EXPECT_EQ(kept[0].samples, slow.samples);
+  EXPECT_EQ(kept[1].samples.time_s.size(), 100'000U);
+  EXPECT_DOUBLE_EQ(kept[1].samples.channels[0].values[2], 6e-4);
+  EXPECT_THAT(notes, testing::ElementsAre("fast.csv: one row in 3 was analysed, as its 600000 numbers are more than "
+                                          "250000."));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // `sealwatch`: one program with subcommands for engineers and operators.
 #include <exception>
 #include <iostream>
+#include <new>
 
 #include "services/cli/command_line.hpp"
 #include "services/cli/commands.hpp"
@@ -11,6 +12,9 @@ int main(int argc, char** argv) {
   sealwatch::give_large_blocks_back();
   try {
     return sealwatch::cli::with_output_written(sealwatch::cli::CommandLine().run(argc, argv));
+  } catch (const std::bad_alloc&) {
+    std::cerr << "sealwatch: memory is used up: give fewer or shorter recordings, or raise the limit of this process\n";
+    return sealwatch::cli::kInternalFailure;
   } catch (const std::exception& error) {
     std::cerr << "sealwatch: internal failure: " << error.what() << "\n";
     return sealwatch::cli::kInternalFailure;

@@ -388,6 +388,19 @@ TEST_F(Commands, AnswersThatFindNoRoomAreNoSuccess) {
   }
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take all addresses there are
+TEST_F(Commands, MemoryThatEndsIsToldAsSuch) {
+  const std::string folder = (folder_ / "fast").string();
+  const Finished made = run({"sealwatch", "simulate", "--asset", asset(), "--rate", "1000", "--out", folder});
+  ASSERT_EQ(made.status, 0) << made.output;
+  const Finished ended = run({"/bin/sh", "-c",
+                              "ulimit -v 200000; exec '" + program("sealwatch") + "' explain --asset '" + asset() +
+                                  "' --fit '" + folder + "'/*.csv --out '" + folder + "'"});
+  EXPECT_EQ(ended.status, 3) << ended.output;
+  EXPECT_THAT(ended.output, HasSubstr("memory is used up: give fewer or shorter recordings"));
+}
+#endif
+
 /// Options in groups are options too.
 TEST_F(Commands, CompletionAndManualHaveEveryOptionThatHelpShows) {
   const std::string arms = run({"sealwatch", "completion", "bash"}).output, page = run({"sealwatch", "manual"}).output;

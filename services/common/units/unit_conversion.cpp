@@ -26,42 +26,46 @@ struct FreeConverter {
 
 struct Addition {
   const char* name;
-  const char* meaning;  ///< in UDUNITS' own words
+  const char* meaning;            ///< in UDUNITS' own words
+  const char* si_unit = nullptr;  ///< only of a channel in this unit: elsewhere the name is another unit
 };
-constexpr std::array kAdditions = {Addition{"gpm", "3.785411784e-3 m3/min"},  // US gallon of 231 cubic inches
-                                   Addition{"GPM", "3.785411784e-3 m3/min"},
-                                   Addition{"gal/min", "3.785411784e-3 m3/min"},
-                                   Addition{"lpm", "L/min"},
-                                   Addition{"LPM", "L/min"},
-                                   Addition{"cfm", "ft3/min"},
-                                   Addition{"barg", "bar @ 1.01325"},
-                                   Addition{"bara", "bar"},
-                                   Addition{"psig", "psi @ 14.695948775513"},
-                                   Addition{"psia", "psi"},
-                                   Addition{"PSI", "psi"},
-                                   Addition{"PSIG", "psi @ 14.695948775513"},
-                                   Addition{"kPag", "kPa @ 101.325"},
-                                   Addition{"MPag", "MPa @ 0.101325"},
-                                   Addition{"rev", "cycle"},
-                                   Addition{"deg", "arc_degree"},
-                                   Addition{"RPM", "rpm"},
-                                   Addition{"U/min", "rpm"},
-                                   Addition{"rev/min", "rpm"},
-                                   Addition{"Nm", "N m"},
-                                   Addition{"counts", "1"},
-                                   Addition{"count", "1"}};
+constexpr std::array kAdditions = {
+    Addition{"gpm", "3.785411784e-3 m3/min"},  // US gallon of 231 cubic inches
+    Addition{"GPM", "3.785411784e-3 m3/min"}, Addition{"USgpm", "3.785411784e-3 m3/min"},
+    Addition{"US gpm", "3.785411784e-3 m3/min"}, Addition{"gal/min", "3.785411784e-3 m3/min"}, Addition{"lpm", "L/min"},
+    Addition{"LPM", "L/min"}, Addition{"cfm", "ft3/min"}, Addition{"PSI", "psi"}, Addition{"rev", "cycle"},
+    Addition{"deg", "arc_degree"}, Addition{"RPM", "rpm"}, Addition{"U/min", "rpm"}, Addition{"rev/min", "rpm"},
+    Addition{"Nm", "N m"}, Addition{"VDC", "V"}, Addition{"HP", "hp"}, Addition{"counts", "1"}, Addition{"count", "1"},
+    // What loggers write, and UDUNITS takes for a charge, a capacitance, an angle or a mass.
+    Addition{"C", "degC", "K"}, Addition{"F", "degF", "K"}, Addition{"deg C", "degC", "K"},
+    Addition{"deg F", "degF", "K"}, Addition{"deg. C", "degC", "K"}, Addition{"deg. F", "degF", "K"},
+    Addition{"Deg C", "degC", "K"}, Addition{"Deg F", "degF", "K"}, Addition{"DegC", "degC", "K"},
+    Addition{"DegF", "degF", "K"}, Addition{"DEGC", "degC", "K"}, Addition{"DEGF", "degF", "K"},
+    Addition{"Celsius", "degC", "K"}, Addition{"Fahrenheit", "degF", "K"}, Addition{"ºC", "degC", "K"},
+    Addition{"ºF", "degF", "K"}, Addition{"kg/cm2", "kgf/cm2", "Pa"}, Addition{"kg/cm²", "kgf/cm2", "Pa"},
+    Addition{"lb", "lbf", "N"}, Addition{"lbs", "lbf", "N"}, Addition{"kg", "kgf", "N"},
+    Addition{"ft-lb", "ft lbf", "N m"}, Addition{"lb-ft", "ft lbf", "N m"}, Addition{"in-lb", "in lbf", "N m"}};
 
-/// What loggers write for a temperature, which UDUNITS takes for a charge, a capacitance or an angle with them.
-constexpr std::array kTemperatures = {
-    Addition{"C", "degC"},       Addition{"F", "degF"},         Addition{"deg C", "degC"}, Addition{"deg F", "degF"},
-    Addition{"deg. C", "degC"},  Addition{"deg. F", "degF"},    Addition{"Deg C", "degC"}, Addition{"Deg F", "degF"},
-    Addition{"DegC", "degC"},    Addition{"DegF", "degF"},      Addition{"DEGC", "degC"},  Addition{"DEGF", "degF"},
-    Addition{"Celsius", "degC"}, Addition{"Fahrenheit", "degF"}};
+constexpr double kAtmosphere_Pa = 101325.0;
 
-std::string_view temperature_meant(std::string_view unit, std::string_view si_unit) {
-  const auto* found =
-      std::ranges::find(kTemperatures, unit, [](const Addition& one) { return std::string_view(one.name); });
-  return si_unit == "K" && found != kTemperatures.end() ? std::string_view(found->meaning) : unit;
+/// A unit of pressure and what it is measured from: "psig", "bar (g)", "kPa abs", "psid".
+struct Qualified {
+  std::string_view unit;  ///< without it; empty: nothing of that kind stands there
+  bool gauge = false;
+};
+
+Qualified split_qualifier(std::string_view text) {
+  const bool in_brackets = text.ends_with(')');
+  if (in_brackets) text.remove_suffix(1);
+  for (const std::string_view word : {"gauge", "abs", "diff", "g", "a", "d", "G", "A", "D"}) {
+    if (!text.ends_with(word)) continue;
+    std::string_view unit = text.substr(0, text.size() - word.size());
+    if (in_brackets != unit.ends_with('(')) return {};
+    if (in_brackets) unit.remove_suffix(1);
+    while (unit.ends_with(' ')) unit.remove_suffix(1);
+    return {.unit = unit, .gauge = word.front() == 'g' || word == "G"};
+  }
+  return {};
 }
 
 /// UDUNITS keeps its errors and its parser in one place for the whole process: under `mutex`.
@@ -74,13 +78,13 @@ class UnitSystem {
 
   std::mutex mutex;
 
-  /// Nothing where the text is no unit.
-  [[nodiscard]] Unit parse(std::string_view text) const {
+  /// The unit of a channel in `si_unit`, of any where that is empty; nothing where the text is no unit.
+  [[nodiscard]] Unit parse(std::string_view text, std::string_view si_unit = {}) const {
     if (system_ == nullptr || text.empty() || text.size() > kLongestUnit) return nullptr;
-    for (const Addition& added : kAdditions)  // the library would take those with a slash apart
-      if (text == added.name) text = added.meaning;
-    const std::string terminated(text);
-    return Unit(ut_parse(system_, terminated.c_str(), UT_UTF8));
+    const Qualified qualified = split_qualifier(text);
+    if (const Unit unit = parse_plain(qualified.unit, si_unit); unit && ut_are_convertible(unit.get(), pascal_) != 0)
+      return qualified.gauge ? above_atmosphere(*unit) : Unit(ut_clone(unit.get()));
+    return parse_plain(text, si_unit);
   }
 
  private:
@@ -89,13 +93,31 @@ class UnitSystem {
     pthread_atfork([] { get().mutex.lock(); }, [] { get().mutex.unlock(); }, [] { get().mutex.unlock(); });
     ut_set_error_message_handler(&ut_ignore);
     system_ = ut_read_xml(nullptr);
+    if (system_ == nullptr) return;
+    pascal_ = ut_get_unit_by_name(system_, "pascal");
     for (const Addition& added : kAdditions) {
       const std::string_view name = added.name;
-      const Unit meaning = name.find('/') == std::string_view::npos ? parse(name) : nullptr;
+      const bool anywhere = added.si_unit == nullptr && name.find_first_of("/ ") == std::string_view::npos;
+      const Unit meaning = anywhere ? parse_plain(name, {}) : nullptr;
       if (meaning) ut_map_name_to_unit(added.name, UT_ASCII, meaning.get());  // "deg/s" as well
     }
   }
-  ut_system* system_;  ///< as long as the process: never freed
+
+  [[nodiscard]] Unit parse_plain(std::string_view text, std::string_view si_unit) const {
+    if (text.empty()) return nullptr;
+    for (const Addition& added : kAdditions)  // the library would take those with a slash apart
+      if (text == added.name && (added.si_unit == nullptr || si_unit == added.si_unit)) text = added.meaning;
+    const std::string terminated(text);
+    return Unit(ut_parse(system_, terminated.c_str(), UT_UTF8));
+  }
+
+  [[nodiscard]] Unit above_atmosphere(ut_unit& unit) const {
+    const std::unique_ptr<cv_converter, FreeConverter> from_pascal(ut_get_converter(pascal_, &unit));
+    return from_pascal ? Unit(ut_offset(&unit, cv_convert_double(from_pascal.get(), kAtmosphere_Pa))) : nullptr;
+  }
+
+  ut_system* system_;          ///< as long as the process: never freed
+  ut_unit* pascal_ = nullptr;  ///< as long
 };
 
 bool has_angle(const ut_unit& unit) {
@@ -112,22 +134,35 @@ bool same_dimension(const ut_unit& a, const ut_unit& b) {
 }
 
 std::string units_in_words(std::string_view si_unit) {
-  std::string units;
-  for (const std::string& name : units_of(si_unit)) units.append(units.empty() ? "" : ", ").append(name);
+  std::string units = "units of this channel: ";
+  for (const std::string& name : units_of(si_unit)) units.append(name == si_unit ? "" : ", ").append(name);
   return units;
+}
+
+/// Of a unit that is another quantity's: why, and what to write.
+tl::unexpected<Error> other_quantity(const UnitSystem& system, std::string_view unit, const ut_unit& from,
+                                     std::string_view si_unit) {
+  const std::string si(si_unit);
+  if (unit == "%") return fail("is a share and no " + si, "in the map: unit: " + si + ", and as scale what 1 % is");
+  if (unit == "counts" || unit == "count")
+    return fail("are a plain number and no " + si,
+                "in the map: unit: " + si + ", scale: what one count is, offset: what no count is");
+  const Unit frequency = si_unit == "rad/s" ? system.parse("1/s") : nullptr;
+  if (frequency && same_dimension(from, *frequency))
+    return fail("cannot be converted to rad/s", "where it counts revolutions: rev/min (rpm) or rev/s");
+  return fail("cannot be converted to " + si, units_in_words(si_unit));
 }
 
 Result<UnitConversion> from_library(std::string_view unit, std::string_view si_unit) {
   UnitSystem& system = UnitSystem::get();
   const std::lock_guard<std::mutex> lock(system.mutex);
-  const Unit from = system.parse(unit);
+  const Unit from = system.parse(unit, si_unit);
   const Unit to = system.parse(si_unit);
-  if (!from) return fail("is not a known unit");
-  if (unit == "%" && si_unit != "1")
-    return fail("is a share and no " + std::string(si_unit),
-                "in the map: unit: " + std::string(si_unit) + ", and as scale what 1 % is");
-  if (!to || !same_dimension(*from, *to))
-    return fail("cannot be converted to " + std::string(si_unit), "units of this channel: " + units_in_words(si_unit));
+  if (!from) {
+    const std::string meant = nearest(unit, units_of(si_unit));
+    return fail("is not a known unit", meant.empty() ? units_in_words(si_unit) : "did you mean '" + meant + "'?");
+  }
+  if (!to || !same_dimension(*from, *to)) return other_quantity(system, unit, *from, si_unit);
   const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(from.get(), to.get()));
   if (!converter) return fail("cannot be converted to " + std::string(si_unit));
   const double offset = cv_convert_double(converter.get(), 0.0);
@@ -139,12 +174,8 @@ Result<UnitConversion> from_library(std::string_view unit, std::string_view si_u
 Result<UnitConversion> convert_unit(std::string_view unit, std::string_view si_unit) {
   if (unit.empty() || unit == si_unit) return UnitConversion{.scale = 1.0, .offset = 0.0, .si_unit = {}};
   if (unit.size() > kLongestUnit) return fail("is not a known unit");
-  unit = temperature_meant(unit, si_unit);
-  Result<UnitConversion> known = find_unit(unit);  // exact definitions of the usual ones, without the library
-  if (known && known->si_unit == si_unit) return known;
-  Result<UnitConversion> converted = from_library(unit, si_unit);
-  if (!converted && !known && converted.error().rule == "is not a known unit") return known;  // with the nearest name
-  return converted;
+  const Result<UnitConversion> known = find_unit(unit);  // exact definitions of the usual ones, without the library
+  return known && known->si_unit == si_unit ? known : from_library(unit, si_unit);
 }
 
 bool is_unit(std::string_view text) {

@@ -1,7 +1,7 @@
 // Units as people write them, converted to a channel's SI unit by UDUNITS-2 (Unidata), which knows prefixes, powers and
-// products: "kPa", "m3/h", "lbf", "degF", "in". Added to it is what process plants write: gpm, lpm, cfm; barg, psig,
-// kPag (above the standard atmosphere, 101325 Pa) and bara, psia; rev; counts. Of a temperature C and F are degrees, no
-// coulomb and no farad.
+// products: "kPa", "m3/h", "lbf", "degF", "in". Added to it is what process plants write: gpm, lpm, cfm; rev; counts; any
+// pressure with g, (g) or gauge behind it (above the standard atmosphere, 101325 Pa), with a or abs, and with d or diff
+// (a difference). Of a temperature C and F are degrees, no coulomb and no farad; of a force kg and lb are kgf and lbf.
 //
 //   value_SI = scale * value + offset
 //

@@ -177,6 +177,7 @@ const std::vector<MixedRow> kMixed = {{"u_real", "Float64", "input", "start=\"0\
                                       {"last", "Int32", "parameter", "start=\"1000\"", 21},
                                       {"text", "String", "parameter", "", 22},
                                       {"length", "Int32", "output", "", 23, true},
+                                      {"bytes", "Binary", "parameter", "", 24},
                                       {"x0", "Float64", "parameter", "start=\"2\"", 30},
                                       {"x", "Float64", "output", "", 31},
                                       {"der(x)", "Float64", "local", "derivative=\"31\"", 32},
@@ -208,7 +209,8 @@ TestUnit mixed(const std::string& binary) {
   unit.interfaces =
       "<ModelExchange modelIdentifier=\"model\"/><CoSimulation modelIdentifier=\"model\" "
       "canHandleVariableCommunicationStepSize=\"true\"/>\n";
-  for (const MixedRow& row : kMixed) unit.variables += is_fmi3(unit) ? row3(row) : row2(row);
+  for (const MixedRow& row : kMixed)
+    if (is_fmi3(unit) || row.type != "Binary") unit.variables += is_fmi3(unit) ? row3(row) : row2(row);
   unit.structure = is_fmi3(unit) ? "<ContinuousStateDerivative valueReference=\"32\"/>"
                                    "<InitialUnknown valueReference=\"31\" dependencies=\"30\"/>\n"
                                  : "<Derivatives><Unknown index=\"15\"/></Derivatives>\n";

@@ -1,12 +1,16 @@
 // An imported FMU with laws in it, handed back as an FMU: imported again, it simulates what the explained asset does.
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/fmi/export/export_model.hpp"
 #include "services/common/fmi/export/fmu_writer.hpp"
+#include "services/common/fmi/fmu_archive.hpp"
 #include "services/common/fmi/import_fmu.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
@@ -62,6 +66,11 @@ PhysicsTerm term(const std::string& id, const std::string& element,
   return result;
 }
 
+std::string between(const std::string& text, const std::string& before, const std::string& behind) {
+  const std::size_t begin = text.find(before) + before.size();
+  return text.substr(begin, text.find(behind, begin) - begin);
+}
+
 /// A plant around a unit, the unit with an asset's laws in it that was exported of them, and the plant around that.
 class Exported {
  public:
@@ -78,6 +87,7 @@ class Exported {
 
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  [[nodiscard]] std::string file() const { return (folder_ / "explained.fmu").string(); }
   /// What both simulate of a channel, where `course` is each recorded input's.
   [[nodiscard]] RowMatrix simulated(const std::string& channel, double (*course)(double)) const {
     return run(asset_, channel, course);
@@ -257,6 +267,43 @@ TEST(ExplainedFmu, PassesTypedInputsAndSettingsOn) {
     EXPECT_EQ(exported.simulated_again("y_integer", whole), exported.simulated("y_integer", whole));
     EXPECT_EQ(exported.simulated_again("length", whole)(5, 0), 7.0);
   }
+}
+
+// sealwatch has no use for variables of type Binary; whoever runs the exported unit may have.
+TEST(ExplainedFmu, PassesBinaryVariablesOn) {
+  const Exported exported(mixed("fmu_mixed3"), typed_plant(), [](AssetConfig&) {});
+  ASSERT_EQ(exported.refusal(), "");
+  const auto unpacked = unpack_fmu(exported.file());
+  ASSERT_TRUE(unpacked) << unpacked.error().describe();
+  std::string text, member;
+  std::getline(std::ifstream(unpacked->path_of(kDescriptionName)), text, '\0');
+  EXPECT_THAT(text, HasSubstr("<Binary name=\"bytes\" valueReference=\"24\""));
+  for (const std::string& name : unpacked->members)
+    if (name.starts_with("binaries/") && name.ends_with(".so")) member = unpacked->path_of(name).string();
+  void* const library = dlopen(member.c_str(), RTLD_NOW | RTLD_LOCAL);
+  ASSERT_NE(library, nullptr) << dlerror();
+  const auto function = [&](const char* name, auto* type) {
+    return reinterpret_cast<decltype(type)>(dlsym(library, name));  // as POSIX has it
+  };
+  using New = void*(const char*, const char*, const char*, bool, bool, void*, void*);
+  using Free = void(void*);
+  using Get = int(void*, const unsigned*, std::size_t, std::size_t*, const std::uint8_t**, std::size_t);
+  using Set = int(void*, const unsigned*, std::size_t, const std::size_t*, const std::uint8_t* const*, std::size_t);
+  const std::string token = between(text, "instantiationToken=\"", "\"");
+  void* const unit = function("fmi3InstantiateModelExchange", static_cast<New*>(nullptr))(
+      "one", token.c_str(), (unpacked->path_of("resources").string() + "/").c_str(), false, false, nullptr, nullptr);
+  ASSERT_NE(unit, nullptr);
+  const unsigned reference = 24;
+  const std::array<std::uint8_t, 3> bytes = {7, 0, 9};
+  const std::uint8_t* place = bytes.data();
+  std::size_t size = bytes.size();
+  EXPECT_EQ(function("fmi3SetBinary", static_cast<Set*>(nullptr))(unit, &reference, 1, &size, &place, 1), 0);
+  size = 0, place = nullptr;
+  EXPECT_EQ(function("fmi3GetBinary", static_cast<Get*>(nullptr))(unit, &reference, 1, &size, &place, 1), 0);
+  ASSERT_EQ(size, bytes.size());
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), place));
+  function("fmi3FreeInstance", static_cast<Free*>(nullptr))(unit);
+  dlclose(library);
 }
 
 // The same laws, inputs, parameters and events within a unit of FMI 3.0, which is handed back as one of FMI 3.0.

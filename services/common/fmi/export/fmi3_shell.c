@@ -1,7 +1,7 @@
 /* The functions of FMI 3.0 for Model Exchange around a model in plain C without events. The model's file defines, before
  * it includes this one, what fmi2_shell.c asks for; value references are the same, and 0 is time. What the model does
  * not have (other types, clocks, Co-Simulation, saved states) is there, as importers look for every function, and says
- * that it failed.
+ * that it failed: see fmi3_common.c, which stands behind this text.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -22,12 +22,10 @@ typedef void (*Log)(void* environment, int status, const char* category, const c
 
 enum { kOk = 0, kError = 3 };
 #if defined(_WIN32)
-#define API __declspec(dllexport)
+#define EXPORT __declspec(dllexport)
 #else
-#define API __attribute__((visibility("default")))
+#define EXPORT __attribute__((visibility("default")))
 #endif
-
-API const char* fmi3GetVersion(void) { return "3.0"; }
 
 static void reset(Model* m) {
   m->time = 0.0;
@@ -36,7 +34,7 @@ static void reset(Model* m) {
   memcpy(m->p, start_parameters, PARAMETERS * sizeof(double));
 }
 
-API void* fmi3InstantiateModelExchange(const char* name, const char* token, const char* resources, bool visible,
+EXPORT void* fmi3InstantiateModelExchange(const char* name, const char* token, const char* resources, bool visible,
                                        bool logging, void* environment, Log log) {
   Model* m;
   (void)name, (void)resources, (void)visible, (void)logging;
@@ -48,69 +46,55 @@ API void* fmi3InstantiateModelExchange(const char* name, const char* token, cons
   if (m != NULL) reset(m);
   return m;
 }
-API void* fmi3InstantiateCoSimulation(const char* name, const char* token, const char* resources, bool visible,
-                                      bool logging, bool event_mode, bool early_return, const Ref* intermediate,
-                                      size_t n, void* environment, Log log, void* update) {
-  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)event_mode, (void)early_return;
-  (void)intermediate, (void)n, (void)environment, (void)log, (void)update;
-  return NULL;
-}
-API void* fmi3InstantiateScheduledExecution(const char* name, const char* token, const char* resources, bool visible,
-                                            bool logging, void* environment, Log log, void* update, void* lock,
-                                            void* unlock) {
-  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment, (void)log;
-  (void)update, (void)lock, (void)unlock;
-  return NULL;
-}
-API void fmi3FreeInstance(void* c) { free(c); }
-API int fmi3Reset(void* c) { return reset(c), kOk; }
-API int fmi3SetDebugLogging(void* c, bool on, size_t n, const char* const* categories) {
+EXPORT void fmi3FreeInstance(void* c) { free(c); }
+EXPORT int fmi3Reset(void* c) { return reset(c), kOk; }
+EXPORT int fmi3SetDebugLogging(void* c, bool on, size_t n, const char* const* categories) {
   return (void)c, (void)on, (void)n, (void)categories, kOk;
 }
-API int fmi3EnterInitializationMode(void* c, bool tolerance_defined, double tolerance, double start, bool stop_defined,
+EXPORT int fmi3EnterInitializationMode(void* c, bool tolerance_defined, double tolerance, double start, bool stop_defined,
                                     double stop) {
   (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
   return ((Model*)c)->time = start, kOk;
 }
-API int fmi3ExitInitializationMode(void* c) { return (void)c, kOk; }
-API int fmi3EnterEventMode(void* c) { return (void)c, kOk; }
-API int fmi3EnterContinuousTimeMode(void* c) { return (void)c, kOk; }
-API int fmi3EnterConfigurationMode(void* c) { return (void)c, kOk; }
-API int fmi3ExitConfigurationMode(void* c) { return (void)c, kOk; }
-API int fmi3Terminate(void* c) { return (void)c, kOk; }
-API int fmi3EvaluateDiscreteStates(void* c) { return (void)c, kOk; }
-API int fmi3UpdateDiscreteStates(void* c, bool* again, bool* terminate, bool* nominals, bool* values, bool* next_defined,
+EXPORT int fmi3ExitInitializationMode(void* c) { return (void)c, kOk; }
+EXPORT int fmi3EnterEventMode(void* c) { return (void)c, kOk; }
+EXPORT int fmi3EnterContinuousTimeMode(void* c) { return (void)c, kOk; }
+EXPORT int fmi3EnterConfigurationMode(void* c) { return (void)c, kOk; }
+EXPORT int fmi3ExitConfigurationMode(void* c) { return (void)c, kOk; }
+EXPORT int fmi3Terminate(void* c) { return (void)c, kOk; }
+EXPORT int fmi3EvaluateDiscreteStates(void* c) { return (void)c, kOk; }
+EXPORT int fmi3UpdateDiscreteStates(void* c, bool* again, bool* terminate, bool* nominals, bool* values, bool* next_defined,
                                  double* next) {
   (void)c, (void)next;
   return *again = *terminate = *nominals = *values = *next_defined = false, kOk;
 }
-API int fmi3CompletedIntegratorStep(void* c, bool no_return, bool* event, bool* terminate) {
+EXPORT int fmi3CompletedIntegratorStep(void* c, bool no_return, bool* event, bool* terminate) {
   (void)c, (void)no_return;
   return *event = *terminate = false, kOk;
 }
-API int fmi3SetTime(void* c, double time) { return ((Model*)c)->time = time, kOk; }
-API int fmi3SetContinuousStates(void* c, const double* x, size_t n) {
+EXPORT int fmi3SetTime(void* c, double time) { return ((Model*)c)->time = time, kOk; }
+EXPORT int fmi3SetContinuousStates(void* c, const double* x, size_t n) {
   if (n != STATES) return kError;
   return memcpy(((Model*)c)->x, x, n * sizeof *x), kOk;
 }
-API int fmi3GetContinuousStates(void* c, double* x, size_t n) {
+EXPORT int fmi3GetContinuousStates(void* c, double* x, size_t n) {
   if (n != STATES) return kError;
   return memcpy(x, ((Model*)c)->x, n * sizeof *x), kOk;
 }
-API int fmi3GetNominalsOfContinuousStates(void* c, double* x, size_t n) {
+EXPORT int fmi3GetNominalsOfContinuousStates(void* c, double* x, size_t n) {
   size_t k;
   (void)c;
   for (k = 0; k < n; ++k) x[k] = 1.0;
   return kOk;
 }
-API int fmi3GetContinuousStateDerivatives(void* c, double* dx, size_t n) {
+EXPORT int fmi3GetContinuousStateDerivatives(void* c, double* dx, size_t n) {
   Model* m = c;
   if (n != STATES) return kError;
   return model_derivatives(m->time, m->x, m->u, m->p, dx), kOk;
 }
-API int fmi3GetEventIndicators(void* c, double* z, size_t n) { return (void)c, (void)z, n == 0 ? kOk : kError; }
-API int fmi3GetNumberOfContinuousStates(void* c, size_t* n) { return (void)c, *n = STATES, kOk; }
-API int fmi3GetNumberOfEventIndicators(void* c, size_t* n) { return (void)c, *n = 0, kOk; }
+EXPORT int fmi3GetEventIndicators(void* c, double* z, size_t n) { return (void)c, (void)z, n == 0 ? kOk : kError; }
+EXPORT int fmi3GetNumberOfContinuousStates(void* c, size_t* n) { return (void)c, *n = STATES, kOk; }
+EXPORT int fmi3GetNumberOfEventIndicators(void* c, size_t* n) { return (void)c, *n = 0, kOk; }
 
 /* The place of a value that is kept, or NULL. */
 static double* kept(Model* m, Ref reference) {
@@ -120,7 +104,7 @@ static double* kept(Model* m, Ref reference) {
   if (kind == 4 && index < PARAMETERS) return &m->p[index];
   return NULL;
 }
-API int fmi3GetFloat64(void* c, const Ref* references, size_t n, double* values, size_t size) {
+EXPORT int fmi3GetFloat64(void* c, const Ref* references, size_t n, double* values, size_t size) {
   Model* m = c;
   double derivatives[ROOM(STATES)], outputs[ROOM(OUTPUTS)];
   size_t k;
@@ -137,7 +121,7 @@ API int fmi3GetFloat64(void* c, const Ref* references, size_t n, double* values,
   }
   return kOk;
 }
-API int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double* values, size_t size) {
+EXPORT int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double* values, size_t size) {
   size_t k;
   if (size != n) return kError;
   for (k = 0; k < n; ++k) {
@@ -149,10 +133,10 @@ API int fmi3SetFloat64(void* c, const Ref* references, size_t n, const double* v
 }
 /* The model has no variables but real ones of 64 bits. */
 #define NONE_OF(type, name)                                                                                     \
-  API int fmi3Get##name(void* c, const Ref* references, size_t n, type* values, size_t size) {                   \
+  EXPORT int fmi3Get##name(void* c, const Ref* references, size_t n, type* values, size_t size) {                   \
     return (void)c, (void)references, (void)values, (void)size, n == 0 ? kOk : kError;                           \
   }                                                                                                              \
-  API int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {             \
+  EXPORT int fmi3Set##name(void* c, const Ref* references, size_t n, const type* values, size_t size) {             \
     return (void)c, (void)references, (void)values, (void)size, n == 0 ? kOk : kError;                           \
   }
 NONE_OF(float, Float32)
@@ -167,39 +151,3 @@ NONE_OF(uint64_t, UInt64)
 NONE_OF(bool, Boolean)
 typedef const char* Text;
 NONE_OF(Text, String)
-
-#define FAILS(name, ...)          \
-  API int fmi3##name(void* c, __VA_ARGS__) { return (void)c, kError; }
-#if defined(__GNUC__)
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
-FAILS(GetBinary, const Ref* references, size_t n, size_t* sizes, const uint8_t** values, size_t size)
-FAILS(SetBinary, const Ref* references, size_t n, const size_t* sizes, const uint8_t* const* values, size_t size)
-FAILS(GetClock, const Ref* references, size_t n, bool* values)
-FAILS(SetClock, const Ref* references, size_t n, const bool* values)
-FAILS(GetIntervalDecimal, const Ref* references, size_t n, double* intervals, int* qualifiers)
-FAILS(GetIntervalFraction, const Ref* references, size_t n, uint64_t* counters, uint64_t* resolutions, int* qualifiers)
-FAILS(GetShiftDecimal, const Ref* references, size_t n, double* shifts)
-FAILS(GetShiftFraction, const Ref* references, size_t n, uint64_t* counters, uint64_t* resolutions)
-FAILS(SetIntervalDecimal, const Ref* references, size_t n, const double* intervals)
-FAILS(SetIntervalFraction, const Ref* references, size_t n, const uint64_t* counters, const uint64_t* resolutions)
-FAILS(SetShiftDecimal, const Ref* references, size_t n, const double* shifts)
-FAILS(SetShiftFraction, const Ref* references, size_t n, const uint64_t* counters, const uint64_t* resolutions)
-FAILS(ActivateModelPartition, Ref clock, double activation)
-FAILS(GetNumberOfVariableDependencies, Ref reference, size_t* n)
-FAILS(GetVariableDependencies, Ref dependent, size_t* elements, Ref* independents, size_t* their_elements, int* kinds,
-      size_t n)
-FAILS(GetFMUState, void** state)
-FAILS(SetFMUState, void* state)
-FAILS(FreeFMUState, void** state)
-FAILS(SerializedFMUStateSize, void* state, size_t* size)
-FAILS(SerializeFMUState, void* state, uint8_t* bytes, size_t size)
-FAILS(DeserializeFMUState, const uint8_t* bytes, size_t size, void** state)
-FAILS(GetDirectionalDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
-      size_t n_seed, double* sensitivity, size_t n_sensitivity)
-FAILS(GetAdjointDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
-      size_t n_seed, double* sensitivity, size_t n_sensitivity)
-FAILS(GetOutputDerivatives, const Ref* references, size_t n, const int32_t* orders, double* values, size_t size)
-FAILS(DoStep, double time, double step, bool no_set_before, bool* event_needed, bool* terminate, bool* early,
-      double* last_time)
-API int fmi3EnterStepMode(void* c) { return (void)c, kError; }

@@ -30,6 +30,30 @@ typedef int Count3Type(void*, size_t*);
   X(uint32_t, UInt32) X(int64_t, Int64) X(uint64_t, UInt64)
 #define EACH_TYPE(X) X(double, Float64) X(int32_t, Int32) X(bool, Boolean) X(Text, String) EACH_OTHER_TYPE(X)
 EACH_TYPE(TYPED)
+/* Binary variables and clocks are the other unit's alone, too. */
+#define INNER ((Model*)c)->inner
+#define EACH_PASSED_ON(GET, SET)                                                                                      \
+  GET(GetBinary, (void* c, const Ref* r, size_t n, size_t* sizes, const uint8_t** values, size_t size),               \
+      (INNER, r, n, sizes, values, size))                                                                             \
+  SET(SetBinary, (void* c, const Ref* r, size_t n, const size_t* sizes, const uint8_t* const* values, size_t size),   \
+      (INNER, r, n, sizes, values, size))                                                                             \
+  GET(GetClock, (void* c, const Ref* r, size_t n, bool* values), (INNER, r, n, values))                               \
+  SET(SetClock, (void* c, const Ref* r, size_t n, const bool* values), (INNER, r, n, values))                         \
+  GET(GetIntervalDecimal, (void* c, const Ref* r, size_t n, double* values, int* qualifiers),                         \
+      (INNER, r, n, values, qualifiers))                                                                              \
+  GET(GetIntervalFraction, (void* c, const Ref* r, size_t n, uint64_t* counters, uint64_t* parts, int* qualifiers),   \
+      (INNER, r, n, counters, parts, qualifiers))                                                                     \
+  GET(GetShiftDecimal, (void* c, const Ref* r, size_t n, double* values), (INNER, r, n, values))                      \
+  GET(GetShiftFraction, (void* c, const Ref* r, size_t n, uint64_t* counters, uint64_t* parts),                       \
+      (INNER, r, n, counters, parts))                                                                                 \
+  SET(SetIntervalDecimal, (void* c, const Ref* r, size_t n, const double* values), (INNER, r, n, values))             \
+  SET(SetIntervalFraction, (void* c, const Ref* r, size_t n, const uint64_t* counters, const uint64_t* parts),        \
+      (INNER, r, n, counters, parts))                                                                                 \
+  SET(SetShiftDecimal, (void* c, const Ref* r, size_t n, const double* values), (INNER, r, n, values))                \
+  SET(SetShiftFraction, (void* c, const Ref* r, size_t n, const uint64_t* counters, const uint64_t* parts),           \
+      (INNER, r, n, counters, parts))
+#define PASSED_TYPE(name, parameters, arguments) typedef int name##Type parameters;
+EACH_PASSED_ON(PASSED_TYPE, PASSED_TYPE)
 
 #define EACH_NEEDED3(X)                                                                              \
   X(Instantiate3, InstantiateModelExchange) X(Initialise3, EnterInitializationMode)                   \
@@ -47,6 +71,8 @@ static struct {
   Get##name##Type* Get##name;   \
   Set##name##Type* Set##name;
   EACH_TYPE(TYPED_FIELD)
+#define PASSED_FIELD(name, parameters, arguments) name##Type* name;
+  EACH_PASSED_ON(PASSED_FIELD, PASSED_FIELD)
 } inner3;
 
 /* The other unit, as fmi2_wrapper.c calls it. */
@@ -124,6 +150,8 @@ static const char* look_up(void* library) {
   inner.name = (type##Type*)symbol(library, "fmi3" #name);        \
   if (inner.name == NULL) missing = "its function fmi3" #name;
   EACH_TYPE(FIND3_TYPED)
+#define FIND3_PASSED(name, parameters, arguments) inner3.name = (name##Type*)symbol(library, "fmi3" #name);
+  EACH_PASSED_ON(FIND3_PASSED, FIND3_PASSED)
   EACH_NEEDED3(FIND3)
   FIND3(Logging3, SetDebugLogging) FIND3(Count3, GetNumberOfEventIndicators) FIND3(Plain, EvaluateDiscreteStates)
   EACH_NEEDED3(NEED3)
@@ -141,8 +169,6 @@ static const char* look_up(void* library) {
   return missing;
 }
 
-EXPORT const char* fmi3GetVersion(void) { return "3.0"; }
-
 EXPORT void* fmi3InstantiateModelExchange(const char* name, const char* token, const char* resources, bool visible,
                                           bool logging, void* environment, Log log) {
   Model* m = NULL;
@@ -158,20 +184,6 @@ EXPORT void* fmi3InstantiateModelExchange(const char* name, const char* token, c
   if (m != NULL && m->inner != NULL && reset(m) == kOk) return m;
   if (m != NULL && m->inner != NULL) inner.FreeInstance(m->inner);
   return free(m), NULL;
-}
-EXPORT void* fmi3InstantiateCoSimulation(const char* name, const char* token, const char* resources, bool visible,
-                                         bool logging, bool event_mode, bool early_return, const Ref* intermediate,
-                                         size_t n, void* environment, Log log, void* update) {
-  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)event_mode, (void)early_return;
-  (void)intermediate, (void)n, (void)environment, (void)log, (void)update;
-  return NULL;
-}
-EXPORT void* fmi3InstantiateScheduledExecution(const char* name, const char* token, const char* resources, bool visible,
-                                               bool logging, void* environment, Log log, void* update, void* lock,
-                                               void* unlock) {
-  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment, (void)log;
-  (void)update, (void)lock, (void)unlock;
-  return NULL;
 }
 EXPORT void fmi3FreeInstance(void* c) { fmi2FreeInstance(c); }
 EXPORT int fmi3Reset(void* c) { return fmi2Reset(c); }
@@ -258,41 +270,16 @@ PASSED_ON(Text, String) SET_ALONE(Text, String)
 PASSED_ON(int32_t, Int32) SET_KEPT(int32_t, Int32, kInteger)
 PASSED_ON(bool, Boolean) SET_KEPT(bool, Boolean, kBoolean)
 
-/* Not offered (modelDescription.xml says so), and there as importers look for every function. */
-#define FAILS(name, ...) \
-  EXPORT int fmi3##name(void* c, __VA_ARGS__) { return (void)c, kError; }
-#if defined(__GNUC__)
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
-FAILS(GetBinary, const Ref* references, size_t n, size_t* sizes, const uint8_t** values, size_t size)
-FAILS(SetBinary, const Ref* references, size_t n, const size_t* sizes, const uint8_t* const* values, size_t size)
-FAILS(GetClock, const Ref* references, size_t n, bool* values)
-FAILS(SetClock, const Ref* references, size_t n, const bool* values)
-FAILS(GetIntervalDecimal, const Ref* references, size_t n, double* intervals, int* qualifiers)
-FAILS(GetIntervalFraction, const Ref* references, size_t n, uint64_t* counters, uint64_t* resolutions, int* qualifiers)
-FAILS(GetShiftDecimal, const Ref* references, size_t n, double* shifts)
-FAILS(GetShiftFraction, const Ref* references, size_t n, uint64_t* counters, uint64_t* resolutions)
-FAILS(SetIntervalDecimal, const Ref* references, size_t n, const double* intervals)
-FAILS(SetIntervalFraction, const Ref* references, size_t n, const uint64_t* counters, const uint64_t* resolutions)
-FAILS(SetShiftDecimal, const Ref* references, size_t n, const double* shifts)
-FAILS(SetShiftFraction, const Ref* references, size_t n, const uint64_t* counters, const uint64_t* resolutions)
-FAILS(ActivateModelPartition, Ref clock, double activation)
-FAILS(GetNumberOfVariableDependencies, Ref reference, size_t* n)
-FAILS(GetVariableDependencies, Ref dependent, size_t* elements, Ref* independents, size_t* their_elements, int* kinds,
-      size_t n)
-FAILS(GetFMUState, void** state)
-FAILS(SetFMUState, void* state)
-FAILS(FreeFMUState, void** state)
-FAILS(SerializedFMUStateSize, void* state, size_t* size)
-FAILS(SerializeFMUState, void* state, uint8_t* bytes, size_t size)
-FAILS(DeserializeFMUState, const uint8_t* bytes, size_t size, void** state)
-FAILS(GetDirectionalDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
-      size_t n_seed, double* sensitivity, size_t n_sensitivity)
-FAILS(GetAdjointDerivative, const Ref* unknowns, size_t nu, const Ref* knowns, size_t nk, const double* seed,
-      size_t n_seed, double* sensitivity, size_t n_sensitivity)
-FAILS(GetOutputDerivatives, const Ref* references, size_t n, const int32_t* orders, double* values, size_t size)
-FAILS(DoStep, double time, double step, bool no_set_before, bool* event_needed, bool* terminate, bool* early,
-      double* last_time)
-EXPORT int fmi3EnterStepMode(void* c) { return (void)c, kError; }
+#define GET_PASSED(name, parameters, arguments)               \
+  EXPORT int fmi3##name parameters {                           \
+    if (refresh(c) != kOk) return kError;                      \
+    return inner3.name == NULL ? kError : inner3.name arguments; \
+  }
+#define SET_PASSED(name, parameters, arguments)               \
+  EXPORT int fmi3##name parameters {                           \
+    ((Model*)c)->known = 0;                                    \
+    return inner3.name == NULL ? kError : inner3.name arguments; \
+  }
+EACH_PASSED_ON(GET_PASSED, SET_PASSED)
 EXPORT int fmi3EnterConfigurationMode(void* c) { return (void)c, kError; }
 EXPORT int fmi3ExitConfigurationMode(void* c) { return (void)c, kError; }

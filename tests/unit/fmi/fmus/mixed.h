@@ -7,13 +7,15 @@
 #include <string.h>
 enum { kOk = 0, kDiscard = 2, kError = 3 };
 enum { kReal = 1, kDiscrete, kInteger, kBoolean, kYReal = 11, kYDiscrete, kYInteger, kYBoolean, kSteps = 20, kLast,
-       kText, kLength, kX0 = 30, kX, kDerX, kK };
+       kText, kLength, kBytes, kX0 = 30, kX, kDerX, kK };
 enum Mode { kSetUp, kInitialising, kEvent, kContinuous, kStepping };
 typedef struct {
   enum Mode mode;
   double time, u_real, u_discrete, x0, x, k;
   int u_integer, u_boolean, steps, last;
   char text[64];
+  unsigned char bytes[8];
+  size_t bytes_size;
   int ended;
 } Model;
 
@@ -66,6 +68,10 @@ static int mixed_set_integer(Model* m, unsigned reference, int value) {
 static int mixed_set_text(Model* m, unsigned reference, const char* text) {
   if (reference != kText || m->mode != kSetUp) return kError;
   return strncpy(m->text, text, sizeof m->text - 1), kOk;
+}
+static inline int mixed_set_bytes(Model* m, size_t size, const unsigned char* bytes) {
+  if (m->mode != kSetUp || size > sizeof m->bytes) return kError;
+  return memcpy(m->bytes, bytes, size), m->bytes_size = size, kOk;
 }
 static void mixed_event(Model* m) {
   if (m->time >= m->steps + 1 - 1e-9) ++m->steps;

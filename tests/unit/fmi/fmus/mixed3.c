@@ -68,6 +68,13 @@ int fmi3SetBoolean(void* c, const unsigned* r, size_t n, const bool* v, size_t s
 int fmi3SetString(void* c, const unsigned* r, size_t n, const char* const* v, size_t size) {
   EACH(mixed_set_text(c, r[k], v[k]))
 }
+int fmi3GetBinary(void* c, const unsigned* r, size_t n, size_t* sizes, const uint8_t** v, size_t size) {
+  Model* m = c;
+  EACH(r[k] == kBytes ? (sizes[k] = m->bytes_size, v[k] = m->bytes, kOk) : kError)
+}
+int fmi3SetBinary(void* c, const unsigned* r, size_t n, const size_t* sizes, const uint8_t* const* v, size_t size) {
+  EACH(r[k] == kBytes ? mixed_set_bytes(c, sizes[k], v[k]) : kError)
+}
 int fmi3DoStep(void* c, double time, double step, bool no_return, bool* event, bool* terminate, bool* early,
                double* last) {
   Model* m = c;

@@ -26,6 +26,7 @@ using report::Ink;
 using report::Plot;
 
 constexpr int kWide = 980;
+constexpr int kNarrow = 350;  // as a phone shows it
 constexpr double kShortestView_months = 12.0;
 constexpr double kLongestView_months = 240.0;
 constexpr double kBeyond = 1.15;  // a little past the last date of interest
@@ -110,13 +111,14 @@ void add_dates(const ForecastQuestion& question, Plot& plot) {
 }
 
 Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
-            const std::vector<ConditionForecast>& conditions) {
+            const std::vector<ConditionForecast>& conditions, int width) {
   const double threshold = question.request.threshold;
-  Plot plot{.title = "Seal condition, index derived from leakage (new seal: 100)",
+  Plot plot{.title = width < kWide ? "Seal condition (new: 100)"
+                                   : "Seal condition, index derived from leakage (new seal: 100)",
             .x = {.label = "year", .unit = "1", .range = view_of(question, conditions), .whole = true},
             .y = {.label = "condition", .unit = "%"},
             .marks = {},
-            .width = kWide,
+            .width = width,
             .height = 300};
   if (!conditions.empty()) add_forecast_band(conditions, threshold, plot);
   plot.marks.emplace_back(intervals_of(answer.used));
@@ -354,11 +356,13 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
   if (answer.forecasts.front().state == ForecastState::ok)
     conditions = (*primary)->predict_conditions(request, months_ahead(request.now, view_months(answer)));
   std::string body = head(question, answer);
-  // On a phone the drawing keeps its size, and its newest part is what is seen first.
-  body += "<div class=\"scroll latest\">" + report::to_svg(course(question, answer, conditions)) + "</div>";
-  body += report::folded_section(
-      "Remaining life", "all methods side by side",
-      remaining_life_table(answer) + methods_note(answer) + report::to_svg(side_by_side(answer)));
+  // Drawn for either width: scaled down, its letters could not be read on a phone.
+  for (const auto& [name, width] : {std::pair{"wide", kWide}, {"narrow", kNarrow}})
+    body += std::string("<div class=\"") + name + "\">" + report::to_svg(course(question, answer, conditions, width)) +
+            "</div>\n";
+  body += report::folded_section("Remaining life", "all methods side by side",
+                                 remaining_life_table(answer) + methods_note(answer) + "<div class=\"scroll\">" +
+                                     report::to_svg(side_by_side(answer)) + "</div>");
   body += forecast_decision_part(question, answer, decision);
   body += reasons_part(question, answer);
   return body;

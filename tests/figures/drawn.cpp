@@ -231,7 +231,7 @@ std::string forecast_screen(const std::string& forecast_page) {
   Canvas canvas("The forecast page: what to do, by when, and why", kScreenWidth, kScreenHeight);
   canvas.raw("<foreignObject x=\"0\" y=\"0\" width=\"" + std::to_string(kScreenWidth) + "\" height=\"" +
              std::to_string(kScreenHeight) + "\"><body xmlns=\"http://www.w3.org/1999/xhtml\">\n" +
-             between(forecast_page, "<body>", "<section") + "</body></foreignObject>\n");
+             between(forecast_page, "<body>", "<div class=\"narrow\">") + "</body></foreignObject>\n");
   return canvas.svg();
 }
 

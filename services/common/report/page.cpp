@@ -54,6 +54,7 @@ tr.strong td{font-weight:600}.better{color:var(--good)}.worse{color:var(--bad)}
 .plots{display:flex;flex-wrap:wrap;gap:.4rem 1.2rem}.plots>div{flex:0 0 auto;max-width:100%}
 svg[role]{max-width:100%;height:auto;display:block}svg text{font:11px system-ui,"Segoe UI","DejaVu Sans",sans-serif;fill:var(--text)}
 svg .tick{fill:var(--muted)}svg .named{paint-order:stroke;stroke:var(--page);stroke-width:3px;stroke-linejoin:round}svg .title{font-weight:600}svg .grid{stroke:var(--line);stroke-width:.6}
+svg .paper{fill:var(--page)}
 svg .frame{fill:none;stroke:var(--muted);stroke-width:.8}
 .ink-foreground{--ink:var(--text)}.ink-muted{--ink:var(--muted)}.ink-first{--ink:var(--first)}.ink-second{--ink:var(--second)}
 .ink-third{--ink:var(--third)}.ink-fourth{--ink:var(--fourth)}.ink-bad{--ink:var(--bad)}
@@ -76,8 +77,9 @@ margin:0;font-size:1.02rem;color:var(--text)}.part>summary span{margin-left:.7re
 .screen .drawing text{font-size:15px}.screen .drawing .letters{font-size:13px}
 .steps{border-left:.45rem solid var(--first);background:var(--soft);padding:.5rem 1.1rem;margin:.6rem 0 1.2rem;border-radius:.2rem}
 .steps h2{border:0;padding:0}.steps ol,.steps p{max-width:none;margin:.2rem 0}
-@media screen and (max-width:800px){.screen{grid-template-columns:1fr}.latest{direction:rtl}.latest>*{direction:ltr}
-.latest>svg[role]{width:800px;max-width:none}}
+@media screen and (max-width:800px){.screen{grid-template-columns:1fr}}
+.narrow{display:none}.narrow>svg[role]{width:100%}
+@media screen and (max-width:700px){.wide{display:none}.narrow{display:block}.scroll>svg[role]{max-width:none}}
 @media print{:root{color-scheme:light;font-size:12px;--page:#fff;--text:#000;--muted:#444;--line:#bbb;--soft:#f3f3f3;--first:#0067a5;
 --second:#c8500a;--third:#007a5a;--fourth:#a0509a;--bad:#b3261e;--good:#1a7f43;--warn:#9a6700;--metal:#e4e8ec}
 @page{size:A4;margin:12mm}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}

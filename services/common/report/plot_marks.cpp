@@ -80,6 +80,13 @@ std::string rectangle(const std::string& css_class, double x, double y, double w
 /// Names of lines, drawn over all marks; those of vertical lines each in the first row in which it overlaps no other.
 class Names {
  public:
+  explicit Names(std::vector<double> vertical_lines) : lines_(std::move(vertical_lines)) {}
+
+  /// How many vertical lines a name between these pixels would cross.
+  [[nodiscard]] std::size_t crossed(double left, double right) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(lines_, [&](double at) { return left <= at && at <= right; }));
+  }
   /// Baseline below the top, in pixels.
   double baseline(double left, double right) {
     std::size_t row = 0;
@@ -90,6 +97,10 @@ class Names {
     if (row == rows_.size()) rows_.emplace_back();
     rows_[row].emplace_back(left, right);
     return 11.0 + 13.0 * static_cast<double>(row);
+  }
+  /// A line that has to be crossed is interrupted.
+  void interrupt_lines(double left, double right, double baseline) {
+    if (crossed(left, right) > 0) svg_ += rectangle("paper", left, baseline - 10.0, right - left, 13.0);
   }
   void add(const std::string& label, double text_x, double text_y, bool ends) {
     svg_.append("<text class=\"tick named\" ")
@@ -102,6 +113,7 @@ class Names {
   [[nodiscard]] const std::string& svg() const { return svg_; }
 
  private:
+  std::vector<double> lines_;
   std::string svg_;
   std::vector<std::vector<std::pair<double, double>>> rows_;
 };
@@ -212,12 +224,16 @@ struct Draw {
                          : segment(line.ink, x.from, at, x.to, at, "stroke-dasharray=\"4 3\"");
   }
 
-  /// Right of the line, or left of it where the plot ends.
+  /// Right of the line; left of it where the plot ends, or where fewer other lines are crossed.
   void name_beside(const Reference& line, double at) const {
+    constexpr double kGap = 4.0;
     const double width = kLetter * static_cast<double>(line.label.size());
-    const bool left = at + 4.0 + width > x.to;
-    const double begin = left ? at - 4.0 - width : at + 4.0;
-    names.add(line.label, left ? at - 4.0 : begin, y.to + names.baseline(begin, begin + width), left);
+    const double right = at + kGap, left = at - kGap - width;
+    const bool ends = right + width > x.to ||
+                      (left >= x.from && names.crossed(left, left + width) < names.crossed(right, right + width));
+    const double begin = ends ? left : right, baseline = y.to + names.baseline(begin, begin + width);
+    names.interrupt_lines(begin, begin + width, baseline);
+    names.add(line.label, ends ? at - kGap : begin, baseline, ends);
   }
 };
 
@@ -227,7 +243,11 @@ std::string pixel(double value) { return text::format("{:.1f}", std::abs(value) 
 
 std::string svg_of_marks(const Plot& plot, const Scale& x, const Scale& y) {
   std::string svg;
-  Names names;
+  std::vector<double> vertical_lines;
+  for (const Mark& mark : plot.marks)
+    if (const auto* line = std::get_if<Reference>(&mark); line != nullptr && line->vertical)
+      vertical_lines.push_back(x(line->at));
+  Names names(std::move(vertical_lines));
   for (const Mark& mark : plot.marks) svg += std::visit(Draw{x, y, names}, mark);
   return svg.append(names.svg());
 }

@@ -90,9 +90,23 @@ TEST(Plot, NamesOfVerticalLinesDoNotOverlap) {
                 Reference{.at = 9.9, .vertical = true, .label = "summer 2021"}};
   const std::string svg = to_svg(plot);
   EXPECT_EQ(what_is_wrong(svg), "") << svg;
-  EXPECT_THAT(svg, HasSubstr("y=\"11.0\" >act by 2018-05-31"));
-  EXPECT_THAT(svg, HasSubstr("y=\"24.0\" >summer 2019"));
+  EXPECT_THAT(svg, HasSubstr("y=\"11.0\" text-anchor=\"end\">act by 2018-05-31")) << "to the right is the next line";
+  EXPECT_THAT(svg, HasSubstr("y=\"11.0\" >summer 2019"));
   EXPECT_THAT(svg, HasSubstr("y=\"11.0\" text-anchor=\"end\">summer 2021")) << "left of its line, where the plot ends";
+}
+
+TEST(Plot, ANameThatHasToCrossALineInterruptsIt) {
+  Plot plot{.x = {.range = {{0.0, 10.0}}}, .y = {.range = {{0.0, 1.0}}}};
+  plot.marks = {Line{.x = {0.0, 10.0}, .y = {0.0, 1.0}},
+                Reference{.at = 1.0, .vertical = true, .label = "act by 2018-05-31"},
+                Reference{.at = 1.5, .vertical = true, .label = "summer 2019"}};
+  const std::string svg = to_svg(plot);
+  EXPECT_EQ(what_is_wrong(svg), "") << svg;
+  const std::size_t line = svg.rfind("<line"), paper = svg.find("class=\"paper\""), name = svg.find(">act by");
+  ASSERT_NE(paper, std::string::npos);
+  EXPECT_LT(line, paper);
+  EXPECT_LT(paper, name);
+  EXPECT_EQ(svg.find("class=\"paper\"", paper + 1), std::string::npos) << "summer 2019 crosses none";
 }
 
 TEST(Plot, PlacesValuesOnTheScale) {

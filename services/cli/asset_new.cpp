@@ -14,6 +14,8 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
+#include "services/common/recording/cells.hpp"
+#include "services/common/recording/columns.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/report/page.hpp"
 #include "services/common/report/plot.hpp"
@@ -21,6 +23,7 @@
 #include "services/common/runtime/plant_file.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
+#include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -71,9 +74,11 @@ Status read_by_map(const std::string& file, Understood& log) {
     if (rule.starts_with("time goes back") && log.map.log.time_resets == "refuse") {
       log.map.log.time_resets = "split";
       log.remarks.emplace_back("its time restarts: each restart begins another test (time_resets: split; or join)");
-    } else if (rule == "the cell is empty" && log.map.log.incomplete_rows == "refuse") {
+    } else if (tests.error().advice.find("incomplete_rows: skip") != std::string::npos &&
+               log.map.log.incomplete_rows == "refuse") {
       log.map.log.incomplete_rows = "skip";
-      log.remarks.emplace_back("rows with an empty cell in a used column are left out (incomplete_rows: skip)");
+      log.remarks.emplace_back(
+          "rows with an empty cell, or one without a digit, in a used column are left out (incomplete_rows: skip)");
     } else {
       return fail(tests.error());
     }
@@ -155,28 +160,49 @@ std::string columns_text(const Understood& log, const std::vector<std::size_t>& 
   return text;
 }
 
-/// The first column in percent that no channel has; "": none.
-std::string column_in_percent(const Understood& log) {
-  for (std::size_t column = 0; column < log.offer.columns.size(); ++column)
-    if (unit_of(log.offer.columns[column]) == "%" &&
-        std::ranges::none_of(log.guesses, [&](const ChannelGuess& guess) { return guess.column == column; }))
-      return log.offer.columns[column].text;
+/// "PT-1 [psig] may be it, but '1,234.5' is no number": of the first column in a unit of the channel without numbers.
+std::string unreadable(const Understood& log, const ChannelDescription& channel) {
+  for (std::size_t column = 0; column < log.offer.columns.size(); ++column) {
+    const std::string unit = unit_of(log.offer.columns[column]);
+    if (unit.empty() || !convert_unit(unit, channel.unit.empty() ? "1" : channel.unit) ||
+        has_numbers(log.offer, column))
+      continue;
+    const auto word = std::ranges::find_if(log.offer.cells[column], [&](const std::string& cell) {
+      return !parse_number(cell, log.offer.layout.decimal).has_value();
+    });
+    if (word != log.offer.cells[column].end())
+      return log.offer.columns[column].text + " may be it, but '" + printable(*word) + "' is no number";
+  }
   return "";
 }
 
 /// What to write for a channel that was not found, and the columns that may be it.
 std::string by_hand(const Understood& log, const ChannelDescription& channel) {
-  const std::vector<std::size_t> columns =
-      columns_of_unit(log.offer, channel, log.map.columns.at("time").column, log.guesses);
-  if (columns.empty()) {
-    const std::string percent = column_in_percent(log);
-    return "{column: " + (percent.empty() ? std::string("NAME, scale: 1") : text::quoted(percent) + ", scale: 0.01") +
-           ", unit: " + text::quoted(channel.unit) +
-           (percent.empty() ? "}" : "}, with a hundredth of what 100 % is in place of 0.01");
+  if (std::string why = unreadable(log, channel); !why.empty()) return why;
+  const std::string& time = log.map.columns.at("time").column;
+  const std::vector<std::size_t> columns = columns_of_unit(log.offer, channel, time, log.guesses);
+  if (!columns.empty()) {
+    const OfferedColumn& first = log.offer.columns[columns.front()];
+    return "as " + mapping_text({.column = first.text, .unit = unit_of(first)}) +
+           (columns.size() > 1 ? "; of that unit: " + columns_text(log, columns) : "");
   }
-  return mapping_text(
-             {.column = log.offer.columns[columns.front()].text, .unit = unit_of(log.offer.columns[columns.front()])}) +
-         (columns.size() > 1 ? "; of that unit: " + columns_text(log, columns) : "");
+  const std::string unit = ", unit: " + text::quoted(channel.unit) + "}";
+  const std::vector<std::size_t> plain = plain_columns(log.offer, channel, time, log.guesses);
+  if (plain.empty()) return "as {column: NAME, scale: 1" + unit;
+  const OfferedColumn& first = log.offer.columns[plain.front()];
+  const bool percent = unit_of(first) == "%";
+  return "as {column: " + text::quoted(first.text) + (percent ? ", scale: 0.01" : ", scale: 1") + unit +
+         (percent ? ", with a hundredth of what 100 % is in place of 0.01" : ", with what one count is in place of 1") +
+         (plain.size() > 1 ? "; plain numbers: " + columns_text(log, plain) : "");
+}
+
+/// What the reader has to check of a channel that was found; "": nothing.
+std::string doubt(const Understood& log, const ChannelDescription& channel) {
+  const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
+  if (guess == log.guesses.end()) return "";
+  if (guess->unit.empty() && channel.unit != "1")
+    return "the log gives no unit: taken for " + channel.unit + ", check it";
+  return guess->sure ? "" : "uncertain, check it";
 }
 
 std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
@@ -197,16 +223,12 @@ std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
   for (const ChannelDescription& channel : log.plant->channels) {
     const auto mapping = log.map.columns.find(channel.name);
     if (mapping == log.map.columns.end()) {
-      out +=
-          "  # " + channel.name + ": not found in the log; " + channel.meaning + "; as " + by_hand(log, channel) + "\n";
+      out += "  # " + channel.name + ": not found in the log; " + channel.meaning + "; " + by_hand(log, channel) + "\n";
       continue;
     }
-    const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
     out += "  " + channel.name + ": " + mapping_text(mapping->second) + "  # " + range_text(log.tests, channel.name);
-    if (guess != log.guesses.end() && guess->unit.empty() && channel.unit != "1")
-      out += "; the log gives no unit: taken for " + channel.unit + ", check it\n";
-    else
-      out += guess != log.guesses.end() && !guess->sure ? "; uncertain, check it\n" : "\n";
+    const std::string check = doubt(log, channel);
+    out += (check.empty() ? "" : "; " + check) + "\n";
   }
   const LogLayout& layout = log.map.log;
   if (log.offer.text) {
@@ -258,9 +280,17 @@ void print_table(const Understood& log) {
   std::printf("plant %s, %s of %zu samples\n", log.plant->name.c_str(), count_of(log.tests.size(), "test").c_str(),
               log.tests.front().samples.time_s.size());
   std::printf("  %-24s %-30s %-12s %s\n", "channel", "column", "unit", "range");
-  for (const auto& [channel, mapping] : log.map.columns)
-    std::printf("  %s %s %-12s %s\n", padded(channel, 24).c_str(), padded(mapping.column, 30).c_str(),
-                mapping.unit.c_str(), channel == "time" ? "" : range_text(log.tests, channel).c_str());
+  const auto line = [&](const std::string& channel, const ColumnMapping& mapping, const std::string& range) {
+    std::printf("  %s %s %s %s\n", padded(channel, 24).c_str(), padded(mapping.column, 30).c_str(),
+                padded(mapping.unit, 12).c_str(), range.c_str());
+  };
+  line("time", log.map.columns.at("time"), "");
+  for (const ChannelDescription& channel : log.plant->channels) {
+    const auto mapping = log.map.columns.find(channel.name);
+    if (mapping == log.map.columns.end()) continue;
+    const std::string check = doubt(log, channel);
+    line(channel.name, mapping->second, range_text(log.tests, channel.name) + (check.empty() ? "" : "; " + check));
+  }
   if (const std::string drives = missing_inputs(log); !drives.empty())
     std::printf("  inputs not found in the log: %s; map them by hand in the file\n", drives.c_str());
   for (const std::string& remark : log.remarks) std::printf("  %s\n", remark.c_str());

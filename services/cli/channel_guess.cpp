@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -80,12 +81,6 @@ bool within_range(const Offer& offer, std::size_t column, const ChannelDescripti
   });
 }
 
-bool has_numbers(const Offer& offer, std::size_t column) {
-  return std::ranges::all_of(offer.cells[column], [&](const std::string& cell) {
-    return parse_number(cell, offer.layout.decimal).has_value();
-  });
-}
-
 /// The unit in which a column may be a channel's: the one that is said; else the header's last word, "Speed_rpm", where
 /// it is a unit of that channel and no letter, which may be a chamber's; "1" where the channel is a plain number and
 /// what is said is no unit: [on/off].
@@ -99,19 +94,24 @@ std::string unit_for(const OfferedColumn& column, const ChannelDescription& chan
   return fits ? last : "";
 }
 
+double score_of_name(const OfferedColumn& column, const ChannelDescription& channel) {
+  constexpr double kName = 2.0, kQuantity = 1.0;
+  const std::vector<std::string> words = tokens_of(split_header_cell(column.text).name);
+  const auto known = vocabulary().find(channel.unit.empty() ? "1" : channel.unit);
+  const bool quantity = known != vocabulary().end() && std::ranges::any_of(words, [&](const std::string& word) {
+                          return known->second.contains(word);
+                        });
+  return kName * likeness(words, tokens_of(channel.name)) + (quantity ? kQuantity : 0.0);
+}
+
 /// How much speaks for it; 0: nothing, or its unit speaks against it.
 double score_of(const Offer& offer, std::size_t column, const ChannelDescription& channel) {
-  constexpr double kUnit = 1.0, kName = 2.0, kQuantity = 1.0, kRange = 0.25;
+  constexpr double kUnit = 1.0, kRange = 0.25;
   const std::string si = channel.unit.empty() ? "1" : channel.unit, unit = unit_for(offer.columns[column], channel);
   const Result<UnitConversion> to_si = convert_unit(unit, si);
   if (!to_si) return 0.0;
   if (!has_numbers(offer, column)) return 0.0;
-  const std::vector<std::string> words = tokens_of(split_header_cell(offer.columns[column].text).name);
-  double score = kName * likeness(words, tokens_of(channel.name));
-  if (const auto known = vocabulary().find(si); known != vocabulary().end())
-    score += std::ranges::any_of(words, [&](const std::string& word) { return known->second.contains(word); })
-                 ? kQuantity
-                 : 0.0;
+  const double score = score_of_name(offer.columns[column], channel);
   if (score <= 0.0) return 0.0;
   return score + (unit.empty() || si == "1" ? 0.0 : kUnit) +
          (within_range(offer, column, channel, *to_si) ? kRange : 0.0);
@@ -150,6 +150,19 @@ std::vector<std::size_t> columns_of_unit(const Offer& offer, const ChannelDescri
     if (convert_unit(unit, channel.unit.empty() ? "1" : channel.unit) && has_numbers(offer, column))
       columns.push_back(column);
   }
+  return columns;
+}
+
+std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescription& channel,
+                                       const std::string& time_column, const std::vector<ChannelGuess>& guesses) {
+  std::vector<std::size_t> columns;
+  for (std::size_t column = 0; column < offer.columns.size(); ++column) {
+    const std::string unit = unit_of(offer.columns[column]);
+    if (offer.columns[column].text == time_column || is_taken(guesses, column) || unit.empty()) continue;
+    if (convert_unit(unit, "1") && has_numbers(offer, column)) columns.push_back(column);
+  }
+  std::ranges::stable_sort(columns, std::greater{},
+                           [&](std::size_t column) { return score_of_name(offer.columns[column], channel); });
   return columns;
 }
 

@@ -22,6 +22,12 @@ struct ChannelGuess {
                                                        const std::string& time_column,
                                                        const std::vector<ChannelGuess>& guesses);
 
+/// Columns of plain numbers, counts or percent, that no guess has taken: those first whose name is the channel's or its
+/// quantity's.
+[[nodiscard]] std::vector<std::size_t> plain_columns(const Offer& offer, const ChannelDescription& channel,
+                                                     const std::string& time_column,
+                                                     const std::vector<ChannelGuess>& guesses);
+
 /// Each channel and each column at most once, the most likely first taken; then those that only their unit tells, with
 /// score 0. Without `time_column`.
 [[nodiscard]] std::vector<ChannelGuess> guess_channels(const Offer& offer, const PlantDescription& plant,

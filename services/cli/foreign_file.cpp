@@ -5,18 +5,12 @@
 
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/log_offer.hpp"
-#include "services/common/recording/cells.hpp"
 #include "services/common/recording/log_layout.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch::cli {
 namespace {
-
-bool is_number_column(const std::vector<std::string>& cells, char decimal) {
-  return std::ranges::all_of(cells,
-                             [decimal](const std::string& cell) { return parse_number(cell, decimal).has_value(); });
-}
 
 /// The SI unit that a unit belongs to; the unit itself where it is none that is known.
 std::string si_of(const std::string& unit) {
@@ -48,8 +42,7 @@ PlantDescription plant_of(const Offer& offer, const ChannelMap& map) {
   for (std::size_t k = 0; k < offer.columns.size(); ++k) {
     const NameAndUnitText cell = split_header_cell(offer.columns[k].text);
     if (renamed.contains(offer.columns[k].text) || cell.name.empty() || cell.name == "time") continue;
-    if (is_number_column(offer.cells[k], offer.layout.decimal))
-      add(cell.name, offer.columns[k].unit.empty() ? cell.unit : offer.columns[k].unit);
+    if (has_numbers(offer, k)) add(cell.name, offer.columns[k].unit.empty() ? cell.unit : offer.columns[k].unit);
   }
   return plant;
 }
@@ -57,11 +50,15 @@ PlantDescription plant_of(const Offer& offer, const ChannelMap& map) {
 }  // namespace
 
 Result<Recording> read_any_channels(const std::string& file, const ChannelMap& given) {
-  const Result<Offer> offer = offer_of(file, given.log);
-  if (!offer) return fail(offer.error());
   ChannelMap map = given;
+  Result<Offer> offer = offer_of(file, map.log);
   const auto is_absent = [&](const auto& entry) { return !find_offered(offer->columns, entry.second.column); };
-  if (std::ranges::all_of(map.columns, is_absent)) map.columns.clear();  // a map of the other file
+  if (!map.columns.empty() && (!offer || std::ranges::all_of(map.columns, is_absent)))
+    if (Result<Offer> without = offer_of(file, {})) {  // a map of the other file
+      map = {};
+      offer = std::move(without);
+    }
+  if (!offer) return fail(offer.error());
   const auto is_time = [](const OfferedColumn& column) { return split_header_cell(column.text).name == "time"; };
   if (!map.columns.contains("time") && std::ranges::none_of(offer->columns, is_time))
     map.columns["time"] = guess_time(*offer);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "sealwatch/core/test_limits.hpp"
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/hdf5_reader.hpp"
 #include "services/common/recording/log_reader.hpp"
@@ -33,7 +34,7 @@ Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
     offer.columns.push_back({offer.layout.header[k], offer.layout.units[k]});
     std::vector<std::string>& cells = offer.cells.emplace_back();
     for (const auto& row : rows)
-      if (k < row.size() && !trim(row[k]).empty()) cells.push_back(row[k]);
+      if (k < row.size() && !holds_no_value(row[k])) cells.push_back(row[k]);
   }
   return offer;
 }
@@ -81,27 +82,38 @@ std::optional<std::size_t> time_column(const Offer& offer) {
       if (is_one(k)) return k;
     return std::nullopt;
   };
-  if (const auto named =
-          first([&](std::size_t k) { return kNames.contains(lower(split_header_cell(offer.columns[k].text).name)); }))
-    return named;
+  const auto is_named = [&](std::size_t k) {
+    return kNames.contains(lower(split_header_cell(offer.columns[k].text).name));
+  };
+  const auto counts = [&](std::size_t k) { return has_numbers(offer, k) || !time_format_of(offer.cells[k]).empty(); };
+  if (const auto named = first([&](std::size_t k) { return is_named(k) && counts(k); })) return named;
+  if (const auto named = first(is_named)) return named;  // its first cell is then what is refused
   if (const auto timed = first([&](std::size_t k) { return !time_format_of(offer.cells[k]).empty(); })) return timed;
-  return first([&](std::size_t k) {
-    const std::vector<double> numbers = numbers_of(offer.cells[k], offer.layout.decimal);
-    return numbers.size() == offer.cells[k].size() && rises(numbers);
-  });
+  return first(
+      [&](std::size_t k) { return has_numbers(offer, k) && rises(numbers_of(offer.cells[k], offer.layout.decimal)); });
 }
 
 std::string time_unit(const Offer& offer, std::size_t column) {
   if (std::string format = time_format_of(offer.cells[column]); !format.empty()) return format;
-  if (are_excel_days(numbers_of(offer.cells[column], offer.layout.decimal))) return "excel";
-  const std::string said = unit_of(offer.columns[column]);
-  return said.empty() ? std::string("s") : said;
+  const std::vector<double> numbers = numbers_of(offer.cells[column], offer.layout.decimal);
+  if (are_excel_days(numbers)) return "excel";
+  if (std::string said = unit_of(offer.columns[column]); !said.empty()) return said;
+  for (const auto& [unit, in_s] : {std::pair{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})  // those since 1970 are large
+    if (numbers.empty() || numbers.back() * in_s <= TestLimits{}.largest_time_s) return unit;
+  return "ns";
 }
 
 }  // namespace
 
 std::string unit_of(const OfferedColumn& column) {
   return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
+}
+
+bool has_numbers(const Offer& offer, std::size_t column) {
+  const std::vector<std::string>& cells = offer.cells[column];
+  return (!offer.text || !cells.empty()) && std::ranges::all_of(cells, [&](const std::string& cell) {
+           return parse_number(cell, offer.layout.decimal).has_value();
+         });
 }
 
 Result<Offer> offer_of(const std::string& file, const LogLayout& given) {

@@ -13,7 +13,7 @@ namespace sealwatch::cli {
 
 struct Offer {
   std::vector<OfferedColumn> columns;
-  std::vector<std::vector<std::string>> cells;  ///< the first ones of each column that are not empty; of vectors none
+  std::vector<std::vector<std::string>> cells;  ///< the first ones of each column that hold a value; of vectors none
   FoundLayout layout;
   bool text = true;  ///< false: vectors of numbers, HDF5 or MATLAB
 };
@@ -22,6 +22,9 @@ struct Offer {
 
 /// Unit said beside the column or in its header cell.
 [[nodiscard]] std::string unit_of(const OfferedColumn& column);
+
+/// Whether all cells of a column that hold a value are numbers, and there are any.
+[[nodiscard]] bool has_numbers(const Offer& offer, std::size_t column);
 
 /// The column called time, t, Timestamp, Zeit or Date; else the first whose cells are times; else the first that rises.
 [[nodiscard]] ColumnMapping guess_time(const Offer& offer);

@@ -1,5 +1,6 @@
 #include "services/common/recording/cells.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -40,6 +41,20 @@ std::string_view trim(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
+}
+
+bool holds_no_value(std::string_view cell) { return cell.find_first_of("0123456789") == std::string_view::npos; }
+
+bool has_thousands(std::string_view text, char decimal) {
+  constexpr std::size_t kGroup = 3;
+  const char separator = decimal == '.' ? ',' : '.';
+  const std::size_t last = text.rfind(separator);
+  if (last == std::string_view::npos) return false;
+  const std::string_view behind = trim(text.substr(last + 1));
+  if (std::min(behind.find(decimal), behind.size()) != kGroup) return false;
+  std::string without(text);
+  std::erase(without, separator);
+  return parse_number(without, decimal).has_value();
 }
 
 Result<double> parse_number(std::string_view text, char decimal) {

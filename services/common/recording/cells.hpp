@@ -17,6 +17,12 @@ namespace sealwatch {
 /// The finite number that `text` is, or the rule that it breaks. `decimal` is '.' or ','.
 [[nodiscard]] Result<double> parse_number(std::string_view text, char decimal = '.');
 
+/// Whether a cell holds no value: it is empty, or has no digit, as NaN, ---, #N/A and Bad.
+[[nodiscard]] bool holds_no_value(std::string_view cell);
+
+/// Whether `text` would be a number without its separators of thousands: 1,234.5 or, with a decimal comma, 1.234,5.
+[[nodiscard]] bool has_thousands(std::string_view text, char decimal);
+
 /// How a log's time column counts.
 class TimeFormat {
  public:

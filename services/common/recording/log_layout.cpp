@@ -94,22 +94,23 @@ std::optional<Reading> best_reading(std::string_view head, const LogLayout& give
   return best;
 }
 
-bool is_row_of_units(const std::vector<std::string>& row) {
-  std::size_t filled = 0;
-  for (const std::string& cell : row) {
-    std::string_view text = trim(cell);
-    if (text.empty() || text == "-") continue;
-    if (text.size() > 2 && (text.front() == '[' || text.front() == '(')) text = text.substr(1, text.size() - 2);
-    ++filled;
-    if (!is_unit(as_utf8(text))) return false;
-  }
-  return filled > 0;
-}
-
 std::string without_brackets(std::string_view text) {
   text = trim(text);
   if (text.size() > 2 && (text.front() == '[' || text.front() == '(')) text = trim(text.substr(1, text.size() - 2));
   return text == "-" ? "" : as_utf8(text);
+}
+
+/// Whether all cells are units; or, where a name stands above each, most of them: "hh:mm:ss" is none.
+bool is_row_of_units(const std::vector<std::string>& row, const std::vector<std::string>& above, char decimal) {
+  std::size_t filled = 0, units = 0, named = 0;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const std::string unit = without_brackets(row[k]);
+    if (unit.empty()) continue;
+    ++filled;
+    units += is_unit(unit) ? 1 : 0;
+    named += k < above.size() && !is_blank(above[k]) && !parse_number(above[k], decimal) ? 1 : 0;
+  }
+  return filled > 0 && (units == filled || (2 * units > filled && named == filled));
 }
 
 std::vector<std::string> filled_to(std::vector<std::string> cells, std::size_t width) {
@@ -122,17 +123,20 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   const auto row = [&reading](std::size_t number) -> const std::vector<std::string>& {
     return reading.rows[number - 1];
   };
-  std::size_t above = out.first_row - 1;
-  const auto skip_blank_rows = [&] {
-    while (above > 0 && std::ranges::all_of(row(above), is_blank)) --above;
+  const auto filled_row = [&](std::size_t number) {
+    while (number > 0 && std::ranges::all_of(row(number), is_blank)) --number;
+    return number;
   };
-  skip_blank_rows();
+  std::size_t above = filled_row(out.first_row - 1);
   out.units_row = static_cast<std::size_t>(given.units_row);
   const bool header_given = given.header_row > 0;
   if (out.units_row == 0 && above > (header_given ? static_cast<std::size_t>(given.header_row) : 1) &&
-      row(above).size() > 1 && is_row_of_units(row(above)))
-    out.units_row = above;
-  if (out.units_row == above && above > 0) --above, skip_blank_rows();
+      row(above).size() > 1) {
+    const std::size_t names = filled_row(above - 1);
+    if (is_row_of_units(row(above), names > 0 ? row(names) : std::vector<std::string>(), reading.decimal))
+      out.units_row = above;
+  }
+  if (out.units_row == above && above > 0) above = filled_row(above - 1);
   out.header_row = header_given ? static_cast<std::size_t>(given.header_row) : 0;
   if (!header_given && above > 0 && 2 * row(above).size() > reading.width) out.header_row = above;
 }

@@ -84,7 +84,7 @@ class LogReader {
 
   [[nodiscard]] bool is_incomplete() const {
     for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
-      if (trim(cell(k)).empty()) return true;
+      if (holds_no_value(cell(k))) return true;
     return false;
   }
 
@@ -95,11 +95,11 @@ class LogReader {
                   rows_.has_line_break() ? "take the row out" : "the last line is cut off");
     if (k == time_) return time_format_.seconds(cell(k), layout_.decimal);
     const Result<double> number = parse_number(cell(k), layout_.decimal);
-    if (!number) {
-      const bool empty = trim(cell(k)).empty();
-      return fail(number.error().rule,
-                  empty ? "log: {incomplete_rows: skip} leaves such rows out" : number.error().advice);
-    }
+    if (!number && holds_no_value(cell(k)))
+      return fail(number.error().rule, "log: {incomplete_rows: skip} leaves such rows out");
+    if (!number && has_thousands(cell(k), layout_.decimal))
+      return fail(number.error().rule, "export the log without separators of thousands");
+    if (!number) return fail(number.error().rule, number.error().advice);
     const double value = mapped_.columns[k].column.to_si.to_si(*number);
     return std::isfinite(value) ? Result<double>(value) : fail("is out of a double's range");
   }

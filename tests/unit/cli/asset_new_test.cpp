@@ -28,6 +28,18 @@ class AssetNew : public ::testing::Test {
     std::ofstream(path("log.csv"), std::ios::binary) << text;
     return run_asset_new({.log = path("log.csv"), .file = path("a.yaml"), .model = model, .asset_id = {}, .yes = true});
   }
+  /// A plant of its own, pump.yaml: plants that were loaded stay for the process, each with a name that no other has.
+  void write_pump() const {
+    std::ofstream(path("pump.yaml")) << "name: pump_of_" << folder_.filename().string() << R"(
+meaning: a pump
+inputs: {opening: {unit: "1"}}
+outputs: {pressure: {value: p, unit: Pa, noise_std: 10}, valve_lift: {value: p/k, unit: m, noise_std: 1}}
+parameters: {a: {value: 0.1, unit: Pa/s}, k: {value: 1, unit: Pa/m}}
+states: {p: {der: a*opening, unit: Pa, start: pressure}}
+elements: {}
+law_sizes: {}
+)";
+  }
   std::filesystem::path folder_;
 };
 
@@ -175,6 +187,52 @@ TEST_F(AssetNew, TheFileGoesWithTheSidecarOfItsLog) {
   const auto recording = read_recording(path("log.csv"), **find_plant("eha"), asset->channel_map);
   ASSERT_FALSE(recording);
   EXPECT_THAT(recording.error().describe(), ::testing::HasSubstr("is read as the sidecar of " + path("log.csv")));
+}
+
+TEST_F(AssetNew, DateAndTimeInTwoColumnsAndMissingValuesAreRead) {
+  write_pump();
+  ASSERT_EQ(make("Date;Time;Opening [%];Pressure [psi(g)]\n04.03.2026;09:00:00,000;10;1\n"
+                 "04.03.2026;09:00:00,100;11;---\n04.03.2026;09:00:00,200;11;1,5\n",
+                 path("pump.yaml")),
+            kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").column, "Time");
+  EXPECT_EQ(asset->channel_map.log.incomplete_rows, "skip");
+  const auto recording = read_recording(path("log.csv"), **find_plant(asset->model), asset->channel_map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  EXPECT_NEAR(recording->samples.time_s.back(), 0.2, 1e-9);
+  EXPECT_NEAR(recording->samples.find("pressure")->values.front(), 101325.0 + 6894.757, 0.1);
+}
+
+TEST_F(AssetNew, MillisecondsSince1970AreSeen) {
+  write_pump();
+  ASSERT_EQ(make("Timestamp,Opening [%],Pressure [bar]\n1772614800000,1,2\n1772614800010,1,3\n1772614800020,1,3\n",
+                 path("pump.yaml")),
+            kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").unit, "ms");
+}
+
+// What the log does not give is said where one looks first, on the screen, and with columns that may be it.
+TEST_F(AssetNew, WhatIsUncertainIsSaidOnTheScreen) {
+  write_pump();
+  ::testing::internal::CaptureStdout();
+  ASSERT_EQ(make("t [s],Stellung [%],LVDT [counts],Pressure\n0,1,2000,1\n1,1,2001,1\n2,1,2003,1\n", path("pump.yaml")),
+            kOk);
+  EXPECT_THAT(::testing::internal::GetCapturedStdout(), ::testing::HasSubstr("the log gives no unit: taken for Pa"));
+  std::ostringstream text;
+  text << std::ifstream(path("a.yaml")).rdbuf();
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("{column: \"LVDT [counts]\", scale: 1, unit: \"m\"}"));
+}
+
+TEST_F(AssetNew, AColumnWhoseCellsAreNoNumbersIsNamed) {
+  write_pump();
+  ASSERT_EQ(make("t [s],Opening [%],Pressure [psig]\n0,1,\"1,234.5\"\n1,1,\"1,235.5\"\n", path("pump.yaml")), kOk);
+  std::ostringstream text;
+  text << std::ifstream(path("a.yaml")).rdbuf();
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,234.5' is no number"));
 }
 
 TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {

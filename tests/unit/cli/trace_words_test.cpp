@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
+#include "services/cli/foreign_file.hpp"
+
 namespace sealwatch::cli {
 namespace {
 
@@ -24,6 +28,28 @@ TEST(TraceWords, SayWhereTheSimulationHadAnotherInput) {
   EXPECT_THAT(trace_summary(comparison), HasSubstr("The input itself differs (motor voltage)"));
   comparison.channels.front().differs = false;
   EXPECT_THAT(trace_summary(comparison), Not(HasSubstr("The input itself")));
+}
+
+// A column of remarks, empty in all rows, is no channel whose rows are incomplete.
+TEST(AnyChannels, AColumnWithoutANumberIsNone) {
+  const std::string file = ::testing::TempDir() + "sealwatch_any_channels.csv";
+  std::ofstream(file) << "Time;Pressure [barg];Remark\n0;1,0;\n0,1;1,1;\n0,2;1,2;\n";
+  const Result<Recording> recording = read_any_channels(file, {});
+  ASSERT_TRUE(recording) << recording.error().describe();
+  ASSERT_EQ(recording->samples.channels.size(), 1U);
+  EXPECT_EQ(recording->samples.channels.front().name, "Pressure");
+}
+
+// Of two files one may be the log that the map is of, and the other in the project's own format.
+TEST(AnyChannels, AMapOfTheOtherFileSaysNothingOfThisOnesLayout) {
+  const std::string file = ::testing::TempDir() + "sealwatch_any_channels.csv";
+  std::ofstream(file) << "time[s],pressure[bar]\n0,1.25\n0.1,1.5\n";
+  ChannelMap map{.columns = {{"time", {.column = "Zeit", .unit = "s"}}, {"pressure", {.column = "PT", .unit = "bar"}}},
+                 .log = {}};
+  map.log.delimiter = "semicolon", map.log.decimal = "comma", map.log.header_row = 5;
+  const Result<Recording> recording = read_any_channels(file, map);
+  ASSERT_TRUE(recording) << recording.error().describe();
+  EXPECT_EQ(recording->samples.find("pressure")->values.back(), 1.5e5);
 }
 
 }  // namespace

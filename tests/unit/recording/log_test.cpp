@@ -171,6 +171,39 @@ TEST_F(ForeignLog, RowsWithAnEmptyCellAreRefusedOrLeftOutAsTheMapSays) {
   expect_two_rows(read(text, skip));
 }
 
+// "NaN", "---", "#N/A", "Bad": a cell without a digit holds no number, as an empty one.
+TEST_F(ForeignLog, ACellWithoutADigitIsMissingAsAnEmptyOneIs) {
+  for (const char* missing : {"NaN", "---", "#N/A", "Bad"}) {
+    const std::string text = std::string("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:00.2;") +
+                             missing + ";60\n2031-04-12T03:00:00.5;1,5;59\n";
+    EXPECT_THAT(error_of(text, kGermanMap), HasSubstr("log: {incomplete_rows: skip} leaves such rows out")) << missing;
+    ChannelMap skip = kGermanMap;
+    skip.log.incomplete_rows = "skip";
+    expect_two_rows(read(text, skip));
+  }
+  ChannelMap skip = kGermanMap;
+  skip.log.incomplete_rows = "skip";
+  EXPECT_THAT(error_of("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:00.2;1x;60\n", skip),
+              HasSubstr("must be a number"));
+}
+
+TEST_F(ForeignLog, ASeparatorOfThousandsIsNamed) {
+  EXPECT_THAT(
+      error_of("Zeit;Druck A;Weg [mm]\n2031-04-12T03:00:00;1,5;60\n2031-04-12T03:00:00.2;1.234,5;60\n", kGermanMap),
+      HasSubstr("'1.234,5': must be a number; export the log without separators of thousands"));
+}
+
+// Above the numbers stand the units; that of a date, or one that nobody knows, does not make them the header.
+TEST_F(ForeignLog, ARowThatIsMostlyUnitsBelowNamesIsTheRowOfUnits) {
+  ChannelMap map = kGermanMap;
+  map.columns["position"] = {.column = "Weg", .unit = {}};
+  map.columns["pressure_a"] = {.column = "Druck A", .unit = {}};
+  expect_two_rows(
+      read("Anlage 3;;\nZeit;Druck A;Weg\nExcel;barg;mm\n"
+           "2031-04-12T03:00:00;1;60\n2031-04-12T03:00:00.5;1,5;59\n",
+           map));
+}
+
 TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {
   EXPECT_THAT(error_of("Zeit;Druck B;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:01;1;60\n", kGermanMap),
               HasSubstr("row 1, channel pressure_a: 'Druck A': is no column of this log; did you mean 'Druck B'?"));

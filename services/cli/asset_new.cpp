@@ -200,8 +200,13 @@ std::string by_hand(const Understood& log, const ChannelDescription& channel) {
 std::string doubt(const Understood& log, const ChannelDescription& channel) {
   const auto guess = std::ranges::find(log.guesses, channel.name, &ChannelGuess::channel);
   if (guess == log.guesses.end()) return "";
-  if (guess->unit.empty() && channel.unit != "1")
+  if (guess->unit.empty() && channel.unit != "1") {
+    const std::string& header = log.offer.columns[guess->column].text;
+    const std::size_t open = header.rfind('(');
+    if (header.ends_with(')') && open != std::string::npos)
+      return header.substr(open) + " is no known unit: taken for " + channel.unit + ", check it";
     return "the log gives no unit: taken for " + channel.unit + ", check it";
+  }
   return guess->sure ? "" : "uncertain, check it";
 }
 

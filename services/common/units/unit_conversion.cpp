@@ -33,9 +33,11 @@ constexpr std::array kAdditions = {
     Addition{"gpm", "3.785411784e-3 m3/min"},  // US gallon of 231 cubic inches
     Addition{"GPM", "3.785411784e-3 m3/min"}, Addition{"USgpm", "3.785411784e-3 m3/min"},
     Addition{"US gpm", "3.785411784e-3 m3/min"}, Addition{"gal/min", "3.785411784e-3 m3/min"}, Addition{"lpm", "L/min"},
-    Addition{"LPM", "L/min"}, Addition{"cfm", "ft3/min"}, Addition{"PSI", "psi"}, Addition{"rev", "cycle"},
-    Addition{"deg", "arc_degree"}, Addition{"RPM", "rpm"}, Addition{"U/min", "rpm"}, Addition{"rev/min", "rpm"},
-    Addition{"Nm", "N m"}, Addition{"VDC", "V"}, Addition{"HP", "hp"}, Addition{"counts", "1"}, Addition{"count", "1"},
+    Addition{"LPM", "L/min"}, Addition{"cfm", "ft3/min"}, Addition{"PSI", "psi"},
+    Addition{"mmH2O", "9.80665 Pa"},  // water of 1000 kg/m3
+    Addition{"inH2O", "249.08891 Pa"}, Addition{"rev", "cycle"}, Addition{"deg", "arc_degree"}, Addition{"RPM", "rpm"},
+    Addition{"U/min", "rpm"}, Addition{"rev/min", "rpm"}, Addition{"Nm", "N m"}, Addition{"VDC", "V"},
+    Addition{"HP", "hp"}, Addition{"counts", "1"}, Addition{"count", "1"},
     // What loggers write, and UDUNITS takes for a charge, a capacitance, an angle or a mass.
     Addition{"C", "degC", "K"}, Addition{"F", "degF", "K"}, Addition{"deg C", "degC", "K"},
     Addition{"deg F", "degF", "K"}, Addition{"deg. C", "degC", "K"}, Addition{"deg. F", "degF", "K"},

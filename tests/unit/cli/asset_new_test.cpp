@@ -242,6 +242,13 @@ TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {
   EXPECT_THAT(text, ::testing::HasSubstr("the log gives no unit: taken for m"));
 }
 
+TEST_F(AssetNew, AUnitThatIsNotKnownIsNotSaidToBeMissing) {
+  ASSERT_EQ(make("t [s],motor_voltage [V],position (furlongs/x)\n0,1,2048\n1,1,2049\n2,1,2050\n"), kOk);
+  std::ifstream written(path("a.yaml"));
+  const std::string text{std::istreambuf_iterator<char>(written), {}};
+  EXPECT_THAT(text, ::testing::HasSubstr("(furlongs/x) is no known unit: taken for m, check it"));
+}
+
 TEST_F(AssetNew, NothingIsWrittenOverAndNothingIsMadeUp) {
   ASSERT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kOk);
   EXPECT_EQ(make("t [s],position [mm]\n0,60\n1,59\n"), kBadInput) << "the file is there already";

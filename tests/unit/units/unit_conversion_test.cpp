@@ -51,16 +51,18 @@ INSTANTIATE_TEST_SUITE_P(
         Example{"kgf/cm2(g)", "Pa", 1.0, 9.80665e4 + kAtmosphere_Pa}, Example{"lbs", "N", 1.0, 0.45359237 * 9.80665},
         Example{"ft-lb", "N m", 1.0, 12 * kInch_m * 0.45359237 * 9.80665}, Example{"kg", "kg", 2.0, 2.0},
         Example{"USgpm", "m3/s", 1.0, kGallon_m3 / 60.0}, Example{"VDC", "V", 24.0, 24.0},
-        Example{"ºC", "K", 0.0, 273.15}, Example{"gpm", "m3/s", 1.0, kGallon_m3 / 60.0},
-        Example{"m3/h", "m3/s", 3600.0, 1.0}, Example{"cm3/s", "m3/s", 1.0, 1e-6},
-        Example{"ft", "m", 1.0, 12 * kInch_m}, Example{"in", "m", 1.0, kInch_m}, Example{"%", "1", 50.0, 0.5},
-        Example{"counts", "1", 4095.0, 4095.0}, Example{"lbf", "N", 1.0, 0.45359237 * 9.80665},
-        Example{"degF", "K", 32.0, 273.15}, Example{"°C", "K", 0.0, 273.15}, Example{"C", "K", 20.0, 293.15},
-        Example{"F", "K", 32.0, 273.15}, Example{"deg C", "K", 20.0, 293.15}, Example{"C", "A s", 2.0, 2.0},
-        Example{"F", "A s/V", 2.0, 2.0}, Example{"rpm", "rad/s", 60.0, 2 * std::numbers::pi},
-        Example{"rev/min", "rad/s", 60.0, 2 * std::numbers::pi}, Example{"deg/s", "rad/s", 180.0, std::numbers::pi},
-        Example{"rev", "rad", 1.0, 2 * std::numbers::pi}, Example{"min", "s", 1.0, 60.0}, Example{"µs", "s", 1.0, 1e-6},
-        Example{"mV", "V", 1.0, 1e-3}, Example{"N s/mm", "N s/m", 1.0, 1e3}));
+        Example{"ºC", "K", 0.0, 273.15}, Example{"mmH2O", "Pa", 1.0, 9.80665},
+        Example{"inH2O(g)", "Pa", 1.0, 1000 * 9.80665 * kInch_m + kAtmosphere_Pa},
+        Example{"gpm", "m3/s", 1.0, kGallon_m3 / 60.0}, Example{"m3/h", "m3/s", 3600.0, 1.0},
+        Example{"cm3/s", "m3/s", 1.0, 1e-6}, Example{"ft", "m", 1.0, 12 * kInch_m}, Example{"in", "m", 1.0, kInch_m},
+        Example{"%", "1", 50.0, 0.5}, Example{"counts", "1", 4095.0, 4095.0},
+        Example{"lbf", "N", 1.0, 0.45359237 * 9.80665}, Example{"degF", "K", 32.0, 273.15},
+        Example{"°C", "K", 0.0, 273.15}, Example{"C", "K", 20.0, 293.15}, Example{"F", "K", 32.0, 273.15},
+        Example{"deg C", "K", 20.0, 293.15}, Example{"C", "A s", 2.0, 2.0}, Example{"F", "A s/V", 2.0, 2.0},
+        Example{"rpm", "rad/s", 60.0, 2 * std::numbers::pi}, Example{"rev/min", "rad/s", 60.0, 2 * std::numbers::pi},
+        Example{"deg/s", "rad/s", 180.0, std::numbers::pi}, Example{"rev", "rad", 1.0, 2 * std::numbers::pi},
+        Example{"min", "s", 1.0, 60.0}, Example{"µs", "s", 1.0, 1e-6}, Example{"mV", "V", 1.0, 1e-3},
+        Example{"N s/mm", "N s/m", 1.0, 1e3}));
 
 struct Refused {
   const char* unit;

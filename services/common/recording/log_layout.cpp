@@ -141,6 +141,16 @@ void find_header(const Reading& reading, const LogLayout& given, FoundLayout& ou
   if (!header_given && above > 0 && 2 * row(above).size() > reading.width) out.header_row = above;
 }
 
+/// Where the bracket opens that closes at the end of `cell`; npos: none does.
+std::size_t opening_of(std::string_view cell, char open, char close) {
+  int depth = 0;
+  for (std::size_t at = cell.size(); at-- > 0 && (depth > 0 || at + 1 == cell.size());) {
+    depth += cell[at] == close ? 1 : cell[at] == open ? -1 : 0;
+    if (depth == 0) return cell[at] == open ? at : std::string_view::npos;
+  }
+  return std::string_view::npos;
+}
+
 }  // namespace
 
 Rows rows_of(std::string_view head, char delimiter, std::size_t first_row, std::size_t most) {
@@ -190,8 +200,12 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
 NameAndUnitText split_header_cell(std::string_view cell) {
   cell = trim(cell);
   for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
-    const std::size_t at = cell.rfind(open);
-    if (at == std::string_view::npos || at == 0 || cell.back() != close) continue;
+    const std::size_t at = opening_of(cell, open, close);
+    if (at == std::string_view::npos || at == 0) continue;
+    const std::size_t blank = cell.rfind(' ', at);
+    const std::string_view word = cell.substr(blank + 1);
+    if (blank != std::string_view::npos && blank + 1 < at && convert_unit(word, "Pa"))  // "PT-1 bar(g)"
+      return {std::string(trim(cell.substr(0, blank))), std::string(word)};
     const std::string_view unit = trim(cell.substr(at + 1, cell.size() - at - 2));
     if (open == '[' || is_unit(unit) || TimeFormat::of(unit).has_value())
       return {std::string(trim(cell.substr(0, at))), std::string(unit)};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <array>
 #include <cmath>
 
 #include "services/common/recording/log_layout.hpp"
@@ -169,6 +170,18 @@ TEST_F(ForeignLog, RowsWithAnEmptyCellAreRefusedOrLeftOutAsTheMapSays) {
   ChannelMap skip = kGermanMap;
   skip.log.incomplete_rows = "skip";
   expect_two_rows(read(text, skip));
+}
+
+TEST(HeaderCell, GaugeInBracketsBelongsToTheUnit) {
+  for (const auto& [cell, name, unit] : std::vector<std::array<const char*, 3>>{{"PT-1 (bar(g))", "PT-1", "bar(g)"},
+                                                                                {"PT-1 [psi(g)]", "PT-1", "psi(g)"},
+                                                                                {"PT-1 bar(g)", "PT-1", "bar(g)"},
+                                                                                {"Druck P(bar)", "Druck P", "bar"},
+                                                                                {"Weg (mm)", "Weg", "mm"}}) {
+    const NameAndUnitText split = split_header_cell(cell);
+    EXPECT_EQ(split.name, name) << cell;
+    EXPECT_EQ(split.unit, unit) << cell;
+  }
 }
 
 // "NaN", "---", "#N/A", "Bad": a cell without a digit holds no number, as an empty one.

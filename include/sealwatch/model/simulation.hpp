@@ -53,6 +53,7 @@ struct FreeQuantity {
 /// Steps are no longer than this or, where samples are far apart, than a sixteenth of the shortest distance between two of
 /// them, so that no event of the input is stepped over.
 inline constexpr double kLongestStep_s = 0.25;
+[[nodiscard]] double longest_step_s(std::span<const double> times_s);
 
 struct SimulationOptions {
   double relative_tolerance = 5e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
@@ -67,6 +68,7 @@ struct SimulatedOutputs {
   RowMatrix values;         ///< samples x channels
   RowMatrix sensitivities;  ///< (samples * channels) x free quantities; row = sample * channels + channel
   std::size_t steps = 0;    ///< of the integrator
+  std::size_t points = 0;   ///< at which sensors were passed the signal
   std::size_t linearisations = 0;
 };
 

@@ -199,6 +199,7 @@ void put_outputs(Packer& packer, const Result<SimulatedOutputs>& outputs) {
   put_matrix(packer, outputs->values);
   put_matrix(packer, outputs->sensitivities);
   put_count(packer, outputs->steps);
+  put_count(packer, outputs->points);
   put_count(packer, outputs->linearisations);
 }
 
@@ -213,6 +214,7 @@ Result<SimulatedOutputs> get_outputs(Unpacker& unpacker) {
   outputs.values = get_matrix(unpacker);
   outputs.sensitivities = get_matrix(unpacker);
   outputs.steps = get_count(unpacker);
+  outputs.points = get_count(unpacker);
   outputs.linearisations = get_count(unpacker);
   return outputs;
 }

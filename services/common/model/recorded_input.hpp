@@ -61,17 +61,6 @@ class RecordedInput {
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<InputChannel>& channels() const { return channels_; }
-  /// Between two samples, on the mean, where they are closest together. One short distance alone says nothing of the
-  /// plant; a burst of samples in a slow log has something to show.
-  [[nodiscard]] double shortest_distance_s() const {
-    constexpr std::size_t kBurst = 8;
-    const std::size_t burst = std::min(kBurst, times_.size() - 1);
-    if (burst == 0) return 0.0;
-    double shortest = times_.back() - times_.front();
-    for (std::size_t row = burst; row < times_.size(); ++row)
-      shortest = std::min(shortest, times_[row] - times_[row - burst]);
-    return shortest / static_cast<double>(burst);
-  }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
   [[nodiscard]] double segment_begin(std::size_t segment) const { return segments_[segment]; }
   [[nodiscard]] double segment_end(std::size_t segment) const {

@@ -32,11 +32,12 @@ namespace sealwatch {
 /// because these filters take the signal as linear from point to point. A log of minutes is that of a slow plant.
 inline constexpr double kLongestPointDistance_s = 0.0051;
 inline constexpr double kMostPoints = 800.0;  ///< between two samples
+/// A filter forgets by exp(-age / time constant). Further back than kAllRemembered time constants points need not be as
+/// close: e times as far apart every kForgotten time constants, the error that each leaves still falls with age.
+inline constexpr double kAllRemembered = 2.0, kForgotten = 4.0;
 /// After a jump of the input the integration starts anew, from the first order and a small step.
 inline constexpr std::size_t kStepsOfARestart = 30;
 inline constexpr std::size_t kManyJumps = 100;
-/// Of the usual distance between samples: laws have corners, which longer steps run over.
-inline constexpr double kShareOfDistance = 1.0 / 16.0;
 
 template <class System>
 class RecordingRun {
@@ -56,7 +57,7 @@ class RecordingRun {
         deadline_(options.deadline),
         most_steps_(options.maximum_steps + kStepsOfARestart * (std::max<std::size_t>(input.segment_count(), 1) - 1)),
         integrator_(system_, static_cast<int>(columns_) - 1, scale_,
-                    {.maximum_step = std::min(options.maximum_step_s, longest_step_s(input)),
+                    {.maximum_step = std::min(options.maximum_step_s, longest_step_s(input.times())),
                      .maximum_steps = most_steps_,
                      .maximum_order = system_.maximum_order()}),
         point_(integrator_.size(), 0.0),
@@ -65,8 +66,15 @@ class RecordingRun {
     for (const SimulatedChannel& channel : simulation.simulated_channels()) {
       filters_.emplace_back(channel.time_constant_s, columns_);
       filtered_ = filtered_ || channel.time_constant_s > 0.0;
+      memory_s_ = std::max(memory_s_, channel.time_constant_s);
     }
-    for (const SensorTerm& term : laws) filtered_ = filtered_ || term.kind == SiteKind::sensor_lag;
+    double lag_s = 0.0;
+    for (const SensorTerm& term : laws) {
+      if (term.kind != SiteKind::sensor_lag) continue;
+      filtered_ = true;
+      lag_s = std::max(lag_s, values.parameters[term.parameter]);
+    }
+    memory_s_ += lag_s;
     for (std::size_t c = 0; !laws.empty() && c < filters_.size(); ++c)
       sensors_.emplace_back(laws, simulation.channels()[c], values, free, columns_);
     const Eigen::Index rows = simulation.recorded().rows(), channels = simulation.recorded().cols();
@@ -94,10 +102,6 @@ class RecordingRun {
   }
 
  private:
-  [[nodiscard]] static double longest_step_s(const RecordedInput& input) {
-    return std::max(kLongestStep_s, kShareOfDistance * input.shortest_distance_s());
-  }
-
   [[nodiscard]] tl::unexpected<Error> no_start() const {
     return fail(Error{.file = {},
                       .place = "t = " + std::to_string(input_.times().front()) + " s",
@@ -179,11 +183,29 @@ class RecordingRun {
 
   [[nodiscard]] bool pass_points(double begin, double end) {
     const double distance = end - begin;
-    const int points =
-        filtered_ ? static_cast<int>(std::min(std::ceil(distance / kLongestPointDistance_s), kMostPoints)) : 1;
-    for (int k = 1; k <= points; ++k)
-      if (!advance_to(k == points ? end : begin + distance * k / points, distance / points)) return false;
-    return true;
+    double last = distance;  // before the end
+    for (const std::vector<double>& ages = ages_of_points(distance); const double age : ages) {
+      if (!advance_to(end - age, last - age)) return false;
+      last = age;
+    }
+    return advance_to(end, last);
+  }
+
+  // How long before its end a distance between samples has points, the oldest first.
+  [[nodiscard]] const std::vector<double>& ages_of_points(double distance) {
+    if (distance == distance_of_ages_) return ages_;
+    distance_of_ages_ = distance;
+    ages_.clear();
+    if (!filtered_ || distance <= kLongestPointDistance_s) return ages_;
+    const double step = distance / std::min(std::ceil(distance / kLongestPointDistance_s), kMostPoints);
+    constexpr double kAlmost = 1.0 - 1e-9;  // as the sum of all steps is rounded
+    for (double age = step; age < kAlmost * distance;) {
+      ages_.push_back(age);
+      const double forgotten = (age / memory_s_ - kAllRemembered) / kForgotten;
+      age += step * std::exp(std::max(forgotten, 0.0));
+    }
+    std::ranges::reverse(ages_);
+    return ages_;
   }
 
   // Steps until `time` is reached and passes the sensors the signal there, and at the ends of steps that are shorter
@@ -272,6 +294,7 @@ class RecordingRun {
   }
 
   void pass_sensors(double time, const double* point) {
+    ++outputs_.points;
     for (std::size_t c = 0; c < filters_.size(); ++c) {
       const auto [output, state, time_constant] = simulation_.simulated_channels()[c];
       const double* signal = signal_.data();
@@ -312,6 +335,9 @@ class RecordingRun {
   std::size_t next_ = 0;         ///< sample that has not been taken yet
   double filtered_until_ = 0.0;  ///< time of the sensors' last point
   bool filtered_ = false;        ///< some channel has a low-pass or a lag
+  double memory_s_ = 0.0;        ///< time constant of the slowest of them
+  std::vector<double> ages_;     ///< of points, for the last distance
+  double distance_of_ages_ = 0.0;
   static constexpr double kNoEvent = std::numeric_limits<double>::infinity();
   double event_s_ = kNoEvent;  ///< that lies within the last step and is not passed yet
   double last_event_s_ = -kNoEvent;

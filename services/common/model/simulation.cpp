@@ -149,6 +149,27 @@ std::vector<std::string> measured_inputs(const AssetConfig& asset, const TimeSer
   return {};
 }
 
+namespace {
+
+// Between two samples, on the mean, where they are closest together. One short distance alone says nothing of the
+// plant; a burst of samples in a slow log has something to show.
+double shortest_distance_s(std::span<const double> times_s) {
+  constexpr std::size_t kBurst = 8;
+  if (times_s.size() < 2) return 0.0;
+  const std::size_t burst = std::min(kBurst, times_s.size() - 1);
+  double shortest = times_s.back() - times_s.front();
+  for (std::size_t row = burst; row < times_s.size(); ++row)
+    shortest = std::min(shortest, times_s[row] - times_s[row - burst]);
+  return shortest / static_cast<double>(burst);
+}
+
+}  // namespace
+
+double longest_step_s(std::span<const double> times_s) {
+  constexpr double kShareOfDistance = 1.0 / 16.0;  // laws have corners, which longer steps run over
+  return std::max(kLongestStep_s, kShareOfDistance * shortest_distance_s(times_s));
+}
+
 Result<FreeQuantity> PlantSimulation::find(std::string_view quantity) const {
   std::vector<std::string> names;
   if (plant().has_load()) {

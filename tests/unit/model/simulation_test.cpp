@@ -95,6 +95,36 @@ TEST(Simulation, DoesNotDependOnTheRecordingsRateOrGaps) {
   }
 }
 
+// Rows further apart than any filter remembers: what is simulated between them is needed by no later row.
+TEST(Simulation, PassesSensorsOnlyWhatTheyRememberBetweenRowsFarApart) {
+  constexpr std::size_t kApart = 500;  // of 200 Hz: 2.5 s
+  const AssetConfig asset = nominal_asset("eha");
+  TimeSeries fine = standard_pst(asset, 200.0, 31.0), coarse = fine;
+  coarse.time_s.clear();
+  for (Series& series : coarse.channels) series.values.clear();
+  for (std::size_t row = 0; row < fine.time_s.size(); row += kApart) {
+    coarse.time_s.push_back(fine.time_s[row]);
+    for (std::size_t c = 0; c < fine.channels.size(); ++c)
+      coarse.channels[c].values.push_back(fine.channels[c].values[row]);
+  }
+  std::vector<double>& voltage = fine.channels.front().values;  // of both the same course, linear between the rows
+  for (std::size_t row = 0; row + kApart < voltage.size(); ++row) {
+    const std::size_t before = row / kApart * kApart;
+    const double share = static_cast<double>(row - before) / static_cast<double>(kApart);
+    voltage[row] = (1.0 - share) * voltage[before] + share * voltage[before + kApart];
+  }
+  const auto every_point = simulation_of(asset, fine), far_apart = simulation_of(asset, coarse);
+  const auto a = run(*every_point, every_point->start()), b = run(*far_apart, every_point->start());
+  const std::size_t distances = coarse.time_s.size() - 1;
+  EXPECT_LT(b.points, 100 * distances) << "of 490 at the usual distance";
+  for (const char* name : {"pressure_a", "position", "velocity", "flow"})
+    for (std::size_t k = 0; k < distances; ++k)
+      EXPECT_NEAR(a.values(static_cast<Eigen::Index>(kApart * k), column(*every_point, name)),
+                  b.values(static_cast<Eigen::Index>(k), column(*far_apart, name)),
+                  0.1 * asset.sensors.at(name).noise_std)
+          << name << " at " << coarse.time_s[k];
+}
+
 TEST(SensorFilter, IsExactForARampAndPassesDirectlyWithoutALag) {
   constexpr double tau = 0.05, h = 0.02;
   SensorFilter filter(tau, 1), direct(0.0, 1);

@@ -14,10 +14,10 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "sealwatch/model/runtime_equations.hpp"
 #include "services/common/fmi/fmu_file.hpp"
 #include "services/common/fmi/hosted_runs.hpp"
@@ -49,7 +49,7 @@ class ProcessPool {
   void give_back(std::unique_ptr<FmuProcess> process);
 
  private:
-  std::mutex mutex_;
+  FreeInCopies mutex_;
   std::vector<std::unique_ptr<FmuProcess>> idle_;
 };
 

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "services/common/fmi/host_process.hpp"
 #include "services/common/fmi/run_wire.hpp"
 
@@ -44,7 +44,7 @@ class HostedRuns {
 
   std::string fmu_;
   HostedPlant plant_;
-  std::mutex mutex_;
+  FreeInCopies mutex_;
   std::vector<std::unique_ptr<RunProcess>> idle_;
 };
 

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <set>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "sealwatch/core/text.hpp"
 
 namespace sealwatch {
@@ -33,9 +34,9 @@ const std::deque<Law>& all_laws() { return law_catalogue(); }
 void add_law(Law law) { law_catalogue().push_back(std::move(law)); }
 
 std::string_view kept(std::string_view text) {
-  static std::mutex mutex;
-  static std::set<std::string, std::less<>> texts;
+  static FreeInCopies mutex;
   const std::scoped_lock lock(mutex);
+  static std::set<std::string, std::less<>> texts;  // made under the lock: a copy would wait for who makes it
   const auto known = texts.find(text);
   return known != texts.end() ? *known : *texts.emplace(text).first;
 }

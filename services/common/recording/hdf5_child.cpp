@@ -17,6 +17,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch {
@@ -130,7 +131,7 @@ Error no_answer(int status) {
 Result<Variables> in_child(const std::function<Result<Variables>()>& read) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return fail(std::string("cannot be read: no pipe, ") + std::strerror(errno));
-  const pid_t child = fork();
+  const pid_t child = copy_process();
   if (child == 0) {
     close(ends[0]);
     answer_and_end(ends[1], read);

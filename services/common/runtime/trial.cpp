@@ -13,6 +13,7 @@
 #include <exception>
 #include <fstream>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/workers.hpp"
 
@@ -75,7 +76,7 @@ std::unique_ptr<Trial> Trial::begin(const std::function<void()>& work, std::chro
   if (::pipe2(words.data(), O_CLOEXEC) != 0) return nullptr;
   const pid_t maker = ::getpid();
   const rlim_t memory = data_now();
-  const pid_t process = ::fork();
+  const pid_t process = copy_process();
   if (process == 0) live(work, words[1], maker, memory);
   ::close(words[1]);
   if (process < 0) {

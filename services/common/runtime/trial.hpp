@@ -1,7 +1,8 @@
 // A piece of work tried in a copy of this process, so that nothing it does can end this one: what it concludes there is
 // thrown away, only how it ended counts. The copy has this thread alone and no open file, and ends with its maker. What
 // other threads had locked stays locked in it: memory and streams the C library sees to, the log is silent, FMUs get
-// processes of their own, and so a layer may do there whatever it does here but lock what other layers lock.
+// processes of their own, and what layers share is locked by a FreeInCopies (core/process_copy.hpp). So a layer may do
+// there whatever it does here.
 #pragma once
 
 #include <sys/types.h>

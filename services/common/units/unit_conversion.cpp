@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 
+#include "sealwatch/core/process_copy.hpp"
 #include "sealwatch/core/text.hpp"
 
 namespace sealwatch {
@@ -70,15 +71,16 @@ Qualified split_qualifier(std::string_view text) {
   return {};
 }
 
-/// UDUNITS keeps its errors and its parser in one place for the whole process: under `mutex`.
+/// UDUNITS keeps its errors and its parser in one place for the whole process.
+FreeInCopies one_at_a_time;
+
+/// Made and used under `one_at_a_time`.
 class UnitSystem {
  public:
   static UnitSystem& get() {
     static UnitSystem system;
     return system;
   }
-
-  std::mutex mutex;
 
   /// The unit of a channel in `si_unit`, of any where that is empty; nothing where the text is no unit.
   [[nodiscard]] Unit parse(std::string_view text, std::string_view si_unit = {}) const {
@@ -91,8 +93,6 @@ class UnitSystem {
 
  private:
   UnitSystem() {
-    // A copy of the process (runtime/trial.cpp) has no thread that would unlock it.
-    pthread_atfork([] { get().mutex.lock(); }, [] { get().mutex.unlock(); }, [] { get().mutex.unlock(); });
     ut_set_error_message_handler(&ut_ignore);
     system_ = ut_read_xml(nullptr);
     if (system_ == nullptr) return;
@@ -156,8 +156,8 @@ tl::unexpected<Error> other_quantity(const UnitSystem& system, std::string_view 
 }
 
 Result<UnitConversion> from_library(std::string_view unit, std::string_view si_unit) {
-  UnitSystem& system = UnitSystem::get();
-  const std::lock_guard<std::mutex> lock(system.mutex);
+  const std::scoped_lock lock(one_at_a_time);
+  const UnitSystem& system = UnitSystem::get();
   const Unit from = system.parse(unit, si_unit);
   const Unit to = system.parse(si_unit);
   if (!from) {
@@ -182,8 +182,8 @@ Result<UnitConversion> convert_unit(std::string_view unit, std::string_view si_u
 
 bool is_unit(std::string_view text) {
   if (text.empty() || find_unit(text)) return !text.empty();
-  UnitSystem& system = UnitSystem::get();
-  const std::lock_guard<std::mutex> lock(system.mutex);
+  const std::scoped_lock lock(one_at_a_time);
+  const UnitSystem& system = UnitSystem::get();
   return system.parse(text) != nullptr;
 }
 

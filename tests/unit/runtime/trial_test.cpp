@@ -9,6 +9,7 @@
 #include <atomic>
 #include <thread>
 
+#include "sealwatch/model/physics.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
@@ -63,17 +64,36 @@ TEST(TrialTest, WhatLogsIsNotHeldUpByAThreadThatWasWithinALine) {
   EXPECT_EQ(result, "");
 }
 
-TEST(TrialTest, WhatConvertsUnitsIsNotHeldUpByAThreadThatDid) {
+/// Of copies that are made while another thread does `work` again and again: of the first that does not end well.
+std::string result_beside(const std::function<void()>& work) {
+  constexpr int kCopies = 200;
   std::atomic<bool> over = false;
-  std::thread converting([&over] {
-    while (!over) (void)convert_unit("furlong/fortnight", "m/s");
+  std::thread other([&] {
+    while (!over) work();
   });
   std::string result;
-  for (int k = 0; k < 20 && result.empty(); ++k)
-    result = result_of([] { EXPECT_TRUE(convert_unit("furlong/fortnight", "m/s")); });
+  for (int k = 0; k < kCopies && result.empty(); ++k) result = result_of(work, milliseconds(2000));
   over = true;
-  converting.join();
-  EXPECT_EQ(result, "");
+  other.join();
+  return result;
+}
+
+TEST(TrialTest, WhatConvertsUnitsIsNotHeldUpByAThreadThatDid) {
+  EXPECT_EQ(result_beside([] { EXPECT_TRUE(convert_unit("furlong/fortnight", "m/s")); }), "");
+}
+
+TEST(TrialTest, WhatKeepsATextIsNotHeldUpByAThreadThatDid) {
+  EXPECT_EQ(result_beside([] { EXPECT_EQ(kept("a law's equation"), "a law's equation"); }), "");
+}
+
+TEST(TrialTest, WhatRaisesAnExceptionIsNotHeldUpByAThreadThatDid) {
+  const auto raise = [] {
+    try {
+      throw std::runtime_error("no such phase");
+    } catch (const std::runtime_error&) {
+    }
+  };
+  EXPECT_EQ(result_beside(raise), "");
 }
 
 TEST(TrialTest, WhatWaitsForAProcessorIsNotOverdueButWhatComputesIs) {

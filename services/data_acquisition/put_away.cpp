@@ -42,8 +42,11 @@ int rename_to_new(const fs::path& from, const fs::path& to) {
 std::optional<Error> not_a_file_of_its_own(const fs::path& recording) {
   for (const fs::path& file : {recording, sidecar_of(recording)}) {
     std::error_code ignored;
-    if (fs::symlink_status(file, ignored).type() == fs::file_type::symlink)
+    const fs::file_type type = fs::symlink_status(file, ignored).type();
+    if (type == fs::file_type::symlink)
       return error_of(file, "is a symbolic link, which is not followed here", "put the file itself into the folder");
+    if (type == fs::file_type::fifo || type == fs::file_type::character)
+      return error_of(file, "is a pipe or a device, whose reader may wait for ever", "put a file into the folder");
   }
   return std::nullopt;
 }

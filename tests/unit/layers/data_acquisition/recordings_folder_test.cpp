@@ -1,6 +1,7 @@
 #include "services/data_acquisition/recordings_folder.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <set>
@@ -173,6 +174,20 @@ TEST_F(RecordingsFolderTest, LinksAreNotFollowed) {
   EXPECT_FALSE(fs::exists(elsewhere / "worse.csv"));
   EXPECT_THAT(errors_, testing::Contains(testing::HasSubstr("could not be moved to")));
   fs::remove_all(elsewhere);
+}
+
+/// Who reads a pipe waits until somebody writes to it: the service would wait with it.
+TEST_F(RecordingsFolderTest, ASidecarThatIsAPipeIsNotWaitedFor) {
+  fs::create_directories(directory_);
+  drop("april", "XT03-MV2");
+  fs::remove(directory_ / "april.yaml");
+  ASSERT_EQ(::mkfifo((directory_ / "april.yaml").c_str(), 0600), 0);
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april.yaml: is a pipe or a device")));
+  EXPECT_TRUE(fs::exists(directory_ / "rejected" / "april.csv"));
 }
 
 }  // namespace

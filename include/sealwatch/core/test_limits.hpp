@@ -24,6 +24,9 @@ struct TestLimits {
   double shortest_interval_s = 1e-5;
   /// Seven days: the slowest plants' tests take hours. What goes on for longer is no test but a log.
   double longest_s = 7.0 * 86400.0;
+  /// Steps of the longest permitted size that one simulation of a test takes, for an estimate within a service: it needs
+  /// up to a hundred simulations, of 8 us a step, and two minutes of a processor are given for it. Seven hours.
+  double most_steps_of_simulation = 100'000.0;
   /// Times count from the start of a test, or from 1970 for some senders; beyond it they are no times.
   double largest_time_s = 1e10;
   /// A window is uniform: missing rows are interpolated. Where nine of ten are missing there is nothing to stand on.
@@ -53,6 +56,9 @@ inline constexpr double kSmallestNumber = 1e-100;
 /// The same of numbers, duration and mean interval that are counted elsewhere.
 [[nodiscard]] std::optional<std::string> too_many_numbers(double numbers, const TestLimits& limits = kTestLimits);
 [[nodiscard]] std::optional<std::string> too_long(double duration_s, const TestLimits& limits = kTestLimits);
+/// For an estimate beside other tests; it need not be for any other use.
+[[nodiscard]] std::optional<std::string> too_long_to_simulate(double duration_s, double longest_step_s,
+                                                              const TestLimits& limits = kTestLimits);
 [[nodiscard]] std::optional<std::string> too_fast(double interval_s, const TestLimits& limits = kTestLimits);
 
 /// What is wrong with samples as a message of another process brings them: times that do not increase or are none, a

@@ -29,6 +29,16 @@ std::optional<std::string> too_long(double duration_s, const TestLimits& limits)
   return text::format("{:.4g} s long, more than the {:.0f} s that one test may take", duration_s, limits.longest_s);
 }
 
+std::optional<std::string> too_long_to_simulate(double duration_s, double longest_step_s, const TestLimits& limits) {
+  const double steps = duration_s / longest_step_s;
+  if (steps <= limits.most_steps_of_simulation) return std::nullopt;
+  return text::format(
+      "the test is {:.4g} s long: a simulation takes {:.3g} steps of {:.3g} s, more than the {:.0f} that an estimate "
+      "may take in a service; cut the recording to the stroke and some seconds around it, record a slow plant with "
+      "rows further apart, or use 'sealwatch fit', which has no such limit",
+      duration_s, steps, longest_step_s, limits.most_steps_of_simulation);
+}
+
 std::optional<std::string> too_fast(double interval_s, const TestLimits& limits) {
   if (interval_s >= limits.shortest_interval_s * (1.0 - 1e-6)) return std::nullopt;  // rounded when printed
   return text::format("rows {:.3g} s apart, closer than the {:.3g} s that sealwatch takes", interval_s,

@@ -1,13 +1,23 @@
 #include "sealwatch/estimation/pem_estimator.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/estimation/cylinder_circuit.hpp"
 #include "sealwatch/model/driving_channels.hpp"
+#include "sealwatch/model/simulation.hpp"
+#include "services/common/estimation/cannot_fit.hpp"
 
 namespace sealwatch {
 namespace {
+
+std::optional<std::string> why_not_simulated(const std::vector<double>& time_s) {
+  if (time_s.empty()) return std::nullopt;
+  return too_long_to_simulate(time_s.back() - time_s.front(), longest_step_s(time_s));
+}
 
 class PemEstimator final : public Estimator {
  public:
@@ -17,7 +27,10 @@ class PemEstimator final : public Estimator {
   [[nodiscard]] std::vector<FitReport> estimate(const AssetConfig& asset, const TimeSeries& samples,
                                                 std::span<const Phase> phases) const override {
     std::vector<FitReport> fits;
-    fits.push_back(fit_actuator(asset, {&samples, 1}, actuator_).report);
+    if (auto why = why_not_simulated(samples.time_s))
+      fits.push_back(cannot_fit(asset.model, std::move(*why)));
+    else
+      fits.push_back(fit_actuator(asset, {&samples, 1}, actuator_).report);
     if (has_cylinder_circuit(asset)) fits.push_back(fit_cylinder_circuit(asset, samples, phases, cylinder_));
     // Driven by a measured flow the whole-record simulation takes the flow's own noise for the model's error: the
     // circuit's filter knows better.

@@ -7,6 +7,7 @@
 namespace sealwatch {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Optional;
 
@@ -38,6 +39,14 @@ TEST(TestLimits, SayWhatIsTooMuch) {
   EXPECT_FALSE(beyond_limits({}, 0));
   EXPECT_THAT(beyond_limits(times(500'001, 0.01), 3), Optional(HasSubstr("2000004 numbers")));
   EXPECT_THAT(beyond_limits(times(100, 86400.0), 3), Optional(HasSubstr("s long, more than the 604800 s")));
+}
+
+TEST(TestLimits, ATestThatTakesTooManyStepsIsToldWhatToDo) {
+  EXPECT_FALSE(too_long_to_simulate(6.0 * 3600.0, 0.25));
+  EXPECT_FALSE(too_long_to_simulate(6.9 * 86400.0, 120.0 / 16.0)) << "rows two minutes apart";
+  EXPECT_THAT(too_long_to_simulate(6.9 * 86400.0, 0.25),
+              Optional(AllOf(HasSubstr("2.38e+06 steps of 0.25 s, more than the 100000"),
+                             HasSubstr("cut the recording"), HasSubstr("sealwatch fit"))));
 }
 
 TEST(TestLimits, AMessageIsHeldAgainstAllOfThem) {

@@ -5,12 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <random>
 
+#include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/estimation/pem_estimator.hpp"
+#include "sealwatch/model/simulation.hpp"
 #include "services/common/estimation/pem_problem.hpp"
 #include "services/virtual_bench/simulate_test.hpp"
 #include "tests/unit/estimation/recordings.hpp"
@@ -242,6 +245,21 @@ TEST(PemEstimator, PutsTheFitToTrustFirst) {
   std::erase_if(samples.channels, [](const Series& channel) { return channel.name == "motor_voltage"; });
   fits = estimator->estimate(nominal_asset(), samples, phases);
   EXPECT_EQ(fits[0].model, "cylinder_circuit");
+}
+
+/// The same rows as those of a test that lasts nine hours: a simulation would take most of the estimate's time.
+TEST(PemEstimator, DoesNotSimulateATestOfManyHours) {
+  constexpr double kApart_s = 4.0;
+  TimeSeries samples = bench_recording(1.0, 500.0);
+  for (std::size_t row = 0; row < samples.time_s.size(); ++row)
+    samples.time_s[row] = kApart_s * static_cast<double>(row);
+  ASSERT_TRUE(too_long_to_simulate(samples.time_s.back(), longest_step_s(samples.time_s)));
+  const std::vector<FitReport> fits = make_pem_estimator()->estimate(nominal_asset(), samples, {});
+  const auto whole = std::ranges::find(fits, "eha", &FitReport::model);
+  ASSERT_NE(whole, fits.end());
+  EXPECT_FALSE(whole->admissible);
+  EXPECT_THAT(whole->reasons, testing::ElementsAre(testing::HasSubstr("cut the recording to the stroke")));
+  EXPECT_EQ(fits.size(), 2U) << "the cylinder circuit takes no simulation";
 }
 
 }  // namespace

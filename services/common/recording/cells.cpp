@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <ctime>
+#include <functional>
 
 #include "services/common/recording/columns.hpp"
 #include "services/common/units/unit_conversion.hpp"
@@ -142,6 +143,14 @@ Result<double> TimeFormat::seconds(double number) {
   if (!time) return fail(time.error());
   if (!base_) base_ = *time;
   return static_cast<double>(time->nanoseconds - base_->nanoseconds) * 1e-9;
+}
+
+Status shift_times(std::vector<double>& times_s, double shift_s) {
+  for (double& time_s : times_s) time_s += shift_s;
+  const auto same = std::ranges::adjacent_find(times_s, std::ranges::greater_equal());
+  if (same == times_s.end()) return {};
+  return fail(error_at("sample " + std::to_string(same - times_s.begin() + 2) + ", column time", {}, kOneTime,
+                       "log the time from the test's begin"));
 }
 
 std::optional<UtcTime> TimeFormat::utc(double seconds) const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/time.hpp"
@@ -48,6 +49,11 @@ class TimeFormat {
   std::string pattern_;
   std::optional<UtcTime> base_;
 };
+
+inline constexpr const char* kOneTime = "two times fall on one, as a number has no more than 16 digits";
+
+/// Adds `shift_s` to increasing times; an Error where two of them fall on one.
+[[nodiscard]] Status shift_times(std::vector<double>& times_s, double shift_s);
 
 /// The time that `cell` is by a pattern of strptime, with fractions of a second behind it.
 [[nodiscard]] Result<UtcTime> parse_pattern(std::string_view cell, const std::string& pattern);

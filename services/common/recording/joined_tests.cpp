@@ -37,7 +37,8 @@ Status join(LogTest& last, LogTest next) {
     if (more == nullptr) return fail(error_at("channel " + channel.name, {}, "is missing: the file before it has it"));
     channel.values.insert(channel.values.end(), more->values.begin(), more->values.end());
   }
-  for (const double time_s : next.read.samples.time_s) samples.time_s.push_back(time_s + shift_s);
+  if (const Status shifted = shift_times(next.read.samples.time_s, shift_s); !shifted) return shifted;
+  samples.time_s.insert(samples.time_s.end(), next.read.samples.time_s.begin(), next.read.samples.time_s.end());
   last.read.content_hash = content_hash(last.read.content_hash + next.read.content_hash);
   return {};
 }

@@ -30,7 +30,7 @@ class LogReader {
     }
     if (values_.front().empty() && out_.tests.empty())
       return fail(error_at("row " + std::to_string(layout_.first_row) + ", column time", {}, "no samples follow"));
-    end_test();
+    if (const Status ended = end_test(); !ended) return fail(ended.error());
     name_contents();
     out_.left_aside = mapped_.left_aside;
     return std::move(out_);
@@ -109,18 +109,18 @@ class LogReader {
     const std::vector<double>& time = values_[time_];
     if (time.empty() || time_s + shift_s_ > time.back()) return {};
     const bool repeats = time_s + shift_s_ == time.back();
-    if (map_.log.time_resets == "split" && !repeats) {
-      end_test();
-    } else if (map_.log.time_resets == "join" && !repeats) {
+    if (map_.log.time_resets == "split" && !repeats) return end_test();
+    if (map_.log.time_resets == "join" && !repeats) {
       shift_s_ = time.back() + usual_step() - time_s;
-    } else {
-      return fail(error_in(
-          time_,
-          repeats ? "time repeats" : "time goes back: the row before is at " + text::significant(time.back(), 9) + " s",
-          repeats ? "take one of the rows out, or log a finer time"
-                  : "log: {time_resets: join} takes it as one test, split as another test"));
+      if (time_s + shift_s_ > time.back()) return {};
+      return fail(error_in(time_, "the row before is at " + text::significant(time.back(), 9) + " s: " + kOneTime,
+                           "log the time from the test's begin"));
     }
-    return {};
+    return fail(error_in(
+        time_,
+        repeats ? "time repeats" : "time goes back: the row before is at " + text::significant(time.back(), 9) + " s",
+        repeats ? "take one of the rows out, or log a finer time"
+                : "log: {time_resets: join} takes it as one test, split as another test"));
   }
 
   [[nodiscard]] double usual_step() const {
@@ -130,21 +130,20 @@ class LogReader {
     return steps.empty() ? 1.0 : signal::median(std::move(steps));
   }
 
-  void end_test() {
-    if (values_[time_].empty()) return;
+  Status end_test() {
+    if (values_[time_].empty()) return {};
     LogTest test;
     test.first_row = first_row_;
     test.start_time = time_format_.utc(values_[time_].front());
-    if (time_format_.is_absolute()) {
-      const double begin_s = values_[time_].front();
-      for (double& time : values_[time_]) time -= begin_s;
-    }
+    if (time_format_.is_absolute())
+      if (const Status shifted = shift_times(values_[time_], -values_[time_].front()); !shifted) return shifted;
     std::vector<Column> columns;
     for (const MappedColumn& mapped : mapped_.columns) columns.push_back(mapped.column);
     test.read = assemble(std::move(columns), std::move(values_));
     out_.tests.push_back(std::move(test));
     values_.assign(mapped_.columns.size(), {});
     shift_s_ = 0.0;
+    return {};
   }
 
   void name_contents() {

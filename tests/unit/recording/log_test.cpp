@@ -125,6 +125,10 @@ TEST_F(ForeignLog, ATimeThatStartsAnewIsRefusedJoinedOrAnotherTest) {
       HasSubstr("log.csv: row 5, column 1 (t, channel time): '0': time goes back: the row before is at 1 s; log: "
                 "{time_resets: join} takes it as one test, split as another test"));
   EXPECT_THAT(read(text, map_of(columns, resets("join"))).samples.time_s, ElementsAre(0, 0.5, 1, 1.5, 2));
+  EXPECT_THAT(
+      error_of("t,P,x\n1e43,1,60\n0.5,1,60\n", map_of(columns, resets("join"))),
+      HasSubstr("log.csv: row 3, column 1 (t, channel time): '0.5': the row before is at 1e+43 s: two times fall "
+                "on one, as a number has no more than 16 digits; log the time from the test's begin"));
   const auto split = read_recordings(write("s.csv", text), test_plant(), map_of(columns, resets("split")));
   ASSERT_TRUE(split) << split.error().describe();
   ASSERT_THAT(*split, SizeIs(2));
@@ -133,6 +137,16 @@ TEST_F(ForeignLog, ATimeThatStartsAnewIsRefusedJoinedOrAnotherTest) {
   EXPECT_NE((*split)[0].content_hash, (*split)[1].content_hash);
   EXPECT_THAT(read_recording(path("s.csv"), test_plant(), map_of(columns, resets("split"))).error().describe(),
               HasSubstr("s.csv: holds 2 tests where one is wanted"));
+}
+
+TEST_F(ForeignLog, TimesOfAFileBehindAnotherStayApart) {
+  const std::map<std::string, ColumnMapping> columns = {{"time", {.column = "t", .unit = "s"}},
+                                                        {"position", {.column = "x", .unit = "mm"}}};
+  write("long.csv", "t,x\n0,60\n1e16,60\n");
+  write("next.csv", "t,x\n0,60\n0.5,60\n");
+  const auto read = read_recordings(path("long.csv") + "+" + path("next.csv"), test_plant(), map_of(columns));
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().describe(), HasSubstr("next.csv: sample 2, column time: two times fall on one"));
 }
 
 TEST_F(ForeignLog, SeveralFilesAreOneTest) {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "services/common/mismatch/criterion.hpp"
-#include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/telling.hpp"
 
@@ -119,19 +119,9 @@ class Proving {
 }  // namespace
 
 Trial without(const Trial& trial, std::size_t slot, const ToProve& of) {
-  Trial fewer{.effects = trial.effects, .model = of.baseline};
-  fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
-  if (fewer.effects.empty()) return fewer;
-  for (const Trial& known : of.naming.trials)
-    if (same_effects(known.effects, fewer.effects)) fewer.model = known.model;
-  if (fewer.model != of.baseline) return fewer;
-  AssetConfig asset = trial.model->asset;
-  asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));
   const HeldOut& held_out = of.held_out;
-  Result<FittedModel> model =
-      fit_model(asset, in_windows(held_out.fit, held_out.window_s), trial.model.get(), held_out.options.threads);
-  if (model) fewer.model = std::make_shared<const FittedModel>(std::move(*model));
-  return fewer;
+  const Data data = in_windows(held_out.fit, held_out.window_s);
+  return without_law(of.naming, trial, slot, data, held_out.options.threads).value_or(Trial{{}, of.baseline});
 }
 
 CarryOver carry_over_of(const ToProve& of, const HeldOut& held_out) {

@@ -29,7 +29,7 @@ struct ProvenLaws {
 
 [[nodiscard]] ProvenLaws prove(const ToProve& of, Trial best, TimeBudget& time);
 
-/// An explanation without one of its laws, the others fitted anew unless the search has done so.
+/// An explanation without one of its laws (without_law); none of them where the others cannot be fitted.
 [[nodiscard]] Trial without(const Trial& trial, std::size_t slot, const ToProve& of);
 
 /// How explanations carry over to these recordings.

@@ -32,9 +32,6 @@ struct ActuatorFitOptions {
   /// left after it is hundredths. The integrator's own error moves the cost by some tenths: less cannot be resolved.
   /// Where the misfit is above the noise, standard errors grow with it: this times the whitened misfit's mean square.
   double cost_tolerance = 0.25;
-  /// Of the integrator: half of what accuracy_test allows for a standard test. Estimates of tests at 1e-6 differ by a
-  /// thirtieth of a standard error (median), 0.16 at most, and take a third longer.
-  double relative_tolerance = 3e-6;
   /// Integrator steps per sample that a simulation may take. The reference plant needs 0.2 to 2.5 at its nominal
   /// values, the switched one 5; a trial that needs more is far from any optimum and would only cost time: it counts as
   /// a failed step.

@@ -56,7 +56,7 @@ inline constexpr double kLongestStep_s = 0.25;
 [[nodiscard]] double longest_step_s(std::span<const double> times_s);
 
 struct SimulationOptions {
-  double relative_tolerance = 5e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
+  double relative_tolerance = 1e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
   double maximum_step_s = 1e300;     ///< beside kLongestStep_s
   std::size_t maximum_steps = 200000;
   const Deadline* deadline = nullptr;  ///< when it passes the run ends, as an Error

@@ -102,7 +102,6 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
     const double duration_s = recorded.time_s.back() - recorded.time_s.front();
     fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / kLongestStep_s);
   }
-  simulation.relative_tolerance = options.relative_tolerance;
   simulation.maximum_steps =
       static_cast<std::size_t>(fewest_steps + options.steps_per_sample * static_cast<double>(samples));
   return simulation;
@@ -123,8 +122,6 @@ Status ActuatorFitOptions::validate() const {
     return fail("maximum_iterations must be at least 1, is " + std::to_string(maximum_iterations));
   if (threads < 1) return fail("threads must be at least 1, is " + std::to_string(threads));
   if (!(cost_tolerance > 0.0)) return fail("cost_tolerance must be positive, is " + text::significant(cost_tolerance));
-  if (!(relative_tolerance > 0.0 && relative_tolerance <= 1e-3))
-    return fail("relative_tolerance must be positive and at most 1e-3, is " + text::significant(relative_tolerance));
   if (!(hopeless_rms > admissibility.largest_noise_normalised_rms))
     return fail("hopeless_rms must be above largest_noise_normalised_rms, is " + text::significant(hopeless_rms));
   if (!(steps_per_sample > 0.0))

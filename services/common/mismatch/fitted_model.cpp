@@ -13,8 +13,7 @@ namespace {
 ActuatorFitOptions search_options(int threads, int iterations) {
   ActuatorFitOptions options;
   options.maximum_iterations = iterations;
-  options.relative_tolerance = 1e-6;  // many recordings together show a smaller error than one
-  options.hopeless_rms = 1e9;         // a bad fit is what is looked at here
+  options.hopeless_rms = 1e9;  // a bad fit is what is looked at here
   options.steps_per_sample = 20.0;
   options.restart_factors = {0.5, 2.0, 0.25};
   options.threads = threads;

@@ -38,7 +38,7 @@ double difference_step(const RecordedInput& recorded, SiteKind kind, std::size_t
   return kOfRange * (size > 0.0 ? size : 1.0);
 }
 
-constexpr double kTight = 1e-6;
+constexpr double kTight = 1e-7;
 
 // 1 + gain, per channel.
 Eigen::VectorXd gains_of(const ModelValues& values) {

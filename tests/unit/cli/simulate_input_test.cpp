@@ -96,6 +96,17 @@ TEST_F(SimulateInput, AUnitWithoutInputsNeedsTimesAlone) {
   for (const auto& row : rows()) EXPECT_NEAR(row[1], 1.0 - 0.5 * 9.81 * row[0] * row[0], 1e-5);
 }
 
+TEST_F(SimulateInput, StartsAtTheFirstSampleOfWhatMoves) {
+  const std::string asset = prepare(fmi::mixed("fmu_mixed2"), "simulated_moving",
+                                    "time[s],u_real[1],u_discrete[1],u_integer[1],u_boolean[1],x[1]\n"
+                                    "0,1.5,2.5,3,1,7\n0.5,1.5,2.5,3,0,4.2\n1.0,4,5,6,1,2.6\n1.5,4,5,6,1,1.6\n");
+  std::string plant = content_of(folder_ / "plant.yaml");
+  plant.replace(plant.find(", start: fmu,"), 13, ", start: x,");
+  write(folder_ / "plant.yaml", plant);
+  ASSERT_EQ(run(options(asset)), kOk) << said_;
+  for (const auto& row : rows()) EXPECT_NEAR(row.back(), 7.0 * std::exp(-row[0]), 1e-4);
+}
+
 TEST_F(SimulateInput, NoiseIsThatOfTheSensorsAndOfTheSeed) {
   std::string inputs = "time[s],u[1]\n";
   for (int k = 0; k < 400; ++k) inputs += std::to_string(0.01 * k) + ",0\n";

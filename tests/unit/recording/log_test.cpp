@@ -92,6 +92,15 @@ TEST_F(ForeignLog, TabsAndLatin1AndUnitsInTheHeader) {
            map));
 }
 
+TEST(HeaderCell, AnIndexInBracketsIsNoUnit) {
+  for (const char* cell : {"outputs[2]", "A[2,1]", "x(10)"}) {
+    EXPECT_EQ(split_header_cell(cell).name, cell);
+    EXPECT_EQ(split_header_cell(cell).unit, "");
+  }
+  EXPECT_EQ(split_header_cell("ratio[1]").name, "ratio");
+  EXPECT_EQ(split_header_cell("s[m]").unit, "m");
+}
+
 TEST_F(ForeignLog, BlanksOfAnyLength) {
   const ChannelMap map = map_of({{"time", {.column = "t", .unit = "s"}},
                                  {"pressure_a", {.column = "P1", .unit = "barg"}},

@@ -51,6 +51,12 @@ TEST(ImportFmu, AnOutputThatIsAStateIsTakenAsTheState) {
               AllOf(HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("start: [position, \"0.0[m]\"]")));
 }
 
+TEST(ImportFmu, ElementsOfAnArrayMayBeOfEitherSignWithinItsSize) {
+  const TestFolder folder;
+  EXPECT_THAT(imported(folder, arrays()), AllOf(HasSubstr("x0_1: {unit: \"1\", value: 1.0, min: -20.0, max: 20.0"),
+                                                HasSubstr("x0_2: {unit: \"1\", value: 2.0, min: -20.0, max: 20.0")));
+}
+
 TEST(ImportFmu, OneThatDoesNotStartIsRefusedByName) {
   const TestFolder folder;
   EXPECT_THAT(imported(folder, spring_return("fmu_spring_licence2")), HasSubstr("licence"));

@@ -123,6 +123,7 @@ TEST_F(SimulateInput, RowsOfOneTimeAreBeforeAndAfterAJump) {
       for (std::size_t k = 1; k <= 4; ++k) EXPECT_EQ(row[4 + k], row[k]) << interface << " at " << row[0];
       EXPECT_NEAR(row.back(), 2.0 * std::exp(-row[0]), 1e-3) << interface;
     }
+    std::filesystem::remove(folder_ / "plant.yaml");
     std::filesystem::remove_all(folder_ / "out");
   }
 }

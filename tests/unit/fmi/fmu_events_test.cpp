@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <regex>
+#include <sstream>
 
 #include "sealwatch/estimation/actuator_fit.hpp"
 #include "sealwatch/model/simulation.hpp"
@@ -134,6 +136,28 @@ TEST(FmuEvents, ParametersThatMoveTheImpactsAreFound) {
     EXPECT_NEAR(fit.report.parameters[0].value, gravity, 2e-3);
     EXPECT_NEAR(fit.report.parameters[1].value, bounce, 2e-4);
   }
+}
+
+TEST(FmuEvents, ARecordingWithoutNoiseIsFittedToWhatAnIntegrationErrsBy) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(bouncing("fmu_bouncing2"));
+  const std::string file = ball_file(folder, "ball_without_noise");
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  std::ofstream(file) << std::regex_replace(text.str(), std::regex(", noise_std: [^}]*"), "");
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  TimeSeries samples = watched();
+  samples.channels.push_back({"velocity", "m/s", 0.0, {}});
+  for (std::size_t row = 0; row < samples.time_s.size(); ++row) {
+    const Ball at = ball(samples.time_s[row], 9.3, 0.76);
+    samples.channels[0].values[row] = at.height;
+    samples.channels[1].values.push_back(at.velocity);
+  }
+  const JointFit fit = fit_actuator(nominal_asset("ball_without_noise"), std::span(&samples, 1));
+  ASSERT_TRUE(fit.report.admissible) << ::testing::PrintToString(fit.report.reasons);
+  EXPECT_NEAR(fit.report.parameters[0].value, 9.3, 1e-4);
+  EXPECT_NEAR(fit.report.parameters[1].value, 0.76, 1e-5);
 }
 
 }  // namespace

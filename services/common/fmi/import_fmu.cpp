@@ -278,8 +278,10 @@ class Writer {
   }
 
   void fmu_section() {
-    out_ << "\nfmu:\n  file: " << text::quoted(path_) << "\n  interface: " << (file_.co_simulation() ? "cs" : "me")
-         << "\n";
+    out_ << "\nfmu:\n  file: " << text::quoted(path_) << "\n  interface: " << (file_.co_simulation() ? "cs" : "me");
+    if (!file_.co_simulation() && fmu_.co_simulation)
+      out_ << "  # it has Co-Simulation too: with its own solver (--interface cs), as published results of it are";
+    out_ << "\n";
     settings();
     if (!inputs_.empty()) out_ << "  inputs:        # of the FMU, each an expression of the recorded inputs below\n";
     for (const Row& row : inputs_)

@@ -94,7 +94,8 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
   if (is_known(time_s, wanted)) return &values_;
   if (!processes_[0]->alive()) return nullptr;  // trouble_ says why
   if (time_s > ended_s_)
-    return in_trouble("the FMU ends the simulation by itself at " + std::to_string(ended_s_) + " s");
+    return in_trouble("the FMU ends the simulation by itself at " + std::to_string(ended_s_) +
+                      " s: end the recording there");
   if (block_.setup.co_simulation != 0) return step_to(time_s);
   const bool in_one = processes_.size() == 1;
   EvaluationRequest asked = wanted;
@@ -168,7 +169,7 @@ std::string RunningBlock::fault_of_step(double step_s) {
   if (std::abs(whole - std::round(whole)) > kRounding * whole || whole < 0.5)
     return "the FMU does steps of " + std::to_string(interface.fixed_step_s) +
            " s (fixedInternalStepSize), of which the distance of the samples, " + std::to_string(step_s) +
-           " s, is no whole number";
+           " s, is no whole number: bring the samples to such distances, or import it for Model Exchange";
   return "";
 }
 

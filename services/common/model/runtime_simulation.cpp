@@ -128,7 +128,8 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
                 "fit and validate work; a model without such events (friction and stops rounded) can be explained");
   }
   if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
-    return without_derivatives(plant(), recording.trouble());
+    return recording.said().empty() ? without_derivatives(plant(), recording.trouble())
+                                    : fail(went_no_further({}, recording.said()));
   return outputs;
 }
 

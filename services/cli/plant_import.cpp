@@ -8,6 +8,7 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/common/fmi/import_fmu.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -61,9 +62,9 @@ int run_plant_import(const PlantImportOptions& options) {
   if (!text) return complain(text.error()), kBadInput;
   if (const Status written = write_new(options.file, *text); !written) return complain(written.error()), kBadInput;
   const fmi::ModelDescription& description = (*fmu)->description();
-  std::printf("%s: %zu states, %zu variables of %s%s\nComplete it, then: sealwatch plant check %s\n",
-              options.file.c_str(), (*fmu)->co_simulation() ? std::size_t{0} : description.states.size(),
-              description.variables.size(), description.model_name.c_str(),
+  std::printf("%s: %s, %s of %s%s\nComplete it, then: sealwatch plant check %s\n", options.file.c_str(),
+              text::count_of((*fmu)->co_simulation() ? std::size_t{0} : description.states.size(), "state").c_str(),
+              text::count_of(description.variables.size(), "variable").c_str(), description.model_name.c_str(),
               (*fmu)->co_simulation() ? " (Co-Simulation: no physics can be added to it)" : "", options.file.c_str());
   return kOk;
 }

@@ -11,6 +11,7 @@
 #include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/simulated_life.hpp"
+#include "services/common/model/first_value.hpp"
 #include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch::cli {
@@ -18,10 +19,14 @@ namespace {
 
 constexpr SimulationOptions kFine = {.relative_tolerance = 1e-6, .maximum_steps = 5000000};
 
-/// With the outputs that are not recorded, as channels without values: they are simulated too. A built-in plant starts
-/// where its recorded outputs do, and simulates those alone.
+/// With the outputs that are not recorded, as channels without values: they are simulated too. A built-in plant
+/// simulates those alone that are recorded. All start at their first sample: nothing corrects a start that is a mean, as
+/// a fit does, and what moves would start too late.
 TimeSeries with_all_outputs(const TimeSeries& recorded, const PlantDescription& plant) {
   TimeSeries all = recorded;
+  for (Series& series : all.channels)
+    if (const ChannelDescription* known = plant.find_channel(series.name); known != nullptr && !known->input)
+      start_at_first_sample(series);
   for (const ChannelDescription& channel : plant.channels)
     if (!channel.input && !all.has(channel.name) && !plant.file.empty())
       all.channels.push_back({channel.name, channel.unit, 0.0, {}});
@@ -136,8 +141,9 @@ int simulate_life(const Recording& input, const AssetConfig& asset, const PlantD
 }  // namespace
 
 int run_simulate_input(const SimulateOptions& options) {
-  const std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
+  std::optional<AssetConfig> asset = load_asset_or_explain(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
+  asset->channel_map.log.repeated_times = "jump";  // simulation tools write inputs so
   const auto plant = find_plant(asset->model);
   if (!plant) return complain(plant.error()), kBadInput;
   const auto inputs = read_recordings(options.inputs, *asset, **plant);

@@ -26,6 +26,8 @@ struct LogLayout {
   int first_row = 0;                       ///< of numbers
   std::string time_resets = "refuse";      ///< "join": time goes on; "split": each begins another test
   std::string incomplete_rows = "refuse";  ///< "skip": a row with an empty cell is left out
+  /// "jump": rows of one time are before and after a jump (repeated_times.hpp).
+  std::string repeated_times = "refuse";
   bool operator==(const LogLayout&) const = default;
 };
 
@@ -33,7 +35,11 @@ struct ChannelMap {
   std::map<std::string, ColumnMapping> columns;  ///< by channel, `time` among them; what is not named keeps its name
   LogLayout log;
   /// The format of docs/recordings.md.
-  [[nodiscard]] bool empty() const { return columns.empty() && log == LogLayout(); }
+  [[nodiscard]] bool empty() const {
+    LogLayout own;
+    own.repeated_times = log.repeated_times;
+    return columns.empty() && log == own;
+  }
   bool operator==(const ChannelMap&) const = default;
 };
 

@@ -7,6 +7,7 @@
 #include "sealwatch/estimation/cylinder_circuit.hpp"
 #include "services/common/estimation/cannot_fit.hpp"
 #include "services/common/estimation/fit_report.hpp"
+#include "services/common/estimation/growing_start.hpp"
 #include "services/common/estimation/interpolation_error.hpp"
 #include "services/common/estimation/pem_search.hpp"
 #include "services/common/estimation/piecewise_start.hpp"
@@ -15,10 +16,6 @@
 
 namespace sealwatch {
 namespace {
-
-bool better(const PemOptimum& a, const PemOptimum& b) {
-  return a.converged != b.converged ? a.converged : a.cost < b.cost;
-}
 
 // Seal leakage and bulk modulus from the cylinder circuit, where it can be fitted: one linear regression instead of a
 // step from the asset's value, which overshoots where the seal is worn.
@@ -69,18 +66,38 @@ void start_from_best_leakage(PemProblem& problem, const PlantDescription& plant)
   leakage->start = best;
 }
 
+// Whether the search ended farther from the recordings than a right model can.
+bool is_far(const PemOptimum& optimum, const ActuatorFitOptions& options) {
+  double residuals = 0.0;
+  for (const Linearisation& at : optimum.at_optimum) residuals += static_cast<double>(at.residual.size());
+  const double rms = options.admissibility.largest_noise_normalised_rms;
+  return optimum.cost > 0.5 * residuals * rms * rms;
+}
+
+bool better(const PemOptimum& a, const PemOptimum& b, const ActuatorFitOptions& options) {
+  if (const bool a_far = is_far(a, options); a_far != is_far(b, options)) return !a_far;
+  return a.converged != b.converged ? a.converged : a.cost < b.cost;
+}
+
 // From the asset's values; where nothing can be simulated with them, or the search does not converge, from those of the
-// recordings' pieces, then from multiples of the asset's.
+// recordings' pieces, then from multiples of the asset's. A plant of one's own, of which nothing better is known, also
+// from those of the recordings' beginnings where the search converged far off.
 Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const AssetConfig& asset,
                                               std::span<const TimeSeries> recordings,
                                               const ActuatorFitOptions& options) {
   Result<PemOptimum> best = search(problem, start_point(problem, 1.0), options);
-  if (problem.shared.empty() || (best && (best->converged || best->hopeless))) return best;
+  if (problem.shared.empty() || (best && best->hopeless)) return best;
+  const bool may_grow = options.cut_into_pieces && !plant_or_default(asset.model).file.empty();
+  const auto wrong = [&] { return !best || !best->converged || (may_grow && is_far(*best, options)); };
+  if (!wrong()) return best;
   const auto take_better = [&](Result<PemOptimum> other) {
-    if (other && (!best || better(*other, *best))) best = std::move(other);
+    if (other && (!best || better(*other, *best, options))) best = std::move(other);
   };
-  if (options.cut_into_pieces)
+  if (options.cut_into_pieces && !(best && best->converged))
     if (auto start = piecewise_start(problem, asset, recordings, options))
+      take_better(search(problem, std::move(*start), options));
+  if (may_grow && wrong())
+    if (auto start = growing_start(problem, asset, recordings, options))
       take_better(search(problem, std::move(*start), options));
   for (const double factor : options.restart_factors) {
     if (best && best->converged) break;

@@ -9,7 +9,7 @@
 namespace sealwatch {
 
 /// Standard deviation of one sample (signal/noise_floor.hpp), with the asset's sensor as the usual one; `time_s`: when
-/// the samples were taken.
+/// the samples were taken. Where nobody says, what the samples show, but no less than a simulation errs by.
 [[nodiscard]] double noise_std_of(const AssetConfig& asset, const Series& channel, std::span<const double> time_s);
 [[nodiscard]] double noise_std_of(const AssetConfig& asset, const Series& channel);
 

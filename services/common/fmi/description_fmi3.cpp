@@ -35,9 +35,8 @@ std::size_t place_of(const DescriptionReader& reader, const pugi::xml_node& node
   return place->second;
 }
 
-std::size_t size_of(const DescriptionReader& reader, const pugi::xml_node& node, const Places& places,
-                    const ModelDescription& description) {
-  std::uint64_t size = 1;
+void read_extents(const DescriptionReader& reader, const pugi::xml_node& node, const Places& places,
+                  const ModelDescription& description, Variable& variable) {
   for (const pugi::xml_node& dimension : node.children("Dimension")) {
     std::uint64_t extent = 0;
     if (dimension.attribute("start")) {
@@ -48,10 +47,10 @@ std::size_t size_of(const DescriptionReader& reader, const pugi::xml_node& node,
         reader.refuse(dimension, parameter.name, "gives the size of an array and has no start value for it");
       extent = static_cast<std::uint64_t>(parameter.start[0]);
     }
-    size *= extent;
-    if (size > kMostElements) reader.refuse(node, std::to_string(size), "is too large an array");
+    variable.extents.push_back(extent);
+    variable.size *= extent;
+    if (variable.size > kMostElements) reader.refuse(node, std::to_string(variable.size), "is too large an array");
   }
-  return size;
 }
 
 Variable read_variable(const DescriptionReader& reader, const pugi::xml_node& node, FmiType type,
@@ -91,7 +90,7 @@ void resolve(const DescriptionReader& reader, const std::vector<pugi::xml_node>&
   std::uint64_t total = 0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     Variable& variable = description.variables[k];
-    variable.size = size_of(reader, nodes[k], places, description);
+    read_extents(reader, nodes[k], places, description, variable);
     if ((total += variable.size) > kMostElements) reader.refuse(nodes[k], variable.name, "is one array too many");
     if (settings_change_sizes && nodes[k].child("Dimension")) variable.start.clear();
     if (variable.start.size() > 1 && variable.start.size() != variable.size)

@@ -82,6 +82,8 @@ Result<std::vector<Entry>> checked_entries(zip_t* archive, const std::string& fi
       return refuse(file, "number " + std::to_string(index + 1), "is damaged");
     std::string name = text;
     std::ranges::replace(name, '\\', '/');  // some Windows tools write those
+    if (name == "./") continue;
+    if (name.starts_with("./")) name.erase(0, 2);
     std::string fault = fault_of_name(name);
     if (fault.empty()) fault = fault_of_kind(archive, index);
     if (fault.empty() && (about.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && about.encryption_method != ZIP_EM_NONE)

@@ -51,6 +51,7 @@ class RunningBlock {
   /// A Co-Simulation unit goes on to this time, with inputs that are linear from the last one or held since.
   [[nodiscard]] const BlockValues* step_to(double time_s);
   /// What forbids a step of this length; "": nothing.
+  [[nodiscard]] bool is_jump(double step_s) const;
   [[nodiscard]] std::string fault_of_step(double step_s);
   [[nodiscard]] const BlockValues* in_trouble(std::string words) { return trouble_ = std::move(words), nullptr; }
   void end_at(double time_s);
@@ -72,6 +73,7 @@ class RunningBlock {
   EvaluationRequest known_;
   double ended_s_ = std::numeric_limits<double>::infinity();  ///< when it asked to end: it has no values after that
   double step_s_ = 0.0;                                       ///< of a Co-Simulation unit with equal steps
+  double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();  ///< by a Co-Simulation unit
   double first_time_s_ = std::numeric_limits<double>::quiet_NaN();  ///< of the recording, of a Co-Simulation unit
   BlockValues values_;
   std::string trouble_;

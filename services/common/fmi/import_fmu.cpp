@@ -232,6 +232,14 @@ class Writer {
     return (read == starts_.end() ? fmu_.variables[element.variable].start : read->second)[element.element];
   }
 
+  // Elements of an array are of one size and of either sign.
+  [[nodiscard]] double reach_of_array(const Row& row) const {
+    double size = 0.0;
+    for (std::size_t k = 0; k < fmu_.variables[row.element.variable].size; ++k)
+      size = std::max(size, std::abs(row.scale.to_si(start_of_parameter({row.element.variable, k}))));
+    return size == 0.0 ? 1.0 : 10.0 * size;
+  }
+
   void head() {
     const std::string version = fmu_.version == Version::fmi2 ? "FMI 2.0" : "FMI 3.0";
     out_ << "# A plant for sealwatch around the FMU " << in_comment(path_) << " (" << version << ", "
@@ -270,8 +278,10 @@ class Writer {
   }
 
   void fmu_section() {
-    out_ << "\nfmu:\n  file: " << text::quoted(path_) << "\n  interface: " << (file_.co_simulation() ? "cs" : "me")
-         << "\n";
+    out_ << "\nfmu:\n  file: " << text::quoted(path_) << "\n  interface: " << (file_.co_simulation() ? "cs" : "me");
+    if (!file_.co_simulation() && fmu_.co_simulation)
+      out_ << "  # it has Co-Simulation too: with its own solver (--interface cs), as published results of it are";
+    out_ << "\n";
     settings();
     if (!inputs_.empty()) out_ << "  inputs:        # of the FMU, each an expression of the recorded inputs below\n";
     for (const Row& row : inputs_)
@@ -331,6 +341,7 @@ class Writer {
       const double value = row.scale.to_si(start_of_parameter(row.element));
       const double reach = value == 0.0 ? 1.0 : 9.0 * std::abs(value);
       double min = value > 0.0 ? 0.1 * value : value - reach, max = value < 0.0 ? 0.1 * value : value + reach;
+      if (variable.size > 1) max = reach_of_array(row), min = -max;
       if (variable.min) min = std::max(min, row.scale.to_si(*variable.min));
       if (variable.max) max = std::min(max, row.scale.to_si(*variable.max));
       const bool sound = min <= value && value <= max && min < max;

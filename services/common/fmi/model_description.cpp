@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/fmi/description_reader.hpp"
 
 namespace sealwatch::fmi {
@@ -74,6 +75,23 @@ void check(const DescriptionReader& reader, const pugi::xml_node& root, const Mo
                     "export the model without clocks from outside");
 }
 
+/// The element of an array at indices such as "2,1", row by row; nothing where there is none.
+std::optional<std::size_t> element_at(std::string_view indices, const std::vector<std::size_t>& extents) {
+  std::size_t element = 0;
+  const char* from = indices.data();
+  const char* const end = from + indices.size();
+  for (std::size_t k = 0; k < extents.size(); ++k) {
+    std::size_t index = 0;
+    const auto [behind, error] = std::from_chars(from, end, index);
+    if (error != std::errc() || index < 1 || index > extents[k]) return std::nullopt;
+    const bool last = k + 1 == extents.size();
+    if (last ? behind != end : behind == end || *behind != ',') return std::nullopt;
+    element = element * extents[k] + index - 1;
+    from = behind + (last ? 0 : 1);
+  }
+  return extents.empty() ? std::nullopt : std::optional(element);
+}
+
 ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node& root, const Settings& settings) {
   if (!root) reader.refuse(root, {}, "has no element fmiModelDescription");
   ModelDescription description;
@@ -106,7 +124,10 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
 Result<ModelDescription> read_model_description(const std::string& file, std::string_view text,
                                                 const Settings& settings) {
   pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+  // Of eight bits and no UTF-8, whatever it says: Windows' own page is Latin-1 but for a few signs.
+  const bool latin = !is_valid_utf8(text) && text.find('\0') == std::string_view::npos;
+  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size(), pugi::parse_default,
+                                                             latin ? pugi::encoding_latin1 : pugi::encoding_auto);
   const DescriptionReader reader(file, text);
   try {
     if (!parsed) {
@@ -136,22 +157,25 @@ const Unit* ModelDescription::find_unit(std::string_view unit) const {
 
 std::string ModelDescription::name_of(const Element& element) const {
   const Variable& variable = variables[element.variable];
-  return variable.size == 1 ? variable.name : variable.name + "[" + std::to_string(element.element + 1) + "]";
+  if (variable.size == 1) return variable.name;
+  std::string indices;
+  std::size_t rest = element.element;
+  for (std::size_t k = variable.extents.size(); k-- > 0; rest /= variable.extents[k])
+    indices = std::to_string(rest % variable.extents[k] + 1) + (indices.empty() ? "" : ",") + indices;
+  return variable.name + "[" + indices + "]";
 }
 
 Result<Element> ModelDescription::find_element(std::string_view name) const {
   std::vector<std::string> names;
   for (std::size_t k = 0; k < variables.size(); ++k) {
     const Variable& variable = variables[k];
+    if (variable.size == 0) continue;
     names.push_back(name_of({k, 0}));
     if (variable.name == name && variable.size == 1) return Element{k, 0};
     if (variable.size == 1 || !name.starts_with(variable.name + "[") || !name.ends_with(']')) continue;
-    std::string_view digits = name.substr(variable.name.size() + 1);
-    digits.remove_suffix(1);
-    std::size_t element = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), element);
-    if (error == std::errc() && end == digits.data() + digits.size() && element >= 1 && element <= variable.size)
-      return Element{k, element - 1};
+    std::string_view indices = name.substr(variable.name.size() + 1);
+    indices.remove_suffix(1);
+    if (const auto element = element_at(indices, variable.extents)) return Element{k, *element};
   }
   return fail(Error{.file = file,
                     .place = {},

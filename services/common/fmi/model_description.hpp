@@ -53,8 +53,9 @@ struct Variable {
   FmiVariability variability = FmiVariability::continuous;
   std::string unit;  ///< name of a Unit, or ""
   std::string description;
-  std::size_t size = 1;       ///< number of elements, row by row
-  std::vector<double> start;  ///< of numbers: empty, or one for each element
+  std::size_t size = 1;                   ///< number of elements, row by row
+  std::vector<std::size_t> extents = {};  ///< of an array, in each dimension
+  std::vector<double> start;              ///< of numbers: empty, or one for each element
   std::optional<double> min, max, nominal;
   std::optional<std::size_t> derivative_of;  ///< index of the variable that it is the time derivative of
 };
@@ -98,7 +99,7 @@ struct ModelDescription {
 
   [[nodiscard]] const Variable* find(std::string_view variable) const;
   [[nodiscard]] const Unit* find_unit(std::string_view unit) const;
-  /// "x", or "x[2]" of an array.
+  /// "x", "x[2]" of an array, "A[2,1]" of a matrix, counted from 1.
   [[nodiscard]] std::string name_of(const Element& element) const;
   /// The element that name_of() names; an Error with the nearest name otherwise.
   [[nodiscard]] Result<Element> find_element(std::string_view name) const;

@@ -94,7 +94,8 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
   if (is_known(time_s, wanted)) return &values_;
   if (!processes_[0]->alive()) return nullptr;  // trouble_ says why
   if (time_s > ended_s_)
-    return in_trouble("the FMU ends the simulation by itself at " + std::to_string(ended_s_) + " s");
+    return in_trouble("the FMU ends the simulation by itself at " + std::to_string(ended_s_) +
+                      " s: end the recording there");
   if (block_.setup.co_simulation != 0) return step_to(time_s);
   const bool in_one = processes_.size() == 1;
   EvaluationRequest asked = wanted;
@@ -110,8 +111,9 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
 
 const BlockValues* RunningBlock::step_to(double time_s) {
   const bool first = std::isnan(first_time_s_);
-  if (first) first_time_s_ = known_time_s_ = time_s;
-  if (const std::string fault = fault_of_step(time_s - known_time_s_); !fault.empty()) return in_trouble(fault);
+  if (first) first_time_s_ = stepped_to_s_ = time_s;
+  const double step_s = is_jump(time_s - stepped_to_s_) ? 0.0 : time_s - stepped_to_s_;
+  if (const std::string fault = fault_of_step(step_s); !fault.empty()) return in_trouble(fault);
   std::vector<double> during = inputs_;
   for (std::size_t k = 0; !first && k < block_.inputs.size(); ++k) {
     const std::size_t place = block_.inputs[k].place;
@@ -124,8 +126,8 @@ const BlockValues* RunningBlock::step_to(double time_s) {
   values_.by_parameter.resize(variables, steps_.size());
   std::size_t slot = 0;
   for (auto& process : processes_) {
-    const auto end = process->do_step(block_.start_time_s + known_time_s_ - first_time_s_,
-                                      std::max(0.0, time_s - known_time_s_), during, inputs_);
+    const auto end =
+        process->do_step(block_.start_time_s + stepped_to_s_ - first_time_s_, std::max(0.0, step_s), during, inputs_);
     if (!end) return in_trouble(end.error().describe());
     if (slot == 0 && end->terminate) end_at(first_time_s_ + end->reached_s - block_.start_time_s);
     const std::span<const double> values = end->outputs;
@@ -139,6 +141,7 @@ const BlockValues* RunningBlock::step_to(double time_s) {
           values_.by_parameter.row(k)[slot - 1] = (value - values_.z[k]) / steps_[slot - 1];
       }
   }
+  if (step_s > 0.0) stepped_to_s_ = time_s;
   known_time_s_ = time_s, known_inputs_ = inputs_, known_states_ = states_, known_ = {1, 1, 1};
   return &values_;
 }
@@ -146,6 +149,12 @@ const BlockValues* RunningBlock::step_to(double time_s) {
 void RunningBlock::end_at(double time_s) {
   constexpr double kRounding = 1e-9;  // of a step's end that was computed twice
   ended_s_ = std::min(ended_s_, time_s + kRounding * std::max(1.0, std::abs(time_s)));
+}
+
+// Two samples beside a jump are one communication point: what changes there are the inputs.
+bool RunningBlock::is_jump(double step_s) const {
+  constexpr double kJump = 1e-6;  // of the steps
+  return step_s > 0.0 && step_s < kJump * step_s_;
 }
 
 std::string RunningBlock::fault_of_step(double step_s) {
@@ -160,7 +169,7 @@ std::string RunningBlock::fault_of_step(double step_s) {
   if (std::abs(whole - std::round(whole)) > kRounding * whole || whole < 0.5)
     return "the FMU does steps of " + std::to_string(interface.fixed_step_s) +
            " s (fixedInternalStepSize), of which the distance of the samples, " + std::to_string(step_s) +
-           " s, is no whole number";
+           " s, is no whole number: bring the samples to such distances, or import it for Model Exchange";
   return "";
 }
 

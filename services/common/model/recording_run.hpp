@@ -39,6 +39,15 @@ inline constexpr double kAllRemembered = 2.0, kForgotten = 4.0;
 inline constexpr std::size_t kStepsOfARestart = 30;
 inline constexpr std::size_t kManyJumps = 100;
 
+/// `words`: of the equations themselves, with what to do about it.
+inline Error went_no_further(std::string place, std::string words) {
+  return {.file = {},
+          .place = std::move(place),
+          .value = std::move(words),
+          .rule = "is why the simulation went no further",
+          .advice = {}};
+}
+
 template <class System>
 class RecordingRun {
  public:
@@ -84,6 +93,11 @@ class RecordingRun {
 
   /// Why the system could not be evaluated; "": nothing that is known.
   [[nodiscard]] std::string trouble() const { return system_.trouble(); }
+  /// What the system's equations themselves say of it; "": nothing.
+  [[nodiscard]] std::string said() const {
+    if constexpr (requires { system_.said(); }) return system_.said();
+    return {};
+  }
   /// Whether an event ended the run that sensitivities do not cross; without columns it goes on.
   [[nodiscard]] bool stopped_by_event() const { return stopped_by_event_; }
 
@@ -123,6 +137,8 @@ class RecordingRun {
                     (input_.segment_count() > kManyJumps ? "; an input that is held jumps at every sample: 'course: "
                                                            "averaged' in the plant's file takes fewer steps"
                                                          : "")});
+    if (std::string words = said(); !words.empty())
+      return fail(went_no_further("t = " + std::to_string(time) + " s", std::move(words)));
     return fail(Error{.file = {},
                       .place = "t = " + std::to_string(time) + " s",
                       .value = system_.trouble(),

@@ -128,9 +128,22 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
                 "fit and validate work; a model without such events (friction and stops rounded) can be explained");
   }
   if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
-    return without_derivatives(plant(), recording.trouble());
+    return recording.said().empty() ? without_derivatives(plant(), recording.trouble())
+                                    : fail(went_no_further({}, recording.said()));
   return outputs;
 }
+
+namespace {
+
+/// The slope at a sample from those on both of its sides. Where a change of the parameter moves a jump over the sample, one
+/// of them is the jump's height and no slope: the other one counts, which is the smaller.
+double beside_jumps(double left, double right) {
+  constexpr double kAlike = 0.5;
+  if (std::abs(right - left) <= kAlike * (std::abs(right) + std::abs(left))) return 0.5 * (left + right);
+  return std::abs(left) < std::abs(right) ? left : right;
+}
+
+}  // namespace
 
 Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const RecordedInput& input,
                                                                     const ModelValues& values,
@@ -153,8 +166,11 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_by_differences(const Record
     const auto below = run_driven_by(input, changed, {}, tight, nullptr);
     if (!above) return above;
     if (!below) return below;
-    for (Eigen::Index row = 0; row < rows; ++row)
-      outputs->sensitivities(row, k) = (above->values.data()[row] - below->values.data()[row]) / (2.0 * kShare * size);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      const double here = outputs->values.data()[row];
+      outputs->sensitivities(row, k) = beside_jumps((here - below->values.data()[row]) / (kShare * size),
+                                                    (above->values.data()[row] - here) / (kShare * size));
+    }
   }
   return outputs;
 }

@@ -54,6 +54,8 @@ class RuntimeSystem {
   [[nodiscard]] Vector scale(double relative_tolerance) const;
   [[nodiscard]] Mask settled() const;
   [[nodiscard]] std::string trouble() const;
+  /// What the equations themselves say of it; "": nothing.
+  [[nodiscard]] std::string said() const { return evaluator_->trouble(); }
   void set_segment(std::size_t segment);
 
   /// States that start where the equations say, with their sensitivities; not those that are free. point: [y | S].

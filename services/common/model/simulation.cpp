@@ -52,6 +52,8 @@ Error without_input(const PlantDescription& plant, const PlantSimulator& simulat
   std::string advice = "record it";
   for (const AlternativeSimulator& other : simulator.alternatives)
     advice.append(", or the ").append(plant.find_channel(other.inputs.front())->meaning);
+  if (!plant.file.empty())
+    advice.append(", or take it out of the inputs in ").append(plant.file).append(": an FMU then keeps its own value");
   return {.file = {},
           .place = {},
           .value = *missing,

@@ -20,6 +20,9 @@ struct Column {
   bool known = true;  ///< to the plant; what is not is left aside, and its cells may be anything
 };
 
+inline constexpr const char* kRepeatAdvice =
+    "take one of the rows out, or log a finer time; log: {repeated_times: jump} takes them as before and after a jump";
+
 /// Samples and, one for each of their channels, the columns that they came from.
 struct ColumnarSamples {
   TimeSeries samples;

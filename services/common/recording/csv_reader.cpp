@@ -7,6 +7,7 @@
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/recording/repeated_times.hpp"
 #include "services/common/text/format.hpp"
 
 namespace sealwatch {
@@ -27,7 +28,7 @@ bool is_utf16(std::string_view first_cell) {
 
 class CsvReader {
  public:
-  CsvReader(std::istream& in, const PlantDescription& plant) : rows_(in), plant_(plant) {}
+  CsvReader(std::istream& in, const PlantDescription& plant, bool jumps) : rows_(in), plant_(plant), jumps_(jumps) {}
 
   Result<ColumnarSamples> read() {
     if (const Status header = read_header(); !header) return fail(header.error());
@@ -82,15 +83,16 @@ class CsvReader {
     return time ? check_last_row() : time;
   }
 
-  Status check_time() const {
+  Status check_time() {
     const std::vector<double>& time = values_[time_];
     if (time.size() < 2 || time.back() > time[time.size() - 2]) return {};
     const double before = time[time.size() - 2];
     const bool repeats = time.back() == before;
+    if (repeats && jumps_ && repeated_.settle(values_, time_)) return {};
     return fail(
         error_in("time", cells_[time_],
                  repeats ? "time repeats" : text::format("time goes back: the row before is at {:.9g} s", before),
-                 "time must increase from row to row: sort the rows, or take the wrong one out"));
+                 repeats ? kRepeatAdvice : "time must increase from row to row: sort the rows"));
   }
 
   /// Tells a cut-off number from a missing last line break (see the header).
@@ -131,14 +133,16 @@ class CsvReader {
   std::vector<Column> columns_;
   std::vector<std::vector<double>> values_;  ///< by column
   std::size_t time_ = 0;                     ///< index of the column time
-  std::size_t blank_row_ = 0;                ///< first blank row, 0: none yet
+  bool jumps_;
+  RepeatedTimes repeated_;
+  std::size_t blank_row_ = 0;  ///< first blank row, 0: none yet
   std::size_t fewest_decimals_ = std::numeric_limits<std::size_t>::max();
 };
 
 }  // namespace
 
-Result<ColumnarSamples> read_csv(std::istream& in, const PlantDescription& plant) {
-  return CsvReader(in, plant).read();
+Result<ColumnarSamples> read_csv(std::istream& in, const PlantDescription& plant, bool jumps) {
+  return CsvReader(in, plant, jumps).read();
 }
 
 }  // namespace sealwatch

@@ -12,7 +12,7 @@
 
 namespace sealwatch {
 
-/// Reads the whole stream. Errors name row and column, not the file.
-[[nodiscard]] Result<ColumnarSamples> read_csv(std::istream& in, const PlantDescription& plant);
+/// Reads the whole stream. Errors name row and column, not the file. `jumps`: rows of one time are before and after a jump.
+[[nodiscard]] Result<ColumnarSamples> read_csv(std::istream& in, const PlantDescription& plant, bool jumps = false);
 
 }  // namespace sealwatch

@@ -197,6 +197,15 @@ Result<FoundLayout> find_layout(std::string_view head, const LogLayout& given) {
   return out;
 }
 
+namespace {
+
+/// "2" of "y[2]", "2,1" of "A[2,1]"; "1" stands for no unit as well, and is taken for that.
+bool is_index(std::string_view text) {
+  return !text.empty() && text != "1" && text.find_first_not_of("0123456789,") == std::string_view::npos;
+}
+
+}  // namespace
+
 NameAndUnitText split_header_cell(std::string_view cell) {
   cell = trim(cell);
   for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
@@ -207,6 +216,7 @@ NameAndUnitText split_header_cell(std::string_view cell) {
     if (blank != std::string_view::npos && blank + 1 < at && convert_unit(word, "Pa"))  // "PT-1 bar(g)"
       return {std::string(trim(cell.substr(0, blank))), std::string(word)};
     const std::string_view unit = trim(cell.substr(at + 1, cell.size() - at - 2));
+    if (is_index(unit)) continue;
     if (open == '[' || is_unit(unit) || TimeFormat::of(unit).has_value())
       return {std::string(trim(cell.substr(0, at))), std::string(unit)};
   }

@@ -8,6 +8,7 @@
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/recording_file.hpp"
+#include "services/common/recording/repeated_times.hpp"
 #include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
@@ -74,6 +75,9 @@ class LogReader {
     numbers[time_] += shift_s_;
     if (values_[time_].empty()) first_row_ = rows_.row();
     for (std::size_t k = 0; k < numbers.size(); ++k) values_[k].push_back(numbers[k]);
+    const std::vector<double>& time = values_[time_];
+    const bool repeats = time.size() > 1 && time.back() == time[time.size() - 2];
+    if (repeats && !repeated_.settle(values_, time_)) return fail(error_in(time_, "time repeats", "log a finer time"));
     return {};
   }
 
@@ -109,6 +113,7 @@ class LogReader {
     const std::vector<double>& time = values_[time_];
     if (time.empty() || time_s + shift_s_ > time.back()) return {};
     const bool repeats = time_s + shift_s_ == time.back();
+    if (repeats && map_.log.repeated_times == "jump") return {};
     if (map_.log.time_resets == "split" && !repeats) return end_test();
     if (map_.log.time_resets == "join" && !repeats) {
       shift_s_ = time.back() + usual_step() - time_s;
@@ -119,8 +124,7 @@ class LogReader {
     return fail(error_in(
         time_,
         repeats ? "time repeats" : "time goes back: the row before is at " + text::significant(time.back(), 9) + " s",
-        repeats ? "take one of the rows out, or log a finer time"
-                : "log: {time_resets: join} takes it as one test, split as another test"));
+        repeats ? kRepeatAdvice : "log: {time_resets: join} takes it as one test, split as another test"));
   }
 
   [[nodiscard]] double usual_step() const {
@@ -142,6 +146,7 @@ class LogReader {
     test.read = assemble(std::move(columns), std::move(values_));
     out_.tests.push_back(std::move(test));
     values_.assign(mapped_.columns.size(), {});
+    repeated_ = {};
     shift_s_ = 0.0;
     return {};
   }
@@ -170,7 +175,8 @@ class LogReader {
   std::vector<std::string_view> cells_;
   std::vector<std::vector<double>> values_;  ///< of the test that is being read, by mapped column
   std::size_t time_ = 0;                     ///< index of time among the mapped columns
-  double shift_s_ = 0.0;                     ///< added to the log's time since it started anew
+  RepeatedTimes repeated_;
+  double shift_s_ = 0.0;  ///< added to the log's time since it started anew
   std::size_t rows_read_ = 0;
   std::size_t first_row_ = 0;  ///< of the test that is being read
   Log out_;

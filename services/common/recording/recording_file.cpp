@@ -85,9 +85,10 @@ bool is_in_own_format(const FoundLayout& layout, const ChannelMap& map) {
 Result<Log> read_text(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
   Result<std::ifstream> in = open(path);
   if (!in) return fail(in.error());
-  if (map.empty()) return one_test(read_csv(*in, plant), 2);
+  const bool jumps = map.log.repeated_times == "jump";
+  if (map.empty()) return one_test(read_csv(*in, plant, jumps), 2);
   const Result<FoundLayout> layout = layout_of(*in, map.log);
-  if (layout && is_in_own_format(*layout, map)) return one_test(read_csv(*in, plant), 2);
+  if (layout && is_in_own_format(*layout, map)) return one_test(read_csv(*in, plant, jumps), 2);
   return read_log(*in, plant, map);
 }
 

@@ -41,13 +41,18 @@ const PlantDescription* read_plant(YamlMap& asset, std::string& model, std::vect
   return *plant;
 }
 
+constexpr NumberRule kPositiveByItsMin{
+    .min = 0.0,
+    .min_excluded = true,
+    .words = "must be a number above 0, as its min in the plant's file is: lower that where it may be negative"};
+
 void read_parameters(YamlMap& asset, const PlantDescription& plant, AssetConfig& config) {
   for (const ParameterDescription& row : plant.parameters)
     config.parameters[row.name] = {row.value, row.min, row.max, row.estimate};
   auto parameters = asset.map("parameters");
   if (!parameters) return;
   for (const ParameterDescription& row : plant.parameters)
-    read_parameter(*parameters, row, config.parameters[row.name]);
+    read_parameter(*parameters, row, config.parameters[row.name], plant.file.empty() ? kPositive : kPositiveByItsMin);
   parameters->finish();
 }
 

@@ -81,9 +81,10 @@ std::vector<std::string> quantities_of(const PlantDescription& plant) {
 
 }  // namespace
 
-void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting) {
+void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting,
+                    const NumberRule& positive) {
   const std::string& name = description.name;
-  const NumberRule& rule = description.positive ? kPositive : kAnyNumber;
+  const NumberRule& rule = description.positive ? positive : kAnyNumber;
   const auto node = parameters.take(name);
   if (!node) return;
   if (node->IsScalar()) {

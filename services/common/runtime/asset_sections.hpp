@@ -11,7 +11,9 @@
 namespace sealwatch {
 
 /// A number, or {value, min, max, estimate}; a value outside the description's bounds brings its own.
-void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting);
+/// `positive`: what is said of one that must be positive and is not.
+void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting,
+                    const NumberRule& positive = kPositive);
 
 /// `physics:`, each term with exactly its law's parameters, within the law's bounds.
 void read_physics(YamlMap& asset, const PlantDescription& plant, AssetConfig& config);

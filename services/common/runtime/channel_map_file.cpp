@@ -18,7 +18,8 @@ const std::vector<WordKey>& word_keys() {
       {"delimiter", &LogLayout::delimiter, {"comma", "semicolon", "tab", "bar", "blank"}},
       {"decimal", &LogLayout::decimal, {"point", "comma"}},
       {"time_resets", &LogLayout::time_resets, {"refuse", "join", "split"}},
-      {"incomplete_rows", &LogLayout::incomplete_rows, {"refuse", "skip"}}};
+      {"incomplete_rows", &LogLayout::incomplete_rows, {"refuse", "skip"}},
+      {"repeated_times", &LogLayout::repeated_times, {"refuse", "jump"}}};
   return keys;
 }
 struct RowKey {

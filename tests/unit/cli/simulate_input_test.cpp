@@ -26,9 +26,10 @@ std::string content_of(const std::filesystem::path& file) {
 /// A unit, imported as a user would, with an asset file and a file of inputs.
 class SimulateInput : public ::testing::Test {
  protected:
-  std::string prepare(const fmi::TestUnit& unit, const std::string& name, const std::string& inputs) {
+  std::string prepare(const fmi::TestUnit& unit, const std::string& name, const std::string& inputs,
+                      const std::string& interface = {}) {
     const PlantImportOptions import{
-        .fmu = folder_.build(unit), .file = (folder_ / "plant.yaml").string(), .interface = {}, .settings = {}};
+        .fmu = folder_.build(unit), .file = (folder_ / "plant.yaml").string(), .interface = interface, .settings = {}};
     ::testing::internal::CaptureStdout();
     EXPECT_EQ(run_plant_import(import), kOk);
     ::testing::internal::GetCapturedStdout();
@@ -94,6 +95,37 @@ TEST_F(SimulateInput, AUnitWithoutInputsNeedsTimesAlone) {
       prepare(fmi::bouncing("fmu_bouncing3"), "simulated_ball", "time[s]\n0\n0.1\n0.2\n0.3\n0.4\n");
   ASSERT_EQ(run(options(asset)), kOk) << said_;
   for (const auto& row : rows()) EXPECT_NEAR(row[1], 1.0 - 0.5 * 9.81 * row[0] * row[0], 1e-5);
+}
+
+TEST_F(SimulateInput, StartsAtTheFirstSampleOfWhatMoves) {
+  const std::string asset = prepare(fmi::mixed("fmu_mixed2"), "simulated_moving",
+                                    "time[s],u_real[1],u_discrete[1],u_integer[1],u_boolean[1],x[1]\n"
+                                    "0,1.5,2.5,3,1,7\n0.5,1.5,2.5,3,0,4.2\n1.0,4,5,6,1,2.6\n1.5,4,5,6,1,1.6\n");
+  std::string plant = content_of(folder_ / "plant.yaml");
+  plant.replace(plant.find(", start: fmu,"), 13, ", start: x,");
+  write(folder_ / "plant.yaml", plant);
+  ASSERT_EQ(run(options(asset)), kOk) << said_;
+  for (const auto& row : rows()) EXPECT_NEAR(row.back(), 7.0 * std::exp(-row[0]), 1e-4);
+}
+
+TEST_F(SimulateInput, RowsOfOneTimeAreBeforeAndAfterAJump) {
+  int number = 0;
+  for (const char* interface : {"me", "cs"}) {
+    const std::string asset = prepare(fmi::mixed("fmu_mixed3"), "simulated_jumping_" + std::to_string(++number),
+                                      "time[s],u_real[1],u_discrete[1],u_integer[1],u_boolean[1]\n"
+                                      "0,1,2,3,0\n0.5,1,2,3,0\n0.5,4,5,6,1\n1,5,5,6,1\n1.5,6,5,6,1\n",
+                                      interface);
+    ASSERT_EQ(run(options(asset)), kOk) << said_;
+    const auto table = rows();
+    ASSERT_EQ(table.size(), 5U);
+    EXPECT_NEAR(table[1][0], 0.5, 1e-6);
+    for (const auto& row : table) {
+      for (std::size_t k = 1; k <= 4; ++k) EXPECT_EQ(row[4 + k], row[k]) << interface << " at " << row[0];
+      EXPECT_NEAR(row.back(), 2.0 * std::exp(-row[0]), 1e-3) << interface;
+    }
+    std::filesystem::remove(folder_ / "plant.yaml");
+    std::filesystem::remove_all(folder_ / "out");
+  }
 }
 
 TEST_F(SimulateInput, NoiseIsThatOfTheSensorsAndOfTheSeed) {

@@ -54,6 +54,15 @@ TEST_F(FmuArchive, UnpacksWhatASimulationNeedsAndKeepsItsNames) {
   EXPECT_FALSE(std::filesystem::exists(inside));
 }
 
+TEST_F(FmuArchive, NamesMayBeginWithTheFolderThatTheyAreIn) {
+  write_archive(folder_ / "a.fmu", {{"./modelDescription.xml", "<x/>"}, {"./resources/table.txt", "1 2"}});
+  const Result<UnpackedFmu> unpacked = unpack_fmu((folder_ / "a.fmu").string());
+  ASSERT_TRUE(unpacked) << unpacked.error().describe();
+  EXPECT_TRUE(unpacked->has("resources/table.txt"));
+  EXPECT_THAT(refused({description_, {"./../evil", "x"}}), HasSubstr("leads out"));
+  EXPECT_THAT(refused({description_, {"./modelDescription.xml", "x"}}), HasSubstr("twice"));
+}
+
 TEST_F(FmuArchive, NamesThatLeadOutAreRefused) {
   for (const char* name : {"../evil", "resources/../../evil", "/etc/evil", "resources/..", "C:/evil", "..\\evil"})
     EXPECT_THAT(refused({description_, {name, "x"}}), HasSubstr("path")) << name;

@@ -51,6 +51,19 @@ TEST(ImportFmu, AnOutputThatIsAStateIsTakenAsTheState) {
               AllOf(HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("start: [position, \"0.0[m]\"]")));
 }
 
+TEST(ImportFmu, ElementsOfAnArrayMayBeOfEitherSignWithinItsSize) {
+  const TestFolder folder;
+  EXPECT_THAT(imported(folder, arrays()), AllOf(HasSubstr("x0_1: {unit: \"1\", value: 1.0, min: -20.0, max: 20.0"),
+                                                HasSubstr("x0_2: {unit: \"1\", value: 2.0, min: -20.0, max: 20.0")));
+}
+
+TEST(ImportFmu, OneWithBothInterfacesSaysThatItHasASolverOfItsOwn) {
+  const TestFolder folder;
+  EXPECT_THAT(imported(folder, mixed("fmu_mixed2")), HasSubstr("interface: me  # it has Co-Simulation too"));
+  EXPECT_THAT(imported(folder, gain()), HasSubstr("interface: cs\n"));
+  EXPECT_THAT(imported(folder, bouncing("fmu_bouncing2")), HasSubstr("interface: me\n"));
+}
+
 TEST(ImportFmu, OneThatDoesNotStartIsRefusedByName) {
   const TestFolder folder;
   EXPECT_THAT(imported(folder, spring_return("fmu_spring_licence2")), HasSubstr("licence"));

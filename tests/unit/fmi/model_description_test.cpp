@@ -1,6 +1,7 @@
 // modelDescription.xml of both versions comes to one form, and each fault names its line.
 #include <gmock/gmock.h>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/fmi/model_description.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
 
@@ -56,6 +57,18 @@ TEST(ModelDescription, TypesGiveWhatVariablesLeaveOut) {
   EXPECT_EQ(mass->nominal, 20.0);
 }
 
+TEST(ModelDescription, TextsOfEightBitsAreUtf8Inside) {
+  const std::string text = replaced(description_of(spring_return("fmu_spring_return2")), "<fmiModelDescription",
+                                    "<fmiModelDescription description=\"W\xE4rme \x93q\x94\"");
+  for (const char* page : {"windows-1252", "ISO-8859-1", "UTF-8"}) {
+    const std::string head = std::string("<?xml version=\"1.0\" encoding=\"") + page + "\"?>";
+    const auto description = read_model_description("m.fmu", head + text.substr(text.find("<fmiModel")));
+    ASSERT_TRUE(description) << page << description.error().describe();
+    EXPECT_TRUE(is_valid_utf8(description->description)) << page;
+    EXPECT_THAT(description->description, HasSubstr("W\xC3\xA4rme"));
+  }
+}
+
 TEST(ModelDescription, ArraysHaveTheirElements) {
   TestUnit unit = spring_return("fmu_spring_return3");
   unit.variables = R"xml(<UInt64 name="n" valueReference="1" causality="structuralParameter" start="3"/>
@@ -68,10 +81,12 @@ TEST(ModelDescription, ArraysHaveTheirElements) {
   ASSERT_TRUE(description) << description.error().describe();
   ASSERT_EQ(description->states.size(), 3U);
   EXPECT_EQ(description->name_of(description->states[2]), "x[3]");
-  const auto element = description->find_element("A[5]");
-  ASSERT_TRUE(element);
+  const auto element = description->find_element("A[2,2]");
+  ASSERT_TRUE(element) << element.error().describe();
   EXPECT_EQ(description->variables[element->variable].start[element->element], 5.0);
-  EXPECT_THAT(description->find_element("A[7]").error().describe(), HasSubstr("no variable"));
+  EXPECT_EQ(description->name_of(*element), "A[2,2]");
+  for (const char* name : {"A[2,4]", "A[3,1]", "A[0,1]", "A[5]", "A[1,1,1]", "A[1,]", "A[]", "x[1,1]", "x[4]"})
+    EXPECT_THAT(description->find_element(name).error().describe(), HasSubstr("no variable")) << name;
   EXPECT_THAT(refused(replaced(description_of(unit), "start=\"1 2 3 4 5 6\"", "start=\"1 2 3\"")),
               HasSubstr("each of the 6 elements"));
 }

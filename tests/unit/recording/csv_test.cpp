@@ -143,6 +143,27 @@ TEST(Csv, TimeMustIncrease) {
   EXPECT_THAT(error_of("position,time[ms]\n0,1\n1,2\n0.5,2\n"), HasSubstr("row 4, column time: '2': time repeats"));
 }
 
+TEST(Csv, RowsOfOneTimeAreBeforeAndAfterAJumpWhereThatIsSaid) {
+  std::istringstream in(
+      "time,position,valve_state\n0,9,9\n0,1,0\n0,1,0\n0.5,1,0\n0.5,2,0\n0.5,3,1\n1,4,1\n1,4,1\n1.5,5,1\n1.5,6,1\n");
+  const auto read = read_csv(in, test_plant(), true);
+  ASSERT_TRUE(read) << read.error().describe();
+  const TimeSeries& samples = read->samples;
+  ASSERT_EQ(samples.time_s.size(), 6U);
+  EXPECT_EQ(samples.find("position")->values, (std::vector{1.0, 1.0, 3.0, 4.0, 5.0, 6.0}));
+  EXPECT_LT(samples.time_s[1], 0.5);
+  EXPECT_NEAR(samples.time_s[1], 0.5, 1e-6);
+  EXPECT_EQ(samples.time_s[2], 0.5);
+  EXPECT_EQ(samples.time_s[3], 1.0);
+  EXPECT_LT(samples.time_s[4], 1.5);
+  EXPECT_EQ(samples.time_s[5], 1.5);
+  const Error error =
+      read_csv(*std::make_unique<std::istringstream>("time,position\n0,1\n1e-320,2\n1e-320,3\n"), test_plant(), true)
+          .error();
+  EXPECT_THAT(error.describe(), HasSubstr("time repeats"));
+  EXPECT_THAT(error_of("time,position\n0,1\n0,2\n"), HasSubstr("{repeated_times: jump}"));
+}
+
 TEST(Csv, QuotingErrorsNameRowAndColumn) {
   EXPECT_THAT(error_of("time,position\n0,\"1\"x\n"), HasSubstr("row 2, column 2: '1': text follows the closing quote"));
   EXPECT_THAT(error_of("time,position\n0,1\"2\n\"\n"), HasSubstr("row 2, column 2"));

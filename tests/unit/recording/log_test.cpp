@@ -72,6 +72,16 @@ TEST_F(ForeignLog, SemicolonsDecimalCommasAPreambleAndARowOfUnits) {
   EXPECT_EQ(format_utc(*recording.start_time), "2031-04-12T03:00:00Z");
 }
 
+TEST_F(ForeignLog, RowsOfOneTimeAreBeforeAndAfterAJumpWhereTheMapSaysSo) {
+  LogLayout jumps;
+  jumps.repeated_times = "jump";
+  const Recording recording =
+      read("t\tWeg\n0\t1\n1\t2\n1\t3\n1\t3\n2\t4\n",
+           map_of({{"time", {.column = "t", .unit = "s"}}, {"position", {.column = "Weg", .unit = "m"}}}, jumps));
+  EXPECT_EQ(recording.samples.find("position")->values, (std::vector{1.0, 2.0, 3.0, 4.0}));
+  EXPECT_THAT(recording.samples.time_s, ElementsAre(0.0, ::testing::DoubleNear(1.0, 1e-6), 1.0, 2.0));
+}
+
 TEST_F(ForeignLog, TabsAndLatin1AndUnitsInTheHeader) {
   const ChannelMap map = map_of({{"time", {.column = "t", .unit = "ms"}},
                                  {"pressure_a", {.column = "Überdruck", .unit = "barg"}},
@@ -80,6 +90,15 @@ TEST_F(ForeignLog, TabsAndLatin1AndUnitsInTheHeader) {
       read("t\t\xDC"
            "berdruck\tWeg (mm)\n0\t1.0\t60\n500\t1.5\t59\n",
            map));
+}
+
+TEST(HeaderCell, AnIndexInBracketsIsNoUnit) {
+  for (const char* cell : {"outputs[2]", "A[2,1]", "x(10)"}) {
+    EXPECT_EQ(split_header_cell(cell).name, cell);
+    EXPECT_EQ(split_header_cell(cell).unit, "");
+  }
+  EXPECT_EQ(split_header_cell("ratio[1]").name, "ratio");
+  EXPECT_EQ(split_header_cell("s[m]").unit, "m");
 }
 
 TEST_F(ForeignLog, BlanksOfAnyLength) {

@@ -4,14 +4,12 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 
 #include <yaml-cpp/exceptions.h>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 
 namespace sealwatch {
@@ -31,11 +29,7 @@ YAML::Node last_text(YAML::Node node) {
 
 /// The library takes a quoted text that is still open at the end of the file for closed, and passes over all documents
 /// but the first. The mark for a document's end cannot stand in a quoted text.
-std::optional<Error> broken_off(const std::string& file, const std::string& text) {
-  if (const int line = line_of_second_document(text))
-    return Error{
-        file, "line " + std::to_string(line), {}, "a second YAML document stands here", "take out the line ---"};
-  const YAML::Node document = YAML::Load(text);
+std::optional<Error> broken_off(const std::string& file, const std::string& text, const YAML::Node& document) {
   try {
     (void)YAML::Load(text + (text.ends_with('\n') ? "...\n" : "\n...\n"));
   } catch (const YAML::Exception& exception) {
@@ -49,20 +43,23 @@ std::optional<Error> broken_off(const std::string& file, const std::string& text
 }  // namespace
 
 std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>& errors) {
-  std::error_code ignored;
+  const Result<std::string> text = read_file(file, kLongestYaml_bytes);
+  if (!text) {
+    errors.push_back(text.error());
+    return std::nullopt;
+  }
   try {
-    if (!std::filesystem::is_regular_file(file, ignored)) throw YAML::BadFile(file);
-    std::ifstream stream(file);
-    if (!stream) throw YAML::BadFile(file);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (const std::optional<Error> broken = broken_off(file, text)) {
+    if (const int line = line_of_second_document(*text)) {
+      errors.push_back(
+          {file, "line " + std::to_string(line), {}, "a second YAML document stands here", "take out the line ---"});
+      return std::nullopt;
+    }
+    YAML::Node root = YAML::Load(*text);
+    if (const std::optional<Error> broken = broken_off(file, *text, root)) {
       errors.push_back(*broken);
       return std::nullopt;
     }
-    YAML::Node root = YAML::Load(text);
     return root.IsNull() ? YAML::Node(YAML::NodeType::Map) : root;
-  } catch (const YAML::BadFile&) {
-    errors.push_back({file, {}, {}, "cannot be read", "check that the file exists and may be read"});
   } catch (const YAML::Exception& exception) {
     errors.push_back({file, line_of(exception.mark), {}, "is not YAML: " + exception.msg, {}});
   }
@@ -240,6 +237,8 @@ namespace {
 
 constexpr const char* kDecimalPoint = "numbers have a decimal point here: 10.5, not 10,5";
 
+constexpr std::size_t kMostNamed = 100;  // who gives a file of another kind is told soon
+
 /// {scale: 10,5} reads as a key behind a comma.
 bool is_number_behind_comma(const std::string& key) {
   return std::ranges::all_of(key, [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -249,12 +248,19 @@ bool is_number_behind_comma(const std::string& key) {
 
 void YamlMap::finish() const {
   std::set<std::string> seen;
+  std::size_t faults = 0;
   for (const std::string& key : keys()) {
-    if (!seen.insert(key).second)
+    const bool twice = !seen.insert(key).second;
+    if (!twice && std::ranges::find(known_, key) != known_.end()) continue;
+    if (++faults > kMostNamed) continue;
+    if (twice)
       fault(key, key, "stands twice", "keep one of them");
-    else if (std::ranges::find(known_, key) == known_.end())
+    else
       fault(key, key, "is not a known key", is_number_behind_comma(key) ? kDecimalPoint : suggest(key, known_));
   }
+  if (faults <= kMostNamed) return;
+  const std::string more = std::to_string(faults - kMostNamed);
+  errors_->push_back({file_, path_.empty() ? "" : "key " + path_, more, "more keys are not known or stand twice", {}});
 }
 
 }  // namespace sealwatch

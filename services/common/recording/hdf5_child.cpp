@@ -29,8 +29,8 @@ using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 // The numbers of one test take 16 MB and a fraction of a second. A chunk of zeros unpacks to gigabytes, thousands of
 // nested groups take minutes, and a data set may lie in a file of its own: a pipe, for whose writer the library waits.
 constexpr std::uint64_t kMoreMemory_bytes = 400'000'000;
-constexpr rlim_t kProcessorTime_s = 10;
-constexpr unsigned kLongest_s = 20;
+constexpr rlim_t kProcessorTime_s = 5;
+constexpr unsigned kLongest_s = 10;
 
 // The answer on its way: 1 and the variables, or 0 and the error's five texts. Both ends are this program.
 
@@ -88,7 +88,7 @@ std::optional<Result<Variables>> get_answer(std::FILE* from) {
 }
 
 void set_limit(int resource, rlim_t limit) {
-  const rlimit both{limit, limit};
+  const rlimit both{limit, limit + 1};  // the first has a signal with a name of its own, the second kills
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
@@ -122,7 +122,10 @@ void limit_memory() {
 
 Error no_answer(int status) {
   std::string how = "ended without an answer";
-  if (WIFSIGNALED(status)) how = std::string("was stopped: ") + strsignal(WTERMSIG(status));
+  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU))
+    how = "took too long";
+  else if (WIFSIGNALED(status))
+    how = std::string("was stopped: ") + strsignal(WTERMSIG(status));
   return {
       .file = {},
       .place = {},

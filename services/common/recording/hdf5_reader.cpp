@@ -85,8 +85,10 @@ class Reader {
 
   Status status = {};
 
-  void count() {
-    if (++objects_ > kMostObjects)
+  void count(const char* name) {
+    if (std::strlen(name) > kLongestName)
+      status = fail(error_at({}, {}, "its groups are nested too deeply", "put the data sets into few groups"));
+    else if (++objects_ > kMostObjects)
       status = fail(error_at({}, {}, "the file holds more than " + std::to_string(kMostObjects) + " objects",
                              "one recording is one test: split the file"));
   }
@@ -149,7 +151,7 @@ class Reader {
 
 herr_t visit(hid_t file, const char* name, const H5O_info_t* info, void* reader) {
   auto& target = *static_cast<Reader*>(reader);
-  target.count();
+  target.count(name);
   if (target.status && info->type == H5O_TYPE_DATASET) target.dataset(file, name);
   return target.status ? 0 : 1;
 }

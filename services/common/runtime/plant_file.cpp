@@ -190,7 +190,7 @@ Checked<ReadPlant> read_plant_file(const std::string& file) {
   const equations::Faults faults = [&](const std::string& key, const Error& error) {
     Error placed = error;
     placed.file = file;
-    placed.place = place_in_yaml(file, key) + (error.place.empty() ? "" : ", " + error.place);
+    placed.place = place_in_yaml(*node, key) + (error.place.empty() ? "" : ", " + error.place);
     errors.push_back(std::move(placed));
   };
   auto built = fmu ? fmi::build_fmu_plant(plant, *fmu, faults) : equations::build_plant(plant, faults);

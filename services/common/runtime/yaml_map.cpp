@@ -15,6 +15,8 @@
 namespace sealwatch {
 namespace {
 
+constexpr std::size_t kMostKeys = 4000;  // each is looked for among the others: as many assets, or parameters
+
 std::string line_of(const YAML::Mark& mark) { return mark.line < 0 ? "" : "line " + std::to_string(mark.line + 1); }
 
 /// The text that stands last.
@@ -68,7 +70,12 @@ std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>&
 
 std::string place_in_yaml(const std::string& file, const std::string& key) {
   std::vector<Error> ignored;
-  std::optional<YAML::Node> node = load_yaml(file, ignored);
+  const std::optional<YAML::Node> root = load_yaml(file, ignored);
+  return root ? place_in_yaml(*root, key) : "key " + key;
+}
+
+std::string place_in_yaml(const YAML::Node& root, const std::string& key) {
+  std::optional<YAML::Node> node = root;
   std::string line;
   std::istringstream names(key);
   for (std::string name; node && node->IsMap() && std::getline(names, name, '.');) {
@@ -103,9 +110,17 @@ std::optional<double> number_of(const std::string& text) {
 
 YamlMap::YamlMap(std::string file, YAML::Node node, std::string path, std::vector<Error>& errors)
     : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)), errors_(&errors) {
-  if (node_.IsMap()) return;
+  if (node_.IsMap() && node_.size() <= kMostKeys) return;
   const std::string place = line_of(node_.Mark()) + (path_.empty() ? "" : ", key " + path_);
-  errors_->push_back({file_, place, node_.IsScalar() ? node_.Scalar() : "", "must be a mapping of keys to values", {}});
+  if (node_.IsMap())
+    errors_->push_back({file_,
+                        place,
+                        std::to_string(node_.size()) + " keys",
+                        "are more than the " + std::to_string(kMostKeys) + " that one mapping may have",
+                        {}});
+  else
+    errors_->push_back(
+        {file_, place, node_.IsScalar() ? node_.Scalar() : "", "must be a mapping of keys to values", {}});
   node_ = YAML::Node(YAML::NodeType::Map);
 }
 
@@ -237,8 +252,6 @@ namespace {
 
 constexpr const char* kDecimalPoint = "numbers have a decimal point here: 10.5, not 10,5";
 
-constexpr std::size_t kMostNamed = 100;  // who gives a file of another kind is told soon
-
 /// {scale: 10,5} reads as a key behind a comma.
 bool is_number_behind_comma(const std::string& key) {
   return std::ranges::all_of(key, [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -248,19 +261,12 @@ bool is_number_behind_comma(const std::string& key) {
 
 void YamlMap::finish() const {
   std::set<std::string> seen;
-  std::size_t faults = 0;
   for (const std::string& key : keys()) {
-    const bool twice = !seen.insert(key).second;
-    if (!twice && std::ranges::find(known_, key) != known_.end()) continue;
-    if (++faults > kMostNamed) continue;
-    if (twice)
+    if (!seen.insert(key).second)
       fault(key, key, "stands twice", "keep one of them");
-    else
+    else if (std::ranges::find(known_, key) == known_.end())
       fault(key, key, "is not a known key", is_number_behind_comma(key) ? kDecimalPoint : suggest(key, known_));
   }
-  if (faults <= kMostNamed) return;
-  const std::string more = std::to_string(faults - kMostNamed);
-  errors_->push_back({file_, path_.empty() ? "" : "key " + path_, more, "more keys are not known or stand twice", {}});
 }
 
 }  // namespace sealwatch

@@ -75,7 +75,7 @@ std::string place_in_yaml(const std::string& file, const std::string& key) {
 }
 
 std::string place_in_yaml(const YAML::Node& root, const std::string& key) {
-  std::optional<YAML::Node> node = root;
+  std::optional<YAML::Node> node(root);  // made anew below, never assigned: that would change the document
   std::string line;
   std::istringstream names(key);
   for (std::string name; node && node->IsMap() && std::getline(names, name, '.');) {
@@ -85,16 +85,17 @@ std::string place_in_yaml(const YAML::Node& root, const std::string& key) {
     for (const auto& entry : *node)
       if (entry.first.IsScalar() && entry.first.Scalar() == name.substr(0, bracket)) {
         line = line_of(entry.first.Mark()) + ", ";
-        inside = entry.second;
+        inside.emplace(entry.second);
       }
     if (inside && bracket != std::string::npos) {
       const auto item = number_of(name.substr(bracket + 1, name.size() - bracket - 2)).value_or(-1.0);
       if (!inside->IsSequence() || item < 0.0 || item >= static_cast<double>(inside->size())) return "key " + key;
       const YAML::Node found = (*inside)[static_cast<std::size_t>(item)];
       line = line_of(found.Mark()) + ", ";
-      inside = found;
+      inside.emplace(found);
     }
-    node = inside;
+    node.reset();
+    if (inside) node.emplace(*inside);
   }
   return (node ? line : "") + "key " + key;
 }

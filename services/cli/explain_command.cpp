@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
@@ -86,14 +86,6 @@ class Directory {
   std::string name_;
   bool made_ = false;
 };
-
-Status write_file(const std::string& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) return fail(Error{.file = file, .place = {}, .value = {}, .rule = "cannot be written", .advice = {}});
-  return {};
-}
 
 /// The laws as code for the tool that the model comes from; none of an earlier run are left where there are none.
 Status write_laws(const AssetConfig& explained, const Files& files) {

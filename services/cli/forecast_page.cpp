@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/forecast/normal.hpp"
 #include "sealwatch/forecast/student_t.hpp"
 #include "services/cli/forecast_decision.hpp"
@@ -370,11 +370,7 @@ Result<std::string> forecast_body(const ForecastQuestion& question, const Foreca
 
 Status write_forecast_page(const std::string& file, const Result<std::string>& body) {
   if (!body) return fail(body.error());
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << report::html_page("What to do, by when, why", *body);
-  stream.close();
-  if (stream) return {};
-  return fail(Error{.file = file, .place = "--page", .value = {}, .rule = "cannot be written", .advice = {}});
+  return write_file(file, report::html_page("What to do, by when, why", *body));
 }
 
 Status write_forecasts(const std::string& file, const std::vector<ForecastQuestion>& questions) {

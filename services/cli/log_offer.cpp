@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <optional>
 #include <set>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/test_limits.hpp"
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/hdf5_reader.hpp"
@@ -19,16 +19,16 @@ namespace {
 constexpr std::size_t kRowsLookedAt = 50;
 
 Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return fail("cannot be opened");
-  Result<FoundLayout> layout = layout_of(in, given);
+  Result<std::ifstream> in = open_file(file, kLargestRecording_bytes);
+  if (!in) return fail(in.error());
+  Result<FoundLayout> layout = layout_of(*in, given);
   if (!layout) return fail(layout.error());
   Offer offer;
   offer.layout = std::move(*layout);
   std::string head(std::size_t{1} << 16U, '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-  if (!in.eof()) head.resize(head.rfind('\n') + 1);
+  in->read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in->gcount()));
+  if (!in->eof()) head.resize(head.rfind('\n') + 1);
   const auto rows = rows_of(head, offer.layout.delimiter, offer.layout.first_row, kRowsLookedAt);
   for (std::size_t k = 0; k < offer.layout.header.size(); ++k) {
     offer.columns.push_back({offer.layout.header[k], offer.layout.units[k]});

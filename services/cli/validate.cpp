@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sealwatch/core/file.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
@@ -68,11 +68,7 @@ void print_text(const AssetConfig& asset, const ModelValidation& validation, con
 Status write_text(const std::filesystem::path& file, const std::string& text) {
   std::error_code problem;
   std::filesystem::create_directories(file.parent_path(), problem);
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << text;
-  stream.close();
-  if (stream) return {};
-  return fail(Error{.file = file.string(), .place = {}, .value = {}, .rule = "cannot be written", .advice = {}});
+  return write_file(file.string(), text);
 }
 
 }  // namespace

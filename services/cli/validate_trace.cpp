@@ -1,7 +1,7 @@
 // `sealwatch validate --simulated`: a trace of somebody's simulation beside a recording (docs/logs.md).
 #include <cstdio>
-#include <fstream>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/foreign_file.hpp"
@@ -118,12 +118,8 @@ int run_validate_trace(const ValidateOptions& options) {
     return complain(error), kBadInput;
   }
   if (!options.page.empty()) {
-    std::ofstream page(options.page, std::ios::binary);
-    page << trace_page(*comparison, options.recordings.front(), options.simulated);
-    page.close();
-    if (!page)
-      return complain({.file = options.page, .place = {}, .value = {}, .rule = "cannot be written", .advice = {}}),
-             kBadInput;
+    const std::string page = trace_page(*comparison, options.recordings.front(), options.simulated);
+    if (const Status written = write_file(options.page, page); !written) return complain(written.error()), kBadInput;
   }
   if (options.json)
     std::printf("%s", trace_json(*comparison, options.recordings.front(), options.simulated).c_str());

@@ -45,8 +45,6 @@ std::optional<Error> not_a_file_of_its_own(const fs::path& recording) {
     const fs::file_type type = fs::symlink_status(file, ignored).type();
     if (type == fs::file_type::symlink)
       return error_of(file, "is a symbolic link, which is not followed here", "put the file itself into the folder");
-    if (type == fs::file_type::fifo || type == fs::file_type::character)
-      return error_of(file, "is a pipe or a device, whose reader may wait for ever", "put a file into the folder");
   }
   return std::nullopt;
 }

@@ -10,8 +10,7 @@
 
 namespace sealwatch {
 
-/// Why a file of the folder is not looked at: it, or its sidecar, is a symbolic link, which may lead anywhere,
-/// or a pipe or a device, whose reader may wait.
+/// Why a file of the folder is not looked at: it, or its sidecar, is a symbolic link, which may lead anywhere.
 [[nodiscard]] std::optional<Error> not_a_file_of_its_own(const std::filesystem::path& recording);
 
 /// Moves `recording`, then its sidecar, to `folder` beside it, which is made if need be and must be no symbolic link.

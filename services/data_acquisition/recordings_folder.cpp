@@ -61,7 +61,7 @@ std::vector<fs::path> RecordingsFolder::recordings() const {
     const std::string suffix = suffix_of(entry->path().string());
     std::error_code ignored;
     const bool is_one = suffix == ".csv" || suffix == ".mat" || suffix == ".h5" || suffix == ".hdf5";
-    if (is_one && entry->is_regular_file(ignored)) paths.push_back(entry->path());
+    if (is_one && !entry->is_directory(ignored)) paths.push_back(entry->path());
   }
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -78,7 +78,7 @@ void RecordingsFolder::put_away_concluded() {
 
 bool RecordingsFolder::is_settled(const fs::path& path) {
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
+  const std::uintmax_t size = fs::file_size(path, error);  // none of a pipe or a device, which is refused in its turn
   const fs::file_time_type changed = fs::last_write_time(path, error);
   if (error) return false;
   const fs::file_time_type sidecar_changed = fs::last_write_time(fs::path(path).replace_extension(".yaml"), error);

@@ -3,15 +3,19 @@
 //   flood raw|known|statuses|resends SECONDS DOMAIN
 //
 // raw: tests of ever new actuators, as fast as DDS takes them. known: the same of one configured actuator. statuses: each from a writer that nobody heard before, as
-// fast as DDS takes them, 100 000 at least. resends: of the streams that heartbeats name, all ranges. Prints how many it
-// sent.
+// fast as DDS takes them, 100 000 at least. resends: of the streams that heartbeats name, all ranges. lines: messages of
+// any topic from standard input, {"topic": ..., "message": {...}} as `watch --json` prints them. Prints how many it sent.
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "services/common/message/json.hpp"
 #include "services/common/transport/dds_bus.hpp"
 
 namespace {
@@ -69,6 +73,23 @@ std::uint64_t flood(Bus& bus, const std::string& what, std::chrono::seconds dura
   return sent;
 }
 
+/// What the codec does not take is passed over: it cannot be sent.
+std::uint64_t send_lines(Bus& bus, std::chrono::seconds wait) {
+  std::uint64_t sent = 0;
+  std::this_thread::sleep_for(wait);  // until the readers are known
+  for (std::string line; std::getline(std::cin, line);) {
+    const auto whole = nlohmann::json::parse(line, nullptr, false);
+    const auto topic = value_of<Topic>(whole.value("topic", ""));
+    const auto message =
+        topic ? message_from_json(*topic, whole["message"].dump()) : Result<Message>(fail("is no topic"));
+    if (!message) std::fprintf(stderr, "%s\n", message.error().describe().c_str());
+    sent += message && bus.publish(*message) ? 1 : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  return sent;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -78,7 +99,8 @@ int main(int argc, char** argv) {
   configuration.domain = std::atoi(words[2].c_str());
   const auto bus = open_dds_bus(configuration);
   if (!bus || !(*bus)->subscribe_service_topics()) return 1;
-  const std::uint64_t sent = flood(**bus, words[0], std::chrono::seconds(std::atoi(words[1].c_str())));
+  const auto duration = std::chrono::seconds(std::atoi(words[1].c_str()));
+  const std::uint64_t sent = words[0] == "lines" ? send_lines(**bus, duration) : flood(**bus, words[0], duration);
   std::printf("%llu\n", static_cast<unsigned long long>(sent));
   return sent > 0 ? 0 : 1;
 }

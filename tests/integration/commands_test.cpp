@@ -634,6 +634,10 @@ TEST_F(EndAtSigterm, EveryCommandThatComputesOrWaits) {
   const std::string hanging = fmus.build(fmi::spring_return("fmu_spring_hang2"));
   std::vector<std::string> fit = {"fit", "--asset", asset()};
   fit.insert(fit.end(), 40, recording);
+  std::vector<std::string> explain = {"explain", "--asset", asset(), "--out", out + "5", "--fit"};
+  std::ifstream recorded(recording);
+  std::string rows{std::istreambuf_iterator<char>(recorded), {}};
+  for (int k = 0; k < 40; ++k) explain.push_back(write("again" + std::to_string(k) + ".csv", rows += '\n'));
   const std::vector<std::string> by = {"--by", "J. Silva", "--config", config()};
   const auto said_by = [&by](std::vector<std::string> words) {
     words.insert(words.end(), by.begin(), by.end());
@@ -644,7 +648,7 @@ TEST_F(EndAtSigterm, EveryCommandThatComputesOrWaits) {
       {{"verify", "mismatch", "--sets", "1000", "--out", out + "2"}},
       {{"simulate", "--asset", asset(), "--months", "600", "--rate", "5000", "--out", out + "3"}},
       {{"simulate", "--asset", asset(), "--ageing", "--months", "600", "--rate", "5000", "--out", out + "4"}},
-      {{"explain", "--asset", asset(), "--fit", recording, "--out", out + "5"}, 1000},
+      {explain, 1000},
       {fit, 1000},
       {{"validate", "--fit", "--asset", asset(), recording, recording, "--out", out + "6"}, 300, false},
       {{"validate", "--simulated", large(1), large(1)}, 200, false},

@@ -13,6 +13,8 @@
 #include <set>
 #include <sstream>
 
+#include "sealwatch/core/file.hpp"
+
 namespace sealwatch::fmi {
 namespace {
 
@@ -145,9 +147,8 @@ bool UnpackedFmu::has(const std::string& member) const { return std::ranges::fin
 
 Result<UnpackedFmu> unpack_fmu(const std::string& file, const ArchiveLimits& limits) {
   if (!unpacked_folder().empty()) return in_folder(file, unpacked_folder());
-  std::error_code unknown;
-  if (!std::filesystem::is_regular_file(file, unknown))
-    return refuse(file, {}, "is no file that can be read", "give the path of an FMU");
+  if (const Status is_file = check_file(file, limits.total_bytes); !is_file)
+    return refuse(file, {}, is_file.error().rule, "give the path of an FMU");
   int code = 0;
   const Archive archive(zip_open(file.c_str(), ZIP_RDONLY, &code));
   if (!archive) {

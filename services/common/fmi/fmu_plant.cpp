@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/dimension.hpp"
 #include "services/common/equations/plant_names.hpp"
@@ -22,11 +21,6 @@ Error fault(std::string value, std::string rule, std::string advice = {}) {
   return {.file = {}, .place = {}, .value = std::move(value), .rule = std::move(rule), .advice = std::move(advice)};
 }
 
-std::string content_of(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 class Builder {
  public:
   Builder(const TextPlant& text, const FmuSection& section, const equations::Faults& faults)
@@ -38,7 +32,7 @@ class Builder {
     block_.file = *file;
     if (!text_.file.empty())
       block_.plant = {.file = std::filesystem::absolute(text_.file).string(),
-                      .hash = content_hash(content_of(text_.file)),
+                      .hash = content_hash(read_file(text_.file, kLongestYaml_bytes).value_or("")),
                       .fmu_folder = block_.file->unpacked().folder.path().string()};
     description_ = &block_.file->description();
     order_states();

@@ -1,8 +1,6 @@
 #include "services/common/fmi/plant_host.hpp"
 
-#include <fstream>
-#include <iterator>
-
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/fmi/fmi_instance.hpp"
 #include "services/common/fmi/fmu_archive.hpp"
@@ -36,9 +34,8 @@ class AskedColumns final : public InjectedColumns {
 
 void PlantHost::load(Unpacker request) {
   const HostedPlant hosted = get_plant(request);
-  std::ifstream stream(hosted.file);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (content_hash(text) != hosted.hash) throw Failure{"the plant file " + hosted.file + " has been changed meanwhile"};
+  if (content_hash(read_file(hosted.file, kLongestYaml_bytes).value_or("")) != hosted.hash)
+    throw Failure{"the plant file " + hosted.file + " has been changed meanwhile"};
   use_unpacked(hosted.fmu_folder);
   const auto plant = load_plant(hosted.file);
   if (!plant) throw Failure{plant.error().front().describe()};

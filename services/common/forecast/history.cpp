@@ -2,9 +2,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 
 namespace sealwatch::forecast {
@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kLargestCondition =
     2.0;  // theta above this is a percentage or a slip, not a share of the nominal modulus
-constexpr std::size_t kLargestFile_bytes = 64u << 20;  // a century of monthly tests is 100 kB
+constexpr std::uint64_t kLargestFile_bytes = 1'000'000;  // a century of monthly tests is 100 kB
+constexpr std::size_t kMostColumns = 100;
 
 /// Cells of one line; quotes of RFC 4180 are taken off, blanks around a cell too.
 std::vector<std::string> split(const std::string& line) {
@@ -96,6 +97,9 @@ class HistoryParser {
 
   Status read_header(const std::string& line) {
     columns_.header = split(line);
+    if (columns_.header.size() > kMostColumns)
+      return fail(at({}, std::to_string(columns_.header.size()) + " columns", "is no history",
+                     "a history needs time[iso8601] and theta[1], one row per test"));
     const std::string worn = worn_column(seal_), worn_std = worn_column(seal_, "_std");
     const std::vector<std::string> known = {"time[iso8601]", "theta[1]", "theta_std[1]", worn, worn_std};
     const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
@@ -179,18 +183,9 @@ Result<std::vector<ConditionSample>> parse_history(const std::string& text, cons
 
 Result<std::vector<ConditionSample>> read_history(const std::string& path,
                                                   const std::optional<ConditionSetting>& seal) {
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  if (!stream) return fail(Error{.file = path, .place = {}, .value = {}, .rule = "cannot be read", .advice = {}});
-  if (const auto size = stream.tellg(); size < 0 || static_cast<std::size_t>(size) > kLargestFile_bytes)
-    return fail(Error{.file = path,
-                      .place = {},
-                      .value = {},
-                      .rule = "must be a file of at most 64 MB",
-                      .advice = "a history has one row per monthly test"});
-  stream.seekg(0);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse_history(text.str(), path, seal);
+  const Result<std::string> text = read_file(path, kLargestFile_bytes);
+  if (!text) return fail(text.error());
+  return parse_history(*text, path, seal);
 }
 
 }  // namespace sealwatch::forecast

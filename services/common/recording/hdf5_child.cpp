@@ -26,8 +26,11 @@ namespace {
 using Variables = std::vector<MatVariable>;
 using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-constexpr std::uint64_t kMoreMemory_bytes = 4ULL << 30U;
-constexpr rlim_t kProcessorTime_s = 120;
+// The numbers of one test take 16 MB and a fraction of a second. A chunk of zeros unpacks to gigabytes, thousands of
+// nested groups take minutes, and a data set may lie in a file of its own: a pipe, for whose writer the library waits.
+constexpr std::uint64_t kMoreMemory_bytes = 400'000'000;
+constexpr rlim_t kProcessorTime_s = 5;
+constexpr unsigned kLongest_s = 10;
 
 // The answer on its way: 1 and the variables, or 0 and the error's five texts. Both ends are this program.
 
@@ -85,7 +88,7 @@ std::optional<Result<Variables>> get_answer(std::FILE* from) {
 }
 
 void set_limit(int resource, rlim_t limit) {
-  const rlimit both{limit, limit};
+  const rlimit both{limit, limit + 1};  // the first has a signal with a name of its own, the second kills
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
@@ -101,7 +104,9 @@ void limit_memory() {
 
 [[noreturn]] void answer_and_end(int pipe_end, const std::function<Result<Variables>()>& read) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGPIPE}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGPIPE, SIGALRM})
+    std::signal(signal, SIG_DFL);
+  alarm(kLongest_s);
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_CPU, kProcessorTime_s);
   limit_memory();
@@ -117,7 +122,10 @@ void limit_memory() {
 
 Error no_answer(int status) {
   std::string how = "ended without an answer";
-  if (WIFSIGNALED(status)) how = std::string("was stopped: ") + strsignal(WTERMSIG(status));
+  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGXCPU))
+    how = "took too long";
+  else if (WIFSIGNALED(status))
+    how = std::string("was stopped: ") + strsignal(WTERMSIG(status));
   return {
       .file = {},
       .place = {},

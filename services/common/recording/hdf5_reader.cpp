@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "sealwatch/core/file.hpp"
 #include "services/common/recording/columns.hpp"
 #include "services/common/recording/recording_file.hpp"
 
@@ -15,6 +16,7 @@ namespace sealwatch {
 namespace {
 
 constexpr std::size_t kLongestName = 1000;
+constexpr std::size_t kMostObjects = 10'000;
 
 /// An identifier of HDF5, closed at its end.
 class Handle {
@@ -52,6 +54,12 @@ std::size_t vector_length(hid_t dataset) {
   return others <= 1 ? static_cast<std::size_t>(longest) : 0;
 }
 
+/// Whether the data of a data set is that of another file, which may be any on this machine, a pipe among them.
+bool lies_elsewhere(hid_t dataset) {
+  const Handle made(H5Dget_create_plist(dataset), &H5Pclose);
+  return !made || H5Pget_layout(made.get()) == H5D_VIRTUAL || H5Pget_external_count(made.get()) > 0;
+}
+
 std::string text_attribute(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return {};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
@@ -77,9 +85,22 @@ class Reader {
 
   Status status = {};
 
+  void count(const char* name) {
+    if (std::strlen(name) > kLongestName)
+      status = fail(error_at({}, {}, "its groups are nested too deeply", "put the data sets into few groups"));
+    else if (++objects_ > kMostObjects)
+      status = fail(error_at({}, {}, "the file holds more than " + std::to_string(kMostObjects) + " objects",
+                             "one recording is one test: split the file"));
+  }
+
   void dataset(hid_t file, const char* name) {
     const Handle data(H5Dopen2(file, name, H5P_DEFAULT), &H5Dclose);
     if (!data) return;
+    if (lies_elsewhere(data.get())) {
+      status = fail(error_at("data set " + printable(name), {}, "its data lies in another file, which is not followed",
+                             "copy the data into this one"));
+      return;
+    }
     const Handle type(H5Dget_type(data.get()), &H5Tclose);
     const std::size_t length = vector_length(data.get());
     if (!type || length == 0) return;
@@ -125,11 +146,13 @@ class Reader {
 
   std::vector<MatVariable>& found_;
   std::size_t total_ = 0;
+  std::size_t objects_ = 0;
 };
 
 herr_t visit(hid_t file, const char* name, const H5O_info_t* info, void* reader) {
   auto& target = *static_cast<Reader*>(reader);
-  if (info->type == H5O_TYPE_DATASET) target.dataset(file, name);
+  target.count(name);
+  if (target.status && info->type == H5O_TYPE_DATASET) target.dataset(file, name);
   return target.status ? 0 : 1;
 }
 
@@ -148,6 +171,7 @@ Result<std::vector<MatVariable>> read_all(const std::string& path) {
 }  // namespace
 
 Result<std::vector<MatVariable>> read_hdf5_vectors(const std::string& path) {
+  if (const Status is_file = check_file(path, kLargestRecording_bytes); !is_file) return fail(is_file.error());
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   return in_child([&path] { return read_all(path); });

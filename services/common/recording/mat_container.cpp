@@ -11,13 +11,17 @@
 #include <optional>
 #include <string_view>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/recording/columns.hpp"
+#include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch {
 namespace {
 
 constexpr long kHeader_bytes = 128;
+constexpr std::uint64_t kMostInflated_bytes = 1'000'000'000;  // of a file; zeros inflate a thousandfold
+constexpr std::size_t kMostVariables = 10'000;
 constexpr std::uint32_t kMostDimension_bytes = 128;  // 32 dimensions, as NumPy's most
 constexpr std::uint32_t kMostName_bytes = 2048;      // MATLAB's longest name since 2025; 63 before
 
@@ -54,10 +58,12 @@ class ElementBytes {
     return true;
   }
 
-  /// Everything that is left: inflated, it must end in its checksum.
-  bool ends_well() {
+  [[nodiscard]] std::uint64_t inflated() const { return compressed_ ? stream_.total_out : 0; }
+
+  /// Everything that is left: inflated, it must end in its checksum before it is longer than `most`.
+  bool ends_well(std::uint64_t most) {
     std::array<unsigned char, 32768> rest;
-    while (compressed_ && !ended_)
+    while (compressed_ && !ended_ && inflated() <= most)
       if (inflate_to(rest.data(), rest.size()) == 0) break;
     return !compressed_ || ended_;
   }
@@ -174,8 +180,8 @@ class ArrayElement {
 
 std::uint32_t in_order(std::uint32_t value, bool swapped) { return swapped ? __builtin_bswap32(value) : value; }
 
-/// One element of the file, at its first byte behind the tag.
-Status check_element(std::FILE* file, Tag tag, bool swapped) {
+/// One element of the file, at its first byte behind the tag. `left`: how much all elements from here may inflate to.
+Status check_element(std::FILE* file, Tag tag, bool swapped, std::uint64_t& left) {
   if (tag.type != kMatrix && tag.type != kCompressed) return {};  // matio passes over it
   ElementBytes bytes(file, tag.bytes, tag.type == kCompressed);
   std::array<std::uint32_t, 2> inner = {kMatrix, tag.bytes};
@@ -186,7 +192,12 @@ Status check_element(std::FILE* file, Tag tag, bool swapped) {
     inner[1] = in_order(inner[1], swapped);
   }
   if (const Status array = ArrayElement(bytes, inner[1], swapped).check(); !array) return array;
-  return bytes.ends_well() ? Status{} : damaged();
+  const bool ends_well = bytes.ends_well(left);
+  if (bytes.inflated() > left)
+    return fail("the file unpacks to more than " + std::to_string(kMostInflated_bytes / 1'000'000) + " MB",
+                "one recording is one test: save its vectors alone");
+  left -= bytes.inflated();
+  return ends_well ? Status{} : damaged();
 }
 
 Status cut_at(long size) {
@@ -198,14 +209,19 @@ Status cut_at(long size) {
 Status check_chain(std::FILE* file, bool swapped) {
   std::fseek(file, 0, SEEK_END);
   const long size = std::ftell(file);
+  std::uint64_t left = kMostInflated_bytes;
+  std::size_t variables = 0;
   for (long at = kHeader_bytes; at < size;) {
+    if (++variables > kMostVariables)
+      return fail("the file holds more than " + std::to_string(kMostVariables) + " variables",
+                  "one recording is one test: save its vectors alone");
     std::array<std::uint32_t, 2> raw{};
     std::fseek(file, at, SEEK_SET);
     if (std::fread(raw.data(), sizeof raw, 1, file) != 1) return cut_at(size);
     const Tag tag = {in_order(raw[0], swapped), in_order(raw[1], swapped)};
     at += 8 + static_cast<long>(tag.bytes);
     if (at > size) return cut_at(size);
-    if (const Status element = check_element(file, tag, swapped); !element) return element;
+    if (const Status element = check_element(file, tag, swapped, left); !element) return element;
   }
   return {};
 }
@@ -213,6 +229,7 @@ Status check_chain(std::FILE* file, bool swapped) {
 }  // namespace
 
 Result<MatFormat> check_mat_container(const std::string& path) {
+  if (const Status is_file = check_file(path, kLargestRecording_bytes); !is_file) return fail(is_file.error());
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) return fail("cannot be opened");
   std::array<char, 520> start{};

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/visible_text.hpp"
 #include "services/common/recording/csv_reader.hpp"
@@ -30,17 +29,8 @@ tl::unexpected<Error> fail_in(const std::string& file, Error error) {
   return fail(std::move(error));
 }
 
-Result<std::ifstream> open(const std::string& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return fail_in(path, error_at({}, {}, "is a directory"));
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return fail_in(path, error_at({}, {}, std::string("cannot be opened: ") + std::strerror(errno)));
-  return in;
-}
-
 Result<std::string> hash_file(const std::string& path) {
-  Result<std::ifstream> in = open(path);
+  Result<std::ifstream> in = open_file(path, kLargestRecording_bytes);
   if (!in) return fail(in.error());
   ContentHasher hasher;
   std::array<char, 1U << 16U> block{};
@@ -59,8 +49,6 @@ Result<Log> one_test(Result<ColumnarSamples> samples, std::size_t first_row) {
 }
 
 Result<Log> read_vectors(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
-  const Result<std::string> hash = hash_file(path);
-  if (!hash) return fail(hash.error());
   const bool matlab = suffix_of(path) == ".mat";
   Result<Log> log;
   if (matlab && map.columns.empty()) {
@@ -70,7 +58,10 @@ Result<Log> read_vectors(const std::string& path, const PlantDescription& plant,
     if (!vectors) return fail(vectors.error());
     log = log_of_vectors(std::move(*vectors), plant, map);
   }
-  if (log) log->tests.front().read.content_hash = *hash;
+  if (!log) return log;
+  const Result<std::string> hash = hash_file(path);
+  if (!hash) return fail(hash.error());
+  log->tests.front().read.content_hash = *hash;
   return log;
 }
 
@@ -83,7 +74,7 @@ bool is_in_own_format(const FoundLayout& layout, const ChannelMap& map) {
 }
 
 Result<Log> read_text(const std::string& path, const PlantDescription& plant, const ChannelMap& map) {
-  Result<std::ifstream> in = open(path);
+  Result<std::ifstream> in = open_file(path, kLargestRecording_bytes);
   if (!in) return fail(in.error());
   const bool jumps = map.log.repeated_times == "jump";
   if (map.empty()) return one_test(read_csv(*in, plant, jumps), 2);
@@ -106,14 +97,7 @@ std::string sidecar_path(const std::string& path) { return fs::path(path).replac
 /// The text of the sidecar of `path`, "" where there is none.
 Result<std::string> read_sidecar_text(const std::string& file) {
   if (std::error_code ignored; !fs::exists(file, ignored)) return std::string();
-  Result<std::ifstream> in = open(file);
-  if (!in) return fail(in.error());
-  std::string text(kLongestSidecar_bytes + 1, '\0');
-  in->read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in->gcount()));
-  if (text.size() > kLongestSidecar_bytes)
-    return fail_in(file, error_at({}, {}, "is longer than " + std::to_string(kLongestSidecar_bytes) + " bytes"));
-  return text;
+  return sealwatch::read_file(file, kLongestSidecar_bytes);
 }
 
 /// The sidecar of `path`; nothing said where there is none.

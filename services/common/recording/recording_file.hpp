@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ namespace sealwatch {
 
 /// A recording of more numbers (samples times channels) than one test may have is refused while it is being read.
 inline constexpr std::size_t kMostNumbers = kTestLimits.most_numbers;
+/// A larger file holds more than one test: the numbers of one, written with all digits, fill a hundredth of it.
+inline constexpr std::uint64_t kLargestRecording_bytes = 4'000'000'000;
 /// A row longer than this is refused: it is no row of numbers.
 inline constexpr std::size_t kLongestRow_bytes = std::size_t{1} << 20U;
 /// A sidecar longer than this is refused.

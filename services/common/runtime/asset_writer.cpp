@@ -1,6 +1,6 @@
 #include <cmath>
-#include <fstream>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "services/common/runtime/channel_map_file.hpp"
@@ -132,12 +132,6 @@ std::string asset_to_yaml(const AssetConfig& asset) {
   return std::string(out.c_str()) + "\n" + channel_map_to_yaml(asset.channel_map);
 }
 
-Status save_asset(const AssetConfig& asset, const std::string& file) {
-  std::ofstream stream(file);
-  stream << asset_to_yaml(asset);
-  stream.close();
-  if (stream) return {};
-  return fail(Error{file, {}, {}, "cannot be written", "check that the directory exists and that there is space"});
-}
+Status save_asset(const AssetConfig& asset, const std::string& file) { return write_file(file, asset_to_yaml(asset)); }
 
 }  // namespace sealwatch

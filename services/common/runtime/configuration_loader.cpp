@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/message/topics.hpp"
@@ -26,11 +25,6 @@ constexpr NumberRule kInterval{.min = 0.1, .max = 600, .words = "must be a numbe
 constexpr NumberRule kRate{
     .min = 0, .max = 1e-3, .min_excluded = true, .words = "must be a rate per hour above 0, at most 1e-3"};
 
-bool is_file(const fs::path& path) {
-  std::error_code none;
-  return fs::is_regular_file(path, none);
-}
-
 fs::path file_of(const std::string& path) {
   std::error_code none;
   return fs::is_directory(path, none) ? fs::path(path) / "sealwatch.yaml" : fs::path(path);
@@ -41,7 +35,7 @@ Error not_there(const fs::path& file) {
   return {.file = fs::absolute(file).lexically_normal().string(),
           .place = {},
           .value = {},
-          .rule = "is not there, or may not be read: no configuration",
+          .rule = "is not there: no configuration",
           .advice =
               "name the folder that holds sealwatch.yaml with --config or in SEALWATCH_CONFIG; an installed system "
               "has it in /etc/sealwatch, a checkout in config"};
@@ -291,7 +285,8 @@ std::string place_in_configuration(const std::string& path, const std::string& k
 Checked<Configuration> load_configuration(const std::string& path, const ConfigurationOverrides& overrides) {
   const fs::path file = file_of(path);
   std::vector<Error> errors;
-  if (!std::ifstream(file) || !is_file(file)) return tl::unexpected(std::vector{not_there(file)});
+  std::error_code none;
+  if (!fs::exists(file, none)) return tl::unexpected(std::vector{not_there(file)});
   const auto root = load_yaml(file.string(), errors);
   if (!root) return tl::unexpected(errors);
   YamlMap map(file.string(), *root, {}, errors);

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/derived_sizes.hpp"
 #include "services/common/runtime/asset_sections.hpp"
@@ -161,11 +160,6 @@ void read_rest(YamlMap& root, TextPlant& plant) {
             {.min = 1.0, .max = 5.0, .words = "must be an order of integration from 1 to 5"});
 }
 
-std::string text_in(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 bool is_plant_file(const std::string& model) { return model.ends_with(".yaml") || model.ends_with(".yml"); }
@@ -196,7 +190,7 @@ Checked<ReadPlant> read_plant_file(const std::string& file) {
   const equations::Faults faults = [&](const std::string& key, const Error& error) {
     Error placed = error;
     placed.file = file;
-    placed.place = place_in_yaml(file, key) + (error.place.empty() ? "" : ", " + error.place);
+    placed.place = place_in_yaml(*node, key) + (error.place.empty() ? "" : ", " + error.place);
     errors.push_back(std::move(placed));
   };
   auto built = fmu ? fmi::build_fmu_plant(plant, *fmu, faults) : equations::build_plant(plant, faults);
@@ -211,7 +205,9 @@ Checked<const PlantDescription*> load_plant(const std::string& file) {
   const std::scoped_lock lock(mutex);
   std::error_code ignored;
   const std::string path = std::filesystem::weakly_canonical(file, ignored).string();
-  const std::string key = path + "\n" + content_hash(text_in(file));
+  const Result<std::string> text = read_file(file, kLongestYaml_bytes);
+  if (!text) return tl::unexpected(std::vector{text.error()});
+  const std::string key = path + "\n" + content_hash(*text);
   if (const auto known = loaded.find(key); known != loaded.end()) return *find_plant(known->second);
   Checked<ReadPlant> read = read_plant_file(file);
   if (!read) return tl::unexpected(read.error());

@@ -4,18 +4,18 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 
 #include <yaml-cpp/exceptions.h>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/core/text.hpp"
 
 namespace sealwatch {
 namespace {
+
+constexpr std::size_t kMostKeys = 4000;  // each is looked for among the others: as many assets, or parameters
 
 std::string line_of(const YAML::Mark& mark) { return mark.line < 0 ? "" : "line " + std::to_string(mark.line + 1); }
 
@@ -31,11 +31,7 @@ YAML::Node last_text(YAML::Node node) {
 
 /// The library takes a quoted text that is still open at the end of the file for closed, and passes over all documents
 /// but the first. The mark for a document's end cannot stand in a quoted text.
-std::optional<Error> broken_off(const std::string& file, const std::string& text) {
-  if (const int line = line_of_second_document(text))
-    return Error{
-        file, "line " + std::to_string(line), {}, "a second YAML document stands here", "take out the line ---"};
-  const YAML::Node document = YAML::Load(text);
+std::optional<Error> broken_off(const std::string& file, const std::string& text, const YAML::Node& document) {
   try {
     (void)YAML::Load(text + (text.ends_with('\n') ? "...\n" : "\n...\n"));
   } catch (const YAML::Exception& exception) {
@@ -49,20 +45,23 @@ std::optional<Error> broken_off(const std::string& file, const std::string& text
 }  // namespace
 
 std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>& errors) {
-  std::error_code ignored;
+  const Result<std::string> text = read_file(file, kLongestYaml_bytes);
+  if (!text) {
+    errors.push_back(text.error());
+    return std::nullopt;
+  }
   try {
-    if (!std::filesystem::is_regular_file(file, ignored)) throw YAML::BadFile(file);
-    std::ifstream stream(file);
-    if (!stream) throw YAML::BadFile(file);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (const std::optional<Error> broken = broken_off(file, text)) {
+    if (const int line = line_of_second_document(*text)) {
+      errors.push_back(
+          {file, "line " + std::to_string(line), {}, "a second YAML document stands here", "take out the line ---"});
+      return std::nullopt;
+    }
+    YAML::Node root = YAML::Load(*text);
+    if (const std::optional<Error> broken = broken_off(file, *text, root)) {
       errors.push_back(*broken);
       return std::nullopt;
     }
-    YAML::Node root = YAML::Load(text);
     return root.IsNull() ? YAML::Node(YAML::NodeType::Map) : root;
-  } catch (const YAML::BadFile&) {
-    errors.push_back({file, {}, {}, "cannot be read", "check that the file exists and may be read"});
   } catch (const YAML::Exception& exception) {
     errors.push_back({file, line_of(exception.mark), {}, "is not YAML: " + exception.msg, {}});
   }
@@ -71,7 +70,12 @@ std::optional<YAML::Node> load_yaml(const std::string& file, std::vector<Error>&
 
 std::string place_in_yaml(const std::string& file, const std::string& key) {
   std::vector<Error> ignored;
-  std::optional<YAML::Node> node = load_yaml(file, ignored);
+  const std::optional<YAML::Node> root = load_yaml(file, ignored);
+  return root ? place_in_yaml(*root, key) : "key " + key;
+}
+
+std::string place_in_yaml(const YAML::Node& root, const std::string& key) {
+  std::optional<YAML::Node> node(root);  // made anew below, never assigned: that would change the document
   std::string line;
   std::istringstream names(key);
   for (std::string name; node && node->IsMap() && std::getline(names, name, '.');) {
@@ -81,16 +85,17 @@ std::string place_in_yaml(const std::string& file, const std::string& key) {
     for (const auto& entry : *node)
       if (entry.first.IsScalar() && entry.first.Scalar() == name.substr(0, bracket)) {
         line = line_of(entry.first.Mark()) + ", ";
-        inside = entry.second;
+        inside.emplace(entry.second);
       }
     if (inside && bracket != std::string::npos) {
       const auto item = number_of(name.substr(bracket + 1, name.size() - bracket - 2)).value_or(-1.0);
       if (!inside->IsSequence() || item < 0.0 || item >= static_cast<double>(inside->size())) return "key " + key;
       const YAML::Node found = (*inside)[static_cast<std::size_t>(item)];
       line = line_of(found.Mark()) + ", ";
-      inside = found;
+      inside.emplace(found);
     }
-    node = inside;
+    node.reset();
+    if (inside) node.emplace(*inside);
   }
   return (node ? line : "") + "key " + key;
 }
@@ -106,9 +111,17 @@ std::optional<double> number_of(const std::string& text) {
 
 YamlMap::YamlMap(std::string file, YAML::Node node, std::string path, std::vector<Error>& errors)
     : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)), errors_(&errors) {
-  if (node_.IsMap()) return;
+  if (node_.IsMap() && node_.size() <= kMostKeys) return;
   const std::string place = line_of(node_.Mark()) + (path_.empty() ? "" : ", key " + path_);
-  errors_->push_back({file_, place, node_.IsScalar() ? node_.Scalar() : "", "must be a mapping of keys to values", {}});
+  if (node_.IsMap())
+    errors_->push_back({file_,
+                        place,
+                        std::to_string(node_.size()) + " keys",
+                        "are more than the " + std::to_string(kMostKeys) + " that one mapping may have",
+                        {}});
+  else
+    errors_->push_back(
+        {file_, place, node_.IsScalar() ? node_.Scalar() : "", "must be a mapping of keys to values", {}});
   node_ = YAML::Node(YAML::NodeType::Map);
 }
 

@@ -21,6 +21,7 @@ namespace sealwatch {
 
 /// "line 3, key a.b": where the key stands under its parents, without the line where it does not.
 [[nodiscard]] std::string place_in_yaml(const std::string& file, const std::string& key);
+[[nodiscard]] std::string place_in_yaml(const YAML::Node& root, const std::string& key);
 
 /// Limits of a number, with the words for them.
 struct NumberRule {

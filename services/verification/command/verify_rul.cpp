@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sealwatch/core/file.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
@@ -71,12 +72,7 @@ double cpu_seconds(const rusage& usage) {
 }
 
 Status write_text(const std::string& folder, const std::string& name, const std::string& text) {
-  const std::string file = (std::filesystem::path(folder) / name).string();
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << text;
-  stream.close();
-  if (stream) return {};
-  return fail(Error{.file = file, .place = {}, .value = {}, .rule = "cannot be written", .advice = {}});
+  return write_file((std::filesystem::path(folder) / name).string(), text);
 }
 
 /// What the run cost: not part of its results.

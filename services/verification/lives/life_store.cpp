@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "sealwatch/core/file.hpp"
 #include "services/common/text/format.hpp"
 
 namespace sealwatch::verification {
@@ -15,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSettingFile = "settings.txt";
+constexpr std::uint64_t kLargestLife_bytes = 100'000'000;
 constexpr const char* kLives = "lives";
 constexpr std::string_view kSuffix = ".life";
 
@@ -22,12 +24,7 @@ Error about(const std::string& file, std::string rule, std::string advice = {}) 
   return {.file = file, .place = {}, .value = {}, .rule = std::move(rule), .advice = std::move(advice)};
 }
 
-Result<std::string> contents(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) return fail(about(file.string(), "cannot be read"));
-  return std::move(text).str();
-}
+Result<std::string> contents(const fs::path& file) { return read_file(file.string(), kLargestLife_bytes); }
 
 Status write_whole(const fs::path& file, const std::string& bytes) {
   std::ostringstream unique;

@@ -1,14 +1,20 @@
 #include "services/verification/trial/mismatch_records.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "sealwatch/core/file.hpp"
 
 namespace sealwatch::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using verification::MismatchRecord;
+
+constexpr std::uint64_t kLargestRecords_bytes = 1'000'000'000;
 
 template <class T>
 constexpr bool kIsVector = false;
@@ -66,10 +72,12 @@ std::string to_json_line(const MismatchRecord& record) { return write(record).du
 
 Result<std::vector<MismatchRecord>> read_mismatch_records(const std::string& file) {
   std::vector<MismatchRecord> records;
-  std::ifstream stream(file, std::ios::binary);
+  if (std::error_code none; !std::filesystem::exists(file, none)) return records;
+  Result<std::ifstream> stream = open_file(file, kLargestRecords_bytes);
+  if (!stream) return fail(stream.error());
   std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    const bool cut = stream.eof();
+  for (int number = 1; std::getline(*stream, line); ++number) {
+    const bool cut = stream->eof();
     try {
       MismatchRecord record;
       read_value(Json::parse(line), record);

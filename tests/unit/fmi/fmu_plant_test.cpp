@@ -186,7 +186,8 @@ TEST(FmuPlant, FaultsNamePlaceValueAndRule) {
   const std::string fmu = folder.build(spring_return("fmu_spring_return2"));
   const std::string good = plant_text("any");
   EXPECT_EQ(fault(folder, good), "read");
-  EXPECT_THAT(fault(folder, with(good, "file: model.fmu", "file: modl.fmu")), HasSubstr("is no file"));
+  EXPECT_THAT(fault(folder, with(good, "file: model.fmu", "file: modl.fmu")),
+              HasSubstr("cannot be opened: No such file"));
   EXPECT_THAT(fault(folder, with(good, "variable: position", "variable: positin")),
               HasSubstr("did you mean 'position'"));
   EXPECT_THAT(fault(folder, with(good, "{u: drive_voltage", "{M: drive_voltage")), HasSubstr("is no input of the FMU"));

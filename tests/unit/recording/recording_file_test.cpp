@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <limits>
@@ -162,6 +164,35 @@ TEST_F(WildNumbers, AreRefusedByRowAndColumn) {
   const Result<Recording> tiny = read_recording(write("tiny.csv", "time,position\n0,5e-324\n1,2\n"), test_plant());
   ASSERT_TRUE(tiny) << tiny.error().describe();
   EXPECT_EQ(tiny->samples.channels[0].values, (std::vector<double>{0.0, 2.0}));
+}
+
+/// The library would read any file of this machine, and wait for the writer of a pipe.
+TEST_F(RecordingFile, AnHdf5FileWhoseDataLieInAnotherIsRefused) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  const std::string file = path("a.h5");
+  const hid_t made = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t rows = 100;
+  const hid_t space = H5Screate_simple(1, &rows, nullptr), elsewhere = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_external(elsewhere, path("pipe").c_str(), 0, 800);
+  H5Dclose(H5Dcreate2(made, "time", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, elsewhere, H5P_DEFAULT));
+  H5Pclose(elsewhere);
+  H5Sclose(space);
+  H5Fclose(made);
+  EXPECT_THAT(error_of(file), HasSubstr("a.h5: data set time: its data lies in another file"));
+}
+
+TEST_F(RecordingFile, AnHdf5FileOfDeepGroupsIsRefused) {
+  const std::string file = path("a.h5");
+  const hid_t made = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t inner = H5Gopen2(made, "/", H5P_DEFAULT);
+  for (int depth = 0; depth < 1000; ++depth) {
+    const hid_t next = H5Gcreate2(inner, "g", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Gclose(inner);
+    inner = next;
+  }
+  H5Gclose(inner);
+  H5Fclose(made);
+  EXPECT_THAT(error_of(file), HasSubstr("nested too deeply"));
 }
 
 }  // namespace

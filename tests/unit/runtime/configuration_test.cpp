@@ -131,7 +131,7 @@ const BadCase kBadCases[] = {
     {"twice", "domain: 1\ndomain: 2\n", "sealwatch.yaml: line 2, key domain: 'domain': stands twice; keep one of them"},
     {"empty_state_directory", "state_directory: \"\"\n",
      "sealwatch.yaml: line 1, key state_directory: must not be empty"},
-    {"asset_missing", "assets: [none.yaml]\n", "none.yaml: cannot be read; check that the file exists and may be read"},
+    {"asset_missing", "assets: [none.yaml]\n", "none.yaml: cannot be opened: No such file or directory"},
 };
 
 TEST(Configuration, NamesItsSendersAndAsksForASecondPersonWhereItSaysSo) {

@@ -186,8 +186,22 @@ TEST_F(RecordingsFolderTest, ASidecarThatIsAPipeIsNotWaitedFor) {
   RecordingsFolder watched = folder(layer);
   EXPECT_TRUE(watched.look().empty());
   EXPECT_TRUE(watched.look().empty());
-  EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april.yaml: is a pipe or a device")));
+  EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april.yaml: is a pipe")));
   EXPECT_TRUE(fs::exists(directory_ / "rejected" / "april.csv"));
+}
+
+/// It was passed over without a word, so that whoever dropped it waited for a conclusion.
+TEST_F(RecordingsFolderTest, ARecordingThatIsAPipeIsRefusedByName) {
+  fs::create_directories(directory_);
+  drop("april", "XT03-MV2");
+  fs::remove(directory_ / "april.csv");
+  ASSERT_EQ(::mkfifo((directory_ / "april.csv").c_str(), 0600), 0);
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april.csv: is a pipe")));
+  EXPECT_TRUE(fs::is_fifo(directory_ / "rejected" / "april.csv"));
 }
 
 }  // namespace

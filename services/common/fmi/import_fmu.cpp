@@ -16,7 +16,8 @@
 namespace sealwatch::fmi {
 namespace {
 
-constexpr std::size_t kMostParameters = 200;  ///< in force; further ones come as comments
+constexpr std::size_t kMostParameters = 200;  ///< in force; further ones come as comments,
+constexpr std::size_t kMostListed = 600;      ///< and so many in all: a plant file has a largest size (core/file.hpp)
 
 std::string number(double value) {
   std::string result = text::exact(value);
@@ -287,7 +288,7 @@ class Writer {
     for (const Row& row : inputs_)
       out_ << "    " << text::quoted(fmu_.name_of(row.element)) << ": " << row.name << "\n";
     if (!parameters_.empty()) out_ << "  parameters:    # of the FMU, each an expression of the parameters below\n";
-    for (std::size_t k = 0; k < parameters_.size(); ++k)
+    for (std::size_t k = 0; k < std::min(parameters_.size(), kMostListed); ++k)
       out_ << (k < kMostParameters ? "    " : "    # ") << text::quoted(fmu_.name_of(parameters_[k].element)) << ": "
            << parameters_[k].name << "\n";
     out_ << "  variables:     # of the FMU, by the names that expressions use; any of its variables may be added\n";
@@ -335,7 +336,7 @@ class Writer {
     if (parameters_.empty()) return;
     out_ << "\n# Parameters. Set `estimate: true` for those that fit may change, with bounds that you believe in.\n"
             "parameters:\n";
-    for (std::size_t k = 0; k < parameters_.size(); ++k) {
+    for (std::size_t k = 0; k < std::min(parameters_.size(), kMostListed); ++k) {
       const Row& row = parameters_[k];
       const Variable& variable = fmu_.variables[row.element.variable];
       const double value = row.scale.to_si(start_of_parameter(row.element));
@@ -350,6 +351,9 @@ class Writer {
            << ", value: " << number(value) << ", min: " << number(min) << ", max: " << number(max)
            << ", estimate: false, meaning: " << text::quoted(row.meaning) << "}\n";
     }
+    if (parameters_.size() > kMostListed)
+      out_ << "  # ... and " << parameters_.size() - kMostListed
+           << " more: add those of modelDescription.xml that you need, here and in fmu.parameters\n";
   }
 
   void state_rows() {

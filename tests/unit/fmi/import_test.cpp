@@ -1,6 +1,7 @@
 // What `sealwatch plant import` writes of an FMU.
 #include <gmock/gmock.h>
 
+#include "sealwatch/core/file.hpp"
 #include "services/common/fmi/import_fmu.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
 
@@ -55,6 +56,19 @@ TEST(ImportFmu, ElementsOfAnArrayMayBeOfEitherSignWithinItsSize) {
   const TestFolder folder;
   EXPECT_THAT(imported(folder, arrays()), AllOf(HasSubstr("x0_1: {unit: \"1\", value: 1.0, min: -20.0, max: 20.0"),
                                                 HasSubstr("x0_2: {unit: \"1\", value: 2.0, min: -20.0, max: 20.0")));
+}
+
+TEST(ImportFmu, OfThousandsOfParametersSomeAreListedAndTheRestCounted) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  for (int k = 0; k < 5000; ++k)
+    unit.variables += "<ScalarVariable name=\"p" + std::to_string(k) +
+                      "\" valueReference=\"4000\" causality=\"parameter\" variability=\"fixed\"><Real "
+                      "start=\"20\"/></ScalarVariable>\n";
+  const std::string text = imported(folder, unit);
+  EXPECT_LT(text.size(), kLongestYaml_bytes) << "else the plant's file is refused";
+  EXPECT_THAT(text, AllOf(HasSubstr("\n  # p400: {unit"), Not(HasSubstr("p4000")),
+                          HasSubstr("  # ... and 4404 more: add those of modelDescription.xml")));
 }
 
 TEST(ImportFmu, OneWithBothInterfacesSaysThatItHasASolverOfItsOwn) {

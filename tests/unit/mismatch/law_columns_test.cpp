@@ -10,7 +10,7 @@ namespace sealwatch::mismatch {
 namespace {
 
 constexpr double kNoise = 2e-3;  // of the differences: the integrator's own error over the step
-constexpr SimulationOptions kTight = {.relative_tolerance = 1e-8, .maximum_step_s = 5e-3};
+constexpr SimulationOptions kTight = {.relative_tolerance = 1e-9, .maximum_step_s = 5e-3};
 
 struct Case {
   const Law* law;
@@ -66,7 +66,7 @@ TEST(LawColumns, AreTheChangeThatALittleOfTheLawMakes) {
     // Oil lost from a chamber at rest moves its valve: a strong effect, and far from linear.
     const double kLittle = which.law->kind == SiteKind::outflow ? 2e-5 : 1e-3;
     const bool turns = which.law->hidden && which.law->hidden->free_initial;  // many periods in every step
-    const SimulationOptions tight = {.relative_tolerance = 1e-8, .maximum_step_s = turns ? 5e-4 : 5e-3};
+    const SimulationOptions tight = {.relative_tolerance = 1e-9, .maximum_step_s = turns ? 5e-4 : 5e-3};
     AssetConfig with = asset;
     with.physics = {term_of(which, kLittle)};
     for (auto& [name, setting] : with.physics[0].parameters)

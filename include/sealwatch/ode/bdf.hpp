@@ -86,7 +86,8 @@ class Bdf {
   /// [y | S] at time(), row by row.
   [[nodiscard]] const double* values() const { return differences_[0].data(); }
 
-  /// Starts (again) at time t from [y | S] with first order and a small step.
+  /// Starts (again) at time t from [y | S] with first order. The step: by the curvature, at most 1 ms the first time, later
+  /// at most that or the last one.
   [[nodiscard]] bool start(double time, const double* values);
   /// One accepted step; false when no step size works.
   [[nodiscard]] bool step();
@@ -101,6 +102,7 @@ class Bdf {
   static const Coefficients& coefficients();
 
   [[nodiscard]] double norm(const double* values, std::size_t stride) const;
+  [[nodiscard]] double first_step();
   [[nodiscard]] bool attempt();
   [[nodiscard]] bool solve_states(double c);
   void solve_sensitivities(double c);

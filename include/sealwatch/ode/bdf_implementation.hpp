@@ -29,6 +29,21 @@ double Bdf<System>::norm(const double* values, std::size_t stride) const {
   return largest;
 }
 
+// An error of half of what is allowed:  error_1 h^2 |y''| = 1/2,  y'' = J f where f depends on time by jumps alone. Where
+// it depends on time otherwise the error test judges. The columns of S, which it does not see, may start far from rest.
+template <class System>
+double Bdf<System>::first_step() {
+  constexpr double kLongest_s = 1e-3, kError = 0.5;
+  for (int row = 0; row < states(); ++row) {
+    change_[row] = 0.0;
+    for (int other = 0; other < states(); ++other) change_[row] += matrix_[row][other] * rate_[other];
+  }
+  const double curvature = norm(change_.data(), 1);
+  if (!std::isfinite(curvature)) return 0.0;
+  const double longest = std::min(options_.maximum_step, std::max(step_, kLongest_s));
+  return std::min(longest, std::sqrt(kError / (coefficients().error[1] * std::max(curvature, kError))));
+}
+
 template <class System>
 bool Bdf<System>::start(double time, const double* values) {
   time_ = time;
@@ -38,9 +53,8 @@ bool Bdf<System>::start(double time, const double* values) {
   std::copy(values, values + size(), differences_[0].begin());
   for (int row = 0; row < states(); ++row) state_[row] = values[row * stride_];
   system_.linearise(time, state_.data(), rate_.data(), matrix_);
-  const double rate = norm(rate_.data(), 1);
-  if (!std::isfinite(rate)) return false;
-  step_ = std::min({options_.maximum_step, 1e-3, 10.0 / std::max(rate, 1e-6)});
+  step_ = first_step();
+  if (step_ <= 0.0) return false;
   double* slope = differences_[1].data();
   for (int row = 0; row < states(); ++row)
     for (int other = 0; other < states(); ++other)

@@ -18,6 +18,10 @@ constexpr double kDamping = 1e-4, kUndamped = 1e-8, kFalls = 1.0 / 3.0;
 constexpr double kOrderOfOne = 3.0, kShrinks = 0.25, kWidens = 3.0, kNearest = 1e-7;
 constexpr double kKept = 1e-3;  // of what the linear model promises: a step that keeps less is taken back
 constexpr double kLinear = 0.25, kTrusted = 0.75;
+// Residuals that do not vanish add r d2r/dx2 to the curvature of their squares. What the last step saw of it scales the
+// linear model's (sizing: M. Al-Baali, R. Fletcher, J. Oper. Res. Soc. 36 (1985) 405), at most by this: beyond, steps are
+// too long for any quadratic model.
+constexpr double kMostCurvature = 4.0;
 
 bool has_range(const Unknown& unknown) { return unknown.max > unknown.min; }
 
@@ -31,13 +35,24 @@ double inside(const Unknown& unknown, double value) {
 struct BoxSearch::LinearModel {
   Eigen::MatrixXd gram;
   Eigen::VectorXd gradient, low, high;
-  bool has_kept = false;  ///< some derivatives are those of an earlier point
+  bool has_kept = false;   ///< some derivatives are those of an earlier point
+  double curvature = 1.0;  ///< that is in gram already, beside that of the linear residuals
 
   [[nodiscard]] Eigen::VectorXd step(double damping, double radius = kInfinite) const {
     return minimum_in_box(gram, gradient, low.cwiseMax(-radius), high.cwiseMin(radius), damping);
   }
   /// Fall of the cost.
   [[nodiscard]] double promised(const Eigen::VectorXd& by) const { return -by.dot(gradient + 0.5 * gram * by); }
+  void curve(double times) {
+    gram *= times / curvature;
+    curvature = times;
+  }
+  /// Times the curvature of linear residuals, where a step let the cost fall by `change`.
+  [[nodiscard]] double curvature_seen(const Eigen::VectorXd& by, double change) const {
+    const double linear = 0.5 * by.dot(gram * by) / curvature;
+    const double seen = (-by.dot(gradient) - change) / linear;
+    return seen >= 1.0 ? std::min(seen, kMostCurvature) : 1.0;  // not where nothing moved
+  }
 };
 
 BoxSearch::BoxSearch(const PemProblem& problem, PemPoint& point, SideBySide& costs)
@@ -134,13 +149,18 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
   bool beyond_is_none = false;  // and one of those in a row led to where there is no simulation
   bool may_keep = rule.is_near_noise(cost_);
   LinearModel here = linear_model();
+  double curvature = 1.0;
+  const auto renew_model = [&] {
+    here = linear_model();
+    here.curve(curvature);
+  };
   // Where kept derivatives lead no further, those of the point itself decide.
   const auto renew = [&] {
     if (!here.has_kept || passed(rule.deadline)) return false;
     const double cost = evaluate(false);
     if (!std::isfinite(cost)) return false;
     cost_ = cost;
-    here = linear_model();
+    renew_model();
     return true;
   };
   while (iterations_ <= end) {
@@ -169,8 +189,10 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     const double promised = here.promised(by), length = by.cwiseAbs().maxCoeff();
     move(by);
     const double after = evaluate(may_keep), change = cost_ - after, kept = change / promised;
+    if (std::isfinite(after)) curvature = here.curvature_seen(by, change);
     if (!(kept >= kKept)) {
       point_ = before;
+      here.curve(curvature);
       beyond_is_none = beyond_is_none || !std::isfinite(after);
       if (renew()) continue;
       radius = std::min(kOrderOfOne, kShrinks * length);
@@ -185,7 +207,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     shortened = beyond_is_none = false;
     ++taken;
     cost_ = after;
-    here = linear_model();
+    renew_model();
     if (change <= tolerance && kept > kLinear && !renew()) return SearchEnd::converged;
   }
   promised_ = here.promised(here.step(kUndamped));

@@ -42,10 +42,22 @@ struct ModelValues {
 
 /// One quantity with respect to which outputs are differentiated. Made by PlantSimulation::find.
 struct FreeQuantity {
-  enum class Kind { parameter, load_factor, initial_state, sensor_gain, sensor_offset };
+  /// The last four are what a recording is off by (services/common/model/recorded_input.hpp).
+  enum class Kind {
+    parameter,
+    load_factor,
+    initial_state,
+    sensor_gain,
+    sensor_offset,
+    input_gain,
+    input_bias,
+    input_delay,
+    clock_rate
+  };
   Kind kind = Kind::parameter;
-  std::size_t index = 0;  ///< into the member of ModelValues
+  std::size_t index = 0;  ///< into the member of ModelValues, or among PlantSimulation::inputs()
   [[nodiscard]] bool is_of_sensor() const { return kind == Kind::sensor_gain || kind == Kind::sensor_offset; }
+  [[nodiscard]] bool is_of_recording() const { return kind >= Kind::input_gain; }
   [[nodiscard]] double& in(ModelValues& values) const;
   [[nodiscard]] double in(const ModelValues& values) const;
 };
@@ -144,10 +156,15 @@ class PlantSimulation {
                                                      const SimulationOptions& options = {},
                                                      InjectedColumns* injected = nullptr) const = 0;
 
-  /// d values / d strength of a law of the recording, or of an input's sensor, that is not in force; samples x channels,
-  /// by central differences. `input`: index among inputs(); a clock has none.
-  [[nodiscard]] virtual Result<RowMatrix> recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
-                                                           const SimulationOptions& options = {}) const = 0;
+  /// A law of the recording, or of an input's sensor. `input`: index among inputs(); a clock has none.
+  struct RecordingLaw {
+    SiteKind kind = SiteKind::input_gain;
+    std::size_t input = 0;
+  };
+  /// d values / d strength of laws that are not in force, a column each; rows as of SimulatedOutputs::sensitivities.
+  [[nodiscard]] virtual Result<RowMatrix> recording_columns(const ModelValues& values,
+                                                            std::span<const RecordingLaw> laws,
+                                                            const SimulationOptions& options = {}) const = 0;
 };
 
 }  // namespace sealwatch

@@ -48,17 +48,23 @@ Eigen::VectorXd sensor_column(const Candidate& candidate, const PassColumn& colu
   return result;
 }
 
-// d(channels)/d(strength) of a law of the recording, by two simulations. No column, so that the law is not asked, where
-// another channel drives this recording or these simulations fail.
-RowMatrix recording_column(const PemRecording& part, const ModelValues& values, const Candidate& candidate,
-                           const SimulationOptions& options) {
+// d(channels)/d(strength) of laws of the recording, a column each. Zero, so that the law is not asked, where another
+// channel drives this recording or these simulations fail.
+RowMatrix recording_columns(const PemRecording& part, const ModelValues& values,
+                            const std::vector<const Candidate*>& candidates, const SimulationOptions& options) {
   const auto inputs = part.simulation->inputs();
-  const auto input = static_cast<std::size_t>(std::ranges::find(inputs, candidate.channel) - inputs.begin());
-  const bool drives = candidate.law->kind == SiteKind::clock_rate || input < inputs.size();
-  Result<RowMatrix> column = fail("is not driven by it");
-  if (drives) column = part.simulation->recording_column(values, candidate.law->kind, input, options);
-  if (column) return std::move(*column);
-  return RowMatrix::Zero(part.simulation->recorded().rows(), part.simulation->recorded().cols());
+  std::vector<PlantSimulation::RecordingLaw> laws;
+  std::vector<Eigen::Index> place;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const auto input = std::ranges::find(inputs, candidates[k]->channel) - inputs.begin();
+    if (candidates[k]->law->kind != SiteKind::clock_rate && input == std::ssize(inputs)) continue;
+    laws.push_back({candidates[k]->law->kind, static_cast<std::size_t>(input)});
+    place.push_back(static_cast<Eigen::Index>(k));
+  }
+  RowMatrix all = RowMatrix::Zero(part.simulation->recorded().size(), std::ssize(candidates));
+  if (const auto columns = part.simulation->recording_columns(values, laws, options); columns)
+    all(Eigen::all, place) = *columns;
+  return all;
 }
 
 }  // namespace
@@ -116,11 +122,12 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
     return is_of_recording(candidate.law->kind) ||
            std::ranges::find(part.simulation->inputs(), candidate.channel) != part.simulation->inputs().end();
   };
-  const auto of_recording = std::ranges::count_if(columns, [&](const PassColumn& column) {
-    const Candidate& candidate = candidates[column.candidate];
-    return candidate.sites.empty() && is_recorded(candidate);
-  });
-  auto recorded = std::make_shared<RowMatrix>(samples * channels, of_recording);
+  std::vector<const Candidate*> of_recording;
+  for (const PassColumn& column : columns)
+    if (const Candidate& candidate = candidates[column.candidate]; candidate.sites.empty() && is_recorded(candidate))
+      of_recording.push_back(&candidate);
+  const auto recorded =
+      std::make_shared<RowMatrix>(recording_columns(part, values, of_recording, model.problem.simulation_options));
   pass.simulated_ = std::make_shared<const RowMatrix>(std::move(outputs->sensitivities));
   pass.of_recording_ = recorded;
   pass.of_sensor_.resize(static_cast<std::size_t>(channels));
@@ -131,8 +138,7 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
     if (!candidate.sites.empty()) {
       pass.add_column(*pass.simulated_, next_simulated++, k);
     } else if (is_recorded(candidate)) {
-      recorded->col(next_recorded) =
-          column.unit * recording_column(part, values, candidate, options).reshaped<Eigen::RowMajor>();
+      recorded->col(next_recorded) *= column.unit;
       pass.add_column(*recorded, next_recorded++, k);
     } else {
       const auto& names = part.simulation->channels();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLongestHiddenStep_s = 2e-3;
 constexpr int kNewtonIterations = 4;
-constexpr double kNext = 1e-4;  // of the hidden state: Newton's next change would be about its square
+constexpr double kNext = 1e-3;  // of the hidden state: Newton's next change would be about its square
 constexpr double kSettling_s = 10.0;
 
 std::vector<double> without_strengths(const LawColumn& column) {
@@ -24,57 +24,67 @@ std::vector<double> without_strengths(const LawColumn& column) {
 
 LawColumns::LawColumns(std::vector<LawColumn> laws, const PlantDescription& plant) : laws_(std::move(laws)) {
   for (std::size_t k = 0; k < laws_.size(); ++k) {
-    laws_[k].parameters = without_strengths(laws_[k]);
-    roundings_.push_back(roundings_of(plant, *laws_[k].law));
-    hidden_.push_back(laws_[k].hidden);
-    for (const std::size_t site : laws_[k].sites) entries_.push_back({.column = k, .site = site});
+    const LawColumn& column = laws_[k];
+    shape_of(column, plant).strengths.push_back({column.strength, column.unit, entries_.size()});
+    for (const std::size_t site : column.sites) entries_.push_back({.column = k, .site = site});
   }
 }
 
+LawColumns::Shape& LawColumns::shape_of(const LawColumn& column, const PlantDescription& plant) {
+  const std::vector<double> parameters = without_strengths(column);
+  const LawInput at = law_input({}, column.hidden, parameters, roundings_of(plant, *column.law));
+  const auto same = [&](const Shape& known) {
+    return known.law == column.law && known.sites == column.sites && known.at.hidden.value == column.hidden &&
+           std::ranges::equal(known.at.parameter, at.parameter, {}, &LawScalar::value, &LawScalar::value);
+  };
+  const auto known = std::ranges::find_if(shapes_, same);
+  if (known != shapes_.end()) return *known;
+  return shapes_.emplace_back(Shape{.law = column.law, .sites = column.sites, .at = at, .strengths = {}});
+}
+
 // Implicit Euler in short steps, the signals linear between the calls; the midpoint rule for a pure integral.
-void LawColumns::advance(std::size_t law, double step_s, Signals signals) {
-  const LawColumn& column = laws_[law];
-  const std::size_t site = column.sites.back();
+void LawColumns::advance(Shape& shape, double step_s, Signals signals) {
+  const std::size_t site = shape.sites.back();
   const int steps = std::max(1, static_cast<int>(std::ceil(step_s / kLongestHiddenStep_s)));
   const double h = step_s / steps;
-  double& hidden = hidden_[law];
+  const auto rate_at = [&](double share) {
+    for (std::size_t s = 0; s < kSiteSignals; ++s)
+      shape.at.signal[s].value = last_[site][s] + share * (signals[site][s] - last_[site][s]);
+    return shape.law->evaluate(shape.at).rate;
+  };
+  double& hidden = shape.at.hidden.value;
   for (int k = 1; k <= steps; ++k) {
     const double share = static_cast<double>(k) / steps;
-    std::array<double, kSiteSignals> at;
-    for (std::size_t s = 0; s < kSiteSignals; ++s) at[s] = last_[site][s] + share * (signals[site][s] - last_[site][s]);
-    const LawScalar slope = column.law->evaluate(law_input(at, hidden, column.parameters, roundings_[law])).rate;
-    if (slope.derivative[kSiteSignals] == 0.0) {
-      std::array<double, kSiteSignals> middle;
-      const double half = (k - 0.5) / steps;
-      for (std::size_t s = 0; s < kSiteSignals; ++s)
-        middle[s] = last_[site][s] + half * (signals[site][s] - last_[site][s]);
-      hidden += h * column.law->evaluate(law_input(middle, hidden, column.parameters, roundings_[law])).rate.value;
+    LawScalar rate = rate_at(share);
+    if (rate.derivative[kSiteSignals] == 0.0) {
+      hidden += h * rate_at((k - 0.5) / steps).value;
       continue;
     }
     const double before = hidden;
-    for (int iteration = 0; iteration < kNewtonIterations; ++iteration) {
-      const LawScalar rate = column.law->evaluate(law_input(at, hidden, column.parameters, roundings_[law])).rate;
+    for (int iteration = 1;; ++iteration) {
       const double change = (before + h * rate.value - hidden) / (1.0 - h * rate.derivative[kSiteSignals]);
       hidden += change;
-      if (std::abs(change) <= kNext * (std::abs(hidden) + column.law->hidden->scale)) break;
+      const double size = std::abs(hidden) + shape.law->hidden->scale;
+      if (iteration == kNewtonIterations || std::abs(change) <= kNext * size) break;
+      rate = rate_at(share);
     }
   }
 }
 
 void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {
   if (!started_) last_.assign(signals.begin(), signals.end());
-  for (std::size_t k = 0; !started_ && k < laws_.size(); ++k)
-    if (laws_[k].law->hidden && laws_[k].law->hidden->settled) advance(k, kSettling_s, signals);
   const double step_s = t - time_;
-  if (started_ && step_s > 0.0)
-    for (std::size_t k = 0; k < laws_.size(); ++k)
-      if (laws_[k].law->hidden) advance(k, step_s, signals);
-  std::size_t entry = 0;
-  for (std::size_t k = 0; k < laws_.size(); ++k)
-    for (const std::size_t site : laws_[k].sites) {
-      const LawOutput output =
-          laws_[k].law->evaluate(law_input(signals[site], hidden_[k], laws_[k].parameters, roundings_[k]));
-      weights[entry++] = laws_[k].unit * output.contribution.derivative[kSiteSignals + 1 + laws_[k].strength];
+  for (Shape& shape : shapes_) {
+    if (!shape.law->hidden) continue;
+    if (!started_ && shape.law->hidden->settled) advance(shape, kSettling_s, signals);
+    if (started_ && step_s > 0.0) advance(shape, step_s, signals);
+  }
+  for (Shape& shape : shapes_)
+    for (std::size_t k = 0; k < shape.sites.size(); ++k) {
+      for (std::size_t s = 0; s < kSiteSignals; ++s) shape.at.signal[s].value = signals[shape.sites[k]][s];
+      const LawScalar contribution = shape.law->evaluate(shape.at).contribution;
+      for (const auto& [parameter, unit, first_entry] : shape.strengths)
+        weights[first_entry + k] = unit * contribution.derivative[kSiteSignals + 1 + parameter];
     }
   last_.assign(signals.begin(), signals.end());
   time_ = t;

@@ -27,12 +27,24 @@ class LawColumns final : public InjectedColumns {
   void weigh(double t, Signals signals, std::span<double> weights) override;
 
  private:
-  void advance(std::size_t law, double step_s, Signals signals);
+  /// Columns of one law with one shape: they share its hidden state and its evaluation at each site.
+  struct Shape {
+    struct Strength {
+      std::size_t parameter = 0;  ///< of the law
+      double unit = 1.0;
+      std::size_t first_entry = 0;  ///< of its sites
+    };
+    const Law* law = nullptr;
+    std::vector<std::size_t> sites;
+    LawInput at;  ///< parameters and hidden state as they are; signals as last evaluated
+    std::vector<Strength> strengths;
+  };
+  [[nodiscard]] Shape& shape_of(const LawColumn& column, const PlantDescription& plant);
+  void advance(Shape& shape, double step_s, Signals signals);
 
   std::vector<LawColumn> laws_;
-  std::vector<Roundings> roundings_;
+  std::vector<Shape> shapes_;
   std::vector<Entry> entries_;
-  std::vector<double> hidden_;
   std::vector<std::array<double, kSiteSignals>> last_;  ///< signals at the last call
   double time_ = 0.0;
   bool started_ = false;

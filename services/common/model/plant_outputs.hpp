@@ -54,9 +54,27 @@ class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
                            : with_physics<kStates>(which, t, point, stride, signal);
     else
       of_blocks(which, t, point, stride, signal);
+    for (const auto& column : this->recording()) add_recording_part(which, column, t, point, stride, signal);
   }
 
  private:
+  // What the recording is off by moves the output itself where it sees the input; the clock moves no value of it.
+  template <class Column>
+  void add_recording_part(int which, const Column& column, double t, const double* point, std::size_t stride,
+                          double* signal) const {
+    if (column.quantity.kind == FreeQuantity::Kind::clock_rate) return;
+    const auto state = plain(point, stride);
+    const auto value = [&](const typename System::Equations::Input& input) -> std::array<double, 1> {
+      if constexpr (WithPhysics) {
+        const auto extra = this->template extra<double>(state, input, this->values());
+        return {evaluate_output(which, System::plant_state(state), input, this->values().plant, extra)};
+      } else {
+        return {Model::output(which, state, input, this->values().plant)};
+      }
+    };
+    signal[column.place] += this->by_input(column.quantity, t, value)[0];
+  }
+
   // dh/dp + dh/dy S by dual numbers whose states carry S.
   void of_blocks(int which, double t, const double* point, std::size_t stride, double* signal) const {
     const auto input = this->input_at(t);

@@ -37,12 +37,12 @@ class PlantSimulationOf final : public RecordedSimulation {
   }
 
  private:
+  [[nodiscard]] bool differentiates_by_recording() const override { return true; }
   [[nodiscard]] Result<SimulatedOutputs> run_driven_by(const RecordedInput& input, const ModelValues& values,
                                                        std::span<const FreeQuantity> free,
                                                        const SimulationOptions& options,
                                                        InjectedColumns* injected) const override {
-    if (!physics_parameters().empty() || injected != nullptr)
-      return run_with_physics(input, values, free, options, injected);
+    if (!terms().active.empty() || injected != nullptr) return run_with_physics(input, values, free, options, injected);
     if (free.size() <= 4) return run_with<4, false>(input, values, free, options, nullptr);
     if (free.size() <= 8) return run_with<8, false>(input, values, free, options, nullptr);
     return run_with<12, false>(input, values, free, options, nullptr);

@@ -1,11 +1,18 @@
 // A plant's equations with the recorded input, as the system that ode/bdf.hpp integrates: values, Jacobian and
-// parameter derivatives by dual numbers.
+// parameter derivatives by dual numbers; those by what the recording is off by from differences of the equations over a
+// little of the input.
+//
+// Sensitivities are those at a sample, not at a time. With the clock fast by c, samples t_0 + (t_recorded - t_0) / (1 + c)
+// lie closer: dy/dt_recorded = f / (1 + c), and S of c follows  dS/dt = J S - f / (1 + c).  Where a held input jumps from
+// f_before to f_after, a later jump (its delay) leaves S += f_before - f_after.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/model/dual.hpp"
@@ -56,6 +63,12 @@ class PlantSystem {
     assign(values_, values);
     for (std::size_t first = 0; first < free.size(); first += Width)
       blocks_.push_back(make_block(values, free, static_cast<int>(first)));
+    for (std::size_t k = 0; k < free.size(); ++k)
+      if (free[k].is_of_recording()) recording_.push_back({1 + k, free[k]});
+    for (const ActiveTerm& term : terms.active) {
+      const double* parameters = values.parameters.data() + term.first_parameter;
+      law_inputs_.push_back(law_input({}, 0.0, std::span(parameters, term.law->parameters.size()), term.roundings));
+    }
     if (injected_ != nullptr) weights_.resize(injected_->entries().size());
   }
 
@@ -93,6 +106,22 @@ class PlantSystem {
     }
     if constexpr (WithPhysics)
       if (injected_ != nullptr) add_injected(t, state, factor, x, stride);
+    add_recording(t, state, factor, x, stride);
+  }
+
+  /// At the begin of a segment: what the jump there adds to [y | S].
+  void cross_jump(double t, double* point, std::size_t stride) const {
+    for (const Column& column : recording_) {
+      const std::size_t channel = column.quantity.index;
+      if (column.quantity.kind != FreeQuantity::Kind::input_delay || !input_.channels()[channel].hold) continue;
+      State<double> state;
+      for (int row = 0; row < kStates; ++row) state[row] = point[row * stride];
+      auto [values, slopes] = course_at(t);
+      const auto after = rates<double>(state, make_input(values, slopes), values_);
+      values[channel] = input_.value(channel, t, segment_ - 1, cursor_);
+      const auto before = rates<double>(state, make_input(values, slopes), values_);
+      for (int row = 0; row < kStates; ++row) point[row * stride + column.place] += before[row] - after[row];
+    }
   }
 
   /// What the laws in force add at each site.
@@ -116,18 +145,76 @@ class PlantSystem {
   }
 
   [[nodiscard]] auto input_at(double t) const {
-    std::array<double, Model::kInputs.size()> values, slopes;
-    for (std::size_t channel = 0; channel < values.size(); ++channel) {
-      values[channel] = input_.value(channel, t, segment_, cursor_);
-      slopes[channel] = WithPhysics ? input_.slope(channel, t, cursor_) : 0.0;
+    const auto [values, slopes] = course_at(t);
+    return make_input(values, slopes);
+  }
+
+ protected:
+  /// One of the free quantities that are of the recording, and its place in [y | S].
+  struct Column {
+    std::size_t place = 0;
+    FreeQuantity quantity;
+  };
+  [[nodiscard]] const std::vector<Column>& recording() const { return recording_; }
+
+  /// The slope of f(input), an array, by the gain, bias or delay of an input: central differences over a share of the
+  /// input that leaves a tenth of all digits to the difference's rounding and as many to the curvature of f.
+  template <class F>
+  [[nodiscard]] auto by_input(const FreeQuantity& quantity, double t, const F& f) const {
+    constexpr double kShare = 1e-6;
+    const std::size_t channel = quantity.index;
+    std::array<double, 2> direction{1.0, 0.0};
+    if (quantity.kind == FreeQuantity::Kind::input_gain) direction = input_.by_gain(channel, t, segment_, cursor_);
+    if (quantity.kind == FreeQuantity::Kind::input_delay) direction = {input_.by_delay(channel, t, cursor_), 0.0};
+    const auto moved = [&](double by) {
+      auto [values, slopes] = course_at(t);
+      values[channel] += by * direction[0];
+      slopes[channel] += by * direction[1];
+      return f(make_input(values, slopes));
+    };
+    auto slope = decltype(moved(0.0)){};
+    const double size = input_.size(channel);
+    if (direction[0] == 0.0 || size == 0.0) return slope;
+    const double step = kShare * size / std::abs(direction[0]);
+    const auto above = moved(step), below = moved(-step);
+    for (std::size_t k = 0; k < slope.size(); ++k) slope[k] = (above[k] - below[k]) / (2.0 * step);
+    return slope;
+  }
+
+ private:
+  using Course = std::array<double, Model::kInputs.size()>;
+  /// Values and slopes of all inputs.
+  [[nodiscard]] std::pair<Course, Course> course_at(double t) const {
+    std::pair<Course, Course> course;
+    for (std::size_t channel = 0; channel < course.first.size(); ++channel) {
+      course.first[channel] = input_.value(channel, t, segment_, cursor_);
+      course.second[channel] = WithPhysics ? input_.slope(channel, t, cursor_) : 0.0;
     }
+    return course;
+  }
+  [[nodiscard]] static auto make_input(const Course& values, const Course& slopes) {
     if constexpr (requires { Model::input(values, slopes); })
       return Model::input(values, slopes);
     else
       return Model::input(values);
   }
 
- private:
+  void add_recording(double t, const State<double>& state, double factor, double* x, std::size_t stride) const {
+    for (const Column& column : recording_) {
+      State<double> slope;
+      const auto rates_by = [&](const typename Equations::Input& input) {
+        return rates<double>(state, input, values_);
+      };
+      if (column.quantity.kind == FreeQuantity::Kind::clock_rate) {
+        slope = rates_by(input_at(t));
+        for (double& value : slope) value *= -1.0 / (1.0 + input_.clock_rate());
+      } else {
+        slope = by_input(column.quantity, t, rates_by);
+      }
+      for (int row = 0; row < kStates; ++row) x[row * stride + column.place] += factor * slope[row];
+    }
+  }
+
   template <class R, class S, class P>
   [[nodiscard]] std::array<R, kStates> rates(const State<S>& y, const typename Equations::Input& input,
                                              const Values<P>& values) const {
@@ -155,14 +242,11 @@ class PlantSystem {
     const auto signals = Equations::template signals<R>(site, plant, input, values.plant, added);
     const std::size_t count = term.law->parameters.size();
     const P* parameter = values.laws.data() + (term.first_parameter - kPlantParameters);
-    std::array<double, kSiteSignals> signal;
-    std::array<double, kLawParameters> number{};
-    for (std::size_t k = 0; k < kSiteSignals; ++k) signal[k] = value_of(signals[k]);
-    for (std::size_t k = 0; k < count; ++k) number[k] = value_of(parameter[k]);
     const S hidden = term.hidden >= 0 ? y[kPlantStates + term.hidden] : S(0.0);
-    const LawOutput output =
-        term.law->evaluate(law_input(signal, value_of(hidden), std::span(number).first(count), term.roundings));
-    return chain(output.*what, signals, hidden, parameter, count);
+    LawInput& at = law_inputs_[static_cast<std::size_t>(&term - terms_.active.data())];
+    for (std::size_t k = 0; k < kSiteSignals; ++k) at.signal[k].value = value_of(signals[k]);
+    at.hidden.value = value_of(hidden);
+    return chain(term.law->evaluate(at).*what, signals, hidden, parameter, count);
   }
 
   // df/dextra w for the injected columns.
@@ -207,7 +291,7 @@ class PlantSystem {
     assign(block.values, values);
     for (int k = 0; k < block.count; ++k) {
       const FreeQuantity& quantity = free[first + k];
-      if (quantity.kind == FreeQuantity::Kind::initial_state) continue;
+      if (quantity.kind == FreeQuantity::Kind::initial_state || quantity.is_of_recording()) continue;
       block.has_parameters = true;
       const bool load = quantity.kind == FreeQuantity::Kind::load_factor;
       if (!load && quantity.index >= kPlantParameters)
@@ -234,6 +318,8 @@ class PlantSystem {
   mutable std::vector<double> weights_;
   Values<double> values_;
   std::vector<Block> blocks_;
+  std::vector<Column> recording_;
+  mutable std::vector<LawInput> law_inputs_;  ///< of the laws in force, with their parameters
   std::size_t segment_ = 0;
   mutable std::size_t cursor_ = 0;
 };

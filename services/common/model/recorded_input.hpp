@@ -8,10 +8,13 @@
 //   u(t) = (1 + g) (u_recorded(t - tau) - z) + b,   t = t_0 + (t_recorded - t_0) / (1 + c)
 //   g gain [1], b bias [channel], tau delay [s], z zero of the reading [channel] of one channel, c by how much the
 //   recording's clock is fast [1]
+// and changes with them by
+//   du/dg = u_recorded - z,   du/db = 1,   du/dtau = -du/dt
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -23,6 +26,7 @@ struct InputChannel {
   std::vector<double> slopes = {};  ///< at the samples; empty: those of the values' course
   bool cubic = false;               ///< the course between samples has these slopes; else slopes are linear
   double delay_s = 0.0;
+  double gain = 0.0, bias = 0.0;  ///< that the values have in them
 };
 
 /// By what the recording differs from what acted on the plant.
@@ -41,7 +45,11 @@ class RecordedInput {
     for (const InputChannel& channel : channels_) add_jumps(channel);
     std::ranges::sort(segments_);
     segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
-    for (const InputChannel& channel : channels_) held_.push_back(held_values(channel));
+    for (const InputChannel& channel : channels_) {
+      held_.push_back(held_values(channel));
+      const auto [least, largest] = std::ranges::minmax(channel.values);
+      size_.push_back(std::max(std::abs(least), std::abs(largest)));
+    }
   }
 
   /// The input as it acted.
@@ -55,12 +63,19 @@ class RecordedInput {
       for (double& value : channels[k].values) value = (1.0 + gain) * (value - zero) + bias;
       for (double& slope : channels[k].slopes) slope *= (1.0 + gain) * rate;
       channels[k].delay_s = delay_s;
+      channels[k].gain = gain;
+      channels[k].bias = bias;
     }
-    return {std::move(times), std::move(channels)};
+    RecordedInput acted(std::move(times), std::move(channels));
+    acted.clock_rate_ = errors.clock_rate;
+    return acted;
   }
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<InputChannel>& channels() const { return channels_; }
+  [[nodiscard]] double clock_rate() const { return clock_rate_; }
+  /// Largest magnitude of a channel.
+  [[nodiscard]] double size(std::size_t channel) const { return size_[channel]; }
   [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
   [[nodiscard]] double segment_begin(std::size_t segment) const { return segments_[segment]; }
   [[nodiscard]] double segment_end(std::size_t segment) const {
@@ -86,6 +101,23 @@ class RecordedInput {
       return input.cubic ? linear + slope_of_bow(input, share, cursor) : linear;
     }
     return (input.values[cursor + 1] - input.values[cursor]) / (times_[cursor + 1] - times_[cursor]);
+  }
+
+  /// d(value, slope) of a channel by its gain.
+  [[nodiscard]] std::array<double, 2> by_gain(std::size_t channel, double t, std::size_t segment,
+                                              std::size_t& cursor) const {
+    const InputChannel& input = channels_[channel];
+    const double value = this->value(channel, t, segment, cursor);
+    return {(value - input.bias) / (1.0 + input.gain), slope(channel, t, cursor) / (1.0 + input.gain)};
+  }
+  /// d value by its delay, where it does not jump.
+  [[nodiscard]] double by_delay(std::size_t channel, double t, std::size_t& cursor) const {
+    const InputChannel& input = channels_[channel];
+    const double then = t - input.delay_s;
+    if (input.hold || then < times_.front() || then > times_.back()) return 0.0;
+    seek(then, cursor);
+    if (input.cubic) return -slope(channel, t, cursor);
+    return -(input.values[cursor + 1] - input.values[cursor]) / (times_[cursor + 1] - times_[cursor]);
   }
 
  private:
@@ -129,6 +161,8 @@ class RecordedInput {
   std::vector<InputChannel> channels_;
   std::vector<double> segments_;           ///< where each begins
   std::vector<std::vector<double>> held_;  ///< by channel and segment
+  std::vector<double> size_;
+  double clock_rate_ = 0.0;  ///< that the times have in them
 };
 
 }  // namespace sealwatch

@@ -121,37 +121,96 @@ Result<SimulatedOutputs> RecordedSimulation::run_exact(const ModelValues& values
                                                        const SimulationOptions& options,
                                                        InjectedColumns* injected) const {
   if (terms_.recording.empty()) return run_driven_by(input_, values, free, options, injected);
-  auto outputs = run_driven_by(input_.without(errors_at(values)), values, free, options, injected);
-  for (std::size_t k = 0; outputs && k < free.size(); ++k)
-    for (const RecordingTerm& term : terms_.recording) {
-      if (free[k].kind != FreeQuantity::Kind::parameter || free[k].index != term.parameter) continue;
-      const Result<RowMatrix> column = difference(values, term.kind, input_index(term), term.parameter, options);
-      if (!column) return fail(column.error());
-      outputs->sensitivities.col(static_cast<Eigen::Index>(k)) = column->reshaped<Eigen::RowMajor>();
+  const RecordingErrors errors = errors_at(values);
+  std::vector<FreeQuantity> seen(free.begin(), free.end());
+  std::vector<std::pair<std::size_t, const RecordingTerm*>> of_recording;
+  for (std::size_t k = 0; k < free.size(); ++k)
+    for (const RecordingTerm& term : terms_.recording)
+      if (free[k].kind == FreeQuantity::Kind::parameter && free[k].index == term.parameter)
+        of_recording.emplace_back(k, &term);
+  const auto law_of = [&](const RecordingTerm& term) { return RecordingLaw{term.kind, input_index(term)}; };
+  const auto by = [&](const RecordingTerm& term) {
+    return by_recording(law_of(term), errors, values.parameters[term.parameter]);
+  };
+  if (differentiates_by_recording())
+    for (const auto& [k, term] : of_recording) seen[k] = by(*term).quantity;
+  auto outputs = run_driven_by(input_.without(errors), values, seen, options, injected);
+  for (const auto& [k, term] : of_recording) {
+    if (!outputs) return outputs;
+    auto column = outputs->sensitivities.col(static_cast<Eigen::Index>(k));
+    if (differentiates_by_recording()) {
+      column *= by(*term).factor;
+      continue;
     }
+    const Result<RowMatrix> difference = this->difference(values, law_of(*term), term->parameter, options);
+    if (!difference) return fail(difference.error());
+    column = difference->reshaped<Eigen::RowMajor>();
+  }
   return outputs;
 }
 
-Result<RowMatrix> RecordedSimulation::recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
-                                                       const SimulationOptions& options) const {
-  Result<RowMatrix> column = difference(values, kind, input, values.parameters.size(), options);
-  if (column) *column *= gains_of(values).asDiagonal();
-  return column;
+// What is added to the errors by add_error(), differentiated.
+RecordedSimulation::ByRecording RecordedSimulation::by_recording(RecordingLaw law, const RecordingErrors& errors,
+                                                                 double size) const {
+  using Kind = FreeQuantity::Kind;
+  switch (law.kind) {
+    case SiteKind::clock_rate:
+      return {{Kind::clock_rate, 0}};
+    case SiteKind::input_bias:
+      return {{Kind::input_bias, law.input}};
+    case SiteKind::input_delay:
+      return {{Kind::input_delay, law.input}};
+    case SiteKind::sensor_gain:
+      return {{Kind::input_gain, law.input}, -1.0 / ((1.0 + size) * (1.0 + size))};
+    case SiteKind::sensor_bias:
+      return {{Kind::input_bias, law.input}, -(1.0 + errors.inputs[law.input].gain)};
+    case SiteKind::sensor_lag:
+      return {{Kind::input_delay, law.input}, -1.0};
+    default:
+      return {{Kind::input_gain, law.input}};
+  }
+}
+
+Result<RowMatrix> RecordedSimulation::recording_columns(const ModelValues& values, std::span<const RecordingLaw> laws,
+                                                        const SimulationOptions& options) const {
+  const Eigen::Index channels = recorded_.cols(), columns = std::ssize(laws);
+  RowMatrix all(recorded_.size(), columns);
+  if (laws.empty()) return all;
+  if (differentiates_by_recording()) {
+    const RecordingErrors errors = errors_at(values);
+    std::vector<FreeQuantity> free;
+    for (const RecordingLaw& law : laws) free.push_back(by_recording(law, errors, 0.0).quantity);
+    auto outputs = run_driven_by(input_.without(errors), values, free, options, nullptr);
+    if (!outputs) return fail(outputs.error());
+    all = std::move(outputs->sensitivities);
+    for (Eigen::Index k = 0; k < columns; ++k)
+      all.col(k) *= by_recording(laws[static_cast<std::size_t>(k)], errors, 0.0).factor;
+  } else {
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      const Result<RowMatrix> column =
+          difference(values, laws[static_cast<std::size_t>(k)], values.parameters.size(), options);
+      if (!column) return fail(column.error());
+      all.col(k) = column->reshaped<Eigen::RowMajor>();
+    }
+  }
+  const Eigen::VectorXd gains = gains_of(values);
+  for (Eigen::Index row = 0; row < all.rows(); ++row) all.row(row) *= gains(row % channels);
+  return all;
 }
 
 // `parameter`: the law's, where it is in force; else beyond the last.
-Result<RowMatrix> RecordedSimulation::difference(const ModelValues& values, SiteKind kind, std::size_t input,
-                                                 std::size_t parameter, const SimulationOptions& options) const {
+Result<RowMatrix> RecordedSimulation::difference(const ModelValues& values, RecordingLaw law, std::size_t parameter,
+                                                 const SimulationOptions& options) const {
   SimulationOptions tight = options;
   tight.relative_tolerance = std::min(options.relative_tolerance, kTight);
-  const double step = difference_step(input_, kind, input);
+  const double step = difference_step(input_, law.kind, law.input);
   std::array<RowMatrix, 2> sides;
   for (const std::size_t side : {0, 1}) {
     ModelValues changed = values;
     const double by = side == 0 ? -step : step;
     if (parameter < changed.parameters.size()) changed.parameters[parameter] += by;
     RecordingErrors errors = errors_at(changed);
-    if (parameter >= changed.parameters.size()) add_error(errors, kind, input, by);
+    if (parameter >= changed.parameters.size()) add_error(errors, law.kind, law.input, by);
     auto outputs = run_driven_by(input_.without(errors), values, {}, tight, nullptr);
     if (!outputs) return fail(outputs.error());
     sides[side] = std::move(outputs->values);

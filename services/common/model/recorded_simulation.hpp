@@ -39,8 +39,8 @@ class RecordedSimulation : public PlantSimulation {
   [[nodiscard]] std::pair<double, double> input_range(std::size_t input) const override;
   [[nodiscard]] Result<SimulatedOutputs> run(const ModelValues& values, std::span<const FreeQuantity> free,
                                              const SimulationOptions& options, InjectedColumns* injected) const final;
-  [[nodiscard]] Result<RowMatrix> recording_column(const ModelValues& values, SiteKind kind, std::size_t input,
-                                                   const SimulationOptions& options) const final;
+  [[nodiscard]] Result<RowMatrix> recording_columns(const ModelValues& values, std::span<const RecordingLaw> laws,
+                                                    const SimulationOptions& options) const final;
   [[nodiscard]] std::span<const SimulatedChannel> simulated_channels() const { return channels_; }
   [[nodiscard]] const PhysicsTerms& terms() const { return terms_; }
 
@@ -52,6 +52,8 @@ class RecordedSimulation : public PlantSimulation {
                                                                std::span<const FreeQuantity> free,
                                                                const SimulationOptions& options,
                                                                InjectedColumns* injected) const = 0;
+  /// Whether run_driven_by() takes free quantities of the recording; else they come from differences of whole runs.
+  [[nodiscard]] virtual bool differentiates_by_recording() const { return false; }
   /// Takes the outputs that are recorded.
   void select_channels(std::span<const OutputName> outputs, const AssetConfig& asset, const TimeSeries& recorded);
   /// The plant's states and start, to which those of the laws are added. `at_rest`: known at the beginning alone.
@@ -64,8 +66,13 @@ class RecordedSimulation : public PlantSimulation {
                                                    const SimulationOptions& options, InjectedColumns* injected) const;
   [[nodiscard]] RecordingErrors errors_at(const ModelValues& values) const;
   [[nodiscard]] std::size_t input_index(const RecordingTerm& term) const;
-  [[nodiscard]] Result<RowMatrix> difference(const ModelValues& values, SiteKind kind, std::size_t input,
-                                             std::size_t parameter, const SimulationOptions& options) const;
+  struct ByRecording {
+    FreeQuantity quantity;
+    double factor = 1.0;  ///< of the quantity's column
+  };
+  [[nodiscard]] ByRecording by_recording(RecordingLaw law, const RecordingErrors& errors, double size) const;
+  [[nodiscard]] Result<RowMatrix> difference(const ModelValues& values, RecordingLaw law, std::size_t parameter,
+                                             const SimulationOptions& options) const;
 
   const PlantDescription& plant_;
   PhysicsTerms terms_;

@@ -6,6 +6,7 @@
 //   Mask settled() const;                            states that start at rest
 //   int maximum_order() const;
 //   void set_segment(std::size_t segment);           of the recorded input
+//   void cross_jump(double t, double* point, std::size_t stride) const;   optional: what its begin adds to [y | S]
 //   void output(int which, double t, const double* point, std::size_t stride, double* signal);
 //       value of an output that is no state, and its derivatives by all columns; point: [y | S], row by row
 //   std::string trouble() const;                     why it could not be evaluated; "": nothing that is known
@@ -170,6 +171,8 @@ class RecordingRun {
     system_.set_segment(segment);
     event_s_ = kNoEvent;
     const double begin = input_.segment_begin(segment);
+    if constexpr (requires { system_.cross_jump(begin, point_.data(), integrator_.stride()); })
+      if (segment > 0) system_.cross_jump(begin, point_.data(), integrator_.stride());
     if (!has_events()) return integrator_.start(begin, point_.data()) && run_samples(segment);
     if (!pass_event(begin)) return false;  // the input may have jumped: a sample here shows what comes after
     if (next_ < input_.times().size() && input_.times()[next_] == begin) {

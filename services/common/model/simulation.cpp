@@ -73,7 +73,7 @@ double& FreeQuantity::in(ModelValues& values) const {
       return values.sensor_gain[index];
     case Kind::sensor_offset:
       return values.sensor_offset[index];
-    case Kind::load_factor:
+    default:  // the load factor; a recording's own are no values
       break;
   }
   return values.load_factor;

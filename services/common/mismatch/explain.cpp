@@ -47,6 +47,7 @@ class Analysis {
         progress_(progress),
         time_(options.time_limit_s, options.cancel) {
     fit_.deadline = holdout_.deadline = &time_.deadline();
+    for (const auto& [name, setting] : asset_.parameters) fit_.given[name] = setting.value;
   }
 
   [[nodiscard]] Result<Explanation> run() {
@@ -172,6 +173,7 @@ class Analysis {
     // What the search compared the laws with is one of the two models already.
     const auto fitted = [&](const FittedModel& from) -> Result<std::shared_ptr<const FittedModel>> {
       if (found.with_sensors && &from == laws.model.get()) return found.with_sensors;
+      if (found.baseline_with_sensors && &from == baseline_.get()) return found.baseline_with_sensors;
       Result<FittedModel> model = fit_model(from.asset, prepared(inexact), &from, options_.threads);
       if (!model) return fail(model.error());
       return std::make_shared<const FittedModel>(std::move(*model));

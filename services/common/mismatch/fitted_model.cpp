@@ -156,8 +156,8 @@ bool at_bound(const Unknown& unknown, double at) {
 }
 
 Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start, int threads,
-                              int iterations) {
-  if (start != nullptr) return fit_from(*start, {}, asset, data, threads, iterations, {});
+                              int iterations, const SearchBound& bound) {
+  if (start != nullptr) return fit_from(*start, {}, asset, data, threads, iterations, bound);
   ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(asset, data, options);
   if (!problem) return fail(problem.error());

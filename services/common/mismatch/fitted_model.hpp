@@ -1,6 +1,7 @@
 // A model fitted to recordings, and what changes when its asset does: the working unit of the mismatch analysis.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +28,7 @@ struct Data {
   std::vector<std::optional<UtcTime>> start_time = {};  ///< per recording; empty in windows
   std::string own_parameter = {};                       ///< that each recording has for itself ("R_CL"); "": none
   std::vector<KnownValue> known = {};                   ///< fixed values that may be off within their tolerance
+  std::map<std::string, double> given = {};             ///< parameters as the asset file has them
   std::vector<KnownValue> sensors = {};  ///< taken for exact until one of them is found to be off within its tolerance
   /// Recordings start from what was measured. Else a recording's initial state is among its own unknowns.
   bool start_as_measured = false;
@@ -43,9 +45,9 @@ struct FittedModel {
 };
 
 /// Fits the asset's free parameters and every recording's own. `start`: a fit of the same data, from whose values the
-/// search sets out. `threads`: recordings that are simulated at once.
+/// search sets out, until `bound` is out of reach. `threads`: recordings that are simulated at once.
 [[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
-                                            int threads, int iterations = 30);
+                                            int threads, int iterations = 30, const SearchBound& bound = {});
 /// The same from values that `beside` changes (of as many unknowns as `start` has; empty: none), until `bound` is out of
 /// reach.
 [[nodiscard]] Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,

@@ -60,6 +60,12 @@ double worth_keeping(const Naming& naming) {
   return excess(*naming.best.model) > kGross ? kWorthRoughly : kWorthAnother;
 }
 
+// A model with fewer laws is not worth its search once it cannot come to this.
+SearchBound worth_dropping_to(const Naming& naming) {
+  const double phi = dispersion(*naming.best.model);
+  return {.cost = 0.5 * phi * (criterion(*naming.best.model, phi) + worth_keeping(naming)), .optimism = kOptimistic};
+}
+
 // Laws whose removal does not cost what another law must bring are taken out again.
 void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
   for (bool dropped = true; dropped && naming.best.effects.size() > 1;) {
@@ -69,7 +75,9 @@ void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
       fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(out));
       AssetConfig asset = naming.best.model->asset;
       asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(naming.best.effects.size() - out));
-      Result<FittedModel> model = fit_model(asset, data, naming.best.model.get(), threads);
+      constexpr int kIterations = 30;
+      Result<FittedModel> model =
+          fit_model(asset, data, naming.best.model.get(), threads, kIterations, worth_dropping_to(naming));
       if (!model) continue;
       fewer.model = std::make_shared<const FittedModel>(std::move(*model));
       naming.trials.push_back(fewer);
@@ -219,6 +227,19 @@ bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::ve
   return std::abs(*estimate_of(*trial.model, strength)) <= kWithinTolerance * known->standard_deviation;
 }
 
+// The laws found so far with the plant's parameters where the asset file has them. In a gross misfit parameters bend to
+// what is missing: their fit has several minima, from some of which no search finds the law.
+std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
+  AssetConfig asset = found.model->asset;
+  for (const auto& [name, value] : data.given)
+    if (const auto parameter = asset.parameters.find(name); parameter != asset.parameters.end())
+      parameter->second.value = value;
+  const FittedModel nowhere;
+  Result<FittedModel> model = fit_model(asset, data, &nowhere, 1, 0);
+  if (!model) return std::nullopt;
+  return Trial{found.effects, std::make_shared<const FittedModel>(std::move(*model))};
+}
+
 // Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
 // Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
 // the laws come first, and only laws that could do better are refitted.
@@ -232,15 +253,17 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   if (gross)
     for (LawStart& start : second_starts(asked)) singles.push_back({std::move(start)});
   std::vector<Trial> trials;
-  const auto refit_also = [&](const std::vector<std::vector<LawStart>>& starts) {
+  const auto refit_from = [&](const Trial& from, const std::vector<std::vector<LawStart>>& starts) {
     RefitOptions refits;
     for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
-    for (Trial& trial : refit(naming.best, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
+    for (Trial& trial : refit(from, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
   };
+  const auto refit_also = [&](const std::vector<std::vector<LawStart>>& starts) { refit_from(naming.best, starts); };
   InexactSensors sensors(*naming.best.model, data, options.threads);
   const auto are_inexact = [&] {
     naming.sensors_are_inexact = sensors.beat(trials);
     if (naming.sensors_are_inexact) naming.with_sensors = sensors.model();
+    if (level == 0) naming.baseline_with_sensors = sensors.model();
     return naming.sensors_are_inexact;
   };
   const std::optional<double> least_gain = sensors.least_gain(asked);
@@ -248,6 +271,8 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   const auto first = static_cast<std::ptrdiff_t>(
       gross ? singles.size() : nearly_as_promising(asked, singles.size(), least_gain.value_or(0.0)));
   refit_also({singles.begin(), singles.begin() + first});
+  if (gross)
+    if (const auto given = with_given_values(naming.best, data)) refit_from(*given, singles);
   if (least_gain && are_inexact()) return trials;
   if (!one_law_does(trials, naming, data, options)) {
     if (are_inexact()) return trials;

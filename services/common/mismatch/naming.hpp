@@ -35,7 +35,8 @@ struct Naming {
   /// Sensors that are off by what they may be (Data::sensors) explain more than any law: the search ended there, and
   /// `best` is to be asked beside them.
   bool sensors_are_inexact = false;
-  std::shared_ptr<const FittedModel> with_sensors = {};  ///< `best` beside them, where it was fitted
+  std::shared_ptr<const FittedModel> with_sensors = {};           ///< `best` beside them, where it was fitted
+  std::shared_ptr<const FittedModel> baseline_with_sensors = {};  ///< the same of the baseline
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
 };
 

@@ -18,8 +18,9 @@ constexpr int kRound = 10, kRounds = 3;  // iterations of those that go on, so o
 constexpr std::size_t kGoOn = 5;         // refits that go on after the first round
 constexpr std::size_t kAhead = 2;        // refits that come first: what they come to is to be reached by the others
 // In a gross misfit a refit does not go on that is further off than so many times the best, or than so many times what
-// its linear model promises, nor where a round leaves more than that share of the distance to the best.
-constexpr double kHopeful = 10.0, kNearer = 0.5;
+// its linear model promises.
+constexpr double kHopeful = 10.0;
+constexpr double kNearer = 0.5;   // nor does any where a round leaves more than this share of the distance to the best
 constexpr double kFar = 100.0;    // times the noise: a model that misses by more says nothing of sizes
 constexpr double kSmaller = 0.1;  // strength with which one starts again that set out too far
 
@@ -93,7 +94,7 @@ bool lost_its_core(const Refit& refit) {
 
 // Whether a refit goes on: where it may come near the best of them, or what is to beat. Further off than twice what
 // decides it is no alternative to it. In a gross misfit the linear model tells less of how far down a search leads: it is
-// believed to a tenth, and there a refit goes on as long as it also comes much nearer to the best.
+// believed to a tenth. A refit goes on as long as it also comes much nearer to the best.
 class GoesOn {
  public:
   /// `best`: the best model so far, or one of about its misfit.
@@ -112,7 +113,7 @@ class GoesOn {
   }
   [[nodiscard]] bool after(const FittedModel& before, const FittedModel& model) const {
     const bool nearer = model.misfit - best_ <= kNearer * std::max(before.misfit - best_, 0.0);
-    return may_come_near(model) && (!gross_ || nearer);
+    return may_come_near(model) && nearer;
   }
 
  private:

@@ -39,6 +39,7 @@ Data cut_into_windows(const Data& data, double window_s) {
   Data windows;
   windows.resolution = data.resolution;
   windows.known = data.known;
+  windows.given = data.given;
   windows.deadline = data.deadline;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const TimeSeries& samples = data.samples[k];

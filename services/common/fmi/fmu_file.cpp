@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -27,6 +28,20 @@ std::string fault_of_binary(const std::filesystem::path& file) {
   constexpr unsigned kX86_64 = 62;
   const unsigned machine = byte(18) + 256U * byte(19);
   return machine == kX86_64 ? "" : "is a binary for another processor (ELF machine " + std::to_string(machine) + ")";
+}
+
+/// RFC 3986: of a path, what is no unreserved character and no slash stands as %XX.
+std::string file_uri(const std::string& path) {
+  constexpr std::string_view kPlain = "/-._~", kDigits = "0123456789ABCDEF";
+  std::string uri = "file://";
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 128 && (std::isalnum(byte) != 0 || kPlain.find(c) != std::string_view::npos))
+      uri += c;
+    else
+      uri.append({'%', kDigits[byte / 16], kDigits[byte % 16]});
+  }
+  return uri;
 }
 
 Handle handle_of(const Variable& variable) {
@@ -182,7 +197,7 @@ Result<Setup> FmuFile::setup(Selection& selection) const {
   Setup setup{
       .library = unpacked_.path_of(binary_).string(),
       .folder = unpacked_.folder.path().string(),
-      .resources = description_.version == Version::fmi2 ? "file://" + resources : resources + "/",
+      .resources = description_.version == Version::fmi2 ? file_uri(resources) : resources + "/",
       .token = description_.token,
       .fmi3 = description_.version == Version::fmi3 ? 1U : 0U,
       .co_simulation = co_simulation() ? 1U : 0U,

@@ -181,7 +181,9 @@ const std::vector<MixedRow> kMixed = {{"u_real", "Float64", "input", "start=\"0\
                                       {"x0", "Float64", "parameter", "start=\"2\"", 30},
                                       {"x", "Float64", "output", "", 31},
                                       {"der(x)", "Float64", "local", "derivative=\"31\"", 32},
-                                      {"k", "Float64", "parameter", "start=\"1\"", 33}};
+                                      {"k", "Float64", "parameter", "start=\"1\"", 33},
+                                      {"now", "Float64", "output", "", 40},
+                                      {"began", "Float64", "output", "", 41}};
 
 std::string row2(const MixedRow& row) {
   const std::string type = row.type == "Float64" ? "Real" : row.type == "Int32" ? "Integer" : row.type;

@@ -104,6 +104,7 @@ Result<std::shared_ptr<const FmuFile>> FmuFile::open(const std::string& file, co
   if (wants_steps) description->model_exchange.reset();
   std::shared_ptr<FmuFile> fmu(new FmuFile(std::move(*unpacked), std::move(*description), settings));
   if (const Status sound = fmu->check_settings(); !sound) return fail(sound.error());
+  if (const Status named = fmu->check_states(); !named) return fail(named.error());
   if (const Status found = fmu->find_binary(); !found) return fail(found.error());
   return fmu;
 }
@@ -161,6 +162,16 @@ Status FmuFile::check_settings() const {
                           "true and false count as numbers", text));
   }
   return {};
+}
+
+// Without states in its structure a unit would stand still.
+Status FmuFile::check_states() const {
+  const auto rate = std::ranges::find_if(description_.variables, [](const auto& one) { return !!one.derivative_of; });
+  if (co_simulation() || !description_.states.empty() || rate == description_.variables.end()) return {};
+  return fail(refusal("is a derivative, but ModelStructure names no state's: it alone tells their order in the binary",
+                      std::string("export it with its ModelStructure") +
+                          (description_.co_simulation ? ", or take `interface: cs`" : ""),
+                      rate->name));
 }
 
 // Structural parameters come first: they are set in a mode of their own.

@@ -68,12 +68,6 @@ void check(const DescriptionReader& reader, const pugi::xml_node& root, const Mo
   if (description.states.size() > kMostStates)
     reader.refuse(root, std::to_string(description.states.size()) + " states",
                   "has more than " + std::to_string(kMostStates) + " states");
-  const auto rate =
-      std::ranges::find_if(description.variables, [](const Variable& one) { return one.derivative_of.has_value(); });
-  if (description.model_exchange && !root.child("ModelStructure") && rate != description.variables.end())
-    reader.refuse(root, rate->name,
-                  "is a derivative, and the element ModelStructure, which tells the order of the states,"
-                  " is missing");
   for (const Variable& variable : description.variables)
     if (variable.type == FmiType::clock && variable.causality == FmiCausality::input)
       reader.refuse(root, variable.name,

@@ -212,6 +212,17 @@ TEST(FmuEnd, OneAtTheLastSampleIsNoFault) {
     }
 }
 
+// In which order the binary has its states, only the structure tells.
+TEST(FmuStates, ThoseThatTheStructureLeavesOutAreMissedByName) {
+  for (const char* binary : kBinaries) {
+    TestUnit unit = mixed(binary);
+    unit.structure.clear();
+    EXPECT_THAT(ImportedUnit(unit).text(),
+                AllOf(HasSubstr("'der(x)'"), HasSubstr("ModelStructure"), HasSubstr("interface: cs")));
+    EXPECT_EQ(ImportedUnit(unit, {}, Choice::co_simulation).load(), "") << binary;
+  }
+}
+
 TEST(FmuSettings, SetTextsAndSwitchesOnce) {
   for (const char* binary : kBinaries) {
     const ImportedUnit unit(mixed(binary), {{"text", "seven77"}});

@@ -165,18 +165,6 @@ TEST(ModelDescription, AnEnumerationStartsWithItsFirstValue) {
   }
 }
 
-// In which order the binary has its states, only the structure tells.
-TEST(ModelDescription, DerivativesWithoutAStructureAreRefused) {
-  for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
-    std::string text = description_of(spring_return(binary));
-    const auto begin = text.find("<ModelStructure>"), end = text.find("</fmiModelDescription>");
-    text.erase(begin, end - begin);
-    EXPECT_THAT(refused(text), AllOf(HasSubstr("'der(x)'"), HasSubstr("ModelStructure"))) << binary;
-    const auto exchange = text.find("<ModelExchange");
-    EXPECT_EQ(refused(text.replace(exchange, 14, "<CoSimulation")), "accepted") << binary;
-  }
-}
-
 TEST(ModelDescription, UnitsGetTheirUsualNames) {
   const auto name = [](BaseExponents exponents) {
     return si_name(Unit{.name = {}, .has_base = true, .exponents = exponents});

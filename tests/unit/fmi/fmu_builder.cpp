@@ -247,9 +247,13 @@ TestFolder::~TestFolder() {
 std::string TestFolder::build(const TestUnit& unit, const std::string& name) const {
   const std::string binary = content_of(std::filesystem::path(SEALWATCH_TEST_FMUS) / (unit.binary + ".so"));
   const std::string platform = is_fmi3(unit) ? "x86_64-linux" : "linux64";
-  write_archive(path_ / name, {{"modelDescription.xml", description_of(unit)},
-                               {"binaries/" + platform + "/model.so", binary},
-                               {"resources/", ""}});
+  std::vector<TestMember> members = {{"modelDescription.xml", description_of(unit)},
+                                     {"binaries/" + platform + "/model.so", binary},
+                                     {"resources/", ""}};
+  if (!unit.library.empty())
+    members.push_back({"binaries/" + platform + "/" + unit.library,
+                       content_of(std::filesystem::path(SEALWATCH_TEST_FMUS) / unit.library)});
+  write_archive(path_ / name, members);
   return (path_ / name).string();
 }
 

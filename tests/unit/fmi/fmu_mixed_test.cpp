@@ -309,6 +309,14 @@ TEST(FmuDerivatives, AUnitThatFailsForGoodOverThemIsRunWithoutThem) {
   EXPECT_TRUE(outputs) << outputs.error().describe();
 }
 
+TEST(FmuStart, TheLibrariesBesideABinaryAreFound) {
+  TestUnit unit = gain();
+  unit.binary = "fmu_gain_needs_cs2";
+  EXPECT_THAT(ImportedUnit(unit).text(), HasSubstr("libfmu_gain_library.so: cannot open"));
+  unit.library = "libfmu_gain_library.so";
+  EXPECT_EQ(ImportedUnit(unit).load(), "");
+}
+
 TEST(FmuStart, OneThatNeedsItsToolSaysSo) {
   TestUnit unit = spring_return("fmu_spring_licence2");
   unit.interfaces = "<ModelExchange modelIdentifier=\"model\" needsExecutionTool=\"true\"/>\n";

@@ -99,11 +99,27 @@ std::optional<double> DescriptionReader::bound(const pugi::xml_node& node, const
   return is_not_finite(node.attribute(name).value()) ? std::nullopt : number(node, name);
 }
 
+namespace {
+
+/// With which an input starts that says nothing of its start.
+std::optional<double> first_item(const DescriptionReader& reader, const pugi::xml_node& type) {
+  std::optional<double> first;
+  for (const pugi::xml_node& item : type.children("Item")) {
+    const std::optional<double> value = reader.number(item, "value");
+    if (value == 0.0) return std::nullopt;
+    if (!first) first = value;
+  }
+  return first;
+}
+
+}  // namespace
+
 DeclaredType read_type(const DescriptionReader& reader, const pugi::xml_node& node) {
   return {.unit = reader.text(node, "unit"),
           .min = reader.bound(node, "min"),
           .max = reader.bound(node, "max"),
-          .nominal = reader.bound(node, "nominal")};
+          .nominal = reader.bound(node, "nominal"),
+          .first = first_item(reader, node)};
 }
 
 void read_number_attributes(const DescriptionReader& reader, const pugi::xml_node& node, const DeclaredTypes& types,
@@ -116,10 +132,12 @@ void read_number_attributes(const DescriptionReader& reader, const pugi::xml_nod
     if (!node.attribute("min")) own.min = type->second.min;
     if (!node.attribute("max")) own.max = type->second.max;
     if (!node.attribute("nominal")) own.nominal = type->second.nominal;
+    own.first = type->second.first;
   }
   variable.unit = std::move(own.unit);
   variable.min = own.min, variable.max = own.max, variable.nominal = own.nominal;
   variable.start = reader.numbers(node, "start");
+  if (variable.start.empty() && variable.causality == FmiCausality::input && own.first) variable.start = {*own.first};
 }
 
 void add_states(const DescriptionReader& reader, const pugi::xml_node& at, std::size_t derivative,

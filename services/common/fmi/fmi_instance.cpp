@@ -1,6 +1,7 @@
 #include "services/common/fmi/fmi_instance.hpp"
 
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 namespace sealwatch::fmi {
@@ -12,7 +13,26 @@ Group::Group(std::vector<Handle> variables) : handles(std::move(variables)), siz
   }
 }
 
+namespace {
+
+// What a binary needs may lie beside it, in any order of need. Known by their names, they are found once loaded.
+void load_beside(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> waiting;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path(), ignored))
+    if (entry.path() != file && entry.path().filename().string().find(".so") != std::string::npos)
+      waiting.push_back(entry.path());
+  const auto loads = [](const auto& one) { return dlopen(one.c_str(), RTLD_NOW | RTLD_LOCAL) != nullptr; };
+  while (std::erase_if(waiting, loads) > 0) {
+  }
+}
+
+}  // namespace
+
 Library::Library(const std::string& file) : handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+  if (handle_ != nullptr) return;
+  load_beside(file);
+  handle_ = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle_ != nullptr) return;
   const char* reason = dlerror();
   throw Failure{std::string("the binary cannot be loaded: ") + (reason == nullptr ? "" : reason)};

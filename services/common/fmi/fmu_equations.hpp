@@ -84,7 +84,8 @@ class FmuEquations final : public RuntimeEquations {
 };
 
 /// Compares the directional derivatives that the FMU gives with differences, at its start and near it; an Error that
-/// names the first that is wrong. Also refuses derivatives that are not finite numbers.
-[[nodiscard]] Status check_derivatives(const FmuBlock& block);
+/// names the first that is wrong. Also refuses derivatives that are not finite numbers. A unit that fails over them, and for
+/// good, is asked for none from then on.
+[[nodiscard]] Status check_derivatives(FmuBlock& block);
 
 }  // namespace sealwatch::fmi

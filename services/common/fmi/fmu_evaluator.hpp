@@ -47,6 +47,10 @@ class RunningBlock {
  private:
   RunningBlock(const FmuBlock& block, std::shared_ptr<ProcessPool> pool, std::vector<double> steps)
       : block_(block), pool_(std::move(pool)), steps_(std::move(steps)) {}
+  [[nodiscard]] Status begin_at(double time_s);
+  /// A unit's time is the recording's: where that begins elsewhere, what remembers time begins anew. Derivatives of one
+  /// without events are those of any beginning.
+  [[nodiscard]] bool follow(double first_time_s);
   void set_point(std::span<const double> states, std::span<const double> inputs);
   /// A Co-Simulation unit goes on to this time, with inputs that are linear from the last one or held since.
   [[nodiscard]] const BlockValues* step_to(double time_s);
@@ -74,7 +78,9 @@ class RunningBlock {
   double ended_s_ = std::numeric_limits<double>::infinity();  ///< when it asked to end: it has no values after that
   double step_s_ = 0.0;                                       ///< of a Co-Simulation unit with equal steps
   double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();  ///< by a Co-Simulation unit
-  double first_time_s_ = std::numeric_limits<double>::quiet_NaN();  ///< of the recording, of a Co-Simulation unit
+  std::vector<std::vector<double>> parameters_;                     ///< of each process's instances, in the FMU's units
+  double begun_at_s_ = 0.0;
+  bool met_ = false;  ///< the recording's first time
   BlockValues values_;
   std::string trouble_;
 };

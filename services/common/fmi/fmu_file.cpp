@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -27,6 +28,20 @@ std::string fault_of_binary(const std::filesystem::path& file) {
   constexpr unsigned kX86_64 = 62;
   const unsigned machine = byte(18) + 256U * byte(19);
   return machine == kX86_64 ? "" : "is a binary for another processor (ELF machine " + std::to_string(machine) + ")";
+}
+
+/// RFC 3986: of a path, what is no unreserved character and no slash stands as %XX.
+std::string file_uri(const std::string& path) {
+  constexpr std::string_view kPlain = "/-._~", kDigits = "0123456789ABCDEF";
+  std::string uri = "file://";
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 128 && (std::isalnum(byte) != 0 || kPlain.find(c) != std::string_view::npos))
+      uri += c;
+    else
+      uri.append({'%', kDigits[byte / 16], kDigits[byte % 16]});
+  }
+  return uri;
 }
 
 Handle handle_of(const Variable& variable) {
@@ -89,6 +104,7 @@ Result<std::shared_ptr<const FmuFile>> FmuFile::open(const std::string& file, co
   if (wants_steps) description->model_exchange.reset();
   std::shared_ptr<FmuFile> fmu(new FmuFile(std::move(*unpacked), std::move(*description), settings));
   if (const Status sound = fmu->check_settings(); !sound) return fail(sound.error());
+  if (const Status named = fmu->check_states(); !named) return fail(named.error());
   if (const Status found = fmu->find_binary(); !found) return fail(found.error());
   return fmu;
 }
@@ -148,6 +164,16 @@ Status FmuFile::check_settings() const {
   return {};
 }
 
+// Without states in its structure a unit would stand still.
+Status FmuFile::check_states() const {
+  const auto rate = std::ranges::find_if(description_.variables, [](const auto& one) { return !!one.derivative_of; });
+  if (co_simulation() || !description_.states.empty() || rate == description_.variables.end()) return {};
+  return fail(refusal("is a derivative, but ModelStructure names no state's: it alone tells their order in the binary",
+                      std::string("export it with its ModelStructure") +
+                          (description_.co_simulation ? ", or take `interface: cs`" : ""),
+                      rate->name));
+}
+
 // Structural parameters come first: they are set in a mode of their own.
 void FmuFile::put_settings(Setup& setup) const {
   for (const bool structural : {true, false})
@@ -182,7 +208,7 @@ Result<Setup> FmuFile::setup(Selection& selection) const {
   Setup setup{
       .library = unpacked_.path_of(binary_).string(),
       .folder = unpacked_.folder.path().string(),
-      .resources = description_.version == Version::fmi2 ? "file://" + resources : resources + "/",
+      .resources = description_.version == Version::fmi2 ? file_uri(resources) : resources + "/",
       .token = description_.token,
       .fmi3 = description_.version == Version::fmi3 ? 1U : 0U,
       .co_simulation = co_simulation() ? 1U : 0U,

@@ -45,6 +45,7 @@ class FmuFile {
   [[nodiscard]] Status find_binary();
   /// Every setting names a variable that can be set, and has a value for it.
   [[nodiscard]] Status check_settings() const;
+  [[nodiscard]] Status check_states() const;
   void put_settings(Setup& setup) const;
   [[nodiscard]] Error refusal(std::string rule, std::string advice, std::string value = {}) const;
 

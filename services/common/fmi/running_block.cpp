@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "services/common/fmi/fmu_evaluator.hpp"
 
@@ -46,35 +47,50 @@ Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block,
                                                           std::vector<double> steps) {
   std::unique_ptr<RunningBlock> running(new RunningBlock(block, std::move(pool), std::move(steps)));
   const std::size_t in_one = block.setup.once_per_process != 0 ? 1 : parameters.size();
-  const std::vector<double> differences = state_steps(block);
-  const std::vector<double> input_differences(block.input_start.size(), kDifference);
   for (std::size_t first = 0; first < parameters.size(); first += in_one) {
     auto process = running->pool_->take(block, in_one);
     if (!process) return fail(process.error());
     running->processes_.push_back(std::move(*process));
-    std::vector<double> values;
+    std::vector<double>& values = running->parameters_.emplace_back();
     for (std::size_t slot = first; slot < first + in_one; ++slot) {
       std::vector<double> all = block.parameter_start;
       for (std::size_t k = 0; k < block.parameters.size(); ++k)
         all[block.parameters[k].place] = block.parameters[k].unit.from_si(parameters[slot][k]);
       values.insert(values.end(), all.begin(), all.end());
     }
-    auto beginning = running->processes_.back()->begin({.start_time_s = block.start_time_s,
-                                                        .state_steps = differences,
-                                                        .input_steps = input_differences,
-                                                        .inputs = block.input_start,
-                                                        .slots = in_one,
-                                                        .parameters = values});
-    if (!beginning) return fail(beginning.error());
-    if (first == 0)
-      running->beginning_ = std::move(*beginning);
-    else
-      std::ranges::copy(beginning->states, std::back_inserter(running->beginning_.slot_states));
   }
-  if (running->beginning_.outcome.terminate) running->end_at(block.start_time_s);
+  if (const Status begun = running->begin_at(block.start_time_s); !begun) return fail(begun.error());
   running->inputs_ = block.input_start;
   running->states_.resize(block.states.size());
   return running;
+}
+
+Status RunningBlock::begin_at(double time_s) {
+  const std::vector<double> differences = state_steps(block_);
+  const std::vector<double> input_differences(block_.input_start.size(), kDifference);
+  for (std::size_t k = 0; k < processes_.size(); ++k) {
+    auto beginning = processes_[k]->begin({.start_time_s = time_s,
+                                           .state_steps = differences,
+                                           .input_steps = input_differences,
+                                           .inputs = block_.input_start,
+                                           .slots = block_.setup.once_per_process != 0 ? 1 : steps_.size() + 1,
+                                           .parameters = parameters_[k]});
+    if (!beginning) return fail(beginning.error());
+    if (k == 0)
+      beginning_ = std::move(*beginning);
+    else
+      std::ranges::copy(beginning->states, std::back_inserter(beginning_.slot_states));
+  }
+  begun_at_s_ = time_s;
+  if (beginning_.outcome.terminate) end_at(time_s);
+  return {};
+}
+
+bool RunningBlock::follow(double first_time_s) {
+  if (std::exchange(met_, true) || first_time_s == begun_at_s_) return true;
+  ended_s_ = std::numeric_limits<double>::infinity();
+  const Status begun = begin_at(first_time_s);
+  return begun || (trouble_ = begun.error().describe(), false);
 }
 
 RunningBlock::~RunningBlock() {
@@ -110,8 +126,9 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
 }
 
 const BlockValues* RunningBlock::step_to(double time_s) {
-  const bool first = std::isnan(first_time_s_);
-  if (first) first_time_s_ = stepped_to_s_ = time_s;
+  if (!follow(time_s)) return nullptr;
+  const bool first = std::isnan(stepped_to_s_);
+  if (first) stepped_to_s_ = time_s;
   const double step_s = is_jump(time_s - stepped_to_s_) ? 0.0 : time_s - stepped_to_s_;
   if (const std::string fault = fault_of_step(step_s); !fault.empty()) return in_trouble(fault);
   std::vector<double> during = inputs_;
@@ -126,10 +143,9 @@ const BlockValues* RunningBlock::step_to(double time_s) {
   values_.by_parameter.resize(variables, steps_.size());
   std::size_t slot = 0;
   for (auto& process : processes_) {
-    const auto end =
-        process->do_step(block_.start_time_s + stepped_to_s_ - first_time_s_, std::max(0.0, step_s), during, inputs_);
+    const auto end = process->do_step(stepped_to_s_, std::max(0.0, step_s), during, inputs_);
     if (!end) return in_trouble(end.error().describe());
-    if (slot == 0 && end->terminate) end_at(first_time_s_ + end->reached_s - block_.start_time_s);
+    if (slot == 0 && end->terminate) end_at(end->reached_s);
     const std::span<const double> values = end->outputs;
     for (std::size_t row = 0; row < values.size() / std::max<std::size_t>(1, outputs); ++row, ++slot)
       for (std::size_t k = 0; k < variables; ++k) {
@@ -208,6 +224,7 @@ bool RunningBlock::accept(double time_s, std::span<const double> states, std::sp
 
 bool RunningBlock::pass_event(double time_s, std::span<double> states, std::span<const double> inputs) {
   set_point(states, inputs);
+  if (!follow(time_s)) return false;
   for (std::size_t k = processes_.size(); k-- > 0;) {
     std::vector<double> after = states_;
     const auto outcome = processes_[k]->event(time_s, after, inputs_);

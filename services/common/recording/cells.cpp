@@ -7,6 +7,7 @@
 #include <ctime>
 #include <functional>
 
+#include "sealwatch/signal/statistics.hpp"
 #include "services/common/recording/columns.hpp"
 #include "services/common/units/unit_conversion.hpp"
 
@@ -143,6 +144,12 @@ Result<double> TimeFormat::seconds(double number) {
   if (!time) return fail(time.error());
   if (!base_) base_ = *time;
   return static_cast<double>(time->nanoseconds - base_->nanoseconds) * 1e-9;
+}
+
+double usual_step(const std::vector<double>& times_s) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times_s.size(); ++k) steps.push_back(times_s[k] - times_s[k - 1]);
+  return steps.empty() ? 1.0 : signal::median(std::move(steps));
 }
 
 Status shift_times(std::vector<double>& times_s, double shift_s) {

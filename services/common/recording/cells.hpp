@@ -52,6 +52,9 @@ class TimeFormat {
 
 inline constexpr const char* kOneTime = "two times fall on one, as a number has no more than 16 digits";
 
+/// Median distance of increasing times, s; 1 where there is one time alone.
+[[nodiscard]] double usual_step(const std::vector<double>& times_s);
+
 /// Adds `shift_s` to increasing times; an Error where two of them fall on one.
 [[nodiscard]] Status shift_times(std::vector<double>& times_s, double shift_s);
 

@@ -5,16 +5,10 @@
 #include <iterator>
 
 #include "sealwatch/core/text.hpp"
-#include "sealwatch/signal/statistics.hpp"
+#include "services/common/recording/cells.hpp"
 
 namespace sealwatch {
 namespace {
-
-double usual_step(const std::vector<double>& time_s) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
-  return steps.empty() ? 1.0 : signal::median(std::move(steps));
-}
 
 /// What is added to the times of `next`.
 double shift_behind(const LogTest& last, const LogTest& next) {

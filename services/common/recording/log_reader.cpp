@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sealwatch/signal/statistics.hpp"
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/csv_rows.hpp"
 #include "services/common/recording/log_columns.hpp"
@@ -116,7 +115,7 @@ class LogReader {
     if (repeats && map_.log.repeated_times == "jump") return {};
     if (map_.log.time_resets == "split" && !repeats) return end_test();
     if (map_.log.time_resets == "join" && !repeats) {
-      shift_s_ = time.back() + usual_step() - time_s;
+      shift_s_ = time.back() + usual_step(time) - time_s;
       if (time_s + shift_s_ > time.back()) return {};
       return fail(error_in(time_, "the row before is at " + text::significant(time.back(), 9) + " s: " + kOneTime,
                            "log the time from the test's begin"));
@@ -125,13 +124,6 @@ class LogReader {
         time_,
         repeats ? "time repeats" : "time goes back: the row before is at " + text::significant(time.back(), 9) + " s",
         repeats ? kRepeatAdvice : "log: {time_resets: join} takes it as one test, split as another test"));
-  }
-
-  [[nodiscard]] double usual_step() const {
-    const std::vector<double>& time = values_[time_];
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < time.size(); ++k) steps.push_back(time[k] - time[k - 1]);
-    return steps.empty() ? 1.0 : signal::median(std::move(steps));
   }
 
   Status end_test() {

@@ -112,7 +112,10 @@ Checked<ChannelMap> check_channel_map(const std::string& file, const PlantDescri
   YamlMap map(file, *root, {}, errors);
   ChannelMap target;
   read_channel_map(map, plant, target);
-  map.finish();
+  if (!map.has("asset_id"))
+    map.finish();  // of an asset file, the rest says nothing of the log
+  else if (!map.has("channels") && !map.has("log"))
+    errors.push_back({file, "", "", "has no map: neither channels nor log", "give the asset file that has it"});
   if (!errors.empty()) return tl::unexpected(errors);
   return target;
 }

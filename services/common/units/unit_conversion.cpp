@@ -47,7 +47,10 @@ constexpr std::array kAdditions = {
     Addition{"Celsius", "degC", "K"}, Addition{"Fahrenheit", "degF", "K"}, Addition{"ºC", "degC", "K"},
     Addition{"ºF", "degF", "K"}, Addition{"kg/cm2", "kgf/cm2", "Pa"}, Addition{"kg/cm²", "kgf/cm2", "Pa"},
     Addition{"lb", "lbf", "N"}, Addition{"lbs", "lbf", "N"}, Addition{"kg", "kgf", "N"},
-    Addition{"ft-lb", "ft lbf", "N m"}, Addition{"lb-ft", "ft lbf", "N m"}, Addition{"in-lb", "in lbf", "N m"}};
+    Addition{"ft-lb", "ft lbf", "N m"}, Addition{"lb-ft", "ft lbf", "N m"}, Addition{"in-lb", "in lbf", "N m"},
+    // Of an angular speed, what has no angle counts revolutions: nobody logs radians a minute.
+    Addition{"1/min", "rpm", "rad/s"}, Addition{"min-1", "rpm", "rad/s"}, Addition{"min^-1", "rpm", "rad/s"},
+    Addition{"/min", "rpm", "rad/s"}, Addition{"min⁻¹", "rpm", "rad/s"}};
 
 constexpr double kAtmosphere_Pa = 101325.0;
 

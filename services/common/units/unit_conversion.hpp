@@ -5,7 +5,7 @@
 //
 //   value_SI = scale * value + offset
 //
-// An angle does not vanish: "Hz" or "1/min" is no angular speed, "rpm" and "deg/s" are.
+// An angle does not vanish: "Hz" or "1/s" is no angular speed, "rpm" and "deg/s" are; "1/min" is taken as rpm.
 #pragma once
 
 #include <string_view>

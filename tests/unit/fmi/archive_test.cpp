@@ -109,6 +109,22 @@ TEST_F(FmuArchive, AFlippedOrCutByteNeverPassesSilently) {
   EXPECT_FALSE(unpack_fmu((folder_ / "c.fmu").string()));
 }
 
+TEST_F(FmuArchive, TheResourcesHaveAUniformResourceIdentifier) {
+  const std::filesystem::path odd = folder_ / "a b%\xc3\xa4#";
+  std::filesystem::create_directory(odd);
+  const char* before = getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("TMPDIR", odd.c_str(), 1);
+  const auto fmu = FmuFile::open(folder_.build(spring_return("fmu_spring_return2")));
+  before == nullptr ? unsetenv("TMPDIR") : setenv("TMPDIR", kept.c_str(), 1);
+  ASSERT_TRUE(fmu) << fmu.error().describe();
+  Selection nothing;
+  const auto setup = (*fmu)->setup(nothing);
+  ASSERT_TRUE(setup) << setup.error().describe();
+  EXPECT_THAT(setup->resources, AllOf(testing::StartsWith("file:///"), HasSubstr("/a%20b%25%C3%A4%23/"),
+                                      testing::EndsWith("/resources")));
+}
+
 TEST_F(FmuArchive, AnotherPlatformIsNamed) {
   const std::string xml = description_of(spring_return("fmu_spring_return2"));
   const auto open = [&](const std::vector<TestMember>& members) {

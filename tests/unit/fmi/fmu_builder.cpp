@@ -181,7 +181,9 @@ const std::vector<MixedRow> kMixed = {{"u_real", "Float64", "input", "start=\"0\
                                       {"x0", "Float64", "parameter", "start=\"2\"", 30},
                                       {"x", "Float64", "output", "", 31},
                                       {"der(x)", "Float64", "local", "derivative=\"31\"", 32},
-                                      {"k", "Float64", "parameter", "start=\"1\"", 33}};
+                                      {"k", "Float64", "parameter", "start=\"1\"", 33},
+                                      {"now", "Float64", "output", "", 40},
+                                      {"began", "Float64", "output", "", 41}};
 
 std::string row2(const MixedRow& row) {
   const std::string type = row.type == "Float64" ? "Real" : row.type == "Int32" ? "Integer" : row.type;
@@ -245,9 +247,13 @@ TestFolder::~TestFolder() {
 std::string TestFolder::build(const TestUnit& unit, const std::string& name) const {
   const std::string binary = content_of(std::filesystem::path(SEALWATCH_TEST_FMUS) / (unit.binary + ".so"));
   const std::string platform = is_fmi3(unit) ? "x86_64-linux" : "linux64";
-  write_archive(path_ / name, {{"modelDescription.xml", description_of(unit)},
-                               {"binaries/" + platform + "/model.so", binary},
-                               {"resources/", ""}});
+  std::vector<TestMember> members = {{"modelDescription.xml", description_of(unit)},
+                                     {"binaries/" + platform + "/model.so", binary},
+                                     {"resources/", ""}};
+  if (!unit.library.empty())
+    members.push_back({"binaries/" + platform + "/" + unit.library,
+                       content_of(std::filesystem::path(SEALWATCH_TEST_FMUS) / unit.library)});
+  write_archive(path_ / name, members);
   return (path_ / name).string();
 }
 

@@ -175,6 +175,25 @@ TEST(FmuStart, OneThatIsShownStartsWhereTheRecordingDoes) {
   EXPECT_EQ(simulation->start().initial_state, std::vector{7.0});
 }
 
+// Wherever a recording begins: what depends on time in the unit is where it was in the log.
+TEST(FmuTime, IsTheRecordingsInBothInterfaces) {
+  for (const Choice choice : {Choice::model_exchange, Choice::co_simulation})
+    for (const char* binary : kBinaries) {
+      const ImportedUnit unit(mixed(binary), {}, choice);
+      TimeSeries recorded = samples(5, 0.1, {"x", "now", "began"});
+      for (double& time_s : recorded.time_s) time_s += 3.25;
+      const auto simulation = unit.simulation(recorded);
+      ASSERT_NE(simulation, nullptr);
+      const auto outputs = simulation->run(simulation->start(), {}, {.relative_tolerance = 1e-8});
+      ASSERT_TRUE(outputs) << outputs.error().describe();
+      for (int row = 0; row < 5; ++row) {
+        EXPECT_NEAR(outputs->values(row, 0), 2.0 * std::exp(-0.1 * row), 1e-6) << binary;
+        EXPECT_NEAR(outputs->values(row, 1), 3.25 + 0.1 * row, 1e-9) << binary;
+        EXPECT_EQ(outputs->values(row, 2), 3.25) << binary;
+      }
+    }
+}
+
 TEST(FmuEnd, OneAtTheLastSampleIsNoFault) {
   for (const Choice choice : {Choice::model_exchange, Choice::co_simulation})
     for (const char* binary : kBinaries) {
@@ -191,6 +210,17 @@ TEST(FmuEnd, OneAtTheLastSampleIsNoFault) {
                   AllOf(HasSubstr("ends the simulation by itself at 3.0"), HasSubstr("end the recording there"),
                         Not(HasSubstr("equations")), Not(HasSubstr("parameters' values"))));
     }
+}
+
+// In which order the binary has its states, only the structure tells.
+TEST(FmuStates, ThoseThatTheStructureLeavesOutAreMissedByName) {
+  for (const char* binary : kBinaries) {
+    TestUnit unit = mixed(binary);
+    unit.structure.clear();
+    EXPECT_THAT(ImportedUnit(unit).text(),
+                AllOf(HasSubstr("'der(x)'"), HasSubstr("ModelStructure"), HasSubstr("interface: cs")));
+    EXPECT_EQ(ImportedUnit(unit, {}, Choice::co_simulation).load(), "") << binary;
+  }
 }
 
 TEST(FmuSettings, SetTextsAndSwitchesOnce) {
@@ -263,6 +293,28 @@ TEST(FmuDerivatives, ThoseThatAUnitDoesNotHaveAreDifferences) {
   unit.directional = true;
   const ImportedUnit imported(unit);
   EXPECT_EQ(imported.load(), "");
+}
+
+// After fmi2Error an instance answers nothing any more.
+TEST(FmuDerivatives, AUnitThatFailsForGoodOverThemIsRunWithoutThem) {
+  TestUnit unit = spring_return("fmu_spring_broken2");
+  unit.directional = true;
+  const ImportedUnit imported(unit);
+  TimeSeries recorded = samples(5, 0.01, {"position"});
+  recorded.channels[0].name = "u";
+  const auto simulation = imported.simulation(recorded);
+  ASSERT_NE(simulation, nullptr);
+  const std::vector<FreeQuantity> free = {*simulation->find("M")};
+  const auto outputs = simulation->run(simulation->start(), free);
+  EXPECT_TRUE(outputs) << outputs.error().describe();
+}
+
+TEST(FmuStart, TheLibrariesBesideABinaryAreFound) {
+  TestUnit unit = gain();
+  unit.binary = "fmu_gain_needs_cs2";
+  EXPECT_THAT(ImportedUnit(unit).text(), HasSubstr("libfmu_gain_library.so: cannot open"));
+  unit.library = "libfmu_gain_library.so";
+  EXPECT_EQ(ImportedUnit(unit).load(), "");
 }
 
 TEST(FmuStart, OneThatNeedsItsToolSaysSo) {

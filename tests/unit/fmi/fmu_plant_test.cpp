@@ -293,6 +293,41 @@ TEST(ExportedFmu, HasTheLawsThatThePlantBringsItself) {
   EXPECT_THAT(code.modelica, Not(HasSubstr("not written here")));
 }
 
+TEST(ExportedFmu, ALawOfTheUsersOwnSiteIsAFunctionOfItsSignals) {
+  const TestFolder folder;
+  const std::string file = written(folder, R"yaml(name: tank_with_own_site
+meaning: heated tank
+inputs:
+  heater: {unit: W}
+  ambient: {unit: K}
+outputs:
+  temperature: {value: T, unit: K, noise_std: 0.05}
+parameters:
+  C: {value: 3.0e5, unit: J/K}
+states:
+  T: {der: (heater - lost)/C, unit: K, start: temperature, size: 10}
+elements:
+  wall:
+    sites:
+      - {kind: own, unit: W, symbol: lost, signals: {excess: {value: T - ambient, unit: K}}}
+laws:
+  - id: quadratic_loss
+    element: wall
+    equation: q*excess*abs(excess, 0.01[K])
+    meaning: natural convection
+    parameters:
+      q: {unit: W/K2, usual: 0.1, matters: 0.01, min: 0, max: 5, strength: true}
+)yaml");
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  AssetConfig asset = nominal_asset("tank_with_own_site");
+  asset.physics = {law_at("wall", "quadratic_loss", "tank_with_own_site")};
+  const LawCode code = law_code(**plant, asset);
+  EXPECT_THAT(code.c, HasSubstr("unit of the result: W"));
+  EXPECT_THAT(code.c, HasSubstr("double wall_quadratic_loss(double s1)"));
+  EXPECT_THAT(code.modelica, HasSubstr("input Real s1 \"excess [K]\";"));
+}
+
 TEST(FmuPlant, ACrashInARunIsAnErrorOfTheRun) {
   const TestFolder folder;
   const std::string fmu = folder.build(spring_return("fmu_crash2"));

@@ -135,6 +135,36 @@ TEST(ModelDescription, OnlyClocksThatTickByThemselvesAreTaken) {
               AllOf(HasSubstr("'tick'"), HasSubstr("is an input clock")));
 }
 
+// What the standard starts an input with that says nothing: 0 where that is one of its values.
+TEST(ModelDescription, AnEnumerationStartsWithItsFirstValue) {
+  for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
+    const bool fmi2 = binary[17] == '2';
+    const std::string values = "<Item name=\"low\" value=\"3\"/><Item name=\"high\" value=\"1\"/>";
+    std::string text = description_of(spring_return(binary));
+    text = replaced(
+        text, "<ModelVariables>",
+        (fmi2 ? "<TypeDefinitions><SimpleType name=\"Gear\"><Enumeration>" + values +
+                    "</Enumeration></SimpleType></TypeDefinitions>"
+              : "<TypeDefinitions><EnumerationType name=\"Gear\">" + values + "</EnumerationType></TypeDefinitions>") +
+            "<ModelVariables>");
+    const std::string head = "name=\"gear\" valueReference=\"9000\" causality=\"input\" variability=\"discrete\"";
+    text = replaced(text, "</ModelVariables>",
+                    (fmi2 ? "<ScalarVariable " + head + "><Enumeration declaredType=\"Gear\"/></ScalarVariable>"
+                          : "<Enumeration " + head + " declaredType=\"Gear\"/>") +
+                        "</ModelVariables>");
+    const auto with = [&](const std::string& start) {
+      const auto description = read_model_description(
+          "m.fmu", start.empty() ? text : replaced(text, " declaredType=\"Gear\"", start + " declaredType=\"Gear\""));
+      EXPECT_TRUE(description) << description.error().describe();
+      return description->find("gear")->start;
+    };
+    EXPECT_EQ(with(""), std::vector{3.0}) << binary;
+    EXPECT_EQ(with(" start=\"1\""), std::vector{1.0}) << binary;
+    text = replaced(text, "value=\"1\"/>", "value=\"0\"/>");
+    EXPECT_EQ(with(""), std::vector<double>{}) << binary;
+  }
+}
+
 TEST(ModelDescription, UnitsGetTheirUsualNames) {
   const auto name = [](BaseExponents exponents) {
     return si_name(Unit{.name = {}, .has_base = true, .exponents = exponents});

@@ -41,6 +41,17 @@ TEST(ChannelMap, IsReadFromAFileOfItsOwnAndFromAnAssetFileAndWrittenBack) {
   EXPECT_EQ(back->channel_map, whole());
 }
 
+TEST(ChannelMap, IsTakenFromAnotherAssetFileAsWell) {
+  const YamlPlace place;
+  const std::string text = "asset_id: A\nmodel: eha\nparameters: {x_C: 0.08}\n";
+  const auto map = check_channel_map(place.write("a.yaml", text + kWhole), &**find_plant("eha"));
+  ASSERT_TRUE(map) << combine(map.error()).describe();
+  EXPECT_EQ(*map, whole());
+  const auto none = check_channel_map(place.write("b.yaml", text), &**find_plant("eha"));
+  ASSERT_FALSE(none);
+  EXPECT_EQ(combine(none.error()).rule, "has no map: neither channels nor log");
+}
+
 TEST(ChannelMap, WithoutAPlantAnyChannelMayBeNamed) {
   const YamlPlace place;
   const auto map = check_channel_map(place.write("map.yaml", "channels: {anything: X}\n"), nullptr);
@@ -93,8 +104,8 @@ INSTANTIATE_TEST_SUITE_P(
                "map.yaml: line 1, key log.first_row: '5': must come after header_row and units_row"},
         BadMap{"row", "log: {header_row: 0}\n",
                "map.yaml: line 1, key log.header_row: '0': must be a row number, 1 for the first"},
-        BadMap{"other_key", "channels: {flow: F}\nasset_id: A\n",
-               "map.yaml: line 2, key asset_id: 'asset_id': is not a known key; known are: channels, log"}),
+        BadMap{"other_key", "channels: {flow: F}\nasset: A\n",
+               "map.yaml: line 2, key asset: 'asset': is not a known key; known are: channels, log"}),
     [](const auto& bad) { return std::string(bad.param.name); });
 
 }  // namespace

@@ -60,6 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
         Example{"°C", "K", 0.0, 273.15}, Example{"C", "K", 20.0, 293.15}, Example{"F", "K", 32.0, 273.15},
         Example{"deg C", "K", 20.0, 293.15}, Example{"C", "A s", 2.0, 2.0}, Example{"F", "A s/V", 2.0, 2.0},
         Example{"rpm", "rad/s", 60.0, 2 * std::numbers::pi}, Example{"rev/min", "rad/s", 60.0, 2 * std::numbers::pi},
+        Example{"1/min", "rad/s", 60.0, 2 * std::numbers::pi}, Example{"min-1", "rad/s", 60.0, 2 * std::numbers::pi},
+        Example{"min^-1", "rad/s", 60.0, 2 * std::numbers::pi}, Example{"1/min", "1/s", 60.0, 1.0},
         Example{"deg/s", "rad/s", 180.0, std::numbers::pi}, Example{"rev", "rad", 1.0, 2 * std::numbers::pi},
         Example{"min", "s", 1.0, 60.0}, Example{"µs", "s", 1.0, 1e-6}, Example{"mV", "V", 1.0, 1e-3},
         Example{"N s/mm", "N s/m", 1.0, 1e3}));
@@ -85,7 +87,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"mm", "Pa", "cannot be converted to Pa; units of this channel: Pa"},
         Refused{"%", "W", "is a share and no W; in the map: unit: W, and as scale what 1 % is"},
         Refused{"Hz", "rad/s", "cannot be converted to rad/s"},
-        Refused{"1/min", "rad/s", "cannot be converted to rad/s; where it counts revolutions: rev/min (rpm) or rev/s"},
+        Refused{"1/s", "rad/s", "cannot be converted to rad/s; where it counts revolutions: rev/min (rpm) or rev/s"},
+        Refused{"1/min", "rad", "cannot be converted to rad"},
         Refused{"counts", "m", "are a plain number and no m; in the map: unit: m, scale: what one count is"},
         Refused{"furlong/x", "m", "is not a known unit; units of this channel: m, mm"},
         Refused{"kPaa", "m", "cannot be converted to m"}, Refused{"Hz", "s", "cannot be converted to s"},

@@ -23,13 +23,26 @@ struct Argument {
   std::string unit, meaning, value;  ///< value: "" of a signal
 };
 
+/// Of kind own, whose words are the plant's; null: of another kind.
+const Site* own_site(const Law& law, const PhysicsTerm& term, const PlantDescription& plant) {
+  const auto site = std::ranges::find_if(
+      plant.sites, [&](const Site& one) { return one.element == term.element && one.kind == law.kind; });
+  return law.kind == SiteKind::own && site != plant.sites.end() ? &*site : nullptr;
+}
+
+std::vector<Argument> signals_of(const Law& law, const Site* own) {
+  std::vector<Argument> signals;
+  const equations::SiteNames& known = equations::names_of_site(law.kind);
+  for (std::size_t k = 0; k < kSiteSignals; ++k) {
+    const std::string_view name = own == nullptr ? known.signals[k].name : own->signals[k].name;
+    const std::string_view unit = own == nullptr ? known.signals[k].unit : own->signals[k].unit;
+    if (!name.empty()) signals.push_back({"s" + std::to_string(k + 1), std::string(unit), std::string(name), ""});
+  }
+  return signals;
+}
+
 std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term, const PlantDescription& plant) {
-  std::vector<Argument> arguments;
-  const equations::SiteNames& names = equations::names_of_site(law.kind);
-  for (std::size_t k = 0; k < kSiteSignals; ++k)
-    if (!names.signals[k].name.empty())
-      arguments.push_back(
-          {"s" + std::to_string(k + 1), std::string(names.signals[k].unit), std::string(names.signals[k].name), ""});
+  std::vector<Argument> arguments = signals_of(law, own_site(law, term, plant));
   if (law.hidden)
     arguments.push_back({"h", std::string(law.hidden->unit), "hidden state: " + std::string(law.hidden->name), ""});
   for (std::size_t k = 0; k < law.parameters.size(); ++k) {
@@ -47,10 +60,11 @@ std::vector<Argument> arguments_of(const Law& law, const PhysicsTerm& term, cons
   return arguments;
 }
 
-std::string heading(const Law& law, const PhysicsTerm& term) {
+std::string heading(const Law& law, const PhysicsTerm& term, const PlantDescription& plant) {
+  const Site* own = own_site(law, term, plant);
+  const std::string_view unit = own == nullptr ? equations::names_of_site(law.kind).unit : own->unit;
   return std::string(law.id) + " at " + term.element + ": " + std::string(law.equation) + "\n" +
-         std::string(law.meaning) +
-         "; a loss counts positive, unit of the result: " + std::string(equations::names_of_site(law.kind).unit);
+         std::string(law.meaning) + "; a loss counts positive, unit of the result: " + std::string(unit);
 }
 
 std::string with_line_starts(const std::string& text, const std::string& start) {
@@ -109,7 +123,7 @@ LawCode law_code(const PlantDescription& plant, const AssetConfig& asset) {
       continue;
     }
     const std::vector<Argument> arguments = arguments_of(**law, term, plant);
-    const std::string function = name_of_function(term), head = heading(**law, term);
+    const std::string function = name_of_function(term), head = heading(**law, term, plant);
     code.c += "/*\n" + with_line_starts(head, " * ") + "\n */\n" +
               c_function(function, arguments, formula->contribution) + "\n";
     code.modelica +=

@@ -1,5 +1,10 @@
 /* A Co-Simulation unit: dx/dt = k u - x, y = x, by small steps of Euler's method. */
 #include <stdlib.h>
+#ifdef NEEDS_LIBRARY
+double gain_of_library(void);
+#else
+#define gain_of_library() 2.0
+#endif
 typedef struct {
   double x, u, k;
 } Model;
@@ -8,7 +13,7 @@ void* fmi2Instantiate(const char* name, int kind, const char* guid, const char* 
                       int visible, int logging) {
   Model* m = calloc(1, sizeof *m);
   (void)name, (void)guid, (void)resources, (void)callbacks, (void)visible, (void)logging;
-  m->k = 2.0;
+  m->k = gain_of_library();
   return kind == 1 ? m : NULL;
 }
 void fmi2FreeInstance(void* c) { free(c); }

@@ -7,11 +7,11 @@
 #include <string.h>
 enum { kOk = 0, kDiscard = 2, kError = 3 };
 enum { kReal = 1, kDiscrete, kInteger, kBoolean, kYReal = 11, kYDiscrete, kYInteger, kYBoolean, kSteps = 20, kLast,
-       kText, kLength, kBytes, kX0 = 30, kX, kDerX, kK };
+       kText, kLength, kBytes, kX0 = 30, kX, kDerX, kK, kNow = 40, kBegan };
 enum Mode { kSetUp, kInitialising, kEvent, kContinuous, kStepping };
 typedef struct {
   enum Mode mode;
-  double time, u_real, u_discrete, x0, x, k;
+  double time, began, u_real, u_discrete, x0, x, k;
   int u_integer, u_boolean, steps, last;
   char text[64];
   unsigned char bytes[8];
@@ -33,6 +33,8 @@ static int mixed_real(const Model* m, unsigned reference, double* value) {
     case kX: return *value = m->x, kOk;
     case kDerX: return *value = -m->k * m->x, kOk;
     case kK: return *value = m->k, kOk;
+    case kNow: return *value = m->time, kOk;
+    case kBegan: return *value = m->began, kOk;
     default: return kError;
   }
 }

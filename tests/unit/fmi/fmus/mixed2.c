@@ -13,7 +13,7 @@ void* fmi2Instantiate(const char* name, int kind, const char* guid, const char* 
 void fmi2FreeInstance(void* c) { free(c); }
 int fmi2SetupExperiment(void* c, int defined, double tolerance, double start, int stop_defined, double stop) {
   (void)defined, (void)tolerance, (void)stop_defined, (void)stop;
-  return ((Model*)c)->time = start, kOk;
+  return ((Model*)c)->time = ((Model*)c)->began = start, kOk;
 }
 int fmi2EnterInitializationMode(void* c) { return ((Model*)c)->mode = kInitialising, kOk; }
 int fmi2ExitInitializationMode(void* c) {

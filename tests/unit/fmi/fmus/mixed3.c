@@ -23,7 +23,7 @@ void fmi3FreeInstance(void* c) { free(c); }
 int fmi3EnterInitializationMode(void* c, bool tolerance_defined, double tolerance, double start, bool stop_defined,
                                 double stop) {
   (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
-  return ((Model*)c)->time = start, ((Model*)c)->mode = kInitialising, kOk;
+  return ((Model*)c)->time = ((Model*)c)->began = start, ((Model*)c)->mode = kInitialising, kOk;
 }
 int fmi3ExitInitializationMode(void* c) {
   Model* m = c;

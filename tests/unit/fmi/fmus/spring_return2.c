@@ -1,4 +1,5 @@
-/* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs. */
+/* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs.
+ * BREAKS: it fails over them, and the instance gives nothing after that. */
 #include <stddef.h>
 #include "spring_return.h"
 #ifdef DIRECTIONAL
@@ -15,7 +16,16 @@ static volatile int for_ever = 1;
   while (for_ever) {                        \
   }
 #endif
+#ifdef BREAKS
+#define fmi2GetDerivatives sound_derivatives
+#endif
 #include "services/common/fmi/export/fmi2_shell.c"
+#ifdef BREAKS
+#undef fmi2GetDerivatives
+API int fmi2GetDerivatives(void* c, double* x, size_t n);
+static void* broken;
+API int fmi2GetDerivatives(void* c, double* x, size_t n) { return c == broken ? kError : sound_derivatives(c, x, n); }
+#endif
 #ifdef DIRECTIONAL
 #ifdef LIE
 #define FRICTION 0.0
@@ -31,6 +41,9 @@ static double partial(const double* p, unsigned unknown, unsigned known) {
 API int fmi2GetDirectionalDerivative(void* c, const unsigned* unknowns, size_t nu, const unsigned* knowns, size_t nk,
                                      const double* seed, double* sensitivity) {
   size_t row, column;
+#ifdef BREAKS
+  return broken = c, kError;
+#endif
   for (row = 0; row < nu; ++row) {
 #ifdef OF_STATES_ALONE
     if (unknowns[row] == 5000U) return kError;

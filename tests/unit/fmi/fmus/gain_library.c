@@ -1,0 +1,2 @@
+double gain_of_library(void);
+double gain_of_library(void) { return 2.0; }

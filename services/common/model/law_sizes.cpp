@@ -20,7 +20,11 @@ double law_size(const PlantDescription& plant, const LawParameter& parameter) {
 }
 
 LawBounds law_bounds(const PlantDescription& plant, const LawParameter& parameter) {
-  const double size = law_size(plant, parameter);
+  // Whoever describes a plant gives sizes by order of magnitude: a strength that ends at a bound made of them would leave
+  // the rest of what it does to laws that are not there.
+  constexpr double kRoom = 100.0;
+  const bool guessed = parameter.strength && !parameter.own_size && !plant.file.empty();
+  const double size = law_size(plant, parameter) * (guessed ? kRoom : 1.0);
   return {size * parameter.min, size * parameter.max};
 }
 

@@ -251,5 +251,17 @@ TEST(LawSizes, NumbersOfALawGrowWithItsUnit) {
   EXPECT_EQ(law_bounds(large, own).max, force.max) << "a plant's own law has its numbers already";
 }
 
+/// Sizes in a plant's file are orders of magnitude: a friction of 6 times the largest of the catalogue's is still found.
+TEST(LawSizes, AStrengthHasRoomWhereAPlantsFileGivesItsSize) {
+  const Law& dry = **find_law("coulomb_friction", {"F_c", "v_s"});
+  const LawParameter &force = dry.parameters[0], &speed = dry.parameters[1];
+  PlantDescription own;
+  own.law_sizes = {{"N", 0.1}, {"m/s", 10.0}};
+  own.file = "press.yaml";
+  EXPECT_GE(law_bounds(own, force).max, 6.0 * 0.1 * force.max);
+  EXPECT_EQ(law_bounds(own, force).min, 0.0) << "it still takes energy only";
+  EXPECT_EQ(law_bounds(own, speed).max, 10.0 * speed.max) << "a shape has no room";
+}
+
 }  // namespace
 }  // namespace sealwatch::law_test

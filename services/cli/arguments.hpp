@@ -19,10 +19,10 @@ inline std::string a_number(const std::string& text) {
   return std::isnan(std::strtod(text.c_str(), nullptr)) ? "must be a number" : "";
 }
 
-/// An asset is given by its file: whoever gives the id is told so.
+/// An asset is given by its file: whoever gives the id is told so. Of what is there its reader says more.
 inline std::string an_asset_file(const std::string& text) {
   std::error_code none;
-  if (std::filesystem::is_regular_file(text, none)) return {};
+  if (std::filesystem::exists(text, none)) return {};
   return "wants an asset file, and '" + text + "' is none; for example --asset config/assets/xt03-mv2.yaml";
 }
 

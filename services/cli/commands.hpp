@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,7 @@ struct FitOptions {
   std::string map_file;  ///< how the recordings are written; "": as the asset file says
   std::vector<std::string> recordings;
   std::string model;  ///< "" the best that the channels allow
+  double time_limit_s = std::numeric_limits<double>::infinity();
   bool json = false;
 };
 int run_fit(const FitOptions& options);

@@ -71,6 +71,9 @@ void add_fit(CommandLine& line) {
   CommandLine::add_map(fit, options->map_file);
   fit->add_option("--model", options->model,
                   "cylinder_circuit, or the asset's whole model (default: the best the channels allow)");
+  fit->add_option("--time-limit", options->time_limit_s,
+                  "seconds after which the best answer so far is given, as not converged (default: none)")
+      ->check(CLI::PositiveNumber);
   fit->add_flag("--json", options->json, "machine-readable result (schema sealwatch.fit/1)");
 }
 

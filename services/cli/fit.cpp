@@ -1,5 +1,6 @@
 // `sealwatch fit`: gray-box prediction-error minimisation of recorded tests.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -40,7 +41,7 @@ bool inputs_recorded(const PlantDescription& plant, const std::vector<Recording>
   });
 }
 
-FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings) {
+FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& recordings, double time_limit_s) {
   std::vector<TimeSeries> samples;
   samples.reserve(recordings.size());
   for (const Recording& recording : recordings) samples.push_back(recording.samples);
@@ -48,6 +49,16 @@ FitResult fit_whole(const AssetConfig& asset, const std::vector<Recording>& reco
   // plant without a seal the question may be just how far its naive model is off.
   ActuatorFitOptions search;
   if (!plant_or_default(asset.model).condition) search.hopeless_rms = std::numeric_limits<double>::infinity();
+  Deadline deadline;
+  deadline.set_in(time_limit_s);
+  search.deadline = &deadline;
+  Progress progress("fit", 100);
+  static constexpr std::chrono::seconds kLong{5};  // one that takes less is told by its result alone
+  const auto begin = Deadline::Clock::now();
+  search.progress = [&progress, begin](std::string_view step, double share) {
+    if (Deadline::Clock::now() - begin < kLong) return;
+    progress.show(static_cast<std::size_t>(std::lround(100.0 * share)), step);
+  };
   JointFit joint = fit_actuator(asset, samples, search);
   FitResult result{.report = std::move(joint.report), .loads = {}};
   for (const RecordingFit& recording : joint.recordings)
@@ -195,7 +206,7 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
   }
   const bool cylinder = options.model.empty() ? has_cylinder_circuit(asset) && !inputs_recorded(plant, recordings)
                                               : options.model == kCylinderCircuit;
-  if (!cylinder) return fit_whole(asset, recordings);
+  if (!cylinder) return fit_whole(asset, recordings, options.time_limit_s);
   std::vector<FitReport> fits;
   fits.reserve(recordings.size());
   for (const Recording& recording : recordings) fits.push_back(fit_cylinder(asset, recording));

@@ -103,7 +103,7 @@ bool sensible_threshold(double threshold) {
 /// The asset that --asset names by its file.
 std::optional<AssetConfig> asset_in_file(const std::string& file) {
   std::error_code none;
-  if (std::filesystem::is_regular_file(file, none)) return load_asset_or_explain(file);
+  if (std::filesystem::exists(file, none)) return load_asset_or_explain(file);
   complain(Error{.file = {},
                  .place = "--asset",
                  .value = file,

@@ -102,15 +102,15 @@ void HealthAssessment::restore(const Message& own_output) {
 
 std::size_t HealthAssessment::held() const {
   std::size_t held = 0;
-  for (const auto& [asset_id, state] : states_) held += state.discrepancies.held();
+  for (const auto& [asset_id, state] : states_)
+    held += state.discrepancies.held() + state.reports.overtaken() + state.features.overtaken();
   return held;
 }
 
 Conclusion HealthAssessment::receive(const Message& input) {
   Conclusion conclusion;
   AssetState& state = state_of(asset_of(input));
-  if (const auto* features = std::get_if<TestFeatures>(&input))
-    state.features.emplace(features->header.pst_id, *features);
+  if (const auto* features = std::get_if<TestFeatures>(&input)) state.features.add(*features);
   if (const auto* report = std::get_if<StateReport>(&input)) take_report(state, *report, conclusion);
   if (const auto* window = std::get_if<TestWindow>(&input)) {
     const auto asset = assets_.find(window->asset_id);
@@ -119,36 +119,44 @@ Conclusion HealthAssessment::receive(const Message& input) {
     else
       state.discrepancies.take(*window, asset->second, *explainer_, conclusion);
   }
-  while (!state.reports.empty()) {
-    const StateReport report = state.reports.front();
+  while (const std::optional<std::size_t> place = next_report(state)) {
+    const StateReport report = state.reports.take(*place, conclusion);
     if (report.header.pst_id.empty()) {
       retract(state, report, conclusion);
-      state.reports.pop_front();
       continue;
     }
-    const auto features = state.features.find(report.header.pst_id);
-    if (features == state.features.end()) break;
-    const HealthReport health = conclude(state, report, features->second);
+    const TestFeatures features = state.features.take(report.header.pst_id, conclusion);
+    const HealthReport health = conclude(state, report, features);
     conclusion.outputs.emplace_back(health);
-    conclusion.consumed.push_back(features->second.header.message_id);
-    state.features.erase(features);
-    state.reports.pop_front();
+    conclusion.consumed.push_back(features.header.message_id);
     settle(state, report, health.admissible_for_prognosis, conclusion);
   }
   return conclusion;
+}
+
+/// An answer to a retraction speaks of the tests before it, which may wait for their features.
+std::optional<std::size_t> HealthAssessment::next_report(const AssetState& state) {
+  std::optional<std::size_t> answer;
+  for (std::size_t place = 0; place < state.reports.size(); ++place) {
+    const std::string& pst_id = state.reports.at(place).header.pst_id;
+    if (pst_id.empty() && place == state.reports.overtaken()) return place;
+    if (pst_id.empty() && !answer) answer = place;
+    if (!pst_id.empty() && state.features.find(pst_id) != nullptr) return answer.value_or(place);
+  }
+  return std::nullopt;
 }
 
 /// One whose health is concluded already comes again after a restart because its test was kept.
 void HealthAssessment::take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const {
   const std::optional<bool> admissible = state.discrepancies.concluded(report.header.pst_id);
   if (answered_retraction(report.asset_id, report.header))
-    state.reports.push_back(report);  // it speaks of the tests before it, which may wait for their features
+    state.reports.add(report);
   else if (report.header.pst_id.empty())
     conclusion.consumed.push_back(report.header.message_id);
   else if (admissible && explainer_)
     settle(state, report, *admissible, conclusion);
   else
-    state.reports.push_back(report);
+    state.reports.add(report);
 }
 
 void HealthAssessment::settle(AssetState& state, const StateReport& report, bool admissible,

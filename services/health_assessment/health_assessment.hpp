@@ -2,7 +2,6 @@
 // recording for prognosis. docs/health.md has all rules with their defaults and reasons.
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "sealwatch/config/asset.hpp"
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/port/explainer.hpp"
+#include "sealwatch/port/halves.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/health_assessment/discrepancy_watch.hpp"
 #include "services/health_assessment/past_health.hpp"
@@ -47,12 +47,14 @@ class HealthAssessment final : public Layer {
 
  private:
   struct AssetState {
-    std::deque<StateReport> reports;               // not concluded yet, in order of receipt
-    std::map<std::string, TestFeatures> features;  // by pst_id
+    Halves<StateReport> reports;  // not concluded yet, and answers to retractions
+    Halves<TestFeatures> features;
     PastHealth past;
     DiscrepancyWatch discrepancies;
   };
 
+  /// The report that is next to be concluded from; none where all wait.
+  [[nodiscard]] static std::optional<std::size_t> next_report(const AssetState& state);
   void take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const;
   void settle(AssetState& state, const StateReport& report, bool admissible, Conclusion& conclusion) const;
   [[nodiscard]] HealthReport conclude(AssetState& state, const StateReport& report, const TestFeatures& features) const;

@@ -109,8 +109,8 @@ void StateDetection::restore(const Message& own_output) {
 Conclusion StateDetection::receive(const Message& input) {
   AssetState& state = state_of(asset_of(input));
   state.history.last_was_replay = header_of(input).replay;
-  if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.push_back(*features);
-  if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.emplace(window->header.pst_id, *window);
+  if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.add(*features);
+  if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.add(*window);
   Conclusion conclusion;
   if (const auto* event = std::get_if<MaintenanceEvent>(&input); event && !is_replacement(*event))
     return retracted(*event, state);
@@ -158,15 +158,18 @@ Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& 
 }
 
 void StateDetection::conclude_ready_tests(AssetState& state, Conclusion& conclusion) {
-  while (!state.tests.empty()) {
-    const TestFeatures& features = state.tests.front();
-    const auto window = state.windows.find(features.header.pst_id);
-    if (window == state.windows.end()) return;
-    conclude(state, features, window->second, conclusion);
+  for (std::size_t place = 0; place < state.tests.size();) {
+    const std::string pst_id = state.tests.at(place).header.pst_id;
+    if (state.windows.find(pst_id) == nullptr) {
+      ++place;
+      continue;
+    }
+    const TestFeatures features = state.tests.take(place, conclusion);
+    const TestWindow window = state.windows.take(pst_id, conclusion);
+    conclude(state, features, window, conclusion);
     conclusion.consumed.push_back(features.header.message_id);
-    conclusion.consumed.push_back(window->second.header.message_id);
-    state.windows.erase(window);
-    state.tests.pop_front();
+    conclusion.consumed.push_back(window.header.message_id);
+    place = 0;
   }
 }
 
@@ -261,10 +264,12 @@ std::optional<double> StateDetection::add_residuals(const AssetState& state, con
   return residuals ? residuals->nearest_wear : std::nullopt;
 }
 
-// An accepted model with what it was accepted from, and a replacement until a test of the new actuator is judged.
+// An accepted model with what it was accepted from, a replacement until a test of the new actuator is judged, and what
+// was overtaken.
 std::size_t StateDetection::held() const {
   std::size_t held = 0;
-  for (const auto& [asset_id, state] : states_) held += state.events.size() + state.accepted.held();
+  for (const auto& [asset_id, state] : states_)
+    held += state.events.size() + state.accepted.held() + state.tests.overtaken() + state.windows.overtaken();
   return held;
 }
 

@@ -2,7 +2,6 @@
 // docs/health.md has all rules with their defaults and reasons.
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/port/accepted_model.hpp"
 #include "sealwatch/port/estimator.hpp"
+#include "sealwatch/port/halves.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/state_detection/baseline.hpp"
 #include "services/state_detection/history.hpp"
@@ -53,9 +53,9 @@ class StateDetection final : public Layer {
  private:
   struct AssetState {
     AssetHistory history;
-    std::deque<TestFeatures> tests;             // not concluded yet, in order of receipt
-    std::map<std::string, TestWindow> windows;  // by pst_id
-    std::vector<MaintenanceEvent> events;       // not consumed yet
+    Halves<TestFeatures> tests;  // not concluded yet
+    Halves<TestWindow> windows;
+    std::vector<MaintenanceEvent> events;  // not consumed yet
     AcceptedModel accepted;
     PastTests past;
   };

@@ -1,15 +1,16 @@
 #!/usr/bin/python3
 """Faults under which the six real services must end with the results of an undisturbed run: killed at random moments,
 bits turned in every table of their journals, a full disk, a disk that cannot be written, clocks that are set, a bad
-network between two hosts; and the floods and the years under which they must stay as they are. One line for each trial, with
+network between two hosts; and the floods, the poison and the years under which they must stay as they are. One line for each trial, with
 its seed: the same seed makes the same choices, though not the same moments.
-Usage: campaign.py BIN_DIRECTORY [kills|bits|full_disk|read_only|clock_steps|two_hosts|flood|years|all] [--seed N]
+Usage: campaign.py BIN_DIRECTORY [kills|bits|full_disk|read_only|clock_steps|two_hosts|flood|poison|years|all] [--seed N]
            [--kills N] [--bits N] [--tests N] [--steps N] [--seconds N] [--assets N] [--live N] [--floods NAMES]
 """
 import argparse
 import ctypes
 import fcntl
 import heapq
+import json
 import os
 import pathlib
 import random
@@ -34,8 +35,9 @@ SERVICES = ["data-acquisition", "data-manipulation", "state-detection", "health-
             "advisory-generation"]
 DOMAIN = 96
 PATIENCE_S = float(os.environ.get("CAMPAIGN_PATIENCE_S", 240.0))  # longer where the machine has much else to do
-TRIALS = ["kills", "bits", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "years"]
+TRIALS = ["kills", "bits", "full_disk", "read_only", "clock_steps", "two_hosts", "flood", "poison", "years"]
 LIVE_DOMAIN = 97  # of tests/perf/services/live_latency.cpp
+MOST_STATUS_KB = 200.0      # what `status --json` says of six services, whatever strangers sent
 MOST_GROWTH_MB = 100.0      # of a service under a flood: its queues and inboxes, all of them bounded
 LONGEST_START_S = 20.0      # until all services have their past, after whatever history
 FINDING = re.compile(r"\w+Sanitizer: .*|runtime error: .*")  # of a build with sanitizers, whatever its exit status
@@ -467,6 +469,65 @@ class Campaign:
         return (f"{what}: {sent} messages, {len(places)} live blocks all there, p50 {quantile(beside, 0.5):.1f}"
                 f" p99 {quantile(beside, 0.99):.1f} ms, before it {quantile(alone, 0.5):.1f} and"
                 f" {quantile(alone, 0.99):.1f} ms, load {load:.0f}; {most} grew most, by {grown[most]:.0f} MB")
+
+    def messages(self):
+        """One true message of each topic, as somebody may have overheard it."""
+        found = {}
+        for service in SERVICES:
+            with sqlite3.connect(f"file:{self.kept / database(service)}?mode=ro", uri=True) as journal:
+                for topic, payload in journal.execute("SELECT topic, payload FROM outputs WHERE payload NOT NULL"):
+                    found[topic] = json.loads(payload)
+        block = found["sample_block"]
+        asset, header = block["asset_id"], dict(block["header"], pst_id="", source_ids=[])
+        found["raw_samples"] = {
+            "header": dict(header, message_id="raw"), "asset_id": asset, "recording_id": "x", "source_id": "stranger",
+            "test_kind": "pst", "block_number": 0, "boundary": "begin", "samples": block["samples"],
+            "start_time_known": True, "start_time_ns": header["event_time_ns"]}
+        found["acknowledgement"] = {"header": dict(header, message_id="acknowledgement/a/1"), "asset_id": asset,
+                                    "advisory_id": "a", "acknowledged_by": "x", "remark": "y"}
+        found["maintenance_event"] = {"header": dict(header, message_id="event"), "asset_id": asset,
+                                      "kind": "actuator_replaced", "reported_by": "x"}
+        return "".join(json.dumps({"topic": topic, "message": message}) + "\n" for topic, message in found.items())
+
+    def poison(self):
+        """Every field of every message spoilt in every way. Another asset's conclusions are the same as without."""
+        folder = self.folder / "poison"
+        (folder / "assets").mkdir(parents=True)
+        text = (SOURCE / "config/assets/xt03-mv2.yaml").read_text()
+        (folder / "assets/xt03-mv2.yaml").write_text(text)
+        (folder / "assets/poisoned.yaml").write_text(text.replace("asset_id: XT03-MV2", "asset_id: POISONED"))
+        (folder / "sealwatch.yaml").write_text((self.folder / "sealwatch.yaml").read_text())
+        messages = self.messages().replace("XT03-MV2", "POISONED")
+        with World(self.binaries, folder) as world:
+            world.start_all()
+            world.wait_until_running()
+            before, sent = world.sizes(), 0
+            replay = world.replay(self.files)
+            for name in ("nameless", "named"):
+                done = subprocess.run([self.binaries / "campaign/poison", str(DOMAIN), name], env=world.environment,
+                                      input=messages, capture_output=True, text=True)
+                if done.returncode != 0:
+                    raise Failed(f"the poisoner: {done.stderr}")
+                sent += int(done.stdout)
+            if replay.wait(PATIENCE_S) != 0:
+                raise Failed("the replay beside the poison did not end well")
+            time.sleep(2.0)
+            if ended := world.keep_up():
+                raise Failed(f"after {sent} spoilt messages ended: {ended}")
+            grown = {name: size[0] - before[name][0] for name, size in world.sizes().items()}
+            status_kB = len(world.run("status", "--json", "--seconds", "1").stdout) / 1000
+            results = world.results()
+        mine = {service: {one: text for one, text in results[service].items() if one in self.undisturbed[service]}
+                for service in SERVICES}
+        if difference := differences(self.undisturbed, mine):
+            raise Failed(f"after {sent} spoilt messages: {difference}")
+        if status_kB > MOST_STATUS_KB:
+            raise Failed(f"after {sent} spoilt messages the status has {status_kB:.0f} kB")
+        most = max(grown, key=grown.get)
+        if grown[most] > MOST_GROWTH_MB:
+            raise Failed(f"after {sent} spoilt messages {most} grew by {grown[most]:.0f} MB")
+        return (f"{sent} spoilt messages: another asset's results identical, status {status_kB:.0f} kB;"
+                f" {most} grew most, by {grown[most]:.0f} MB")
 
     def years(self):
         """A fleet's tests, month by month, at full speed: memory, descriptors and start-up are those of its first years."""

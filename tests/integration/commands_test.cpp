@@ -276,6 +276,9 @@ TEST_F(Commands, BadInputNamesFileAndPlaceAndExitsWithTwo) {
               ::testing::AllOf(HasSubstr("is not a configured asset"), HasSubstr("did you mean 'XT03-MV2'?")));
   EXPECT_THAT(refused({"sealwatch", "fit", "--asset", "XT03-MV2", text_in_number}),
               HasSubstr("wants an asset file, and 'XT03-MV2' is none; for example --asset config/assets/"));
+  for (const char* no_file : {"/dev/zero", "/dev/tty", "/tmp"})
+    EXPECT_THAT(refused({"sealwatch", "fit", "--asset", no_file, text_in_number}),
+                ::testing::AllOf(HasSubstr(std::string(no_file) + ": is a d"), HasSubstr("give a file")));
   for (const char* start : {"2300-01-01", "2250-10-01"})
     EXPECT_THAT(refused({"sealwatch", "simulate", "--asset", asset(), "--start", start, "--months", "2", "--out",
                          folder_.string()}),

@@ -15,10 +15,13 @@
 // sample (it falls with the square of the distance), is added to sigma.
 #pragma once
 
+#include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/core/deadline.hpp"
 #include "sealwatch/core/time_series.hpp"
 #include "sealwatch/estimation/admissibility.hpp"
 #include "sealwatch/estimation/fit_report.hpp"
@@ -42,8 +45,11 @@ struct ActuatorFitOptions {
   /// Where the first search ends badly, the shared parameters are started again at these multiples of the asset's
   /// values.
   std::vector<double> restart_factors = {0.5, 2.0};
-  bool cut_into_pieces = true;  ///< for a start, where the search from the asset's values does not converge
-  int threads = 1;              ///< recordings that are simulated at once
+  bool cut_into_pieces = true;         ///< for a start, where the search from the asset's values does not converge
+  int threads = 1;                     ///< recordings that are simulated at once
+  const Deadline* deadline = nullptr;  ///< after which the best so far is reported, as not converged
+  /// Is told what is done, and the share of the iterations of this search that are.
+  std::function<void(std::string_view step, double share)> progress = {};
   AdmissibilityOptions admissibility;
 
   [[nodiscard]] Status validate() const;

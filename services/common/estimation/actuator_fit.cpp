@@ -88,7 +88,10 @@ Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const A
   Result<PemOptimum> best = search(problem, start_point(problem, 1.0), options);
   if (problem.shared.empty() || (best && best->hopeless)) return best;
   const bool may_grow = options.cut_into_pieces && !plant_or_default(asset.model).file.empty();
-  const auto wrong = [&] { return !best || !best->converged || (may_grow && is_far(*best, options)); };
+  const auto wrong = [&] {
+    if (passed(options.deadline)) return false;
+    return !best || !best->converged || (may_grow && is_far(*best, options));
+  };
   if (!wrong()) return best;
   const auto take_better = [&](Result<PemOptimum> other) {
     if (other && (!best || better(*other, *best, options))) best = std::move(other);
@@ -100,7 +103,7 @@ Result<PemOptimum> search_from_several_starts(const PemProblem& problem, const A
     if (auto start = growing_start(problem, asset, recordings, options))
       take_better(search(problem, std::move(*start), options));
   for (const double factor : options.restart_factors) {
-    if (best && best->converged) break;
+    if ((best && best->converged) || passed(options.deadline)) break;
     take_better(search(problem, start_point(problem, factor), options));
   }
   return best;
@@ -119,6 +122,7 @@ SimulationOptions simulation_options(std::span<const TimeSeries> recordings, con
     const double duration_s = recorded.time_s.back() - recorded.time_s.front();
     fewest_steps = std::max(fewest_steps, kFewestSteps + duration_s / kLongestStep_s);
   }
+  simulation.deadline = options.deadline;
   simulation.maximum_steps =
       static_cast<std::size_t>(fewest_steps + options.steps_per_sample * static_cast<double>(samples));
   return simulation;
@@ -158,11 +162,12 @@ JointFit fit_actuator(const AssetConfig& asset, std::span<const TimeSeries> reco
   if (!problem) return failed(problem.error());
   problem->simulation_options = simulation_options(recordings, options);
   Result<PemOptimum> optimum = search_from_asset(*problem, asset, recordings, options);
-  const bool input_matters =
-      optimum && !optimum->hopeless && add_interpolation_error(*problem, *optimum, asset, recordings);
+  const bool input_matters = optimum && !optimum->hopeless && !passed(options.deadline) &&
+                             add_interpolation_error(*problem, *optimum, asset, recordings);
   if (input_matters) {
     const int iterations = optimum->iterations;
-    optimum = search(*problem, optimum->point, options);
+    Result<PemOptimum> whitened = search(*problem, optimum->point, options);
+    if (whitened || !passed(options.deadline)) optimum = std::move(whitened);
     if (optimum) optimum->iterations += iterations;
   }
   if (!optimum) return failed(optimum.error());

@@ -164,6 +164,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     return true;
   };
   while (iterations_ <= end) {
+    if (rule.on_iteration) rule.on_iteration(iterations_);
     if (passed(rule.deadline)) return SearchEnd::out_of_time;
     if (rule.is_hopeless(cost_, taken)) return SearchEnd::hopeless;
     const double tolerance = rule.at_cost(cost_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "sealwatch/core/deadline.hpp"
@@ -18,6 +19,7 @@ struct StoppingRule {
   double hopeless_cost = 0.0;  ///< above it after some iterations, a fit comes to nothing
   const Deadline* deadline = nullptr;
   SearchBound bound = {};
+  std::function<void(int iterations)> on_iteration = {};
 
   [[nodiscard]] double at_cost(double cost) const { return tolerance * std::max(1.0, cost / noise_cost); }
   /// Kept derivatives err by what they miss times the residuals: only small residuals bear them.

@@ -174,6 +174,11 @@ Result<PemOptimum> search(const PemProblem& problem, PemPoint start, const Actua
 
   StoppingRule rule = stopping_rule(problem, options);
   rule.bound = known.bound;
+  if (options.progress)
+    rule.on_iteration = [&](int iterations) {
+      const double share = std::min(1.0, static_cast<double>(iterations) / options.maximum_iterations);
+      options.progress("iteration " + std::to_string(iterations) + ", most often 5 to 8", share);
+    };
   BoxSearch in_box(problem, optimum.point, side_by_side);
   SearchEnd end = in_box.run(rule, options.maximum_iterations);
   optimum.iterations = in_box.iterations();

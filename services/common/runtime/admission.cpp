@@ -38,6 +38,7 @@ std::optional<std::int64_t> time_of_test(const Message& message) {
 
 std::optional<std::string> refusal_of_texts(const Message& message) {
   std::optional<std::string> why;
+  const std::size_t longest_words = is_of_a_service(name_of(topic_of(message))) ? std::string::npos : kLongestRemark;
   bool is_certain = false;  // of a message's id, which others are part of, they tell more
   std::visit(
       [&](const auto& content) {
@@ -46,10 +47,11 @@ std::optional<std::string> refusal_of_texts(const Message& message) {
           const bool id = names_something(field);
           if (!is_valid_utf8(text))
             why = "its " + std::string(field) + " is not UTF-8";
+          else if (text.size() > (id ? kLongestId : longest_words))
+            why = "its " + std::string(field) + " is longer than " + std::to_string(id ? kLongestId : longest_words) +
+                  " bytes";
           else if (id && !is_visible(text))
             why = "its " + std::string(field) + ", '" + visible(text) + "', has control characters";
-          else if (id && text.size() > kLongestId)
-            why = "its " + std::string(field) + " is longer than " + std::to_string(kLongestId) + " bytes";
           else
             return;
           is_certain = !field.ends_with("message_id");

@@ -1,7 +1,8 @@
 // Which messages a service takes in at all. What it does not take is refused with what would mend it.
 //
 // Texts. Ids stand in logs, on terminals, in file names and in commands that people paste: on one line, without control
-// characters, at most kLongestId bytes. All else is UTF-8.
+// characters, at most kLongestId bytes. All else is UTF-8, and what people and their systems say at most kLongestRemark
+// bytes: it stands in advisories and in the audit trail.
 //
 // Samples. What another process sends as a block or window of a test keeps the limits of one test
 // (core/test_limits.hpp); raw samples data acquisition cleans itself.
@@ -31,6 +32,7 @@
 namespace sealwatch {
 
 inline constexpr std::size_t kLongestId = 500;  ///< bytes
+inline constexpr std::size_t kLongestRemark = 4000;
 inline constexpr std::size_t kMostUnknownAssets = 64;
 
 /// Which assets the configuration names, and whether it wants no others.

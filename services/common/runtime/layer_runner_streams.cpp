@@ -32,6 +32,7 @@ bool contains(std::span<const Topic> topics, Topic topic) { return std::ranges::
 }  // namespace
 
 void LayerRunner::sort_in(BusItem item) {
+  if (const auto stranger = StrangerWatch::unsayable(item)) return note_strangers({*stranger});
   std::visit([this](auto& content) { sort_in(std::move(content)); }, item);
 }
 

@@ -38,6 +38,13 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
   return spdlog::level::err;
 }
 
+/// A line tells enough of a text that fills a screen: what a stranger sends drives no older lines out of the files.
+std::string shortened(const std::string& value) {
+  constexpr std::size_t kMost = 4000;
+  if (value.size() <= kMost) return value;
+  return value.substr(0, kMost) + "... (" + std::to_string(value.size()) + " bytes)";
+}
+
 /// The value as it stands, or in quotes where a reader could not tell where it ends.
 std::string quoted(const std::string& given) {
   const std::string value = visible(given);
@@ -114,7 +121,7 @@ bool logs(LogLevel level) { return !is_silent && logger() != nullptr && logger()
 void log_event(LogLevel level, std::string_view event, const LogFields& fields) {
   if (!logs(level)) return;
   std::string line(event);
-  for (const auto& [key, value] : fields) line.append(" ").append(key).append("=").append(quoted(value));
+  for (const auto& [key, value] : fields) line.append(" ").append(key).append("=").append(quoted(shortened(value)));
   logger()->log(spdlog_level(level), line);
 }
 

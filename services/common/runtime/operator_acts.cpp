@@ -1,5 +1,7 @@
 #include "services/common/runtime/operator_acts.hpp"
 
+#include "services/common/runtime/admission.hpp"
+
 namespace sealwatch {
 
 std::optional<OperatorAct> act_of(const Message& message, UtcTime received, std::string outcome) {
@@ -24,6 +26,9 @@ std::optional<OperatorAct> act_of(const Message& message, UtcTime received, std:
   } else {
     return std::nullopt;
   }
+  // What is refused for its length stands here as well, and for ever.
+  for (std::string* const text : {&act.kind, &act.asset_id, &act.who, &act.subject, &act.text})
+    if (text->size() > kLongestRemark) text->resize(kLongestRemark);
   return act;
 }
 

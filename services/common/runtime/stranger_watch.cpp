@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "services/common/runtime/admission.hpp"
+
 namespace sealwatch {
 namespace {
 
@@ -16,12 +18,41 @@ bool is_from_outside(Topic topic) {
          topic == Topic::model_acceptance;
 }
 
+/// Of a name as long as a stranger likes, so much as can be said and kept.
+std::string as_told(const std::string& name) { return name.substr(0, kLongestId); }
+
 StrangerWatch::Stranger nameless(const Message& message) {
-  return {"no name", std::string(name_of(topic_of(message))) + " about " + asset_of(message) +
+  return {"no name", std::string(name_of(topic_of(message))) + " about " + as_told(asset_of(message)) +
                          " came without a writer's name; only services write that topic"};
 }
 
+bool is_long(const std::string& name) { return name.size() > kLongestId; }
+
+bool is_long(const StreamPosition& position) { return is_long(position.topic) || is_long(position.writer_id); }
+
+bool has_long_name(const ServiceStatus& status) {
+  return is_long(status.service) || is_long(status.writer_id) ||
+         std::ranges::any_of(status.written, [](const StreamPosition& one) { return is_long(one); }) ||
+         std::ranges::any_of(status.received, [](const StreamPosition& one) { return is_long(one); });
+}
+
+bool has_long_name(const ResendRequest& request) {
+  return is_long(request.writer_id) || is_long(request.topic) || is_long(request.requested_by);
+}
+
+bool has_long_name(const Message& message) { return is_long(header_of(message).writer_id); }
+
 }  // namespace
+
+std::optional<StrangerWatch::Stranger> StrangerWatch::unsayable(const BusItem& item) {
+  if (!std::visit([](const auto& content) { return has_long_name(content); }, item)) return std::nullopt;
+  const auto* message = std::get_if<Message>(&item);
+  const std::string what = message != nullptr                            ? std::string(name_of(topic_of(*message)))
+                           : std::holds_alternative<ServiceStatus>(item) ? "service_status"
+                                                                         : "resend_request";
+  return Stranger{"no name", "what came on " + what + " names a writer with more than " + std::to_string(kLongestId) +
+                                 " bytes; it was not read"};
+}
 
 bool StrangerWatch::remember(const std::string& writer_id, Steady now) {
   if (!known_.contains(writer_id) && known_.size() >= kMostKnown)
@@ -52,14 +83,14 @@ bool StrangerWatch::admits(const Message& message) const {
 std::vector<StrangerWatch::Stranger> StrangerWatch::hear(const Message& message, Steady now) {
   if (const auto* raw = std::get_if<RawSamples>(&message)) {
     if (expects(*raw)) return {};
-    return {{"sender " + raw->source_id,
-             "it sends raw samples of " + raw->asset_id + " and is none of the configured senders: they are refused"}};
+    return {{"sender " + as_told(raw->source_id), "it sends raw samples of " + as_told(raw->asset_id) +
+                                                      " and is none of the configured senders: they are refused"}};
   }
   if (options_.services.empty() || is_from_outside(topic_of(message))) return {};
   const std::string& writer_id = header_of(message).writer_id;
   if (writer_id.empty()) return {nameless(message)};
   if (known_.contains(writer_id) || waiting_.contains(writer_id) || waiting_.size() >= kMostWaiting) return {};
-  waiting_[writer_id] = {now, asset_of(message), std::string(name_of(topic_of(message)))};
+  waiting_[writer_id] = {now, as_told(asset_of(message)), std::string(name_of(topic_of(message)))};
   return {};
 }
 

@@ -16,12 +16,14 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sealwatch/message/topics.hpp"
+#include "sealwatch/port/bus.hpp"
 
 namespace sealwatch {
 
@@ -38,6 +40,9 @@ class StrangerWatch {
     std::string name;  ///< writer id, "service NAME" or "sender SOURCE"; "no name"
     std::string text;
   };
+
+  /// Who gives a name that nobody could keep, say or log, however long it is: nothing of it is read.
+  [[nodiscard]] static std::optional<Stranger> unsayable(const BusItem& item);
 
   explicit StrangerWatch(Options options) : options_(std::move(options)) {}
 

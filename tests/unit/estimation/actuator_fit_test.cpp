@@ -207,6 +207,35 @@ TEST(ActuatorFit, AParameterOutsideItsBoundsEndsThereAndSaysSo) {
   EXPECT_THAT(fit.report.reasons, testing::Contains(testing::HasSubstr("R_CL ended at its bound 2e+13 Pa s/m3")));
 }
 
+TEST(ActuatorFit, TellsItsIterationsAndEndsAtItsDeadlineWithTheBestSoFar) {
+  const AssetConfig asset = nominal_asset();
+  const TimeSeries recorded = bench_recording(1.0);
+  ActuatorFitOptions options;
+  std::vector<double> shares;
+  options.progress = [&](std::string_view /*step*/, double share) { shares.push_back(share); };
+  const JointFit whole = fit_actuator(asset, {&recorded, 1}, options);
+  ASSERT_TRUE(whole.report.converged);
+  EXPECT_GE(shares.size(), 2U);
+  EXPECT_GT(shares.back(), 0.0);
+  EXPECT_LE(*std::ranges::max_element(shares), 1.0);
+
+  Deadline deadline;
+  options.deadline = &deadline;
+  options.progress = [&](std::string_view /*step*/, double share) {
+    if (share > 0.0) deadline.set_in(0.0);  // after the first step
+  };
+  const JointFit cut = fit_actuator(asset, {&recorded, 1}, options);
+  EXPECT_FALSE(cut.report.converged);
+  EXPECT_FALSE(cut.report.admissible);
+  EXPECT_THAT(cut.report.termination, ::testing::HasSubstr("out of time"));
+  EXPECT_FALSE(cut.report.parameters.empty());
+
+  deadline.set_in(0.0);
+  const JointFit none = fit_actuator(asset, {&recorded, 1}, options);
+  EXPECT_FALSE(none.report.admissible);
+  EXPECT_FALSE(none.report.reasons.empty()) << "nothing was simulated";
+}
+
 TEST(ActuatorFit, UnusableInputGetsAReason) {
   const TimeSeries good = bench_recording(1.0);
   const auto reasons = [&](const TimeSeries& samples) {

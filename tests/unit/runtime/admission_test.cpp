@@ -115,6 +115,12 @@ TEST(AdmissionOfTexts, AnIdIsOneVisibleLineAndAllTextIsUtf8) {
   seen.advisory_id = "recommendation/XT03";
   seen.remark = "two\nlines";
   EXPECT_EQ(refusal(seen), "");
+  seen.remark = std::string(4001, 'x');
+  EXPECT_THAT(refusal(seen), HasSubstr("its remark is longer than 4000 bytes"));
+  seen.remark.clear();
+  seen.advisory_id = std::string(501, '\x01');
+  EXPECT_THAT(refusal(seen), HasSubstr("its advisory_id is longer than 500 bytes")) << "and not all of it";
+  seen.advisory_id = "a";
   seen.remark = "\xFF";
   EXPECT_THAT(refusal(seen), HasSubstr("its remark is not UTF-8"));
 }

@@ -209,6 +209,32 @@ TEST_F(TroubleTest, AnUnknownWriterIsAnAlarmUntilItIsSilentForLong) {
   EXPECT_TRUE(says(*process, 0)) << "nothing more was heard of it";
 }
 
+/// A megabyte in a name would come back in every heartbeat of every reader, in its journal and in its log.
+TEST_F(TroubleTest, AWriterWithAnEndlessNameIsNotReadAndSaidWithoutIt) {
+  const auto process = joiner();
+  const std::string endless(1'000'000, 'A');
+  TestFeatures forged;
+  forged.asset_id = "A";
+  forged.header = header("test_features/T", "T");
+  forged.header.writer_id = endless;
+  forged.header.stream_sequence = 1;
+  ASSERT_TRUE(stranger_.publish(Message(forged)));
+  ServiceStatus status = heartbeat("data_manipulation", endless);
+  ASSERT_TRUE(stranger_.publish(status));
+  status.writer_id = "data_manipulation-1";
+  status.written = {{"test_features", endless, 7}};
+  ASSERT_TRUE(stranger_.publish(status));
+  ASSERT_TRUE(stranger_.publish(ResendRequest{process->journal().writer_id(), "test_features", 1, 2, endless}));
+  forged.header.writer_id.clear();
+  forged.asset_id = endless;
+  ASSERT_TRUE(stranger_.publish(Message(forged)));
+  ASSERT_TRUE(says(*process, 1));
+  EXPECT_EQ(last_[0].kind, kUnknownWriter);
+  EXPECT_EQ(last_[0].subject, "no name");
+  EXPECT_LT(last_[0].text.size(), 1000U);
+  EXPECT_TRUE(process->journal().positions()->empty());
+}
+
 TEST_F(TroubleTest, AWriterThatSaysItsNameLateIsAnAlarmNoMore) {
   const auto process = joiner();
   TestFeatures early;

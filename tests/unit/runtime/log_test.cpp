@@ -53,6 +53,14 @@ TEST_F(LogTest, AValueWithSpacesOrLineBreaksStaysOneField) {
   EXPECT_THAT(lines()[0], HasSubstr("odd a=\"two words\" b=\"say \\\"x\\\"\" c=\"two lines\" d=\"\""));
 }
 
+TEST_F(LogTest, AnEndlessValueIsCutAndItsLengthTold) {
+  start();
+  log_event(LogLevel::info, "taken", {{"remark", std::string(1'000'000, 'x')}});
+  ASSERT_EQ(lines().size(), 1U);
+  EXPECT_LT(lines()[0].size(), 5000U);
+  EXPECT_THAT(lines()[0], HasSubstr("xxx... (1000000 bytes)"));
+}
+
 TEST_F(LogTest, ForeignBracesAreNoFormat) {
   start();
   log_event(LogLevel::info, "{} {0} %s", {{"a", "{}"}});

@@ -101,11 +101,29 @@ TEST(HealthAssessment, OrderOfArrivalOfTheFeaturesDoesNotMatter) {
     else
       reports_first.take(other, message);
   }
-  for (auto feature = features.rbegin(); feature != features.rend(); ++feature) reports_first.take(other, *feature);
+  for (const Message& feature : features) reports_first.take(other, feature);
   std::vector<std::string> expected = in_order.text(), found = reports_first.text();
   std::sort(expected.begin(), expected.end());
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, expected);
+}
+
+TEST(HealthAssessment, ATestWhoseOtherHalfNeverComesHoldsUpNoLaterOne) {
+  Journal undisturbed, attacked;
+  HealthAssessment one = layer(), other = layer();
+  int number = 0;
+  for (const Message& message : eventful_life()) {
+    undisturbed.take(one, message);
+    Message half = message;
+    header_of(half).pst_id = "forged-" + std::to_string(number++);
+    header_of(half).message_id = std::string(name_of(topic_of(half))) + "/" + header_of(half).pst_id;
+    attacked.take(other, half);
+    attacked.take(other, message);
+    ASSERT_EQ(attacked.concluded.size(), undisturbed.concluded.size()) << "after " << header_of(message).message_id;
+  }
+  EXPECT_TRUE(attacked.text() == undisturbed.text());
+  EXPECT_GT(other.held(), 0U) << "they wait on";
+  EXPECT_LE(other.held(), 4U * 16U) << "of two assets, features and reports, the last";
 }
 
 TEST(HealthAssessment, UnderAnAcceptedModelFaultsSayThatItsFindingMayBeTheCause) {

@@ -83,14 +83,15 @@ class Chain {
     return found;
   }
 
+  HealthReport take_in_health(const Message& input) {
+    received_.push_back(input);
+    return add(health_->receive(input));
+  }
+
  private:
   std::unique_ptr<HealthAssessment> make() const {
     const std::vector<AssetConfig> assets = {synthetic::asset(kAsset)};
     return std::make_unique<HealthAssessment>(assets, HealthAssessmentOptions{}, std::make_shared<Recorder>());
-  }
-  HealthReport take_in_health(const Message& input) {
-    received_.push_back(input);
-    return add(health_->receive(input));
   }
   HealthReport add(Conclusion conclusion) {
     conclusion = completed(std::move(conclusion));
@@ -146,6 +147,19 @@ TEST(HealthAfterRetraction, TrendAndGradeAreThoseWithoutTheTest) {
     for (int number = 13; number < 20; ++number)
       ASSERT_EQ(text(deceived.test(number, leaky(0.8))), text(undisturbed.test(number, leaky(0.8)))) << number;
   }
+}
+
+TEST(HealthAfterRetraction, IsAnsweredBehindAReportThatWasOvertaken) {
+  Chain chain;
+  const HealthReport first = chain.test(0);
+  StateReport forged;
+  forged.asset_id = kAsset;
+  forged.header.pst_id = "forged";
+  forged.header.message_id = "state_report/forged";
+  chain.take_in_health(forged);
+  const HealthReport second = chain.test(1);
+  EXPECT_EQ(second.header.event_time_ns, synthetic::month(1).nanoseconds) << "the forged one waits alone";
+  EXPECT_EQ(said(chain.retract(second.header.pst_id, 2)), said(first));
 }
 
 TEST(HealthAfterRetraction, ATestThatDoesNotTellRepeatsTheLastThatCounts) {

@@ -170,8 +170,9 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     const double tolerance = rule.at_cost(cost_);
     Eigen::VectorXd by = here.step(kUndamped);
     if (!by.allFinite()) return SearchEnd::stuck;
-    promised_ = here.promised(by);
-    if (promised_ <= tolerance) {
+    const double expected = here.promised(by);
+    promised_ = here.curvature * expected;  // a search may yet come as far as the linear model says
+    if (expected <= tolerance) {
       if (renew()) continue;
       return SearchEnd::converged;
     }
@@ -211,7 +212,7 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
     renew_model();
     if (change <= tolerance && kept > kLinear && !renew()) return SearchEnd::converged;
   }
-  promised_ = here.promised(here.step(kUndamped));
+  promised_ = here.curvature * here.promised(here.step(kUndamped));
   return SearchEnd::out_of_iterations;
 }
 

@@ -157,8 +157,8 @@ class PlantSystem {
   };
   [[nodiscard]] const std::vector<Column>& recording() const { return recording_; }
 
-  /// The slope of f(input), an array, by the gain, bias or delay of an input: central differences over a share of the
-  /// input that leaves a tenth of all digits to the difference's rounding and as many to the curvature of f.
+  /// The slope of f(input), an array, by the gain, bias or delay of an input, without what a delay does to the input's own
+  /// slope: central differences over so small a share of the input that f is straight there, and above rounding.
   template <class F>
   [[nodiscard]] auto by_input(const FreeQuantity& quantity, double t, const F& f) const {
     constexpr double kShare = 1e-6;

@@ -278,7 +278,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     if (are_inexact()) return trials;
     refit_also({singles.begin() + first, singles.end()});
     if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
-      refit_also(ranked_pairs(asked, naming.best.model->misfit));
+      refit_also(ranked_pairs(asked, naming.best.model->misfit, gross));
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
   return trials;

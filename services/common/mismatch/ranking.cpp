@@ -114,18 +114,23 @@ std::vector<LawStart> second_starts(const Screening& screening) {
   return starts;
 }
 
-std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit) {
+std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit, bool also_measurements) {
   struct Pair {
     const Variant *a, *b;
     double gain;
   };
   const std::vector<const Variant*> singles = best_of_each(screening);
+  const auto of_measurement = [&](const Variant& variant) {
+    const SiteKind kind = screening.candidates[variant.candidate].law->kind;
+    return is_sensor(kind) || is_of_recording(kind);
+  };
   std::vector<Pair> pairs;
   for (std::size_t j = 0; j < singles.size(); ++j)
     for (std::size_t k = j + 1; k < singles.size(); ++k) {
       const Candidate &a = screening.candidates[singles[j]->candidate],
                       &b = screening.candidates[singles[k]->candidate];
       if (overlap(*a.law, *b.law) && a.element == b.element) continue;
+      if (!also_measurements && (of_measurement(*singles[j]) || of_measurement(*singles[k]))) continue;
       pairs.push_back({singles[j], singles[k], pair_gain(screening, *singles[j], *singles[k])});
     }
   std::ranges::stable_sort(pairs, std::greater<>(), &Pair::gain);

@@ -22,8 +22,11 @@ namespace sealwatch::mismatch {
 /// where a refit ends, and from one start it may end in a hollow beside the best.
 [[nodiscard]] std::vector<LawStart> second_starts(const Screening& screening);
 
-/// The best pairs of different laws that promise clearly more than the best single law.
-[[nodiscard]] std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit);
+/// The best pairs of different laws that promise clearly more than the best single law. Without `also_measurements`
+/// pairs of physics alone: what is off in sensors, the recorded input or the clock is asked beside the best law, where
+/// sensors within their tolerances compete with it.
+[[nodiscard]] std::vector<std::vector<LawStart>> ranked_pairs(const Screening& screening, double misfit,
+                                                              bool also_measurements);
 
 /// All parameters of a candidate at a point of its grid, strengths at their usual size.
 [[nodiscard]] std::vector<double> usual_size(const Candidate& candidate, std::size_t point);

@@ -270,14 +270,15 @@ class Analysis {
     instead_of_ = best_.effects.size();
   }
 
-  // Not where the value does not help on held-out recordings: it is not claimed either.
+  // Not where the value does not help on held-out recordings: it is not claimed either. Near the noise, whose own size is
+  // not known well enough to tell shares of what exceeds it, it has to explain no more than the laws that it replaces.
   void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of) {
     std::vector<RecordingComparison> compared;
     const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
     if (!blocks) return;
     const bool none = blocks->gain.empty();
     if (!none && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0) return;
-    if (share_explained_by(*wrong.with.model) < kExplainedAtLeast) return;
+    if (share_explained_by(*wrong.with.model) < std::min(kExplainedAtLeast, explained_share())) return;
     std::vector<std::string> beside;
     for (const Effect& effect : wrong.with.effects) {
       beside.push_back(law_in_words(law_at(effect)));

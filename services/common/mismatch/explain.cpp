@@ -252,22 +252,26 @@ class Analysis {
     return !differs(naming_.last.p_value, *best_.model, options_.false_alarm_rate);
   }
 
-  // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it.
+  // What is fixed in the asset file may be wrong: laws and sensors' faults are then bent to it, or none is found. (In a
+  // gross misfit without a law a value takes up some of whatever is missing.)
   void ask_the_datasheet() {
-    if (best_.effects.empty() || (windowed() && !by_measurements(asset_, fit_))) return;
+    const std::size_t laws = best_.effects.size();
+    const bool asks = laws > 0 || (result_.statistically_significant && excess(*baseline_) <= kGross);
+    if (!asks || (windowed() && !by_measurements(asset_, fit_))) return;
     tell("asking the values that the asset file fixes", 0.7);
     const Data data = prepared(fit_);
     const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};
-    std::vector<std::string> laws;
-    for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
-    auto wrong = values_alone(question, best_.effects.size());
-    if (!wrong) wrong = value_in_place_of_laws(question);
+    std::vector<std::string> instead_of;
+    for (const Effect& effect : best_.effects) instead_of.push_back(law_in_words(law_at(effect)));
+    auto wrong = values_alone(question, std::max<std::size_t>(1, laws));
+    if (!wrong && laws > 0) wrong = value_in_place_of_laws(question);
     if (!wrong) return;
     asked_values_.push_back(asked(*wrong, naming_));
-    if (wrong->behind < -kCannotTell) blame_the_asset_file(*wrong, joined(laws, " and "));
-    if (why_none_) return;
+    const double better_by = laws > 0 ? kCannotTell : kWorthAnother;
+    if (wrong->behind < -better_by) blame_the_asset_file(*wrong, joined(instead_of, " and "));
+    if (why_none_ || laws == 0) return;
     result_.asset_values = wrong->values;
-    instead_of_ = best_.effects.size();
+    instead_of_ = laws;
   }
 
   // Not where the value does not help on held-out recordings: it is not claimed either. Near the noise, whose own size is

@@ -56,11 +56,12 @@ WhyNone value_of_the_asset_file(const std::string& values, bool several, const s
       several ? "Values that the asset file fixes may be wrong: " : "A value that the asset file fixes may be wrong: ";
   const std::string with = (several ? "With them " : "With it ") + (beside.empty() ? "" : "and " + beside + " ");
   const std::string explains = several || !beside.empty() ? " Together they explain" : " It explains";
+  const std::string against =
+      instead_of.empty() ? ", and no law that was asked does" : " as well as " + instead_of + " would, or better";
   return {
       .summary = start + values + "." + (proof.empty() ? "" : " " + with + proof + ".") + left_in_words(holdout) +
-                 (proof.empty() ? " No recording was left for a proof." : "") + explains +
-                 " these recordings as well as " + instead_of + " would, or better. No physics is named" +
-                 (beside.empty() ? "." : " before that is checked."),
+                 (proof.empty() ? " No recording was left for a proof." : "") + explains + " these recordings" +
+                 against + ". No physics is named" + (beside.empty() ? "." : " before that is checked."),
       .next_test =
           "Check this against the drawing or the datasheet. Only if neither gives it, estimate it (estimate: true in "
           "the asset file) and analyse again: the estimate would hide a fault with the same effect."};

@@ -27,7 +27,8 @@ struct WhyNone {
 [[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
 
 /// `values`: of the asset file (`several`: more than one), and what would explain the recordings instead, in words;
-/// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for; `holdout`: before and
+/// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for ("" where no law was
+/// found); `holdout`: before and
 /// after on recordings that took no part.
 [[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
                                               const std::string& instead_of, const PooledFit& holdout);

@@ -124,11 +124,14 @@ TEST(Verdict, ValuesThatWouldDoTheSameAreTold) {
     EXPECT_TRUE(name == "a_V" || name == "c_D" || name == "rho") << explanation->summary;
 }
 
-// The noise is a little less than the sensors' data sheets say: the model as it is leaves less than that already, and no
-// share of what exceeds it can be told.
-TEST(Verdict, AWrongValueIsNoPhysicsWhereTheNoiseIsLessThanStated) {
+// A check valve that opens earlier or later than the asset file says; beside one no law is found, beside the other one
+// would be. The noise is a little less than the sensors' data sheets say: the model as it is leaves less than that
+// already, and no share of what exceeds it can be told.
+class CrackingPressure : public testing::TestWithParam<double> {};
+
+TEST_P(CrackingPressure, ThatIsWrongIsNoPhysicsWhereTheNoiseIsLessThanStated) {
   AssetConfig truth = actuator();
-  truth.parameters.at("p_crack").value *= 1.3;
+  truth.parameters.at("p_crack").value *= GetParam();
   std::vector<Recording> recordings{recording_of(truth, 0.7), recording_of(truth, 1.0), recording_of(truth, 1.3)};
   for (Recording& recording : recordings)
     for (Series& channel : recording.samples.channels) channel.noise_std *= 1.05;
@@ -141,6 +144,8 @@ TEST(Verdict, AWrongValueIsNoPhysicsWhereTheNoiseIsLessThanStated) {
     return entry.front().name == "p_crack";
   })) << explanation->summary;
 }
+
+INSTANTIATE_TEST_SUITE_P(Verdict, CrackingPressure, testing::Values(0.85, 1.3));
 
 TEST(Verdict, WildSamplesSendToTheirSensor) {
   const AssetConfig asset = actuator();

@@ -113,6 +113,7 @@ struct HiddenState {
   double scale = 1.0;         ///< its usual size
   bool free_initial = false;  ///< each recording's own (a shaft angle)
   bool settled = false;       ///< starts at its equilibrium; otherwise at 0
+  bool shaft_angle = false;   ///< integral of the site's speed; the law's second parameter counts periods in a turn
 };
 
 struct Law {

@@ -15,6 +15,7 @@ struct Candidate {
   std::vector<std::size_t> sites;  ///< empty for a law of a sensor or of the recording
   std::string channel;             ///< of a sensor's or an input's law
   std::vector<std::vector<double>> grid;
+  std::size_t passed_over = 0;  ///< points that residuals were looked at for, and that are not in the grid
   double strength_scale = 1.0;  ///< usual sizes are multiplied by it (a sensor's bias goes by its channel's range)
 };
 

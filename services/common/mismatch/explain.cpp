@@ -245,7 +245,8 @@ class Analysis {
   void ask_values_in_place_of_seals() {
     const DatasheetQuestion question{asset_, *baseline_, seal_->naming.best, fit_, options_.threads};
     const auto wrong = values_alone(question, fit_.samples.size());
-    if (wrong && wrong->behind <= 0.0) blame_the_asset_file(*wrong, "another seal in each test");
+    if (wrong && wrong->behind <= 0.0)
+      blame_the_asset_file(*wrong, "another seal in each test", *seal_->naming.best.model);
   }
 
   [[nodiscard]] bool leaves_nothing() const {
@@ -268,21 +269,21 @@ class Analysis {
     if (!wrong) return;
     asked_values_.push_back(asked(*wrong, naming_));
     const double better_by = laws > 0 ? kCannotTell : kWorthAnother;
-    if (wrong->behind < -better_by) blame_the_asset_file(*wrong, joined(instead_of, " and "));
+    if (wrong->behind < -better_by) blame_the_asset_file(*wrong, joined(instead_of, " and "), *best_.model);
     if (why_none_ || laws == 0) return;
     result_.asset_values = wrong->values;
     instead_of_ = laws;
   }
 
   // Not where the value does not help on held-out recordings: it is not claimed either. Near the noise, whose own size is
-  // not known well enough to tell shares of what exceeds it, it has to explain no more than the laws that it replaces.
-  void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of) {
+  // not known well enough to tell shares of what exceeds it, it has to explain no more than what it replaces.
+  void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of, const FittedModel& replaced) {
     std::vector<RecordingComparison> compared;
     const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
     if (!blocks) return;
     const bool none = blocks->gain.empty();
     if (!none && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0) return;
-    if (share_explained_by(*wrong.with.model) < std::min(kExplainedAtLeast, explained_share())) return;
+    if (share_explained_by(*wrong.with.model) < std::min(kExplainedAtLeast, share_explained_by(replaced))) return;
     std::vector<std::string> beside;
     for (const Effect& effect : wrong.with.effects) {
       beside.push_back(law_in_words(law_at(effect)));

@@ -89,7 +89,7 @@ std::vector<double> energies_of(const Candidate& candidate, const FittedModel& m
 
 void set_out_from_strongest_orders(std::vector<Candidate>& candidates, const FittedModel& model) {
   for (Candidate& candidate : candidates) {
-    if (!candidate.law->hidden || !candidate.law->hidden->free_initial) continue;
+    if (!candidate.law->hidden || !candidate.law->hidden->shaft_angle) continue;
     const LawParameter& periods = candidate.law->parameters[kPeriods];
     const int least = static_cast<int>(periods.min), most = static_cast<int>(periods.max);
     const std::vector<double> energies = energies_of(candidate, model, least, most);
@@ -98,8 +98,9 @@ void set_out_from_strongest_orders(std::vector<Candidate>& candidates, const Fit
       if (energies[static_cast<std::size_t>(order - least)] > 0.0) orders.push_back(order);
     std::ranges::stable_sort(orders, std::greater<>(),
                              [&](int order) { return energies[static_cast<std::size_t>(order - least)]; });
-    for (std::size_t k = 0; k < std::min(orders.size(), candidate.grid.size()); ++k)
-      candidate.grid[k][kPeriods] = orders[k];
+    const std::size_t asked = std::min(orders.size(), candidate.grid.size());
+    for (std::size_t k = 0; k < asked; ++k) candidate.grid[k][kPeriods] = orders[k];
+    candidate.passed_over = orders.size() - asked;
   }
 }
 

@@ -131,6 +131,8 @@ void calibrate(Screening& screening, const ScreeningOptions& options) {
   std::ranges::sort(smallest);
   const double at_5_percent = smallest[smallest.size() / 20];
   screening.effective_number = std::max(1.0, std::log1p(-0.05) / std::log1p(-std::min(at_5_percent, 0.049999)));
+  for (const Candidate& candidate : screening.candidates)  // what was chosen from more was tested with all of them
+    screening.effective_number += static_cast<double>(candidate.passed_over);
   const auto best = std::ranges::min_element(screening.variants, {}, &Variant::p_value);
   screening.best = static_cast<std::size_t>(best - screening.variants.begin());
   screening.p_value = -std::expm1(screening.effective_number * std::log1p(-std::min(best->p_value, 1.0 - 1e-16)));

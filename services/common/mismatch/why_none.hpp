@@ -28,8 +28,7 @@ struct WhyNone {
 
 /// `values`: of the asset file (`several`: more than one), and what would explain the recordings instead, in words;
 /// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for ("" where no law was
-/// found); `holdout`: before and
-/// after on recordings that took no part.
+/// found); `holdout`: before and after on recordings that took no part.
 [[nodiscard]] WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
                                               const std::string& instead_of, const PooledFit& holdout);
 

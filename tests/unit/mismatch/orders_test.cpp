@@ -32,11 +32,13 @@ TEST(Orders, OfAShaftThatCogsComeFirst) {
     ASSERT_EQ(candidates[k].grid.size(), before[k].grid.size()) << candidates[k].law->id;
     if (candidates[k].law->id != "cogging_torque") {
       EXPECT_EQ(candidates[k].grid, before[k].grid) << candidates[k].law->id;
+      EXPECT_EQ(candidates[k].passed_over, 0U);
       continue;
     }
     ++asked;
     EXPECT_TRUE(std::ranges::none_of(before[k].grid, [&](const auto& point) { return point[1] == kPeriods; }));
     EXPECT_EQ(candidates[k].grid.front()[1], kPeriods);
+    EXPECT_EQ(candidates[k].grid.size() + candidates[k].passed_over, 120U) << "all that were chosen from are counted";
     EXPECT_EQ(candidates[k].grid.front()[0], before[k].grid.front()[0]) << "the amplitude's usual size stays";
   }
   EXPECT_EQ(asked, 1);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
+#include "services/common/mismatch/in_parallel.hpp"
 #include "services/common/mismatch/term_path.hpp"
 
 namespace sealwatch::mismatch {
@@ -57,42 +59,47 @@ double line_energy(const Eigen::Ref<const Eigen::VectorXd>& phase, const Eigen::
   return energy;
 }
 
-// Adds the energies of orders `least`, `least` + 1, ... in one recording.
-void add_energies(const FittedModel& model, std::size_t recording, const TermPath& path, int least,
-                  std::vector<double>& energies) {
+// Of `count` orders from `least` on, in one recording.
+std::vector<double> energies_in(const FittedModel& model, std::size_t recording, const Candidate& candidate, int least,
+                                std::size_t count) {
+  std::vector<double> energies(count, 0.0);
+  const auto path =
+      term_path(point_of(model, recording), candidate.element, candidate.law->kind, nullptr, {}, kLongestStep_s);
+  if (!path || path->time_s.size() < 2) return energies;
   const PemRecording& part = model.problem.recordings[recording];
   const Linearisation& at = model.optimum.at_optimum[recording];
-  const Eigen::VectorXd angle = angle_at(path, part.time_s);
+  const Eigen::VectorXd angle = angle_at(*path, part.time_s);
   const Eigen::Map<const RowMatrix> residual(at.residual.data(), at.simulated.rows(), at.simulated.cols());
   for (Eigen::Index begin = 0, end = 0; begin < angle.size(); begin = end) {
     const double until_s = part.time_s[static_cast<std::size_t>(begin)] + kBlock_s;
     while (end < angle.size() && part.time_s[static_cast<std::size_t>(end)] < until_s) ++end;
     const Eigen::Index rows = end - begin;
     if (rows < kFewestRows) continue;
-    for (std::size_t k = 0; k < energies.size(); ++k)
+    for (std::size_t k = 0; k < count; ++k)
       energies[k] +=
           line_energy((least + static_cast<int>(k)) * angle.segment(begin, rows), residual.middleRows(begin, rows));
   }
+  return energies;
 }
 
-std::vector<double> energies_of(const Candidate& candidate, const FittedModel& model, int least, int most) {
+std::vector<double> energies_of(const Candidate& candidate, const FittedModel& model, int least, int most,
+                                int threads) {
   std::vector<double> energies(static_cast<std::size_t>(most - least + 1), 0.0);
-  for (std::size_t k = 0; k < model.problem.recordings.size(); ++k) {
-    const auto path =
-        term_path(point_of(model, k), candidate.element, candidate.law->kind, nullptr, {}, kLongestStep_s);
-    if (path && path->time_s.size() > 1) add_energies(model, k, *path, least, energies);
-  }
+  const auto parts = in_parallel<std::vector<double>>(model.problem.recordings.size(), threads, [&](std::size_t k) {
+    return energies_in(model, k, candidate, least, energies.size());
+  });
+  for (const std::vector<double>& part : parts) std::ranges::transform(energies, part, energies.begin(), std::plus<>());
   return energies;
 }
 
 }  // namespace
 
-void set_out_from_strongest_orders(std::vector<Candidate>& candidates, const FittedModel& model) {
+void set_out_from_strongest_orders(std::vector<Candidate>& candidates, const FittedModel& model, int threads) {
   for (Candidate& candidate : candidates) {
     if (!candidate.law->hidden || !candidate.law->hidden->shaft_angle) continue;
     const LawParameter& periods = candidate.law->parameters[kPeriods];
     const int least = static_cast<int>(periods.min), most = static_cast<int>(periods.max);
-    const std::vector<double> energies = energies_of(candidate, model, least, most);
+    const std::vector<double> energies = energies_of(candidate, model, least, most, threads);
     std::vector<int> orders;
     for (int order = least; order <= most; ++order)
       if (energies[static_cast<std::size_t>(order - least)] > 0.0) orders.push_back(order);

@@ -18,6 +18,6 @@ namespace sealwatch::mismatch {
 /// Laws with a whole number of periods in a turn set out from the numbers with the strongest lines in place of usual
 /// ones, as many as there were; the others count as passed over (Candidate). Unchanged where no recording can be
 /// simulated.
-void set_out_from_strongest_orders(std::vector<Candidate>& candidates, const FittedModel& model);
+void set_out_from_strongest_orders(std::vector<Candidate>& candidates, const FittedModel& model, int threads);
 
 }  // namespace sealwatch::mismatch

@@ -277,7 +277,7 @@ Eigen::MatrixXd stacked(const std::vector<Left>& parts, Eigen::MatrixXd Left::*w
 Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
   Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
                                                     options.closed_forms)};
-  set_out_from_strongest_orders(screening.candidates, model);
+  set_out_from_strongest_orders(screening.candidates, model, options.threads);
   const std::vector<PassColumn> columns = pass_columns(screening.candidates);
   const std::size_t recordings = data.samples.size();
   const Layout layout = lay_out(columns, recordings);

@@ -25,7 +25,7 @@ TEST(Orders, OfAShaftThatCogsComeFirst) {
   ASSERT_TRUE(model);
   std::vector<Candidate> candidates = find_candidates(*model->problem.recordings.front().simulation, {}, false);
   const std::vector<Candidate> before = candidates;
-  set_out_from_strongest_orders(candidates, *model);
+  set_out_from_strongest_orders(candidates, *model, 2);
   ASSERT_EQ(candidates.size(), before.size());
   int asked = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {

@@ -236,7 +236,7 @@ Status LayerRunner::take(Message message) {
   if (state == InputState::awaiting) await(input, clock_.now());
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
-  admission_.note(*input);
+  admission_.note(*input, false);
   replaying_[asset_id] = header_of(*input).replay;
   log_message(LogLevel::debug, "received", *input);
   lanes_.add(asset_id, **id, input);

@@ -558,6 +558,7 @@ TEST_F(RunnerTest, TakesARefusedTestInOnceItsStartTimeIsCorrected) {
       blocks[k].start_time_ns = now_ns + (k < 2 ? -40 : days) * kDay_ns;
     }
     return blocks;
+  simulated.header.replay = true;
   };
   const auto tests = [&] {
     std::vector<std::string> ids;

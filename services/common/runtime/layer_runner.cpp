@@ -37,8 +37,8 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       strangers_(options_.strangers),
       retention_(options_.retention),
       lanes_(
-          make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
-          [&bus] { bus.wake(); }, options_.lanes) {}
+          make_layer, [this](const std::string& message_id) { return input(message_id); }, [&bus] { bus.wake(); },
+          options_.lanes) {}
 
 Status LayerRunner::start() {
   // Subscribed first: what comes while the past is restored waits on the bus.
@@ -241,6 +241,12 @@ Status LayerRunner::take(Message message) {
   log_message(LogLevel::debug, "received", *input);
   lanes_.add(asset_id, **id, input);
   return {};
+}
+
+/// Also one that was taken just now, and is in the journal with all of its batch.
+Result<std::optional<Message>> LayerRunner::input(const std::string& message_id) {
+  const auto taken = taken_ids_.find(message_id);
+  return taken == taken_ids_.end() ? journal_.input(message_id) : std::optional(*taken_[taken->second].message);
 }
 
 Status LayerRunner::let_lanes_work() {

@@ -136,6 +136,7 @@ class LayerRunner {
   [[nodiscard]] Status let_lanes_work();
   [[nodiscard]] Status store_batch();
   void give_memory_back();
+  [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
   [[nodiscard]] Status keep(Conclusion conclusion);
   [[nodiscard]] Status let_time_pass();
   [[nodiscard]] bool may_be_on_its_way(const std::string& asset_id) const;

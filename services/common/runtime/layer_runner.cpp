@@ -347,9 +347,12 @@ Status LayerRunner::let_time_pass() {
 }
 
 /// A test is not overdue or lost while messages about it may be on their way.
-bool LayerRunner::may_be_on_its_way(const std::string& asset_id) const {
-  return reader_->is_behind(asset_id) ||
-         std::ranges::any_of(ready_, [&](const Message& message) { return asset_of(message) == asset_id; });
+bool LayerRunner::may_be_on_its_way(const std::string& asset_id) {
+  const bool may = reader_->is_behind(asset_id) ||
+                   std::ranges::any_of(ready_, [&](const Message& message) { return asset_of(message) == asset_id; });
+  if (!may) return behind_since_.erase(asset_id), false;
+  const auto now = steady_clock::now();
+  return now - behind_since_.try_emplace(asset_id, now).first->second < options_.longest_behind;
 }
 
 // With its time: it stays in the status until another one comes.

@@ -338,6 +338,26 @@ TEST_F(TimeUnderFloodTest, PassesThoughEverNewStrangersSayThatThereIsMoreOfThem)
   }));
 }
 
+TEST_F(TimeUnderFloodTest, PassesThoughAStreamGoesOnForEver) {
+  RunnerOptions options = fast_options();
+  options.longest_behind = milliseconds(500);
+  std::uint64_t sent = 0;
+  EXPECT_TRUE(passes(options, [&] {
+    TestFeatures forged;
+    forged.asset_id = "A";
+    const std::string pst_id = "forged-" + std::to_string(++sent);
+    forged.header = header("test_features/" + pst_id, pst_id);
+    forged.header.writer_id = "crawler";
+    forged.header.stream_sequence = sent;
+    ASSERT_TRUE(listener_.bus().publish(Message(forged)));
+    ServiceStatus claim;
+    claim.service = "data_manipulation";
+    claim.writer_id = "crawler";
+    claim.written = {{"test_features", "crawler", 1'000'000'000}};
+    ASSERT_TRUE(listener_.bus().publish(claim));
+  }));
+}
+
 TEST_F(RunnerTest, AsksForWhatIsMissingUnderAFloodToo) {
   const auto process = joiner();
   TestFeatures features;

@@ -185,6 +185,9 @@ std::optional<std::string> Admission::refusal(const Message& message, UtcTime no
   const Header& header = header_of(message);
   if (header.message_id.starts_with(kDamagedMessage))
     return visible(header.message_id) + ": its writer's journal is damaged there; see the alarms of that service";
+  if (header.message_id.starts_with(kUnreadableMessage))
+    return visible(header.message_id) + ": it has a value that this service does not know, or ends before it should; " +
+           "update this service, or correct who sends it";
   const auto* const raw = std::get_if<RawSamples>(&message);
   if (auto why = raw != nullptr ? refusal_of_test(*raw) : refusal_of_samples(message)) return why;
   if (header.event_time_known && !is_time(header.event_time_ns))

@@ -1,6 +1,7 @@
 #include "services/common/runtime/try_record.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdio>
 #include <fstream>
@@ -21,6 +22,18 @@ Former entry_in(const std::string& file) {
   for (Former entry{}; in.read(reinterpret_cast<char*>(&entry), sizeof entry);)
     if (entry.message != 0) return entry;
   return {};
+}
+
+// A map of a file that has no place on the disk ends the process where it is written to (SIGBUS), on a full disk.
+TEST(TryRecord, HasItsPlaceOnTheDiskBeforeItIsWrittenTo) {
+  const std::string file = ::testing::TempDir() + "tries-with-a-place";
+  std::remove(file.c_str());
+  TryRecord record;
+  ASSERT_TRUE(record.keep_in(file));
+  struct stat status {};
+  ASSERT_EQ(::stat(file.c_str(), &status), 0);
+  EXPECT_GT(status.st_size, 0);
+  EXPECT_GE(512 * status.st_blocks, status.st_size);
 }
 
 // After a return to the former version a message with deaths had 65 536 failures, and was set aside untried.

@@ -1,6 +1,5 @@
 #include "services/advisory_generation/advisory_generation.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "services/advisory_generation/advisory_revision.hpp"
@@ -28,9 +27,9 @@ void AdvisoryGeneration::restore(const Message& own_output) {
   const auto* advisory = std::get_if<Advisory>(&own_output);
   if (!advisory) return;
   Asset& asset = assets_[advisory->asset_id];
-  asset.concluded.push_back(advisory->header.message_id);
+  asset.concluded.insert(advisory->header.message_id);
   if (advisory->state == AdvisoryState::superseded) return;
-  asset.current = *advisory;
+  stand(*advisory, asset);
   const Header& header = advisory->header;
   if (is_answer_to_replacement(*advisory)) {
     note_replacement(header.source_ids.front(), UtcTime{header.event_time_ns}, asset);
@@ -53,12 +52,14 @@ void AdvisoryGeneration::restore(const Message& own_output) {
 }
 
 Conclusion AdvisoryGeneration::receive(const Message& input) {
-  if (const auto* life = std::get_if<RemainingLife>(&input)) return join(*life, &Pending::life);
-  if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health);
-  if (const auto* leakage = std::get_if<LeakageEstimate>(&input)) return join(*leakage, &Pending::leakage);
+  if (const auto* life = std::get_if<RemainingLife>(&input)) return join(*life, &Pending::life, &Answers::life);
+  if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health, &Answers::health);
+  if (const auto* leakage = std::get_if<LeakageEstimate>(&input))
+    return join(*leakage, &Pending::leakage, &Answers::leakage);
   if (const auto* state = std::get_if<StateReport>(&input))
-    return state->header.pst_id.empty() && !retraction_answered(state->header) ? overdue(*state)
-                                                                               : join(*state, &Pending::state);
+    return state->header.pst_id.empty() && !retraction_answered(state->header)
+               ? overdue(*state)
+               : join(*state, &Pending::state, &Answers::state);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input))
     return is_replacement(*event) ? replaced(*event) : retracted(*event);
   if (const auto* seen = std::get_if<Acknowledgement>(&input)) return acknowledged(*seen);
@@ -66,35 +67,55 @@ Conclusion AdvisoryGeneration::receive(const Message& input) {
 }
 
 template <class Input>
-Conclusion AdvisoryGeneration::join(const Input& input, std::optional<Input> Pending::*slot) {
+Conclusion AdvisoryGeneration::join(const Input& input, Halves<Input> Pending::*halves,
+                                    std::optional<Input> Answers::*slot) {
   if (retraction_answered(input.header)) return take_answer(input, slot);
   const std::string& pst_id = input.header.pst_id;
-  const auto& concluded = assets_[input.asset_id].concluded;
-  const bool known = std::find(concluded.begin(), concluded.end(), "advisory/" + pst_id) != concluded.end();
-  if (pst_id.empty() || known) return {.outputs = {}, .consumed = {input.header.message_id}};
-  Pending& test = pending_[pst_id];
-  test.*slot = input;
-  if (!test.complete()) return {};
-  const Evidence evidence{*test.life, *test.health, *test.state, *test.leakage};
-  pending_.erase(pst_id);
-  Conclusion conclusion = advise(evidence);
-  conclusion.consumed = {evidence.life.header.message_id, evidence.health.header.message_id,
-                         evidence.state.header.message_id, evidence.leakage.header.message_id};
+  Asset& asset = assets_[input.asset_id];
+  if (pst_id.empty() || asset.concluded.contains("advisory/" + pst_id))
+    return {.outputs = {}, .consumed = {input.header.message_id}};
+  Conclusion conclusion;
+  Pending& all = asset.pending;
+  (all.*halves).add(input, conclusion);
+  if (!all.life.has(pst_id) || !all.health.has(pst_id) || !all.state.has(pst_id) || !all.leakage.has(pst_id) ||
+      !all.life.is_here(pst_id, conclusion) || !all.health.is_here(pst_id, conclusion) ||
+      !all.state.is_here(pst_id, conclusion) || !all.leakage.is_here(pst_id, conclusion))
+    return conclusion;
+  const Evidence evidence{all.life.take(pst_id, conclusion), all.health.take(pst_id, conclusion),
+                          all.state.take(pst_id, conclusion), all.leakage.take(pst_id, conclusion)};
+  for (const Header* of :
+       {&evidence.life.header, &evidence.health.header, &evidence.state.header, &evidence.leakage.header})
+    conclusion.consumed.push_back(of->message_id);
+  advise(evidence, conclusion);
   return conclusion;
 }
 
-Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
-  Conclusion conclusion;
+std::size_t AdvisoryGeneration::held() const {
+  std::size_t held = 0;
+  for (const auto& [asset_id, asset] : assets_)
+    held += asset.pending.life.overtaken() + asset.pending.health.overtaken() + asset.pending.state.overtaken() +
+            asset.pending.leakage.overtaken();
+  return held;
+}
+
+void AdvisoryGeneration::advise(const Evidence& evidence, Conclusion& conclusion) {
   const std::string& asset_id = evidence.life.asset_id;
   Asset& asset = assets_[asset_id];
   const Header& cause = evidence.life.header;
-  if (!asset.retracted.counts(cause.pst_id)) return conclusion;
+  if (!asset.retracted.counts(cause.pst_id)) return;
   std::optional<UtcTime> now;
   if (cause.event_time_known) now = UtcTime{cause.event_time_ns};
-  if (now && ((asset.last_test && *now < *asset.last_test) || (asset.replaced && *now < *asset.replaced)))
-    return conclusion;
+  if (now && asset.last_test && *now < *asset.last_test) {
+    // One that was played back may be of any time. One that was made just now is the latest, or a date is wrong.
+    if (!cause.replay)
+      conclusion.refused.push_back(
+          {evidence.life, "the test is of " + format_utc(*now) + ", and one of " + format_utc(*asset.last_test) +
+                              " is known: its advice stands; if that date is wrong, retract it"});
+    return;
+  }
+  if (now && asset.replaced && *now < *asset.replaced) return;
   // One that cannot be placed: what the others advise stands, unless the actuator does not do its stroke.
-  if (!now && asset.last_test && evidence.state.verdict != PstVerdict::failed) return conclusion;
+  if (!now && asset.last_test && evidence.state.verdict != PstVerdict::failed) return;
   if (now) asset.last_test = now;
 
   const SiteConfig* site = site_of(asset_id);
@@ -102,7 +123,6 @@ Conclusion AdvisoryGeneration::advise(const Evidence& evidence) {
   const InForce& in_force = asset.memory.judge(assessment.verdict, now, options_);
   remember({cause.pst_id, now, assessment.verdict}, asset);
   put_out(evidence, cause, assessment, in_force, conclusion);
-  return conclusion;
 }
 
 void AdvisoryGeneration::put_out(const Evidence& evidence, const Header& cause, const Assessment& assessment,
@@ -132,8 +152,7 @@ Conclusion AdvisoryGeneration::overdue(const StateReport& report) {
   Asset& asset = assets_[report.asset_id];
   const bool already_tested =
       asset.last_test && report.header.event_time_known && UtcTime{report.header.event_time_ns} < *asset.last_test;
-  const bool answered = std::find(asset.concluded.begin(), asset.concluded.end(),
-                                  "advisory/" + report.header.message_id) != asset.concluded.end();
+  const bool answered = asset.concluded.contains("advisory/" + report.header.message_id);
   if (!report.pst_overdue || already_tested || answered) return conclusion;
   put_out(with_overdue_test(asset.current, report), conclusion);
   return conclusion;
@@ -157,11 +176,8 @@ Conclusion AdvisoryGeneration::acknowledged(const Acknowledgement& acknowledgeme
   Conclusion conclusion{.outputs = {}, .consumed = {acknowledgement.header.message_id}};
   Asset& asset = assets_[acknowledgement.asset_id];
   if (!asset.current) return conclusion;
-  std::optional<Advisory> answer = with_acknowledgement(*asset.current, acknowledgement);
-  if (!answer) return conclusion;
-  const auto& concluded = asset.concluded;
-  if (std::find(concluded.begin(), concluded.end(), answer->header.message_id) == concluded.end())
-    put_out(std::move(*answer), conclusion);
+  std::optional<Advisory> answer = with_acknowledgement(*asset.current, asset.current_id, acknowledgement);
+  if (answer && !asset.concluded.contains(answer->header.message_id)) put_out(std::move(*answer), conclusion);
   return conclusion;
 }
 
@@ -169,12 +185,17 @@ void AdvisoryGeneration::put_out(Advisory advisory, Conclusion& conclusion) {
   Asset& asset = assets_[advisory.asset_id];
   if (asset.current && asset.current->advisory_id == advisory.supersedes_id && advisory.revision == 1) {
     Advisory old = superseded(*asset.current, advisory);
-    asset.concluded.push_back(old.header.message_id);
+    asset.concluded.insert(old.header.message_id);
     conclusion.outputs.emplace_back(std::move(old));
   }
-  asset.concluded.push_back(advisory.header.message_id);
-  asset.current = advisory;
+  asset.concluded.insert(advisory.header.message_id);
+  stand(advisory, asset);
   conclusion.outputs.emplace_back(std::move(advisory));
+}
+
+void AdvisoryGeneration::stand(const Advisory& advisory, Asset& asset) {
+  asset.current_id = id_without_acknowledgements(advisory, asset.current_id);
+  asset.current = advisory;
 }
 
 const SiteConfig* AdvisoryGeneration::site_of(const std::string& asset_id) const {

@@ -6,6 +6,7 @@
 // below have said what they make of them. Tests older than the last one judged change nothing. docs/advisories.md has the decision table and the rules against flapping.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/message/retracted_tests.hpp"
+#include "sealwatch/port/halves.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/advisory_generation/options.hpp"
 #include "services/advisory_generation/recommendation.hpp"
@@ -33,15 +35,23 @@ class AdvisoryGeneration final : public Layer {
   [[nodiscard]] std::span<const Topic> outputs() const override;
   void restore(const Message& own_output) override;
   [[nodiscard]] Conclusion receive(const Message& input) override;
+  [[nodiscard]] std::size_t held() const override;
 
  private:
-  /// Inputs of one test, or answers to one retraction, until all are there.
+  /// Inputs of tests of which not all are there.
   struct Pending {
-    std::optional<RemainingLife> life;
-    std::optional<HealthReport> health;
-    std::optional<StateReport> state;
-    std::optional<LeakageEstimate> leakage;
-    [[nodiscard]] bool complete() const { return life && health && state && leakage; }
+    Halves<RemainingLife> life;
+    Halves<HealthReport> health;
+    Halves<StateReport> state;
+    Halves<LeakageEstimate> leakage;
+  };
+  /// Answers to one retraction, until all are there.
+  struct Answers {
+    std::string retraction_id;
+    std::optional<RemainingLife> life = {};
+    std::optional<HealthReport> health = {};
+    std::optional<StateReport> state = {};
+    std::optional<LeakageEstimate> leakage = {};
   };
   /// One test of the memory, or a replacement between two.
   struct Judged {
@@ -50,25 +60,29 @@ class AdvisoryGeneration final : public Layer {
     TestVerdict verdict;
     std::string replacement_id = {};  ///< "" of a test
   };
-  /// What is remembered of one asset, all of it rebuilt from its advisories.
+  /// What is remembered of one asset, all of it rebuilt from its advisories, and what waits.
   struct Asset {
     std::optional<Advisory> current;
+    std::string current_id;  ///< message id under which it came about, before anybody acknowledged it
     VerdictMemory memory;
     std::optional<UtcTime> last_test;
     std::optional<UtcTime> replaced;
     std::vector<Judged> judged;                   ///< the last kMostJudged, in the order of judgement
     std::map<std::string, UtcTime> replacements;  ///< by message id
     RetractedTests retracted;
-    std::set<std::string> retractions;   ///< all that are known
-    std::vector<std::string> concluded;  ///< message ids of all advisories
+    std::set<std::string> retractions;  ///< all that are known
+    std::set<std::string> concluded;    ///< message ids of all advisories
+    Pending pending;
+    std::deque<Answers> answers;  ///< at most kMostAnswered
   };
 
   AdvisoryGeneration(const Configuration& configuration, const Options& options)
       : configuration_(configuration), options_(options) {}
 
   template <class Input>
-  [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
-  [[nodiscard]] Conclusion advise(const Evidence& evidence);
+  [[nodiscard]] Conclusion join(const Input& input, Halves<Input> Pending::*halves,
+                                std::optional<Input> Answers::*slot);
+  void advise(const Evidence& evidence, Conclusion& conclusion);
   /// What all tests so far, of which the evidence is the last, make the advice; and puts it out.
   void put_out(const Evidence& evidence, const Header& cause, const Assessment& assessment, const InForce& in_force,
                Conclusion& conclusion);
@@ -84,13 +98,15 @@ class AdvisoryGeneration final : public Layer {
   void judge_anew(Asset& asset) const;
   /// Takes what a layer below made of the tests that count after a retraction.
   template <class Input>
-  [[nodiscard]] Conclusion take_answer(const Input& input, std::optional<Input> Pending::*slot);
+  [[nodiscard]] Conclusion take_answer(const Input& input, std::optional<Input> Answers::*slot);
+  [[nodiscard]] static Answers& answers_to(const std::string& retraction_id, Asset& asset, Conclusion& conclusion);
   /// The advice that follows from them, once all have answered.
-  void renew(const std::string& retraction_id, Conclusion& conclusion);
+  void renew(const std::string& retraction_id, Asset& asset, Conclusion& conclusion);
   /// What the last test that counts says by all that is known now.
   static void revise_last(const TestVerdict& verdict, Asset& asset);
   static void note_replacement(const std::string& message_id, UtcTime time, Asset& asset);
   static void remember(Judged judged, Asset& asset);
+  static void stand(const Advisory& advisory, Asset& asset);
   [[nodiscard]] Conclusion acknowledged(const Acknowledgement& acknowledgement);
   /// Remembers `advisory` and puts it out, after the one that it supersedes.
   void put_out(Advisory advisory, Conclusion& conclusion);
@@ -101,8 +117,7 @@ class AdvisoryGeneration final : public Layer {
 
   Configuration configuration_;
   Options options_;
-  std::map<std::string, Pending> pending_;  ///< by pst_id, or id of the retraction
-  std::map<std::string, Asset> assets_;     ///< by asset_id
+  std::map<std::string, Asset> assets_;  ///< by asset_id
 };
 
 }  // namespace sealwatch::advisory_generation

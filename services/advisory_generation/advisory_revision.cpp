@@ -1,12 +1,18 @@
 #include "services/advisory_generation/advisory_revision.hpp"
-#include "services/common/text/words.hpp"
 
 #include <algorithm>
+
+#include "sealwatch/core/text.hpp"
+#include "services/common/text/words.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
 
 constexpr const char* kProducer = "advisory_generation 0.1.0";
+constexpr const char* kAcknowledged = "/acknowledged/";
+constexpr const char* kNoted = "/noted/";
+/// Twice what one person may say. Who said more stands in the audit trail.
+constexpr std::size_t kLongestRemark = 8000;
 
 /// The header of an answer to `cause`, whose test (if it has one) or message names it.
 Header answer_to(const Header& cause) {
@@ -78,21 +84,26 @@ Advisory superseded(Advisory old, const Advisory& successor) {
   return old;
 }
 
-std::optional<Advisory> with_acknowledgement(const Advisory& current, const Acknowledgement& acknowledgement) {
+std::string id_without_acknowledgements(const Advisory& advisory, const std::string& before) {
+  const std::string& id = advisory.header.message_id;
+  return id.starts_with(before + kAcknowledged) || id.starts_with(before + kNoted) ? before : id;
+}
+
+std::optional<Advisory> with_acknowledgement(const Advisory& current, const std::string& current_id,
+                                             const Acknowledgement& acknowledgement) {
   Advisory answer = current;
-  const std::string who_and_when =
-      acknowledgement.acknowledged_by + "/" + format_utc({acknowledgement.header.event_time_ns});
+  const std::string its_id = content_hash(acknowledgement.header.message_id);
   answer.header.source_ids = {current.header.message_id, acknowledgement.header.message_id};
   if (acknowledgement.advisory_id != current.advisory_id) {
-    answer.header.message_id = current.header.message_id + "/noted/" + who_and_when;
-    if (!answer.acknowledgement_remark.empty()) answer.acknowledgement_remark += "; ";  // what somebody said stays
-    answer.acknowledgement_remark += "acknowledgement of '" + acknowledgement.advisory_id + "' by " +
-                                     acknowledgement.acknowledged_by + " not applied: this advisory is '" +
-                                     current.advisory_id + "'";
+    answer.header.message_id = current_id + kNoted + its_id;
+    std::string remark = answer.acknowledgement_remark.empty() ? "" : "; ";  // what somebody said stays
+    remark += "acknowledgement of '" + acknowledgement.advisory_id + "' by " + acknowledgement.acknowledged_by +
+              " not applied: this advisory is '" + current.advisory_id + "'";
+    if (answer.acknowledgement_remark.size() + remark.size() <= kLongestRemark) answer.acknowledgement_remark += remark;
     return answer;
   }
   if (current.state == AdvisoryState::acknowledged) return std::nullopt;
-  answer.header.message_id = current.header.message_id + "/acknowledged/" + who_and_when;
+  answer.header.message_id = current_id + kAcknowledged + its_id;
   answer.state = AdvisoryState::acknowledged;
   answer.acknowledged_by = acknowledgement.acknowledged_by;
   answer.acknowledged_at_ns = acknowledgement.header.event_time_ns;

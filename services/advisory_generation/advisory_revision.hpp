@@ -22,9 +22,11 @@ namespace sealwatch::advisory_generation {
 /// `old` as it is published once `successor` takes its place.
 [[nodiscard]] Advisory superseded(Advisory old, const Advisory& successor);
 
-/// `current` acknowledged; with a remark when the acknowledgement names another advisory; none when it is acknowledged
-/// already.
-[[nodiscard]] std::optional<Advisory> with_acknowledgement(const Advisory& current,
+/// Under which id an advisory that was acknowledged any number of times came about; `before` is that of the one before.
+[[nodiscard]] std::string id_without_acknowledgements(const Advisory& advisory, const std::string& before);
+/// `current`, which came about under `current_id`, acknowledged; with a remark when the acknowledgement names another
+/// advisory; none when it is acknowledged already.
+[[nodiscard]] std::optional<Advisory> with_acknowledgement(const Advisory& current, const std::string& current_id,
                                                            const Acknowledgement& acknowledgement);
 
 /// The call for an overdue test: its own advisory, or a reason more where something at least as urgent stands.

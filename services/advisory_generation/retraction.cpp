@@ -7,6 +7,8 @@ namespace {
 
 /// Five years of monthly tests: the rules against flapping look back over far fewer.
 constexpr std::size_t kMostJudged = 60;
+/// Retractions whose answers are on their way.
+constexpr std::size_t kMostAnswered = 256;
 
 }  // namespace
 
@@ -75,35 +77,49 @@ Conclusion AdvisoryGeneration::retracted(const MaintenanceEvent& event) {
 }
 
 template <class Input>
-Conclusion AdvisoryGeneration::take_answer(const Input& input, std::optional<Input> Pending::*slot) {
+Conclusion AdvisoryGeneration::take_answer(const Input& input, std::optional<Input> Answers::*slot) {
   const std::string id = *retraction_answered(input.header);
-  const Asset& asset = assets_[input.asset_id];
-  const bool is_known = std::ranges::find(asset.concluded, "advisory/" + renewed_id(id)) != asset.concluded.end();
-  if (is_known || !asset.current || !retraction_of(input.asset_id, id))
+  Asset& asset = assets_[input.asset_id];
+  if (asset.concluded.contains("advisory/" + renewed_id(id)) || !asset.current || !retraction_of(input.asset_id, id))
     return {.outputs = {}, .consumed = {input.header.message_id}};
-  pending_[id].*slot = input;
   Conclusion conclusion;
-  renew(id, conclusion);
+  answers_to(id, asset, conclusion).*slot = input;
+  renew(id, asset, conclusion);
   return conclusion;
 }
 
-template Conclusion AdvisoryGeneration::take_answer(const RemainingLife&, std::optional<RemainingLife> Pending::*);
-template Conclusion AdvisoryGeneration::take_answer(const HealthReport&, std::optional<HealthReport> Pending::*);
-template Conclusion AdvisoryGeneration::take_answer(const StateReport&, std::optional<StateReport> Pending::*);
-template Conclusion AdvisoryGeneration::take_answer(const LeakageEstimate&, std::optional<LeakageEstimate> Pending::*);
+template Conclusion AdvisoryGeneration::take_answer(const RemainingLife&, std::optional<RemainingLife> Answers::*);
+template Conclusion AdvisoryGeneration::take_answer(const HealthReport&, std::optional<HealthReport> Answers::*);
+template Conclusion AdvisoryGeneration::take_answer(const StateReport&, std::optional<StateReport> Answers::*);
+template Conclusion AdvisoryGeneration::take_answer(const LeakageEstimate&, std::optional<LeakageEstimate> Answers::*);
 
-void AdvisoryGeneration::renew(const std::string& retraction_id, Conclusion& conclusion) {
-  const auto found = pending_.find(retraction_id);
-  if (found == pending_.end()) return;
-  const Pending& answers = found->second;
-  if (!answers.life || !answers.health || !answers.state) return;
-  Asset& asset = assets_[answers.life->asset_id];
+AdvisoryGeneration::Answers& AdvisoryGeneration::answers_to(const std::string& retraction_id, Asset& asset,
+                                                            Conclusion& conclusion) {
+  const auto found = std::ranges::find(asset.answers, retraction_id, &Answers::retraction_id);
+  if (found != asset.answers.end()) return *found;
+  if (asset.answers.size() == kMostAnswered) {
+    const auto refuse = [&](const auto& answer) {
+      if (!answer) return;
+      conclusion.consumed.push_back(answer->header.message_id);
+      conclusion.refused.push_back({*answer, "other layers did not answer this retraction, and did later ones"});
+    };
+    const Answers& first = asset.answers.front();
+    refuse(first.life), refuse(first.health), refuse(first.state), refuse(first.leakage);
+    asset.answers.pop_front();
+  }
+  return asset.answers.emplace_back(Answers{.retraction_id = retraction_id});
+}
+
+void AdvisoryGeneration::renew(const std::string& retraction_id, Asset& asset, Conclusion& conclusion) {
+  const auto found = std::ranges::find(asset.answers, retraction_id, &Answers::retraction_id);
+  if (found == asset.answers.end() || !found->life || !found->health || !found->state) return;
+  const Answers answers = std::move(*found);
+  asset.answers.erase(found);
   LeakageEstimate last;  // what is known of it stands in the remaining life
   last.asset_id = answers.life->asset_id;
   last.header.event_time_known = last.used_for_forecast = answers.life->condition_known;
   last.header.event_time_ns = answers.life->header.event_time_ns;
   const Evidence evidence{*answers.life, *answers.health, *answers.state, last};
-  pending_.erase(found);
   for (const Header* answer : {&evidence.life.header, &evidence.health.header, &evidence.state.header})
     conclusion.consumed.push_back(answer->message_id);
   const bool was_known = !learn(*retraction_of(evidence.life.asset_id, retraction_id), asset);

@@ -54,7 +54,7 @@ std::string make_pst_id(const RawSamples& first_block) {
   const std::string content =
       first_block.content_hash.empty() ? hash_of(first_block.samples) : plain(first_block.content_hash);
   return plain(first_block.asset_id) + "-" + when + "-" + content.substr(0, kHashDigits) +
-         (is_made_up(first_block.source_id) ? "-simulated" : "");
+         std::string(is_made_up(first_block.source_id) ? kEndOfMadeUpId : "");
 }
 
 }  // namespace sealwatch

@@ -1,6 +1,7 @@
 #include "services/data_acquisition/recordings_folder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/visible_text.hpp"
@@ -40,7 +41,9 @@ std::vector<Message> RecordingsFolder::look() {
   put_away_concluded();
   std::vector<Message> messages;
   std::size_t taken = 0;
-  for (const fs::path& path : recordings()) {
+  const std::vector<fs::path> there = recordings();
+  std::erase_if(files_, [&](const auto& file) { return !std::ranges::binary_search(there, file.first); });
+  for (const fs::path& path : there) {
     if (taken == kMostFilesPerLook) break;
     const bool settled = is_settled(path);
     File& file = files_[path];
@@ -54,7 +57,7 @@ std::vector<Message> RecordingsFolder::look() {
 }
 
 /// CSV, MAT and HDF5 files right in the folder, by name.
-std::vector<fs::path> RecordingsFolder::recordings() const {
+std::vector<fs::path> RecordingsFolder::recordings() {
   std::vector<fs::path> paths;
   std::error_code error;
   for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error)) {
@@ -63,6 +66,13 @@ std::vector<fs::path> RecordingsFolder::recordings() const {
     const bool is_one = suffix == ".csv" || suffix == ".mat" || suffix == ".h5" || suffix == ".hdf5";
     if (is_one && !entry->is_directory(ignored)) paths.push_back(entry->path());
   }
+  const bool was_readable = std::exchange(is_readable_, !error);
+  if (error && was_readable)
+    report_(Error{.file = directory_.string(),
+                  .place = "recordings_directory",
+                  .value = {},
+                  .rule = "cannot be read: " + error.message(),
+                  .advice = "make it again, or let the service read it; nothing dropped there is taken meanwhile"});
   std::sort(paths.begin(), paths.end());
   return paths;
 }
@@ -80,7 +90,7 @@ bool RecordingsFolder::is_settled(const fs::path& path) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);  // none of a pipe or a device, which is refused in its turn
   const fs::file_time_type changed = fs::last_write_time(path, error);
-  if (error) return false;
+  if (error) return fs::is_symlink(fs::symlink_status(path, error));  // which leads nowhere, and is refused in its turn
   const fs::file_time_type sidecar_changed = fs::last_write_time(fs::path(path).replace_extension(".yaml"), error);
   File& file = files_[path];
   const bool same = file.size == size && file.changed == changed && file.sidecar_changed == sidecar_changed;

@@ -42,7 +42,7 @@ class RecordingsFolder {
     bool stuck = false;      ///< could not be moved away: reported once, then left alone
     RawSamples first_block;  ///< without samples it would not be known again: content_hash is always set
   };
-  [[nodiscard]] std::vector<std::filesystem::path> recordings() const;
+  [[nodiscard]] std::vector<std::filesystem::path> recordings();
   void put_away_concluded();
   [[nodiscard]] bool is_settled(const std::filesystem::path& path);
   void take(const std::filesystem::path& path, std::vector<Message>& messages);
@@ -57,6 +57,7 @@ class RecordingsFolder {
   Report report_;
   int looks_until_settled_;
   std::map<std::filesystem::path, File> files_;
+  bool is_readable_ = true;  ///< at the last look
 };
 
 }  // namespace sealwatch

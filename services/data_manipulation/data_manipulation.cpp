@@ -1,7 +1,9 @@
 #include "services/data_manipulation/data_manipulation.hpp"
 
+#include <algorithm>
 #include <cassert>
 
+#include "sealwatch/core/test_limits.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/data_manipulation/conclude_test.hpp"
 
@@ -10,6 +12,11 @@ namespace {
 
 constexpr Topic kInputs[] = {Topic::sample_block};
 constexpr Topic kOutputs[] = {Topic::test_window, Topic::test_features};
+
+/// Of one asset, played-back ones that were broken off among them.
+constexpr std::size_t kMostTests = 256;
+/// A block counts as so many at least.
+constexpr std::size_t kLeastNumbers = 16;
 
 bool ends(const SampleBlock& block) {
   return block.boundary == BlockBoundary::end || block.boundary == BlockBoundary::whole;
@@ -53,9 +60,16 @@ Conclusion DataManipulation::receive(const Message& input) {
     conclusion.consumed.push_back(header_of(input).message_id);
     return conclusion;
   }
-  waiting_[pst_id].push_back(*block);
-  if (!ends(*block)) return conclusion;
-  conclusion.later = [blocks = waiting_.extract(pst_id).mapped(), asset = view(block->asset_id),
+  std::deque<Waiting>& of_asset = waiting_[block->asset_id];
+  Waiting test = take(pst_id, of_asset);
+  test.numbers += std::max(block->samples.time_s.size() * (1 + block->samples.channels.size()), kLeastNumbers);
+  test.blocks.push_back(*block);
+  if (!ends(*block)) {
+    of_asset.push_back(std::move(test));
+    forget_some(of_asset, conclusion);
+    return conclusion;
+  }
+  conclusion.later = [blocks = std::move(test.blocks), asset = view(block->asset_id),
                       options = options_](const std::stop_token& /*bounded by the test's rows*/) {
     Conclusion of_test;
     for (const SampleBlock& one : blocks) of_test.consumed.push_back(one.header.message_id);
@@ -66,6 +80,26 @@ Conclusion DataManipulation::receive(const Message& input) {
   };
   concluded_.insert(pst_id);
   return conclusion;
+}
+
+DataManipulation::Waiting DataManipulation::take(const std::string& pst_id, std::deque<Waiting>& of_asset) {
+  const auto found = std::ranges::find(of_asset, pst_id, &Waiting::pst_id);
+  if (found == of_asset.end()) return {.pst_id = pst_id};
+  Waiting test = std::move(*found);
+  of_asset.erase(found);
+  return test;
+}
+
+void DataManipulation::forget_some(std::deque<Waiting>& of_asset, Conclusion& conclusion) {
+  std::size_t numbers = 0;
+  for (const Waiting& test : of_asset) numbers += test.numbers;
+  while (numbers > 2 * kTestLimits.most_numbers || of_asset.size() > kMostTests) {
+    const Waiting& oldest = of_asset.front();
+    for (const SampleBlock& block : oldest.blocks) conclusion.consumed.push_back(block.header.message_id);
+    conclusion.refused.push_back({oldest.blocks.back(), "the end of its test did not come, and others began"});
+    numbers -= oldest.numbers;
+    of_asset.pop_front();
+  }
 }
 
 AssetView DataManipulation::view(const std::string& asset_id) const {

@@ -2,13 +2,16 @@
 //
 // Blocks are kept, unconsumed, until the one that ends the test comes; then everything is concluded, later, so that the
 // blocks of other assets do not wait for it, and all of them are consumed. Blocks of a test that is concluded already
-// are consumed and change nothing.
+// are consumed and change nothing. Of the tests whose end never comes only those are kept of which something came last,
+// as many as have no more samples than two tests may have.
 //
 // A test is complete when its begin and its end were recorded, it was not aborted, and the recording does not stop
 // short in the middle of the strokes; abort_reason says what was missing. FAILED channels are left out of the window;
 // their status says why.
 #pragma once
 
+#include <cstddef>
+#include <deque>
 #include <map>
 #include <set>
 #include <string>
@@ -34,12 +37,20 @@ class DataManipulation final : public Layer {
   [[nodiscard]] Conclusion receive(const Message& input) override;
 
  private:
+  /// Blocks of a test whose end did not come yet.
+  struct Waiting {
+    std::string pst_id;
+    std::size_t numbers = 0;
+    std::vector<SampleBlock> blocks = {};  ///< in the order of receipt
+  };
   [[nodiscard]] AssetView view(const std::string& asset_id) const;
+  [[nodiscard]] static Waiting take(const std::string& pst_id, std::deque<Waiting>& of_asset);
+  static void forget_some(std::deque<Waiting>& of_asset, Conclusion& conclusion);
 
   std::vector<AssetConfig> assets_;
   DataManipulationOptions options_;
-  std::map<std::string, std::vector<SampleBlock>> waiting_;  ///< by PST id, in the order of receipt
-  std::set<std::string> concluded_;                          ///< PST ids
+  std::map<std::string, std::deque<Waiting>> waiting_;  ///< by asset, that which got a block last at the end
+  std::set<std::string> concluded_;                     ///< PST ids
 };
 
 }  // namespace sealwatch

@@ -16,6 +16,10 @@ namespace {
 
 constexpr const char* kProducer = "health_assessment 0.1.0";
 
+/// Whose windows are waited for: what is further behind will not come.
+constexpr std::size_t kMostDeviating = 256;
+constexpr std::size_t kMostSettled = 4096;
+
 using Work = std::function<Conclusion(const std::stop_token&)>;
 
 /// Both, one after the other, as one piece of work.
@@ -96,11 +100,12 @@ std::optional<bool> DiscrepancyWatch::concluded(const std::string& pst_id) const
 
 void DiscrepancyWatch::take(const TestWindow& window, const AssetConfig& asset, const Explainer& explainer,
                             Conclusion& conclusion) {
-  if (settled_.erase(window.header.pst_id) > 0) {
+  const std::string& pst_id = window.header.pst_id;
+  if (std::erase(settled_, pst_id) > 0) {
     no_longer_needed_.push_back(window.header.message_id);
   } else {
-    windows_.emplace(window.header.pst_id, std::make_shared<const TestWindow>(window));
-    keep_complete_tests(asset, explainer, conclusion);
+    windows_.add(window, conclusion);
+    keep_complete_test(pst_id, asset, explainer, conclusion);
   }
   release(conclusion);
 }
@@ -109,15 +114,19 @@ void DiscrepancyWatch::take(const StateReport& report, bool admissible, bool fir
                             const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion) {
   if (!concluded_.contains(report.header.pst_id)) forget_windows_of_settled_tests();
   note_concluded(report.header.pst_id, admissible, first_after_replacement);
-  if (first_after_replacement) end_row();
+  if (first_after_replacement) end_row(conclusion);
   if (!admissible) {
-    settle(report);
+    settle(report, conclusion);
   } else if (persistent_residuals(report).empty()) {
-    end_row();
-    settle(report);
+    end_row(conclusion);
+    settle(report, conclusion);
   } else {
     deviating_.push_back(report);
-    keep_complete_tests(asset, explainer, conclusion);
+    keep_complete_test(report.header.pst_id, asset, explainer, conclusion);
+    if (deviating_.size() > kMostDeviating) {
+      settle(deviating_.front(), conclusion);
+      deviating_.pop_front();
+    }
   }
   release(conclusion);
 }
@@ -133,29 +142,29 @@ void DiscrepancyWatch::forget(const std::function<bool(const std::string& pst_id
   }
   std::erase_if(row_, [&](const StoredTest& test) { return is_retracted(test.report.header.pst_id); });
   for (const StateReport& report : deviating_)
-    if (is_retracted(report.header.pst_id)) settle(report);
+    if (is_retracted(report.header.pst_id)) settle(report, conclusion);
   std::erase_if(deviating_, [&](const StateReport& report) { return is_retracted(report.header.pst_id); });
   release(conclusion);
 }
 
-void DiscrepancyWatch::end_row() {
+void DiscrepancyWatch::end_row(Conclusion& conclusion) {
   for (const StoredTest& test : row_) {
     no_longer_needed_.push_back(test.report.header.message_id);
     no_longer_needed_.push_back(test.window->header.message_id);
   }
   row_.clear();
-  for (const StateReport& report : std::exchange(deviating_, {})) settle(report);
+  for (const StateReport& report : std::exchange(deviating_, {})) settle(report, conclusion);
 }
 
-void DiscrepancyWatch::settle(const StateReport& report) {
+void DiscrepancyWatch::settle(const StateReport& report, Conclusion& conclusion) {
   no_longer_needed_.push_back(report.header.message_id);
-  const auto window = windows_.find(report.header.pst_id);
-  if (window == windows_.end()) {
-    settled_.insert(report.header.pst_id);
+  const std::string& pst_id = report.header.pst_id;
+  if (windows_.has(pst_id)) {
+    no_longer_needed_.push_back(windows_.drop(pst_id, conclusion));
     return;
   }
-  no_longer_needed_.push_back(window->second->header.message_id);
-  windows_.erase(window);
+  settled_.push_back(pst_id);
+  if (settled_.size() > kMostSettled) settled_.pop_front();
 }
 
 /// Windows that came, after this process was started again, of tests that had been settled before. Kept tests have all
@@ -164,30 +173,27 @@ void DiscrepancyWatch::forget_windows_of_settled_tests() {
   const auto waits = [this](const std::string& pst_id) {
     return std::ranges::any_of(deviating_, [&](const StateReport& report) { return report.header.pst_id == pst_id; });
   };
-  for (auto window = windows_.begin(); window != windows_.end();) {
-    const bool settled = concluded_.contains(window->first) && !waits(window->first);
-    if (settled) no_longer_needed_.push_back(window->second->header.message_id);
-    window = settled ? windows_.erase(window) : std::next(window);
-  }
+  const auto is_settled = [&](const std::string& pst_id) { return concluded_.contains(pst_id) && !waits(pst_id); };
+  std::ranges::move(windows_.drop_if(is_settled), std::back_inserter(no_longer_needed_));
 }
 
-void DiscrepancyWatch::keep_complete_tests(const AssetConfig& asset, const Explainer& explainer,
-                                           Conclusion& conclusion) {
-  while (!deviating_.empty()) {
-    const auto window = windows_.find(deviating_.front().header.pst_id);
-    if (window == windows_.end()) return;
-    row_.push_back({std::move(deviating_.front()), window->second});
-    deviating_.pop_front();
-    windows_.erase(window);
-    if (row_.size() > kTestsOfAnalysis) {
-      no_longer_needed_.push_back(row_.front().report.header.message_id);
-      no_longer_needed_.push_back(row_.front().window->header.message_id);
-      row_.pop_front();
-    }
-    if (!due()) continue;
-    add_later(conclusion, analysis(asset, explainer));
-    analysis_begun_ = true;
+/// A test that deviates and whose window is there joins the row; those before it, whose windows did not come, do not.
+void DiscrepancyWatch::keep_complete_test(const std::string& pst_id, const AssetConfig& asset,
+                                          const Explainer& explainer, Conclusion& conclusion) {
+  const auto its = std::ranges::find(deviating_, pst_id, [](const StateReport& one) { return one.header.pst_id; });
+  if (its == deviating_.end() || !windows_.has(pst_id) || !windows_.is_here(pst_id, conclusion)) return;
+  row_.push_back({std::move(*its), std::make_shared<const TestWindow>(windows_.take(pst_id, conclusion))});
+  const auto overtaken = std::vector<StateReport>(deviating_.begin(), its);
+  deviating_.erase(deviating_.begin(), its + 1);
+  for (const StateReport& report : overtaken) settle(report, conclusion);
+  if (row_.size() > kTestsOfAnalysis) {
+    no_longer_needed_.push_back(row_.front().report.header.message_id);
+    no_longer_needed_.push_back(row_.front().window->header.message_id);
+    row_.pop_front();
   }
+  if (!due()) return;
+  add_later(conclusion, analysis(asset, explainer));
+  analysis_begun_ = true;
 }
 
 bool DiscrepancyWatch::due() {

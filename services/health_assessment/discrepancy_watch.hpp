@@ -26,6 +26,7 @@
 #include "sealwatch/message/health_assessment.hpp"
 #include "sealwatch/message/state_detection.hpp"
 #include "sealwatch/port/explainer.hpp"
+#include "sealwatch/port/halves.hpp"
 #include "sealwatch/port/layer.hpp"
 
 namespace sealwatch {
@@ -54,7 +55,7 @@ class DiscrepancyWatch {
   /// Takes tests out that no longer count, an analysis of them included: the next one is of others.
   void forget(const std::function<bool(const std::string& pst_id)>& is_retracted, Conclusion& conclusion);
   /// Inputs that wait for nothing and are kept for the next analysis.
-  [[nodiscard]] std::size_t held() const { return 2 * row_.size(); }
+  [[nodiscard]] std::size_t held() const { return 2 * row_.size() + windows_.overtaken(); }
 
  private:
   using Window = std::shared_ptr<const TestWindow>;
@@ -73,10 +74,11 @@ class DiscrepancyWatch {
   };
 
   void note_concluded(const std::string& pst_id, bool admissible, bool first_after_replacement);
-  void end_row();
-  void settle(const StateReport& report);
+  void end_row(Conclusion& conclusion);
+  void settle(const StateReport& report, Conclusion& conclusion);
   void forget_windows_of_settled_tests();
-  void keep_complete_tests(const AssetConfig& asset, const Explainer& explainer, Conclusion& conclusion);
+  void keep_complete_test(const std::string& pst_id, const AssetConfig& asset, const Explainer& explainer,
+                          Conclusion& conclusion);
   [[nodiscard]] Era& era_of_row() { return eras_[concluded_.at(row_.back().report.header.pst_id).era]; }
   [[nodiscard]] bool due();
   [[nodiscard]] std::function<Conclusion(const std::stop_token&)> analysis(const AssetConfig& asset,
@@ -85,10 +87,10 @@ class DiscrepancyWatch {
 
   std::map<std::string, Concluded> concluded_;  ///< by pst_id
   std::vector<Era> eras_{1};
-  std::set<std::string> settled_;          ///< pst_ids whose windows are not needed, should they still come
-  std::map<std::string, Window> windows_;  ///< whose tests are not kept yet, by pst_id
-  std::deque<StateReport> deviating_;      ///< whose windows are not there yet, or those of tests before
-  std::deque<StoredTest> row_;             ///< at most kTestsOfAnalysis
+  std::deque<std::string> settled_;    ///< pst_ids whose windows are not needed, should they still come: the last few
+  Halves<TestWindow> windows_;         ///< whose tests are not kept yet
+  std::deque<StateReport> deviating_;  ///< whose windows are not there yet: the last few
+  std::deque<StoredTest> row_;         ///< at most kTestsOfAnalysis
   std::vector<std::string> no_longer_needed_;
   bool analysis_begun_ = false;  ///< in this process: it may still be running
 };

@@ -82,7 +82,7 @@ std::span<const Topic> HealthAssessment::outputs() const {
 
 HealthAssessment::AssetState& HealthAssessment::state_of(const std::string& asset_id) {
   const auto trend_tests = static_cast<std::size_t>(options_.trend_tests);
-  return states_.try_emplace(asset_id, AssetState{{}, {}, PastHealth(trend_tests), {}}).first->second;
+  return states_.try_emplace(asset_id, AssetState{{}, {}, {}, PastHealth(trend_tests), {}}).first->second;
 }
 
 void HealthAssessment::restore(const Message& own_output) {
@@ -110,7 +110,7 @@ std::size_t HealthAssessment::held() const {
 Conclusion HealthAssessment::receive(const Message& input) {
   Conclusion conclusion;
   AssetState& state = state_of(asset_of(input));
-  if (const auto* features = std::get_if<TestFeatures>(&input)) state.features.add(*features);
+  if (const auto* features = std::get_if<TestFeatures>(&input)) state.features.add(*features, conclusion);
   if (const auto* report = std::get_if<StateReport>(&input)) take_report(state, *report, conclusion);
   if (const auto* window = std::get_if<TestWindow>(&input)) {
     const auto asset = assets_.find(window->asset_id);
@@ -119,12 +119,18 @@ Conclusion HealthAssessment::receive(const Message& input) {
     else
       state.discrepancies.take(*window, asset->second, *explainer_, conclusion);
   }
-  while (const std::optional<std::size_t> place = next_report(state)) {
-    const StateReport report = state.reports.take(*place, conclusion);
-    if (report.header.pst_id.empty()) {
+  if (const std::string& pst_id = header_of(input).pst_id; state.reports.has(pst_id) && state.features.has(pst_id))
+    state.complete = pst_id;
+  while (const std::optional<std::string> next = next_report(state)) {
+    if (!state.reports.is_here(*next, conclusion)) return conclusion;
+    const bool is_test = *next == state.complete;
+    if (is_test && !state.features.is_here(*next, conclusion)) return conclusion;
+    const StateReport report = state.reports.take(*next, conclusion);
+    if (!is_test) {
       retract(state, report, conclusion);
       continue;
     }
+    state.complete.clear();
     const TestFeatures features = state.features.take(report.header.pst_id, conclusion);
     const HealthReport health = conclude(state, report, features);
     conclusion.outputs.emplace_back(health);
@@ -135,28 +141,23 @@ Conclusion HealthAssessment::receive(const Message& input) {
 }
 
 /// An answer to a retraction speaks of the tests before it, which may wait for their features.
-std::optional<std::size_t> HealthAssessment::next_report(const AssetState& state) {
-  std::optional<std::size_t> answer;
-  for (std::size_t place = 0; place < state.reports.size(); ++place) {
-    const std::string& pst_id = state.reports.at(place).header.pst_id;
-    if (pst_id.empty() && place == state.reports.overtaken()) return place;
-    if (pst_id.empty() && !answer) answer = place;
-    if (!pst_id.empty() && state.features.find(pst_id) != nullptr) return answer.value_or(place);
-  }
-  return std::nullopt;
+std::optional<std::string> HealthAssessment::next_report(const AssetState& state) {
+  const auto answer = state.reports.first_of_no_test(state.complete);
+  if (answer && (!state.complete.empty() || state.reports.is_next(*answer))) return answer;
+  return state.complete.empty() ? std::nullopt : std::optional(state.complete);
 }
 
 /// One whose health is concluded already comes again after a restart because its test was kept.
 void HealthAssessment::take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const {
   const std::optional<bool> admissible = state.discrepancies.concluded(report.header.pst_id);
   if (answered_retraction(report.asset_id, report.header))
-    state.reports.add(report);
+    state.reports.add(report, conclusion);
   else if (report.header.pst_id.empty())
     conclusion.consumed.push_back(report.header.message_id);
   else if (admissible && explainer_)
     settle(state, report, *admissible, conclusion);
   else
-    state.reports.add(report);
+    state.reports.add(report, conclusion);
 }
 
 void HealthAssessment::settle(AssetState& state, const StateReport& report, bool admissible,

@@ -49,12 +49,13 @@ class HealthAssessment final : public Layer {
   struct AssetState {
     Halves<StateReport> reports;  // not concluded yet, and answers to retractions
     Halves<TestFeatures> features;
+    std::string complete;  ///< the test of which both are there, until it is concluded
     PastHealth past;
     DiscrepancyWatch discrepancies;
   };
 
-  /// The report that is next to be concluded from; none where all wait.
-  [[nodiscard]] static std::optional<std::size_t> next_report(const AssetState& state);
+  /// The report that is next to be concluded from, by its key; none where all wait.
+  [[nodiscard]] static std::optional<std::string> next_report(const AssetState& state);
   void take_report(AssetState& state, const StateReport& report, Conclusion& conclusion) const;
   void settle(AssetState& state, const StateReport& report, bool admissible, Conclusion& conclusion) const;
   [[nodiscard]] HealthReport conclude(AssetState& state, const StateReport& report, const TestFeatures& features) const;

@@ -98,7 +98,7 @@ void PrognosticAssessment::remember(const LeakageEstimate& estimate) {
 
 Conclusion PrognosticAssessment::receive(const Message& input) {
   if (const auto* health = std::get_if<HealthReport>(&input)) return join(*health, &Pending::health);
-  if (const auto* window = std::get_if<TestWindow>(&input)) return join(*window, &Pending::window);
+  if (const auto* window = std::get_if<TestWindow>(&input)) return join(*window, &Pending::windows);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input))
     return is_replacement(*event) ? replaced(*event) : retracted(*event);
   Conclusion conclusion;
@@ -110,17 +110,20 @@ Conclusion PrognosticAssessment::receive(const Message& input) {
 }
 
 template <class Input>
-Conclusion PrognosticAssessment::join(const Input& input, std::optional<Input> Pending::*slot) {
+Conclusion PrognosticAssessment::join(const Input& input, Halves<Input> Pending::*halves) {
   const std::string& pst_id = input.header.pst_id;
   if (pst_id.empty() || history_[input.asset_id].has_estimate(estimate_id(pst_id)))
     return {.outputs = {}, .consumed = {input.header.message_id}};
-  Pending& test = pending_[pst_id];
-  test.*slot = input;
-  if (!test.health || !test.window) return {};
   Conclusion conclusion;
-  conclusion.outputs = conclude(*test.health, *test.window);
-  conclusion.consumed = {test.health->header.message_id, test.window->header.message_id};
-  pending_.erase(pst_id);
+  Pending& pending = pending_[input.asset_id];
+  (pending.*halves).add(input, conclusion);
+  if (!pending.health.has(pst_id) || !pending.windows.has(pst_id)) return conclusion;
+  if (!pending.health.is_here(pst_id, conclusion) || !pending.windows.is_here(pst_id, conclusion)) return conclusion;
+  const HealthReport health = pending.health.take(pst_id, conclusion);
+  const TestWindow window = pending.windows.take(pst_id, conclusion);
+  conclusion.outputs = conclude(health, window);
+  conclusion.consumed.push_back(health.header.message_id);
+  conclusion.consumed.push_back(window.header.message_id);
   return conclusion;
 }
 
@@ -219,6 +222,7 @@ const AcceptedModel& PrognosticAssessment::accepted(const std::string& asset_id)
 std::size_t PrognosticAssessment::held() const {
   std::size_t held = 0;
   for (const auto& [asset_id, model] : accepted_) held += model.held();
+  for (const auto& [asset_id, pending] : pending_) held += pending.health.overtaken() + pending.windows.overtaken();
   return held;
 }
 

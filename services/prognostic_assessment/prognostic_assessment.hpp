@@ -18,6 +18,7 @@
 #include "sealwatch/forecast/forecaster.hpp"
 #include "sealwatch/port/accepted_model.hpp"
 #include "sealwatch/port/estimator.hpp"
+#include "sealwatch/port/halves.hpp"
 #include "sealwatch/port/layer.hpp"
 #include "services/prognostic_assessment/asset_history.hpp"
 
@@ -49,10 +50,10 @@ class PrognosticAssessment final : public Layer {
   [[nodiscard]] Conclusion tick(UtcTime now) override;
 
  private:
-  /// Inputs of one test until both are there.
+  /// Inputs of tests of which not both are there.
   struct Pending {
-    std::optional<HealthReport> health;
-    std::optional<TestWindow> window;
+    Halves<HealthReport> health;
+    Halves<TestWindow> windows;
   };
 
   PrognosticAssessment(const Configuration& configuration, const Estimator& estimator, const Options& options,
@@ -64,7 +65,7 @@ class PrognosticAssessment final : public Layer {
         in_charge_(std::move(in_charge)) {}
 
   template <class Input>
-  [[nodiscard]] Conclusion join(const Input& input, std::optional<Input> Pending::*slot);
+  [[nodiscard]] Conclusion join(const Input& input, Halves<Input> Pending::*halves);
   void learn_replacements(const std::string& asset_id, const Header& header);
   [[nodiscard]] std::vector<Message> conclude(const HealthReport& health, const TestWindow& window);
   void remember(const LeakageEstimate& estimate);
@@ -86,7 +87,7 @@ class PrognosticAssessment final : public Layer {
   Options options_;
   forecast::ForecastPanel panel_;
   std::unique_ptr<const forecast::Forecaster> in_charge_;
-  std::map<std::string, Pending> pending_;         ///< by pst_id
+  std::map<std::string, Pending> pending_;         ///< by asset_id
   std::map<std::string, AssetHistory> history_;    ///< by asset_id
   std::map<std::string, LeakageEstimate> latest_;  ///< by asset_id: of the latest test
   std::map<std::string, AcceptedModel> accepted_;  ///< by asset_id

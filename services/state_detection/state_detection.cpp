@@ -109,16 +109,16 @@ void StateDetection::restore(const Message& own_output) {
 Conclusion StateDetection::receive(const Message& input) {
   AssetState& state = state_of(asset_of(input));
   state.history.last_was_replay = header_of(input).replay;
-  if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.add(*features);
-  if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.add(*window);
   Conclusion conclusion;
+  if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.add(*features, conclusion);
+  if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.add(*window, conclusion);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input); event && !is_replacement(*event))
     return retracted(*event, state);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.events.push_back(*event);
   if (const auto* event = std::get_if<MaintenanceEvent>(&input)) state.accepted.take(*event, conclusion);
   if (const auto* found = std::get_if<ModelDiscrepancy>(&input)) state.accepted.take(*found, conclusion);
   if (const auto* acceptance = std::get_if<ModelAcceptance>(&input)) state.accepted.take(*acceptance, conclusion);
-  conclude_ready_tests(state, conclusion);
+  conclude_if_ready(state, header_of(input).pst_id, conclusion);
   return conclusion;
 }
 
@@ -157,20 +157,14 @@ Conclusion StateDetection::retracted(const MaintenanceEvent& event, AssetState& 
   return conclusion;
 }
 
-void StateDetection::conclude_ready_tests(AssetState& state, Conclusion& conclusion) {
-  for (std::size_t place = 0; place < state.tests.size();) {
-    const std::string pst_id = state.tests.at(place).header.pst_id;
-    if (state.windows.find(pst_id) == nullptr) {
-      ++place;
-      continue;
-    }
-    const TestFeatures features = state.tests.take(place, conclusion);
-    const TestWindow window = state.windows.take(pst_id, conclusion);
-    conclude(state, features, window, conclusion);
-    conclusion.consumed.push_back(features.header.message_id);
-    conclusion.consumed.push_back(window.header.message_id);
-    place = 0;
-  }
+void StateDetection::conclude_if_ready(AssetState& state, const std::string& pst_id, Conclusion& conclusion) {
+  if (!state.tests.has(pst_id) || !state.windows.has(pst_id)) return;
+  if (!state.tests.is_here(pst_id, conclusion) || !state.windows.is_here(pst_id, conclusion)) return;
+  const TestFeatures features = state.tests.take(pst_id, conclusion);
+  const TestWindow window = state.windows.take(pst_id, conclusion);
+  conclude(state, features, window, conclusion);
+  conclusion.consumed.push_back(features.header.message_id);
+  conclusion.consumed.push_back(window.header.message_id);
 }
 
 void StateDetection::conclude(AssetState& state, const TestFeatures& features, const TestWindow& window,

@@ -61,7 +61,7 @@ class StateDetection final : public Layer {
   };
 
   [[nodiscard]] AssetState& state_of(const std::string& asset_id);
-  void conclude_ready_tests(AssetState& state, Conclusion& conclusion);
+  void conclude_if_ready(AssetState& state, const std::string& pst_id, Conclusion& conclusion);
   void conclude(AssetState& state, const TestFeatures& features, const TestWindow& window, Conclusion& conclusion);
   [[nodiscard]] Conclusion retracted(const MaintenanceEvent& event, AssetState& state);
   /// Makes the history what the tests that count make of it, and returns the last of these.

@@ -80,7 +80,6 @@ class World:
     def limit(self):
         """In a service: files no longer than that, as on a full disk."""
         if self.most_bytes:
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (self.most_bytes, resource.RLIM_INFINITY))
 
     def start(self, service):

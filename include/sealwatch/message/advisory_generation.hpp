@@ -48,7 +48,7 @@ struct SafetyBook {
 /// higher revision; a different recommendation has a new id and names the one it supersedes.
 struct Advisory {
   std::string asset_id;  // key
-  Header header;         ///< message_id "advisory/<pst_id>", ".../acknowledged/<who>/<when>" for acknowledgements
+  Header header;         ///< message_id "advisory/<pst_id>", ".../acknowledged/<hash>" for acknowledgements
   std::string advisory_id;
   std::int32_t revision = 1;
   AdvisoryState state = AdvisoryState::active;

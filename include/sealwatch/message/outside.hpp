@@ -16,6 +16,10 @@ namespace sealwatch {
 /// on, and take nothing from it.
 inline constexpr std::string_view kDamagedMessage = "damaged/";
 
+/// What the id of a message begins with of which only the header could be read, as it has a value that is none here or
+/// ends before it should: readers count on, and take nothing from it. Its own id follows.
+inline constexpr std::string_view kUnreadableMessage = "unreadable/";
+
 /// What the producer of a message begins with whose samples its writer keeps no more (retention): readers count on, and
 /// conclude nothing from it.
 inline constexpr std::string_view kExpired = "expired: ";

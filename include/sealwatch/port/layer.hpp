@@ -3,7 +3,7 @@
 // Whoever runs it (a daemon, the command line in process, a test) keeps this contract:
 //   1. at start: restore(m) for every message this layer concluded before, in the order it concluded them;
 //   2. then receive(m) for every input that was received but not consumed before, in the order of receipt;
-//   3. then receive(m) for each new input, at most once for each message id.
+//   3. then receive(m) for each new input, at most once for each message id, and again where a conclusion asks for it.
 // After each receive the runner stores the conclusion's outputs and marks the consumed inputs in one transaction, and
 // only then publishes. A layer killed anywhere and started again by this contract ends with the same outputs.
 // What a conclusion leaves for later is run in another thread, one after another in the order of receipt, while the
@@ -49,6 +49,8 @@ struct Conclusion {
   /// ends soon, whatever it then returns or raises.
   std::function<Conclusion(const std::stop_token&)> later = {};
   std::vector<Refusal> refused = {};
+  /// Inputs that it has not consumed, and of which it let go what they say: they are received again, before all others.
+  std::vector<std::string> again = {};
 };
 
 /// The conclusion with what it left for later, done here and now.
@@ -58,6 +60,7 @@ struct Conclusion {
     std::ranges::move(rest.outputs, std::back_inserter(conclusion.outputs));
     std::ranges::move(rest.consumed, std::back_inserter(conclusion.consumed));
     std::ranges::move(rest.refused, std::back_inserter(conclusion.refused));
+    std::ranges::move(rest.again, std::back_inserter(conclusion.again));
     conclusion.later = std::move(rest.later);
   }
   return conclusion;

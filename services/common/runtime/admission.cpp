@@ -105,14 +105,35 @@ std::string name_of_test(const RawSamples& raw) {
   return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) + " of " + raw.asset_id;
 }
 
+bool is_of_made_up_test(const Message& message) {
+  const auto* raw = std::get_if<RawSamples>(&message);
+  return raw != nullptr ? is_made_up(raw->source_id) : is_made_up_test(header_of(message).pst_id);
+}
+
+bool is_live(const Message& message) { return !header_of(message).replay && !is_of_made_up_test(message); }
+
+/// "recording april of XT03-MV2: its start time, ..."
+std::string with_its_time(const Message& message, UtcTime time) {
+  const auto* raw = std::get_if<RawSamples>(&message);
+  return (raw != nullptr ? name_of_test(*raw) + ": its start time, "
+                         : "test " + header_of(message).pst_id + " of " + asset_of(message) + ": its time, ") +
+         format_utc(time);
+}
+
 }  // namespace
 
-void Admission::note(const Message& message) {
+void Admission::note(const Message& message, bool concluded) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
   const std::string asset_id = asset_of(message);
   note_asset(asset_id);
-  if (const std::optional<std::int64_t> time_ns = time_of_test(message)) note_test(message, {*time_ns});
+  if (const std::optional<std::int64_t> time_ns = time_of_test(message)) {
+    if (concluded || topic_of(message) == Topic::raw_samples)
+      note_test(message, {*time_ns});
+    else
+      heard_[asset_id] = std::max(heard_[asset_id], UtcTime{*time_ns});
+    if (is_live(message)) live_.insert(asset_id);
+  }
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
   acts.push_back(header_of(message).message_id);
@@ -138,12 +159,14 @@ void Admission::note_test(const Message& message, UtcTime time) {
 
 void Admission::note_act(const std::string& asset_id, const std::string& act_id) {
   if (const auto retraction = is_retraction_id(act_id) ? retraction_of(asset_id, act_id) : std::nullopt)
-    tests_[asset_id].apply(*retraction);
+    tests_[asset_id].apply(*retraction), heard_.erase(asset_id);
 }
 
 std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {
   const auto tests = tests_.find(asset_id);
-  return tests == tests_.end() ? std::nullopt : tests->second.newest();
+  const auto newest = tests == tests_.end() ? std::nullopt : tests->second.newest();
+  const auto heard = heard_.find(asset_id);
+  return heard == heard_.end() ? newest : std::max(newest, std::optional(heard->second));
 }
 
 /// What is about no asset (an act upon a service's alarm) is refused for none.
@@ -162,11 +185,15 @@ std::optional<std::string> Admission::refusal(const Message& message, UtcTime no
   const Header& header = header_of(message);
   if (header.message_id.starts_with(kDamagedMessage))
     return visible(header.message_id) + ": its writer's journal is damaged there; see the alarms of that service";
+  if (header.message_id.starts_with(kUnreadableMessage))
+    return visible(header.message_id) + ": it has a value that this service does not know, or ends before it should; " +
+           "update this service, or correct who sends it";
   const auto* const raw = std::get_if<RawSamples>(&message);
-  if (auto why = raw != nullptr ? refusal_of_test(*raw, now) : refusal_of_samples(message)) return why;
+  if (auto why = raw != nullptr ? refusal_of_test(*raw) : refusal_of_samples(message)) return why;
   if (header.event_time_known && !is_time(header.event_time_ns))
     return "its time, " + format_utc({header.event_time_ns}) + ", is none from 1970 to 2260";
-  return is_report(message) ? refusal_of_report(message, now) : std::nullopt;
+  if (is_report(message)) return refusal_of_report(message, now);
+  return time_of_test(message) ? refusal_of_time(message, now) : refusal_of_future_act(message, now);
 }
 
 std::optional<std::string> Admission::refusal_of_report(const Message& message, UtcTime now) const {
@@ -174,7 +201,13 @@ std::optional<std::string> Admission::refusal_of_report(const Message& message, 
   if (topic_of(message) == Topic::maintenance_event && !header.event_time_known)
     return "its time is not known, so it cannot part a history; report it again, with the time at which it happened";
   if (auto why = refusal_of_kind(message)) return why;
-  if (!header.event_time_known) return std::nullopt;
+  return refusal_of_future_act(message, now);
+}
+
+/// What the layers say after an act (that a test is overdue, that tests were retracted) has the time of now or of a test.
+std::optional<std::string> Admission::refusal_of_future_act(const Message& message, UtcTime now) const {
+  const Header& header = header_of(message);
+  if (!header.event_time_known || answers_retraction(header)) return std::nullopt;
   std::int64_t latest = now.nanoseconds;
   if (const auto newest = newest_test(asset_of(message))) latest = std::max(latest, newest->nanoseconds);
   if (header.event_time_ns <= latest + kDay_ns) return std::nullopt;
@@ -182,32 +215,33 @@ std::optional<std::string> Admission::refusal_of_report(const Message& message, 
          "; report it again, with the time at which it happened";
 }
 
-std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw, UtcTime now) const {
+std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw) const {
   if (raw.block_number > kMostBlocks)
     return name_of_test(raw) + ": block " + std::to_string(raw.block_number) + " is none of a test: they count from 0";
   if (is_made_up(raw.source_id) && recorded_.contains(raw.asset_id))
     return name_of_test(raw) + ": made up by the virtual bench, it does not belong into the history of an asset with " +
            "recorded tests; give the bench a configuration with assets and a state directory of its own";
-  return raw.start_time_known ? refusal_of_time(raw, now) : std::nullopt;
+  return std::nullopt;
 }
 
-std::optional<std::string> Admission::refusal_of_time(const RawSamples& raw, UtcTime now) const {
-  const std::string test = name_of_test(raw) + ": its start time, ";
-  if (!is_time(raw.start_time_ns))
-    return test + format_utc({raw.start_time_ns}) + ", is none from 1970 to 2260; correct it";
-  const std::string what = test + format_utc({raw.start_time_ns});
-  const auto commissioned = commissioned_.find(raw.asset_id);
-  if (commissioned != commissioned_.end() && raw.start_time_ns < commissioned->second.nanoseconds)
-    return what + ", lies before the asset was commissioned, " + format_utc(commissioned->second) +
-           "; correct the start time, or 'commissioned' in the configuration";
-  if (raw.start_time_ns <= now.nanoseconds + kDay_ns) return std::nullopt;
-  const std::string ahead = what + ", lies in the future (it is now " + format_utc(now) + ")";
-  if (!raw.header.replay && !is_made_up(raw.source_id))
-    return ahead + "; set the sender's clock, or correct the start time, and give it again";
-  const auto newest = newest_test(raw.asset_id);
-  if (!newest || raw.start_time_ns <= newest->nanoseconds + kYear_ns) return std::nullopt;
-  return ahead + " and more than a year after the asset's newest test, " + format_utc(*newest) +
-         "; correct the start time, and give it again";
+std::optional<std::string> Admission::refusal_of_time(const Message& message, UtcTime now) const {
+  const UtcTime time{*time_of_test(message)};
+  if (!is_time(time.nanoseconds)) return with_its_time(message, time) + ", is none from 1970 to 2260; correct it";
+  const auto commissioned = commissioned_.find(asset_of(message));
+  if (topic_of(message) == Topic::raw_samples && commissioned != commissioned_.end() && time < commissioned->second)
+    return with_its_time(message, time) + ", lies before the asset was commissioned, " +
+           format_utc(commissioned->second) + "; correct the start time, or 'commissioned' in the configuration";
+  return time.nanoseconds <= now.nanoseconds + kDay_ns ? std::nullopt : refusal_of_future(message, time, now);
+}
+
+std::optional<std::string> Admission::refusal_of_future(const Message& message, UtcTime time, UtcTime now) const {
+  const std::string ahead = with_its_time(message, time) + ", lies in the future (it is now " + format_utc(now) + ")";
+  if (is_live(message)) return ahead + "; set the sender's clock, or correct the start time, and give it again";
+  const std::string give_again = "; correct the start time, and give it again";
+  if (live_.contains(asset_of(message))) return ahead + ", and the asset has live tests" + give_again;
+  const auto newest = newest_test(asset_of(message));
+  if (!newest || time.nanoseconds <= newest->nanoseconds + kYear_ns) return std::nullopt;
+  return ahead + " and more than a year after the asset's newest test, " + format_utc(*newest) + give_again;
 }
 
 }  // namespace sealwatch

@@ -10,7 +10,8 @@
 // Times. A slip in the year of a replacement would set aside every test until then; so would a test whose clock was
 // wrong. A live test may lie a day ahead of now, as clocks differ, and so may a report, or a day ahead of its asset's
 // newest test. What is played back, and what the virtual bench makes up, may be of another time: month by month into
-// the future, or as a whole, but not more than a year after the asset's newest test. No test is older than its asset.
+// the future, or as a whole, but not more than a year after the asset's newest test, and not where live tests have come.
+// So in every layer, whoever says a test's time. No test is older than its asset.
 //
 // Assets. Each takes a layer, a lane and a place in every history, for ever, and a stranger may invent as many as it
 // likes: of those that the configuration does not name, kMostUnknownAssets are taken, the first that come and those of
@@ -46,8 +47,9 @@ class Admission {
   /// When assets were commissioned, where it is known.
   explicit Admission(std::map<std::string, UtcTime> commissioned = {}, ConfiguredAssets assets = {})
       : commissioned_(std::move(commissioned)), assets_(std::move(assets)) {}
-  /// Takes note of its asset, of when a test was made, and of retractions.
-  void note(const Message& message);
+  /// Takes note of its asset, of when a test was made, and of retractions. Of what others say of tests, from which
+  /// nothing may be concluded, `concluded` is false: of them only the newest date is known, until a retraction.
+  void note(const Message& message, bool concluded = true);
   /// Takes note of an asset alone.
   void note_asset(const std::string& asset_id);
   /// Takes note of an act of that id, if it is a retraction.
@@ -59,18 +61,22 @@ class Admission {
 
  private:
   void note_test(const Message& message, UtcTime time);
-  [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw, UtcTime now) const;
-  [[nodiscard]] std::optional<std::string> refusal_of_time(const RawSamples& raw, UtcTime now) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_time(const Message& message, UtcTime now) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_future(const Message& message, UtcTime time, UtcTime now) const;
   /// The date of the asset's newest test that was not retracted.
   [[nodiscard]] std::optional<UtcTime> newest_test(const std::string& asset_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_future_act(const Message& message, UtcTime now) const;
 
   std::map<std::string, UtcTime> commissioned_;
   ConfiguredAssets assets_;
   std::set<std::string> unknown_;                   ///< assets that it does not name, and that were taken
   std::map<std::string, RetractedTests> tests_;     ///< by asset
   std::map<std::string, std::set<UtcTime>> named_;  ///< dates of those that have a PST id, by asset
+  std::map<std::string, UtcTime> heard_;            ///< the newest date of those that others speak of, by asset
   std::set<std::string> recorded_;                  ///< assets with tests that no bench made up
+  std::set<std::string> live_;                      ///< of them, those with tests that were not played back
 };
 
 }  // namespace sealwatch

@@ -214,6 +214,8 @@ bool AssetLanes::settle(Raw& raw) {
     of_asset.failed = true;
     return true;
   }
+  const std::vector<std::string>& again = raw.result.conclusion.again;
+  for (auto id = again.rbegin(); id != again.rend(); ++id, ++waiting_) of_asset.waiting.push_front({*id, nullptr});
   bool may_begin = raw.of_later && !of_asset.later.empty();
   if (auto work = std::exchange(raw.result.conclusion.later, {})) {
     Later later{raw.result.input, std::move(work)};

@@ -200,6 +200,7 @@ int run(const Arguments& arguments, const DaemonParts& parts) {
     return complain(parts.service, logging.error(), kBadUsage);
   const auto lock = InstanceLock::take(configuration->state_directory, parts.service);
   if (!lock) return complain(parts.service, lock.error(), kBadUsage);
+  ::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a name, as is a full disk
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   end_with_supervisor();

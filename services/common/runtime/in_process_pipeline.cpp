@@ -36,7 +36,14 @@ struct InProcessPipeline::Reader {
   Reader(const LayerMaker& make, const AssetLanes::Options& options)
       : kind(make({})),
         lanes(
-            make, [](const std::string&) { return std::optional<Message>(); }, [] {}, options) {}
+            make, [this](const std::string& message_id) { return open(message_id); }, [] {}, options) {}
+
+  [[nodiscard]] std::optional<Message> open(const std::string& message_id) const {
+    for (const auto& [asset_id, of_asset] : assets)
+      for (const auto& input : of_asset.open)
+        if (header_of(*input).message_id == message_id) return *input;
+    return std::nullopt;
+  }
 
   std::unique_ptr<Layer> kind;
   std::set<std::string> received;

@@ -37,8 +37,8 @@ LayerRunner::LayerRunner(const LayerMaker& make_layer, Bus& bus, Bus& heartbeat_
       strangers_(options_.strangers),
       retention_(options_.retention),
       lanes_(
-          make_layer, [&journal](const std::string& message_id) { return journal.input(message_id); },
-          [&bus] { bus.wake(); }, options_.lanes) {}
+          make_layer, [this](const std::string& message_id) { return input(message_id); }, [&bus] { bus.wake(); },
+          options_.lanes) {}
 
 Status LayerRunner::start() {
   // Subscribed first: what comes while the past is restored waits on the bus.
@@ -236,11 +236,17 @@ Status LayerRunner::take(Message message) {
   if (state == InputState::awaiting) await(input, clock_.now());
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
-  admission_.note(*input);
+  admission_.note(*input, false);
   replaying_[asset_id] = header_of(*input).replay;
   log_message(LogLevel::debug, "received", *input);
   lanes_.add(asset_id, **id, input);
   return {};
+}
+
+/// Also one that was taken just now, and is in the journal with all of its batch.
+Result<std::optional<Message>> LayerRunner::input(const std::string& message_id) {
+  const auto taken = taken_ids_.find(message_id);
+  return taken == taken_ids_.end() ? journal_.input(message_id) : std::optional(*taken_[taken->second].message);
 }
 
 Status LayerRunner::let_lanes_work() {
@@ -341,9 +347,12 @@ Status LayerRunner::let_time_pass() {
 }
 
 /// A test is not overdue or lost while messages about it may be on their way.
-bool LayerRunner::may_be_on_its_way(const std::string& asset_id) const {
-  return reader_->is_behind(asset_id) ||
-         std::ranges::any_of(ready_, [&](const Message& message) { return asset_of(message) == asset_id; });
+bool LayerRunner::may_be_on_its_way(const std::string& asset_id) {
+  const bool may = reader_->is_behind(asset_id) ||
+                   std::ranges::any_of(ready_, [&](const Message& message) { return asset_of(message) == asset_id; });
+  if (!may) return behind_since_.erase(asset_id), false;
+  const auto now = steady_clock::now();
+  return now - behind_since_.try_emplace(asset_id, now).first->second < options_.longest_behind;
 }
 
 // With its time: it stays in the status until another one comes.

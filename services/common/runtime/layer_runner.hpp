@@ -68,6 +68,9 @@ struct RunnerOptions {
   /// Nor while the bus is not emptied, but for no longer than this: what then still waits is a flood's, as a bus gives
   /// each sender its turn.
   std::chrono::milliseconds longest_wait{5000};
+  /// Nor while more is known to come about an asset, but for no longer than this: a test is overdue by days, and a stream
+  /// that goes on for ever is a forger's.
+  std::chrono::milliseconds longest_behind{std::chrono::hours(1)};
   /// Inputs that come from no bus (recordings dropped into a directory), asked for about once a second. A message that
   /// comes twice is taken once, by its id.
   std::function<std::vector<Message>(const LayerAtRest&)> local_inputs = {};
@@ -133,12 +136,13 @@ class LayerRunner {
   [[nodiscard]] Status take(Message message);
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
   /// Gives the lanes a moment to conclude from what was taken.
+  [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
   [[nodiscard]] Status let_lanes_work();
   [[nodiscard]] Status store_batch();
   void give_memory_back();
   [[nodiscard]] Status keep(Conclusion conclusion);
   [[nodiscard]] Status let_time_pass();
-  [[nodiscard]] bool may_be_on_its_way(const std::string& asset_id) const;
+  [[nodiscard]] bool may_be_on_its_way(const std::string& asset_id);
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest();
   void send_requests();
@@ -275,8 +279,9 @@ class LayerRunner {
   ResendQueue resends_;
   Admission admission_;
   bool took_local_ = false;  ///< of the running batch: inputs that came from no bus
-  std::optional<std::chrono::steady_clock::time_point> full_since_;  ///< the bus had more after each take
-  std::chrono::steady_clock::time_point asked_{};                    ///< last look at what is missing
+  std::optional<std::chrono::steady_clock::time_point> full_since_;            ///< the bus had more after each take
+  std::chrono::steady_clock::time_point asked_{};                              ///< last look at what is missing
+  std::map<std::string, std::chrono::steady_clock::time_point> behind_since_;  ///< assets of which more is to come
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
   std::string last_error_;                 ///< with its time
   Alarms alarms_;

@@ -104,7 +104,7 @@ void LayerRunner::confirm(const Message& message) {
   else
     no_longer_awaiting_[*act_id] = rejects(message) ? InputState::consumed : InputState::open;
   if (rejects(message)) return;
-  admission_.note(*act);
+  admission_.note(*act, false);
   lanes_.add(asset_of(*act), *act_id, act);
 }
 

@@ -134,7 +134,7 @@ Status LayerRunner::recall_inputs(const std::string& asset_id) {
     if (!input) return fail(input.error());
     if (!*input) continue;
     replaying_[asset_id] = header_of(**input).replay;
-    admission_.note(**input);
+    admission_.note(**input, false);
     lanes_.add(asset_id, message_id, nullptr);
   }
   return {};

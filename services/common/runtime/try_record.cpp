@@ -27,17 +27,20 @@ void count(std::uint16_t& times) {
 
 Status TryRecord::keep_in(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
-  const bool sized = file >= 0 && ::ftruncate(file, sizeof(Entries)) == 0;
+  // With its place on the disk: where there is none, what is written to the map ends the process.
+  int reason =
+      file < 0 || ::ftruncate(file, sizeof(Entries)) != 0 ? errno : ::posix_fallocate(file, 0, sizeof(Entries));
   void* const memory =
-      sized ? ::mmap(nullptr, sizeof(Entries), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
-  const int reason = errno;
+      reason == 0 ? ::mmap(nullptr, sizeof(Entries), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
+  if (reason == 0) reason = errno;
   if (file >= 0) ::close(file);
   if (memory == MAP_FAILED)
-    return sealwatch::fail(Error{.file = path,
-                                 .place = {},
-                                 .value = {},
-                                 .rule = std::string("cannot be kept: ") + std::strerror(reason),
-                                 .advice = "let this user write there"});
+    return sealwatch::fail(Error{
+        .file = path,
+        .place = {},
+        .value = {},
+        .rule = std::string("cannot be kept: ") + std::strerror(reason),
+        .advice = reason == ENOSPC || reason == EFBIG ? "free some space on the disk" : "let this user write there"});
   entries_ = static_cast<Entries*>(memory);
   for (Entry& entry : *entries_) {
     entry.zero = 0;

@@ -7,6 +7,7 @@
 
 #include "dds/ddsi/ddsi_serdata.h"
 #include "sealwatch/message/confirmation.hpp"
+#include "sealwatch/message/outside.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "services/common/transport/participant.hpp"
 #include "services/common/transport/refusals.hpp"
@@ -130,13 +131,15 @@ bool Channel::take_batch(std::vector<Stamped>& taken) const {
   return count == static_cast<dds_return_t>(most);
 }
 
-/// What is no message is passed over, as DDS does with what it cannot read.
+/// What is no message is passed over, as DDS does with what it cannot read. Services, which count, hear of it.
 std::optional<BusItem> Channel::decode(const ddsi_serdata& sample) const {
   ddsrt_iovec_t bytes;
   ddsi_serdata* const held = ddsi_serdata_to_ser_ref(&sample, 0, ddsi_serdata_size(&sample), &bytes);
   auto item = type_->decode({static_cast<const std::byte*>(bytes.iov_base), bytes.iov_len});
   ddsi_serdata_to_ser_unref(held, &bytes);
-  return item;
+  const auto* message = item ? std::get_if<Message>(&*item) : nullptr;
+  const bool is_unreadable = message != nullptr && header_of(*message).message_id.starts_with(kUnreadableMessage);
+  return is_unreadable && slow_reader_ == SlowReader::loses_oldest ? std::nullopt : item;
 }
 
 /// A retraction on the topic of all other events was sent without the right to retract, or by a program that knows of no

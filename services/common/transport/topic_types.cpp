@@ -2,7 +2,10 @@
 
 #include <array>
 #include <bit>
+#include <deque>
+#include <utility>
 
+#include "dds/ddsi/ddsi_cdrstream.h"
 #include "idl/advisory_generation.h"
 #include "idl/data_acquisition.h"
 #include "idl/data_manipulation.h"
@@ -10,6 +13,7 @@
 #include "idl/prognostic_assessment.h"
 #include "idl/service.h"
 #include "idl/state_detection.h"
+#include "sealwatch/message/outside.hpp"
 #include "services/common/transport/codec.hpp"
 #include "services/common/transport/from_cdr.hpp"
 
@@ -52,14 +56,64 @@ bool is_delimited_cdr2(std::span<const std::byte> bytes) {
   return bytes.size() >= kEncodingSize && bytes[0] == std::byte{0} && bytes[1] == std::byte{kLittle ? 9 : 8};
 }
 
+/// Whose it is, where that could be read: its stream goes on, and it is told of.
+template <class T>
+std::optional<BusItem> unreadable(const T& read) {
+  if constexpr (std::is_constructible_v<Message, T>) {
+    if (read.asset_id.empty() && read.header.writer_id.empty()) return std::nullopt;
+    T message;
+    message.asset_id = read.asset_id;
+    message.header.message_id = std::string(kUnreadableMessage) + read.header.message_id;
+    message.header.writer_id = read.header.writer_id;
+    message.header.stream_sequence = read.header.stream_sequence;
+    message.header.writer_started_ns = read.header.writer_started_ns;
+    return Message(std::move(message));
+  } else {
+    return std::nullopt;
+  }
+}
+
 template <class T>
 std::optional<BusItem> decode(std::span<const std::byte> bytes) {
   T message;
-  if (!is_delimited_cdr2(bytes) || !FromCdr(bytes.subspan(kEncodingSize)).read(message)) return std::nullopt;
+  if (!is_delimited_cdr2(bytes)) return std::nullopt;
+  if (!FromCdr(bytes.subspan(kEncodingSize)).read(message)) return unreadable(message);
   if constexpr (std::is_constructible_v<Message, T&&>)
     return Message(std::move(message));
   else
     return message;
+}
+
+/// Cyclone passes over a message with an enumerator that the IDL does not have, unseen: its reader would ask for it for
+/// ever. So any is let through, to be told of. (An instruction is above 2^24, what belongs to it below.)
+const dds_topic_descriptor_t* with_any_enumerator(const dds_topic_descriptor_t& type) {
+  constexpr std::uint32_t kWhat = DDS_OP_MASK | DDS_OP_TYPE_MASK;
+  constexpr auto kEnumerator = std::uint32_t{DDS_OP_ADR} | std::uint32_t{DDS_OP_TYPE_ENU};
+  constexpr std::uint32_t kAny = 0x7FFF'FFFF;
+  struct Made {
+    std::vector<std::uint32_t> operations;
+    dds_topic_descriptor_t type;
+  };
+  static std::deque<Made> made;
+  std::vector<std::uint32_t> operations(type.m_ops,
+                                        type.m_ops + dds_stream_countops(type.m_ops, type.m_nkeys, type.m_keys));
+  for (std::size_t k = 0; k + 2 < operations.size(); ++k)
+    if ((operations[k] & kWhat) == kEnumerator) operations[k + 2] = kAny;
+  const std::uint32_t* const first = operations.data();  // stays where it is when the vector is moved
+  made.push_back({.operations = std::move(operations),
+                  .type = {.m_size = type.m_size,
+                           .m_align = type.m_align,
+                           .m_flagset = type.m_flagset,
+                           .m_nkeys = type.m_nkeys,
+                           .m_typename = type.m_typename,
+                           .m_keys = type.m_keys,
+                           .m_nops = type.m_nops,
+                           .m_ops = first,
+                           .m_meta = type.m_meta,
+                           .type_information = type.type_information,
+                           .type_mapping = type.type_mapping,
+                           .restrict_data_representation = type.restrict_data_representation}});
+  return &made.back().type;
 }
 
 /// How many messages a reader holds, and takes from DDS at once. A message is a few kB, a block of a second of samples
@@ -89,7 +143,7 @@ constexpr Limits limits_of() {
 template <class T>
 TopicType describe(std::string_view name) {
   return {.name = std::string(name),
-          .descriptor = Generated<T>::kDescriptor,
+          .descriptor = with_any_enumerator(*Generated<T>::kDescriptor),
           .decode = decode<T>,
           .qos = {},
           .reader_limit = limits_of<T>().held,

@@ -20,7 +20,8 @@ namespace sealwatch::transport {
 struct TopicType {
   std::string name;  ///< without the prefix: "advisory"
   const dds_topic_descriptor_t* descriptor = nullptr;
-  /// None where the bytes are no such message; they are Cyclone's, with the four that name their encoding.
+  /// None where the bytes are no such message; what only its header tells of is one that says so (message/outside.hpp).
+  /// They are Cyclone's, with the four that name their encoding.
   std::optional<BusItem> (*decode)(std::span<const std::byte> bytes) = nullptr;
   TopicQos qos;  ///< default; a Configuration may override it
   /// Messages that wait for a reader's owner (inbox.hpp), and how many are taken from DDS at once. Of bulky topics

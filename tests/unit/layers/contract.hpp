@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sealwatch/port/layer.hpp"
+#include "tests/unit/layers/given_again.hpp"
 
 namespace sealwatch::test {
 
@@ -23,7 +24,7 @@ class StoredRun {
   void receive(const Message& input) {
     if (!received_.insert(header_of(input).message_id).second) return;
     waiting_.push_back(input);
-    keep(completed(layer_->receive(input)));
+    keep(completed(test::receive(*layer_, input, waiting_)));
   }
   /// A new layer, brought back by the contract; of a test of which the last output tells all, by that alone.
   void restart() {
@@ -36,7 +37,7 @@ class StoredRun {
       if (!told || last == &output) layer_->restore(output);
     }
     const std::vector<Message> again = waiting_;
-    for (const Message& input : again) keep(completed(layer_->receive(input)));
+    for (const Message& input : again) keep(completed(test::receive(*layer_, input, again)));
   }
   [[nodiscard]] const std::vector<Message>& outputs() const { return outputs_; }
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }

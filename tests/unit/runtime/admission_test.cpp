@@ -2,6 +2,7 @@
 #include "services/common/runtime/admission.hpp"
 
 #include <gmock/gmock.h>
+#include <malloc.h>
 
 #include <limits>
 
@@ -42,8 +43,68 @@ TEST(AdmissionOfDates, WhatIsPlayedBackMayBeOfAnotherTime) {
   played.header.replay = true;
   EXPECT_EQ(refusal(played), "");
   Admission admission;
-  admission.note(live_test("2031-03-10T00:00:00Z"));
+  RawSamples earlier = live_test("2031-03-10T00:00:00Z");
+  earlier.header.replay = true;
+  admission.note(earlier);
   EXPECT_THAT(refusal(played, admission), HasSubstr("more than a year after the asset's newest test"));
+  played.start_time_ns = parse_utc("2032-03-01T00:00:00Z").value().nanoseconds;
+  EXPECT_EQ(refusal(played, admission), "");
+  admission.note(live_test("2031-03-20T00:00:00Z"));
+  EXPECT_THAT(refusal(played, admission), HasSubstr("lies in the future (it is now 2031-04-12T03:00:00Z), and the "
+                                                    "asset has live tests"))
+      << "step by step it would lead anywhere";
+}
+
+/// A test that a service, or who forges its name, speaks of.
+template <class Content>
+Content said_of_test(const std::string& time, const std::string& pst_id = "XT03-MV2-forged") {
+  Content message;
+  message.asset_id = "XT03-MV2";
+  message.header.pst_id = pst_id;
+  message.header.event_time_known = true;
+  message.header.event_time_ns = parse_utc(time).value().nanoseconds;
+  return message;
+}
+
+template <class Content>
+class AdmissionOfDatesOf : public ::testing::Test {};
+using SaidOfTests = ::testing::Types<SampleBlock, TestWindow, TestFeatures, StateReport, HealthReport, LeakageEstimate,
+                                     RemainingLife, ModelDiscrepancy>;
+TYPED_TEST_SUITE(AdmissionOfDatesOf, SaidOfTests);
+
+TYPED_TEST(AdmissionOfDatesOf, EveryLayerAFutureOneIsRefused) {
+  EXPECT_EQ(refusal(said_of_test<TypeParam>("2031-04-12T20:00:00Z")), "") << "clocks differ";
+  TypeParam forged = said_of_test<TypeParam>("2051-04-14T00:00:00Z");
+  EXPECT_THAT(refusal(forged), HasSubstr("test XT03-MV2-forged of XT03-MV2: its time, 2051-04-14T00:00:00Z, lies in "
+                                         "the future (it is now 2031-04-12T03:00:00Z); set the sender's clock"));
+  EXPECT_EQ(refusal(said_of_test<TypeParam>("2051-04-14T00:00:00Z", "XT03-MV2-bench-simulated")), "");
+  forged.header.replay = true;
+  EXPECT_EQ(refusal(forged), "") << "a history that is played back may be of any time";
+  Admission admission;
+  admission.note(said_of_test<TypeParam>("2031-03-10T00:00:00Z"));
+  EXPECT_THAT(refusal(forged, admission), HasSubstr("the asset has live tests"));
+  Admission restarted;
+  restarted.note(said_of_test<TypeParam>("2031-03-10T00:00:00Z"));
+  EXPECT_EQ(refusal(said_of_test<TypeParam>("1995-04-14T00:00:00Z"), restarted), "");
+}
+
+TEST(AdmissionOfDates, OfTestsFromWhichNothingIsConcludedTheNewestDateIsEnough) {
+  Admission admission;
+  std::size_t halfway = 0;
+  for (int k = 0; k < 100'000; ++k) {
+    StateReport forged = said_of_test<StateReport>("2031-01-01T00:00:00Z", "forged-" + std::to_string(k));
+    forged.header.event_time_ns += k;
+    admission.note(forged, false);
+    if (k == 50'000) halfway = ::mallinfo2().uordblks;
+  }
+  EXPECT_LT(::mallinfo2().uordblks, halfway + 100'000);
+}
+
+TEST(AdmissionOfDates, NorIsATestOverdueInTheFuture) {
+  StateReport overdue = said_of_test<StateReport>("2051-04-14T00:00:00Z", "");
+  EXPECT_THAT(refusal(overdue), HasSubstr("its time, 2051-04-14T00:00:00Z, lies in the future"));
+  overdue.header.source_ids = {"retraction/XT03-MV2/test/x/2031-04-12T03:00:00Z"};
+  EXPECT_EQ(refusal(overdue), "") << "that speaks of the tests that count, of whatever time";
 }
 
 TEST(AdmissionOfDates, NoTestIsOlderThanItsAsset) {

@@ -52,6 +52,7 @@ class CuttingLayer : public Layer {
     StateReport report;
     report.asset_id = block.asset_id;
     report.header = header("state_report/" + block.recording_id, block.recording_id);
+    features.header.replay = report.header.replay = block.header.replay;
     features.header.event_time_known = report.header.event_time_known = block.header.event_time_known;
     features.header.event_time_ns = report.header.event_time_ns = block.header.event_time_ns;
     conclusion.outputs = {features, report};

@@ -338,6 +338,26 @@ TEST_F(TimeUnderFloodTest, PassesThoughEverNewStrangersSayThatThereIsMoreOfThem)
   }));
 }
 
+TEST_F(TimeUnderFloodTest, PassesThoughAStreamGoesOnForEver) {
+  RunnerOptions options = fast_options();
+  options.longest_behind = milliseconds(500);
+  std::uint64_t sent = 0;
+  EXPECT_TRUE(passes(options, [&] {
+    TestFeatures forged;
+    forged.asset_id = "A";
+    const std::string pst_id = "forged-" + std::to_string(++sent);
+    forged.header = header("test_features/" + pst_id, pst_id);
+    forged.header.writer_id = "crawler";
+    forged.header.stream_sequence = sent;
+    ASSERT_TRUE(listener_.bus().publish(Message(forged)));
+    ServiceStatus claim;
+    claim.service = "data_manipulation";
+    claim.writer_id = "crawler";
+    claim.written = {{"test_features", "crawler", 1'000'000'000}};
+    ASSERT_TRUE(listener_.bus().publish(claim));
+  }));
+}
+
 TEST_F(RunnerTest, AsksForWhatIsMissingUnderAFloodToo) {
   const auto process = joiner();
   TestFeatures features;
@@ -482,6 +502,33 @@ class EventLayer final : public Layer {
   static constexpr std::array kOutputs = {Topic::state_report};
 };
 
+TEST_F(RunnerTest, AMessageThatCannotBeReadIsToldOfAndItsStreamGoesOn) {
+  auto process = std::make_unique<Process>(
+      network_, [] { return std::make_unique<CuttingLayer>(); }, place_.connection());
+  process->start();
+  auto blocks = blocks_of_tests(2, {"A"});
+  const std::string lost = blocks[1].header.message_id;
+  blocks[1] = {};  // as the bus makes it (topic_types.cpp)
+  blocks[1].asset_id = "A";
+  blocks[1].header.message_id = "unreadable/" + lost;
+  Feeder feeder(network_, blocks);
+  feeder.send(4);
+  ASSERT_TRUE(step_until([&] { return feeder.all_received(); }, [&] { process->step(), feeder.beat(); }));
+  ServiceStatus last;
+  InMemoryBus listener(network_);
+  ASSERT_TRUE(listener.subscribe_service_topics());
+  EXPECT_TRUE(step_until(
+      [&] { return last.last_error.find("unreadable/" + lost + ": it has a value that") != std::string::npos; },
+      [&] {
+        process->step();
+        for (const BusItem& item : listener.receive(std::chrono::milliseconds(5), 1000))
+          if (const auto* status = std::get_if<ServiceStatus>(&item); status && status->service == "data_acquisition")
+            last = *status;
+      }))
+      << last.last_error;
+  EXPECT_FALSE(process->outputs().empty()) << "the test after it is concluded";
+}
+
 TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo) {
   const auto layer = [] { return std::make_unique<EventLayer>(); };
   constexpr std::int64_t kDay_ns = 86'400'000'000'000;
@@ -512,6 +559,7 @@ TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo
   simulated.header = header("test_features/a", "a");
   simulated.header.event_time_known = true;
   simulated.header.event_time_ns = now_ns + 1000 * kDay_ns;
+  simulated.header.replay = true;
   ASSERT_TRUE(sender.publish(Message(simulated)));
   ASSERT_TRUE(sender.publish(Message(event("in that life", now_ns + 1000 * kDay_ns))));
   step(*process, 3);

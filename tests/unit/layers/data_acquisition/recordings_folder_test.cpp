@@ -1,6 +1,7 @@
 #include "services/data_acquisition/recordings_folder.hpp"
 
 #include <gmock/gmock.h>
+#include <malloc.h>
 #include <sys/stat.h>
 
 #include <fstream>
@@ -177,6 +178,45 @@ TEST_F(RecordingsFolderTest, LinksAreNotFollowed) {
 }
 
 /// Who reads a pipe waits until somebody writes to it: the service would wait with it.
+TEST_F(RecordingsFolderTest, ALinkThatLeadsNowhereIsRefusedToo) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  fs::create_symlink("/nowhere", directory_ / "gone.csv");
+  fs::create_symlink("round.csv", directory_ / "round.csv");
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(errors_, testing::UnorderedElementsAre(testing::HasSubstr("gone.csv: is a symbolic link"),
+                                                     testing::HasSubstr("round.csv: is a symbolic link")));
+  EXPECT_FALSE(fs::is_symlink(directory_ / "gone.csv"));
+}
+
+TEST_F(RecordingsFolderTest, AFolderThatIsGoneIsToldOfOnceAndUsedWhenItIsBack) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  fs::remove_all(directory_);
+  for (int look = 0; look < 3; ++look) EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("recordings_directory: cannot be read: No such file")));
+  fs::create_directories(directory_);
+  drop("april", "XT03-MV2");
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_EQ(watched.look().size(), 2U);
+  EXPECT_THAT(errors_, testing::SizeIs(1));
+}
+
+TEST_F(RecordingsFolderTest, FilesThatAreGoneAreForgotten) {
+  DataAcquisition layer(assets_);
+  RecordingsFolder watched = folder(layer);
+  std::size_t halfway = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const fs::path file = directory_ / ("comes and goes " + std::to_string(k) + ".csv");
+    std::ofstream(file) << "time\n";
+    EXPECT_TRUE(watched.look().empty());
+    fs::remove(file);
+    if (k == 1000) halfway = ::mallinfo2().uordblks;
+  }
+  EXPECT_LT(::mallinfo2().uordblks, halfway + 100'000);
+}
+
 TEST_F(RecordingsFolderTest, ASidecarThatIsAPipeIsNotWaitedFor) {
   fs::create_directories(directory_);
   drop("april", "XT03-MV2");

@@ -88,6 +88,33 @@ std::vector<double>& values(TimeSeries& samples, const std::string& channel) {
   throw std::logic_error("no channel " + channel);
 }
 
+TEST(DataManipulation, TestsWhoseEndNeverComesTakeNoMoreMemoryThanTwo) {
+  DataManipulation layer({asset()});
+  const auto real = blocks_of(SyntheticPst{}.record(), "REAL");
+  ASSERT_GT(real.size(), 1U);
+  std::size_t open = 0, halfway = 0;
+  for (int k = 0; k < 100'000; ++k) {
+    const Conclusion conclusion = layer.receive(test::forged(real.front(), k));
+    open += 1 - conclusion.consumed.size();
+    if (k == 50'000) halfway = ::mallinfo2().uordblks;
+  }
+  EXPECT_LE(open, 256U);
+  EXPECT_LT(::mallinfo2().uordblks, halfway + 1'000'000);
+  Conclusion endless;
+  for (int k = 0; k < 300'000; ++k) {
+    SampleBlock empty;
+    empty.asset_id = "XT03-MV2";
+    empty.header.pst_id = "endless";
+    empty.header.message_id = "sample_block/endless/" + std::to_string(k);
+    open += 1;
+    open -= layer.receive(empty).consumed.size();
+  }
+  EXPECT_LE(open, 250'000U);
+  for (const SampleBlock& block : real) endless = completed(layer.receive(block));
+  EXPECT_EQ(endless.consumed.size(), real.size());
+  EXPECT_EQ(endless.outputs.size(), 2U);
+}
+
 TEST(DataManipulation, ARecordingThatBeginsInsideTheStrokeIsNotComplete) {
   TimeSeries late = SyntheticPst{}.record();
   constexpr std::ptrdiff_t kDropped = 800;  // 4 s

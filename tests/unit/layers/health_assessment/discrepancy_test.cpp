@@ -133,6 +133,23 @@ TEST(Discrepancy, WhereTheAcceptedModelIsJudgedItAloneCounts) {
   EXPECT_TRUE(found_in(messages_of(row(0, 5, Residual::accepted_small))).empty());
 }
 
+TEST(Discrepancy, AForgedHalfStopsNoAnalysisAndAnyNumberTakesNoMoreMemory) {
+  const auto assessment = layer();
+  const TestMessages first = test(0, Residual::large);
+  test::expect_flat_under_forged_halves(*assessment, {first.features, first.window, first.report});
+  const auto forged_report = [&](int number) { return test::forged(first.report, number); };
+  std::vector<Message> attacked;
+  int number = 0;
+  for (const Message& message : messages_of(row(0, 13, Residual::large))) {
+    attacked.push_back(forged_report(number));  // a whole test, as it seems, that deviates, but for its window
+    attacked.push_back(test::forged(first.features, number++));
+    attacked.push_back(message);
+  }
+  const auto found = found_in(attacked), undisturbed = found_in(messages_of(row(0, 13, Residual::large)));
+  ASSERT_EQ(found.size(), undisturbed.size());
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_EQ(found[k].summary, undisturbed[k].summary);
+}
+
 TEST(Discrepancy, AReplacementEndsTheRowAndVersionsCountAnew) {
   auto tests = row(0, 4, Residual::large);
   tests.push_back(test(5, Residual::large, true));

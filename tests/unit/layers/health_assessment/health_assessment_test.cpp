@@ -4,6 +4,7 @@
 
 #include "services/common/message/json.hpp"
 #include "services/state_detection/state_detection.hpp"
+#include "tests/unit/layers/given_again.hpp"
 #include "tests/unit/layers/state_detection/synthetic_test.hpp"
 
 namespace sealwatch {
@@ -51,7 +52,7 @@ struct Journal {
   std::vector<std::string> consumed;
   void take(HealthAssessment& assessment, const Message& input) {
     received.push_back(input);
-    add(assessment.receive(input));
+    add(test::receive(assessment, input, received));
   }
   void add(Conclusion conclusion) {
     for (Message& output : conclusion.outputs) concluded.push_back(std::move(output));
@@ -62,7 +63,8 @@ struct Journal {
     for (const Message& output : concluded) fresh.restore(output);
     const std::vector<std::string> done = consumed;
     for (const Message& input : received)
-      if (std::find(done.begin(), done.end(), header_of(input).message_id) == done.end()) add(fresh.receive(input));
+      if (std::find(done.begin(), done.end(), header_of(input).message_id) == done.end())
+        add(test::receive(fresh, input, received));
     return fresh;
   }
   [[nodiscard]] std::vector<std::string> text() const {
@@ -114,10 +116,7 @@ TEST(HealthAssessment, ATestWhoseOtherHalfNeverComesHoldsUpNoLaterOne) {
   int number = 0;
   for (const Message& message : eventful_life()) {
     undisturbed.take(one, message);
-    Message half = message;
-    header_of(half).pst_id = "forged-" + std::to_string(number++);
-    header_of(half).message_id = std::string(name_of(topic_of(half))) + "/" + header_of(half).pst_id;
-    attacked.take(other, half);
+    attacked.take(other, test::forged(message, number++));
     attacked.take(other, message);
     ASSERT_EQ(attacked.concluded.size(), undisturbed.concluded.size()) << "after " << header_of(message).message_id;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sealwatch/port/layer.hpp"
+#include "tests/unit/layers/given_again.hpp"
 
 namespace sealwatch::test {
 
@@ -21,7 +22,7 @@ inline std::vector<Message> run_layer(const LayerFactory& make, const std::vecto
   std::vector<Message> outputs;
   std::vector<Message> open;  // received, not consumed
   const auto receive = [&](const Message& input) {
-    const Conclusion conclusion = layer->receive(input);
+    const Conclusion conclusion = test::receive(*layer, input, open);
     outputs.insert(outputs.end(), conclusion.outputs.begin(), conclusion.outputs.end());
     for (const std::string& id : conclusion.consumed)
       std::erase_if(open, [&](const Message& message) { return header_of(message).message_id == id; });

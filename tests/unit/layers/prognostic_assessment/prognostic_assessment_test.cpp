@@ -75,6 +75,17 @@ TEST_F(PrognosticAssessmentTest, OrderOfTheJoinDoesNotMatter) {
   EXPECT_EQ(run(reports_first), run(inputs_of(life)));
 }
 
+TEST_F(PrognosticAssessmentTest, AForgedHalfHoldsUpNothingAndAnyNumberTakesNoMoreMemory) {
+  const auto life = straight_life(1, 30);
+  const auto layer = make();
+  expect_flat_under_forged_halves(*layer, {life[0].health(), life[0].window()});
+  std::vector<Message> outputs;
+  for (const Message& input : inputs_of(life))
+    std::ranges::move(layer->receive(input).outputs, std::back_inserter(outputs));
+  EXPECT_EQ(outputs, run(inputs_of(life)));
+  EXPECT_EQ(layer->held(), 2U * 16U) << "those that were overtaken wait for nothing";
+}
+
 TEST_F(PrognosticAssessmentTest, DeathAnywhereChangesNothing) {
   auto life = straight_life(1, 40);
   life[10].admissible = false;

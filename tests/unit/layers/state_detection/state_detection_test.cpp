@@ -4,6 +4,7 @@
 
 #include "services/common/message/json.hpp"
 #include "services/state_detection/sensor_alarms.hpp"
+#include "tests/unit/layers/given_again.hpp"
 #include "tests/unit/layers/state_detection/fake_simulator.hpp"
 #include "tests/unit/layers/state_detection/synthetic_test.hpp"
 
@@ -30,7 +31,7 @@ struct Journal {
 
   void take(StateDetection& detection, const Message& input) {
     received.push_back(input);
-    add(detection.receive(input));
+    add(test::receive(detection, input, received));
   }
   void add(Conclusion conclusion) {
     for (Message& output : conclusion.outputs) concluded.push_back(std::move(output));
@@ -42,7 +43,8 @@ struct Journal {
     for (const Message& output : concluded) fresh.restore(output);
     const std::vector<std::string> done = consumed;
     for (const Message& input : received)
-      if (std::find(done.begin(), done.end(), header_of(input).message_id) == done.end()) add(fresh.receive(input));
+      if (std::find(done.begin(), done.end(), header_of(input).message_id) == done.end())
+        add(test::receive(fresh, input, received));
     return fresh;
   }
   [[nodiscard]] std::vector<std::string> text() const {
@@ -139,27 +141,27 @@ TEST(StateDetection, OrderOfArrivalOfTheWindowDoesNotMatter) {
   EXPECT_EQ(found, expected);
 }
 
-/// Half a test that nobody made, as a forger sends it.
-Message forged(const Message& half, int number) {
-  Message message = half;
-  header_of(message).pst_id = "forged-" + std::to_string(number);
-  header_of(message).message_id = std::string(name_of(topic_of(half))) + "/" + header_of(message).pst_id;
-  return message;
-}
-
 TEST(StateDetection, ATestWhoseOtherHalfNeverComesHoldsUpNoLaterOne) {
   Journal undisturbed, attacked;
   StateDetection one = layer(), other = layer();
   int number = 0;
   for (const Message& message : eventful_life()) {
     undisturbed.take(one, message);
-    if (!std::holds_alternative<MaintenanceEvent>(message)) attacked.take(other, forged(message, number++));
+    if (!std::holds_alternative<MaintenanceEvent>(message)) attacked.take(other, test::forged(message, number++));
     attacked.take(other, message);
     ASSERT_EQ(attacked.concluded.size(), undisturbed.concluded.size()) << "after " << header_of(message).message_id;
   }
   EXPECT_LE(other.held(), 4 * 16 + 2) << "of two assets, features and windows";
   EXPECT_GT(other.held(), 0U);
   EXPECT_TRUE(attacked.text() == undisturbed.text());
+}
+
+TEST(StateDetection, AnyNumberOfForgedHalvesTakesNoMoreMemory) {
+  StateDetection detection = layer();
+  const synthetic::Test made = synthetic::make({}, {});
+  test::expect_flat_under_forged_halves(detection, {made.features, made.window});
+  (void)detection.receive(made.features);
+  EXPECT_EQ(detection.receive(made.window).outputs.size(), 1U);
 }
 
 TEST(StateDetection, ATestThatWasOvertakenIsConcludedWhenItsOtherHalfComes) {

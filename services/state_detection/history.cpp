@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sealwatch/config/judged_quantities.hpp"
+#include "sealwatch/message/made_up.hpp"
 #include "services/state_detection/judgements.hpp"
 
 namespace sealwatch {
@@ -67,6 +68,7 @@ void AssetHistory::learn(const StateReport& report) {
     last_overdue_id = report.header.message_id;
     return;
   }
+  has_live_tests |= !report.header.replay && !is_made_up_test(report.header.pst_id);
   if (!is_judged(report.verdict)) return;
   last_judged_id = report.header.message_id;
   if (report.header.event_time_known) schedule.tested(UtcTime{report.header.event_time_ns});

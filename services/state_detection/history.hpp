@@ -47,6 +47,7 @@ class AssetHistory {
 
   Schedule schedule;
   bool last_was_replay = false;
+  bool has_live_tests = false;  ///< neither played back nor made up
   std::string last_overdue_id;  ///< message id of the last report on an overdue test
   std::string last_judged_id;   ///< message id of the last report with a verdict of passed or failed
 

@@ -129,6 +129,7 @@ std::optional<StateReport> StateDetection::judge_anew(const std::string& asset_i
   AssetHistory fresh(options_.region, options_.baseline);
   std::optional<StateReport> last = state.past.judge_anew(asset == assets_.end() ? unknown : asset->second, fresh);
   fresh.last_was_replay = state.history.last_was_replay;
+  fresh.has_live_tests |= state.history.has_live_tests;
   fresh.last_overdue_id = state.history.last_overdue_id;
   state.history = std::move(fresh);
   return last;
@@ -282,7 +283,9 @@ Conclusion StateDetection::tick(UtcTime now) {
   Conclusion conclusion;
   for (auto& [asset_id, state] : states_) {
     state.accepted.tick(now, conclusion);
-    if (state.history.last_was_replay || assets_.count(asset_id) == 0) continue;
+    // A history that is played back is over. An asset that lives goes on beside it.
+    if (state.history.last_was_replay && !state.history.has_live_tests) continue;
+    if (assets_.count(asset_id) == 0) continue;
     std::optional<StateReport> report = overdue_report(asset_id, state, now);
     if (!report || report->header.message_id == state.history.last_overdue_id) continue;
     state.history.learn(*report);

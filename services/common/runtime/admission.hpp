@@ -58,6 +58,8 @@ class Admission {
   [[nodiscard]] std::optional<std::string> refusal_of_asset(const Message& message) const;
   /// Why the message of such an asset is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
+  /// Of tests that were neither played back nor made up: time passes for such an asset, whatever is played back beside.
+  [[nodiscard]] bool has_live_tests(const std::string& asset_id) const { return live_.contains(asset_id); }
 
  private:
   void note_test(const Message& message, UtcTime time);

@@ -337,13 +337,18 @@ Status LayerRunner::let_time_pass() {
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};
   for (const std::string& asset_id : lanes_.assets()) {
     Layer* const layer = at_rest(asset_id);
-    if (layer == nullptr || replaying_[asset_id] || may_be_on_its_way(asset_id)) continue;
+    if (layer == nullptr || time_stands_still(asset_id) || may_be_on_its_way(asset_id)) continue;
     Conclusion conclusion = layer->tick(clock_.now());
     if (conclusion.outputs.empty() && conclusion.consumed.empty()) continue;
     const Survives survives = conclusion.refused.empty() ? Survives::kills : Survives::power_cuts;
     if (Status status = in_batch([&] { return keep(std::move(conclusion)); }, survives); !status) return status;
   }
   return {};
+}
+
+/// A history that is played back is over. An asset that lives goes on beside it.
+bool LayerRunner::time_stands_still(const std::string& asset_id) {
+  return replaying_[asset_id] && !admission_.has_live_tests(asset_id);
 }
 
 /// A test is not overdue or lost while messages about it may be on their way.

@@ -142,6 +142,7 @@ class LayerRunner {
   void give_memory_back();
   [[nodiscard]] Status keep(Conclusion conclusion);
   [[nodiscard]] Status let_time_pass();
+  [[nodiscard]] bool time_stands_still(const std::string& asset_id);
   [[nodiscard]] bool may_be_on_its_way(const std::string& asset_id);
   [[nodiscard]] Status serve_resends();
   [[nodiscard]] Status publish_latest();
@@ -282,7 +283,7 @@ class LayerRunner {
   std::optional<std::chrono::steady_clock::time_point> full_since_;            ///< the bus had more after each take
   std::chrono::steady_clock::time_point asked_{};                              ///< last look at what is missing
   std::map<std::string, std::chrono::steady_clock::time_point> behind_since_;  ///< assets of which more is to come
-  std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back, so time does not pass
+  std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back
   std::string last_error_;                 ///< with its time
   Alarms alarms_;
   std::optional<AlarmDesk> desk_;

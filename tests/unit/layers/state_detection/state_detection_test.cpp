@@ -283,6 +283,20 @@ TEST(StateDetection, ACutTestDoesNotCountAsTested) {
   EXPECT_TRUE(last_report(journal).pst_overdue);
 }
 
+TEST(StateDetection, AReplayHoldsNoOverdueTestOfALiveAssetBack) {
+  Journal journal;
+  StateDetection detection = layer();
+  play(detection, journal, {}, {});
+  Circumstances played_back;
+  played_back.number = -1;
+  played_back.replay = true;
+  play(detection, journal, {}, played_back);
+  const Conclusion overdue = detection.tick(synthetic::month(2));
+  ASSERT_EQ(overdue.outputs.size(), 1U);
+  EXPECT_EQ(header_of(overdue.outputs.front()).message_id, "state_report/A1/overdue/2031-02-09");
+  EXPECT_EQ(journal.restart().tick(synthetic::month(2)).outputs, overdue.outputs);
+}
+
 TEST(StateDetection, OverdueOncePerDueDateAndNotInReplay) {
   for (const bool replay : {false, true}) {
     Journal journal;

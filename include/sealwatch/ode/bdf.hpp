@@ -13,125 +13,183 @@
 // iteration for y, and then all columns of S at once, for which the equation is linear:  (I - c J) S = S^0 + c df/dp -
 // psi_S. The local error is controlled for y; S follows with the same steps.
 //
-// System is a class with
-//   static constexpr int kStates;   or kDynamicSize, with  int states() const;  beside it
-//   void evaluate(double t, const double* y, double* f) const;                       f(t, y)
-//   void linearise(double t, const double* y, double* f, Matrix& J) const;            f and J
-//   void add_parameter_derivatives(double t, const double* y, double factor, double* X, std::size_t stride) const;
-//                                                                                     X(:, 1 + k) += factor df/dp_k
+// Equations and their linear algebra are templates of the number of states alone, the rest is compiled once: calls of the
+// equations are virtual, and cost nothing beside what they compute.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
+#include "sealwatch/ode/backward_differences.hpp"
 #include "sealwatch/ode/lu.hpp"
 
 namespace sealwatch {
 
-struct BdfOptions {
-  double maximum_step = 1e300;
-  std::size_t maximum_steps = 200000;
-  int maximum_order = 5;
+/// Equations of N states; N may be kDynamicSize.
+template <int N>
+class OdeSystem {
+ public:
+  static constexpr int kStates = N;
+  using Matrix = typename SquareSystem<N>::Matrix;
+
+  virtual ~OdeSystem() = default;
+  /// To be overridden where N is kDynamicSize.
+  [[nodiscard]] virtual int states() const { return N; }
+  /// f(t, y)
+  virtual void evaluate(double t, const double* y, double* f) const = 0;
+  /// f and J
+  virtual void linearise(double t, const double* y, double* f, Matrix& jacobian) const = 0;
+  /// X(:, 1 + k) += factor df/dp_k
+  virtual void add_parameter_derivatives(double t, const double* y, double factor, double* x,
+                                         std::size_t stride) const = 0;
 };
 
-struct BdfStatistics {
-  std::size_t steps = 0;
-  std::size_t rejected = 0;       ///< by the error test
-  std::size_t not_converged = 0;  ///< Newton's iteration failed
-  std::size_t linearisations = 0;
-};
-
-template <class System>
-[[nodiscard]] int state_count(const System& system) {
-  if constexpr (System::kStates == kDynamicSize)
+/// Known to the compiler where N is not kDynamicSize.
+template <int N>
+[[nodiscard]] int state_count(const OdeSystem<N>& system) {
+  if constexpr (N == kDynamicSize)
     return system.states();
   else
-    return System::kStates;
+    return N;
 }
 
-template <class System>
-class Bdf {
+template <int N>
+class Bdf final : public BackwardDifferences {
  public:
-  static constexpr int kStates = System::kStates;
-  static constexpr int kMaximumOrder = 5;
-  using Sizes = SquareSystem<kStates>;
+  using System = OdeSystem<N>;
+  using Sizes = SquareSystem<N>;
   using Matrix = typename Sizes::Matrix;
   using Vector = typename Sizes::Vector;
 
-  /// `parameters`: number of columns of S. `scale`: allowed local error of each state per step.
-  Bdf(const System& system, int parameters, const Vector& scale, BdfOptions options = {})
-      : system_(system),
-        parameters_(parameters),
-        stride_(parameters == 0 ? 1 : (1 + parameters + 3) / 4 * 4),
-        scale_(scale),
-        options_(options) {
-    for (auto& difference : differences_) difference.assign(size(), 0.0);
-    prediction_.assign(size(), 0.0);
-    constants_.assign(size(), 0.0);
-    work_.assign(size(), 0.0);
-    for (Vector* rows : {&state_, &correction_, &rate_, &change_}) *rows = Sizes::vector(states());
-    matrix_ = Sizes::matrix(states());
+  Bdf(const System& system, int parameters, std::vector<double> scale, BdfOptions options = {})
+      : BackwardDifferences(state_count(system), parameters, std::move(scale), options), system_(system) {
+    for (Vector* vector : {&state_, &correction_, &rate_, &change_}) *vector = Sizes::vector(rows());
+    matrix_ = Sizes::matrix(rows());
   }
 
-  [[nodiscard]] std::size_t stride() const { return stride_; }
-  [[nodiscard]] int states() const { return state_count(system_); }
-  [[nodiscard]] std::size_t size() const { return states() * stride_; }
-  [[nodiscard]] double time() const { return time_; }
-  [[nodiscard]] double step_size() const { return step_; }
-  [[nodiscard]] int order() const { return order_; }
-  [[nodiscard]] const BdfStatistics& statistics() const { return statistics_; }
-  /// [y | S] at time(), row by row.
-  [[nodiscard]] const double* values() const { return differences_[0].data(); }
-
-  /// Starts (again) at time t from [y | S] with first order. The step: by the curvature, at most 1 ms the first time, later
-  /// at most that or the last one.
-  [[nodiscard]] bool start(double time, const double* values);
-  /// One accepted step; false when no step size works.
-  [[nodiscard]] bool step();
-  /// [y | S] at a time within the last step, to `result`.
-  void interpolate(double time, double* result) const;
+  [[nodiscard]] bool start(double time, const double* values) override;
 
  private:
-  using Table = std::array<double, kMaximumOrder + 3>;
-  struct Coefficients {
-    Table gamma{}, alpha{}, error{};
-  };
-  static const Coefficients& coefficients();
-
-  [[nodiscard]] double norm(const double* values, std::size_t stride) const;
+  [[nodiscard]] int rows() const { return state_count(system_); }
   [[nodiscard]] double first_step();
-  [[nodiscard]] bool attempt();
+  [[nodiscard]] bool attempt() override;
   [[nodiscard]] bool solve_states(double c);
-  void solve_sensitivities(double c);
+  void solve_sensitivities(double c) override;
   [[nodiscard]] bool factorise(double c);
-  void predict();
-  void accept();
-  void choose_order_and_step();
-  void change_step(double factor);
 
   const System& system_;
-  int parameters_;
-  std::size_t stride_;
-  Vector scale_;
-  BdfOptions options_;
-  BdfStatistics statistics_;
-
-  double time_ = 0.0;
-  double step_ = 0.0;
-  int order_ = 1;
-  int equal_steps_ = 0;
   double curvature_ = 1e3;  ///< contraction of Newton's iteration per size of the last correction
-  double error_ = 0.0;
-  std::array<std::vector<double>, kMaximumOrder + 3> differences_;
-  std::vector<double> prediction_, constants_, work_;
   Vector state_{}, correction_{}, rate_{}, change_{};
   Matrix matrix_{};
-  LuFactorisation<kStates> lu_;
+  LuFactorisation<N> lu_;
 };
 
-}  // namespace sealwatch
+// An error of half of what is allowed:  error_1 h^2 |y''| = 1/2,  y'' = J f where f depends on time by jumps alone. Where
+// it depends on time otherwise the error test judges. The columns of S, which it does not see, may start far from rest.
+template <int N>
+double Bdf<N>::first_step() {
+  constexpr double kLongest_s = 1e-3, kError = 0.5;
+  for (int row = 0; row < rows(); ++row) {
+    change_[row] = 0.0;
+    for (int other = 0; other < rows(); ++other) change_[row] += matrix_[row][other] * rate_[other];
+  }
+  const double curvature = norm(change_.data(), 1);
+  if (!std::isfinite(curvature)) return 0.0;
+  const double longest = std::min(options_.maximum_step, std::max(step_, kLongest_s));
+  return std::min(longest, std::sqrt(kError / (coefficients().error[1] * std::max(curvature, kError))));
+}
 
-#include "sealwatch/ode/bdf_implementation.hpp"
+template <int N>
+bool Bdf<N>::start(double time, const double* values) {
+  restart(time, values);
+  for (int row = 0; row < rows(); ++row) state_[row] = values[row * stride_];
+  system_.linearise(time, state_.data(), rate_.data(), matrix_);
+  step_ = first_step();
+  if (step_ <= 0.0) return false;
+  double* slope = differences_[1].data();
+  for (int row = 0; row < rows(); ++row)
+    for (int other = 0; other < rows(); ++other)
+      for (int k = 1; k <= parameters_; ++k)
+        slope[row * stride_ + k] += matrix_[row][other] * values[other * stride_ + k];
+  system_.add_parameter_derivatives(time, state_.data(), 1.0, slope, stride_);
+  for (int row = 0; row < rows(); ++row) slope[row * stride_] = rate_[row];
+  for (double& value : differences_[1]) value *= step_;
+  return true;
+}
+
+template <int N>
+bool Bdf<N>::factorise(double c) {
+  system_.linearise(time_ + step_, state_.data(), rate_.data(), matrix_);
+  ++statistics_.linearisations;
+  for (int row = 0; row < rows(); ++row) {
+    for (int column = 0; column < rows(); ++column) matrix_[row][column] *= -c;
+    matrix_[row][row] += 1.0;
+  }
+  return lu_.factorise(matrix_);
+}
+
+template <int N>
+bool Bdf<N>::attempt() {
+  predict();
+  for (int row = 0; row < rows(); ++row) state_[row] = prediction_[row * stride_];
+  std::fill(correction_.begin(), correction_.end(), 0.0);
+  if (!solve_states(step_ / coefficients().alpha[order_])) return false;
+  error_ = coefficients().error[order_] * norm(correction_.data(), 1);
+  return std::isfinite(error_);
+}
+
+// Newton's iteration for d = y - y^0:  c f(y^0 + d) - psi - d = 0. The Jacobian is fresh at the prediction and is
+// renewed when the iteration contracts slowly. One correction suffices when the last observed contraction says that the
+// next one would be far below the allowed error.
+template <int N>
+bool Bdf<N>::solve_states(double c) {
+  constexpr int kIterations = 8;
+  constexpr double kConverged = 0.02;  // of the allowed local error
+  constexpr double kSlow = 0.2;
+  bool fresh = true;
+  double last = 0.0;
+  if (!factorise(c)) return false;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for (int row = 0; row < rows(); ++row) change_[row] = c * rate_[row] - constants_[row * stride_] - correction_[row];
+    lu_.solve(change_.data(), 1, 1);
+    const double size_of_change = norm(change_.data(), 1);
+    if (!std::isfinite(size_of_change)) return false;
+    for (int row = 0; row < rows(); ++row) {
+      state_[row] += change_[row];
+      correction_[row] += change_[row];
+    }
+    double contraction = curvature_ * size_of_change;
+    if (iteration > 0 && last > 0.0) {
+      contraction = size_of_change / last;
+      curvature_ = std::max(0.7 * curvature_, contraction / last);
+      if (!fresh && contraction > 2.0) return false;
+    }
+    if (contraction < 1.0 && contraction * size_of_change < kConverged) return true;
+    fresh = iteration > 0 && contraction > kSlow;
+    if (fresh) {
+      if (!factorise(c)) return false;
+    } else {
+      system_.evaluate(time_ + step_, state_.data(), rate_.data());
+    }
+    last = size_of_change;
+  }
+  return false;
+}
+
+// (I - c J) S = S^0 + c df/dp - psi_S, all columns at once; work_ <- S - S^0 beside the states' correction.
+template <int N>
+void Bdf<N>::solve_sensitivities(double c) {
+  for (int row = 0; row < rows(); ++row) work_[row * stride_] = correction_[row];
+  if (parameters_ == 0) return;
+  const std::size_t count = size();
+  for (std::size_t j = 0; j < count; ++j) work_[j] = prediction_[j] - constants_[j];
+  system_.add_parameter_derivatives(time_ + step_, state_.data(), c, work_.data(), stride_);
+  lu_.solve(work_.data(), static_cast<int>(stride_), stride_);
+  for (std::size_t j = 0; j < count; ++j) work_[j] -= prediction_[j];
+  for (int row = 0; row < rows(); ++row) work_[row * stride_] = correction_[row];
+}
+
+}  // namespace sealwatch

@@ -37,19 +37,15 @@ class DynamicMatrix {
 template <int N>
 struct SquareSystem {
   using Vector = std::array<double, N>;
-  using Mask = std::array<bool, N>;
   using Matrix = std::array<std::array<double, N>, N>;
   [[nodiscard]] static Vector vector(int) { return {}; }
-  [[nodiscard]] static Mask mask(int) { return {}; }
   [[nodiscard]] static Matrix matrix(int) { return {}; }
 };
 template <>
 struct SquareSystem<kDynamicSize> {
   using Vector = std::vector<double>;
-  using Mask = std::vector<bool>;
   using Matrix = DynamicMatrix;
   [[nodiscard]] static Vector vector(int rows) { return Vector(static_cast<std::size_t>(rows), 0.0); }
-  [[nodiscard]] static Mask mask(int rows) { return Mask(static_cast<std::size_t>(rows), false); }
   [[nodiscard]] static Matrix matrix(int rows) { return Matrix(rows); }
 };
 

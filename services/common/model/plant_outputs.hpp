@@ -1,5 +1,5 @@
-// PlantSystem with what RecordingRun asks for besides its equations: allowed errors, states that settle, outputs that
-// are no state with their derivatives.
+// PlantSystem with its derivatives by the free quantities and its outputs that are no state: what depends on how many
+// directions of differentiation are carried at once.
 #pragma once
 
 #include <algorithm>
@@ -10,45 +10,40 @@
 
 namespace sealwatch {
 
+/// `Width` directions at once; free quantities beyond them make further blocks.
 template <class Model, int Width, bool WithPhysics>
-class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
+class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
  public:
-  using System = PlantSystem<Model, Width, WithPhysics>;
+  using System = PlantSystem<Model, WithPhysics>;
   using System::kStates;
-  using Vector = typename SquareSystem<kStates>::Vector;
-  using Mask = typename SquareSystem<kStates>::Mask;
 
   RecordedPlantSystem(const RecordedInput& input, const PhysicsTerms& terms, const ModelValues& values,
                       std::span<const FreeQuantity> free, InjectedColumns* injected)
       : System(input, terms, values, free, injected),
-        terms_(terms),
         injected_(injected),
         free_(free.size()),
-        columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())) {}
-
-  [[nodiscard]] int maximum_order() const { return Model::kMaximumOrder; }
-  [[nodiscard]] std::string trouble() const { return {}; }
-
-  [[nodiscard]] Vector scale(double relative_tolerance) const {
-    Vector scale;
-    scale.fill(relative_tolerance / 1e-6);
-    for (int k = 0; k < System::kPlantStates; ++k) scale[k] *= Model::kScale[k];
-    for (std::size_t k = 0; k < terms_.hidden_scales.size(); ++k)
-      scale[static_cast<std::size_t>(System::kPlantStates) + k] *= kHiddenShare * terms_.hidden_scales[k];
-    return scale;
+        columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())) {
+    for (std::size_t first = 0; first < free.size(); first += Width)
+      blocks_.push_back(make_block(values, free, static_cast<int>(first)));
   }
 
-  [[nodiscard]] Mask settled() const {
-    Mask fast{};
-    std::copy(Model::kQuasiSteady.begin(), Model::kQuasiSteady.end(), fast.begin());
+  void add_parameter_derivatives(double t, const double* y, double factor, double* x,
+                                 std::size_t stride) const override {
+    typename System::template State<double> state;
+    std::copy(y, y + kStates, state.begin());
+    for (const Block& block : blocks_) {
+      if (!block.has_parameters) continue;
+      const auto result = this->template rates<Dual<Width>>(state, this->input_at(t), block.values);
+      for (int row = 0; row < kStates; ++row)
+        for (int k = 0; k < block.count; ++k)
+          x[row * stride + 1 + block.first + k] += factor * result[row].derivative[k];
+    }
     if constexpr (WithPhysics)
-      for (const ActiveTerm& term : terms_.active)
-        if (term.hidden >= 0 && term.law->hidden->settled)
-          fast[static_cast<std::size_t>(System::kPlantStates + term.hidden)] = true;
-    return fast;
+      if (injected_ != nullptr) this->add_injected(t, state, factor, x, stride);
+    this->add_recording(t, state, factor, x, stride);
   }
 
-  void output(int which, double t, const double* point, std::size_t stride, double* signal) const {
+  void output(int which, double t, const double* point, std::size_t stride, double* signal) const override {
     if constexpr (WithPhysics)
       injected_ != nullptr ? with_physics<kStates + static_cast<int>(System::kSites)>(which, t, point, stride, signal)
                            : with_physics<kStates>(which, t, point, stride, signal);
@@ -58,6 +53,42 @@ class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
   }
 
  private:
+  /// Consecutive free quantities first .. first + Width - 1 with the parameters seeded for them.
+  struct Block {
+    int first = 0;
+    int count = 0;
+    bool has_parameters = false;
+    typename System::template Values<Dual<Width>> values;
+  };
+
+  static Block make_block(const ModelValues& values, std::span<const FreeQuantity> free, int first) {
+    Block block;
+    block.first = first;
+    block.count = std::min(Width, static_cast<int>(free.size()) - first);
+    System::assign(block.values, values);
+    for (int k = 0; k < block.count; ++k) {
+      const FreeQuantity& quantity = free[first + k];
+      if (quantity.kind == FreeQuantity::Kind::initial_state || quantity.is_of_recording()) continue;
+      block.has_parameters = true;
+      const bool load = quantity.kind == FreeQuantity::Kind::load_factor;
+      if (!load && quantity.index >= System::kPlantParameters)
+        block.values.laws[quantity.index - System::kPlantParameters].derivative[k] = 1.0;
+      else
+        seed(block.values.plant, load ? System::kPlantParameters : quantity.index, k);
+    }
+    return block;
+  }
+
+  static void seed(typename System::Equations::template Parameters<Dual<Width>>& parameters, std::size_t which,
+                   int direction) {
+    std::size_t index = 0;
+    parameters.visit(
+        [&](std::string_view, Dual<Width>& parameter) {
+          if (index++ == which) parameter.derivative[direction] = 1.0;
+        },
+        parameters);
+  }
+
   // What the recording is off by moves the output itself where it sees the input; the clock moves no value of it.
   template <class Column>
   void add_recording_part(int which, const Column& column, double t, const double* point, std::size_t stride,
@@ -78,8 +109,8 @@ class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
   // dh/dp + dh/dy S by dual numbers whose states carry S.
   void of_blocks(int which, double t, const double* point, std::size_t stride, double* signal) const {
     const auto input = this->input_at(t);
-    if (this->blocks().empty()) signal[0] = Model::output(which, plain(point, stride), input, this->values().plant);
-    for (const auto& block : this->blocks()) {
+    if (blocks_.empty()) signal[0] = Model::output(which, plain(point, stride), input, this->values().plant);
+    for (const auto& block : blocks_) {
       const auto result = Model::output(which, seeded(point, stride, block), input, block.values.plant);
       signal[0] = result.value;
       std::copy(result.derivative.begin(), result.derivative.begin() + block.count, signal + 1 + block.first);
@@ -92,7 +123,6 @@ class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
     return state;
   }
 
-  template <class Block>
   [[nodiscard]] static auto seeded(const double* point, std::size_t stride, const Block& block) {
     typename System::template State<Dual<Width>> state;
     for (int k = 0; k < kStates; ++k) {
@@ -140,7 +170,7 @@ class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
 
   template <class State, class Input>
   void add_parameter_part(int which, const State& state, const Input& input, double* signal) const {
-    for (const auto& block : this->blocks()) {
+    for (const auto& block : blocks_) {
       if (!block.has_parameters) continue;
       const auto extra = this->template extra<Dual<Width>>(state, input, block.values);
       const Dual<Width> result = evaluate_output(which, System::plant_state(state), input, block.values.plant, extra);
@@ -149,7 +179,7 @@ class RecordedPlantSystem : public PlantSystem<Model, Width, WithPhysics> {
     }
   }
 
-  const PhysicsTerms& terms_;
+  std::vector<Block> blocks_;
   InjectedColumns* injected_;
   std::size_t free_, columns_;
 };

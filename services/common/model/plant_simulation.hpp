@@ -64,10 +64,8 @@ class PlantSimulationOf final : public RecordedSimulation {
   [[nodiscard]] Result<SimulatedOutputs> run_with(const RecordedInput& input, const ModelValues& values,
                                                   std::span<const FreeQuantity> free, const SimulationOptions& options,
                                                   InjectedColumns* injected) const {
-    using System = RecordedPlantSystem<Model, Width, WithPhysics>;
-    return RecordingRun<System>(*this, input, System(input, terms(), values, free, injected), values, free, options,
-                                injected)
-        .simulate(values);
+    RecordedPlantSystem<Model, Width, WithPhysics> system(input, terms(), values, free, injected);
+    return run_over_recording(*this, input, system, values, free, options, injected).outputs;
   }
   /// With the laws in force and columns injected: in a translation unit of its own (plant_physics.hpp).
   [[nodiscard]] Result<SimulatedOutputs> run_with_physics(const RecordedInput& input, const ModelValues& values,

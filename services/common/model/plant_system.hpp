@@ -1,6 +1,5 @@
-// A plant's equations with the recorded input, as the system that ode/bdf.hpp integrates: values, Jacobian and
-// parameter derivatives by dual numbers; those by what the recording is off by from differences of the equations over a
-// little of the input.
+// A plant's equations with the recorded input, as the system that ode/bdf.hpp integrates: values and Jacobian by dual
+// numbers; derivatives by what the recording is off by from differences of the equations over a little of the input.
 //
 // Sensitivities are those at a sample, not at a time. With the clock fast by c, samples t_0 + (t_recorded - t_0) / (1 + c)
 // lie closer: dy/dt_recorded = f / (1 + c), and S of c follows  dS/dt = J S - f / (1 + c).  Where a held input jumps from
@@ -17,25 +16,27 @@
 
 #include "sealwatch/model/dual.hpp"
 #include "sealwatch/model/simulation.hpp"
-#include "sealwatch/ode/lu.hpp"
 #include "services/common/model/physics_terms.hpp"
 #include "services/common/model/recorded_input.hpp"
+#include "services/common/model/recorded_system.hpp"
 
 namespace sealwatch {
 
-/// `Width` directions of differentiation are carried at once; free quantities beyond them make further blocks. With
-/// physics the state ends with the laws' hidden states.
-template <class Model, int Width, bool WithPhysics>
-class PlantSystem {
+/// With physics the state ends with the laws' hidden states.
+template <class Model, bool WithPhysics>
+inline constexpr int kStatesOf = Model::Equations::kStates + (WithPhysics ? kMaximumHiddenStates : 0);
+
+template <class Model, bool WithPhysics>
+class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
  public:
   using Equations = typename Model::Equations;
   static constexpr int kPlantStates = Equations::kStates;
-  static constexpr int kStates = kPlantStates + (WithPhysics ? kMaximumHiddenStates : 0);
+  static constexpr int kStates = kStatesOf<Model, WithPhysics>;
   static constexpr std::size_t kSites = [] {
     if constexpr (WithPhysics) return Equations::kSites.size();
     return std::size_t{0};
   }();
-  using Matrix = typename LuFactorisation<kStates>::Matrix;
+  using typename OdeSystem<kStates>::Matrix;
   using Parameters = typename Equations::template Parameters<double>;
   template <class S>
   using State = std::array<S, kStates>;
@@ -49,20 +50,10 @@ class PlantSystem {
     std::vector<P> laws;
   };
 
-  /// Consecutive free quantities first .. first + Width - 1 with the parameters seeded for them.
-  struct Block {
-    int first = 0;
-    int count = 0;
-    bool has_parameters = false;
-    Values<Dual<Width>> values;
-  };
-
   PlantSystem(const RecordedInput& input, const PhysicsTerms& terms, const ModelValues& values,
               std::span<const FreeQuantity> free, InjectedColumns* injected)
       : input_(input), terms_(terms), injected_(injected), injected_begin_(1 + free.size()) {
     assign(values_, values);
-    for (std::size_t first = 0; first < free.size(); first += Width)
-      blocks_.push_back(make_block(values, free, static_cast<int>(first)));
     for (std::size_t k = 0; k < free.size(); ++k)
       if (free[k].is_of_recording()) recording_.push_back({1 + k, free[k]});
     for (const ActiveTerm& term : terms.active) {
@@ -72,19 +63,38 @@ class PlantSystem {
     if (injected_ != nullptr) weights_.resize(injected_->entries().size());
   }
 
-  void set_segment(std::size_t segment) { segment_ = segment; }
+  [[nodiscard]] int maximum_order() const override { return Model::kMaximumOrder; }
+
+  [[nodiscard]] std::vector<double> scale(double relative_tolerance) const override {
+    std::vector<double> scale(kStates, relative_tolerance / 1e-6);
+    for (int k = 0; k < kPlantStates; ++k) scale[k] *= Model::kScale[k];
+    for (std::size_t k = 0; k < terms_.hidden_scales.size(); ++k)
+      scale[static_cast<std::size_t>(kPlantStates) + k] *= kHiddenShare * terms_.hidden_scales[k];
+    return scale;
+  }
+
+  [[nodiscard]] std::vector<bool> settled() const override {
+    std::vector<bool> fast(Model::kQuasiSteady.begin(), Model::kQuasiSteady.end());
+    fast.resize(kStates, false);
+    if constexpr (WithPhysics)
+      for (const ActiveTerm& term : terms_.active)
+        if (term.hidden >= 0 && term.law->hidden->settled)
+          fast[static_cast<std::size_t>(kPlantStates + term.hidden)] = true;
+    return fast;
+  }
+
+  void set_segment(std::size_t segment) override { segment_ = segment; }
   [[nodiscard]] const Values<double>& values() const { return values_; }
-  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
 
-  void evaluate(double t, const double* y, double* f) const {
+  void evaluate(double t, const double* y, double* f) const override {
     State<double> state;
     std::copy(y, y + kStates, state.begin());
     const auto result = rates<double>(state, input_at(t), values_);
     std::copy(result.begin(), result.end(), f);
   }
 
-  void linearise(double t, const double* y, double* f, Matrix& jacobian) const {
+  void linearise(double t, const double* y, double* f, Matrix& jacobian) const override {
     State<Dual<kStates>> state;
     for (int k = 0; k < kStates; ++k) state[k] = Dual<kStates>::variable(y[k], k);
     const auto result = rates<Dual<kStates>>(state, input_at(t), values_);
@@ -94,23 +104,8 @@ class PlantSystem {
     }
   }
 
-  void add_parameter_derivatives(double t, const double* y, double factor, double* x, std::size_t stride) const {
-    State<double> state;
-    std::copy(y, y + kStates, state.begin());
-    for (const Block& block : blocks_) {
-      if (!block.has_parameters) continue;
-      const auto result = rates<Dual<Width>>(state, input_at(t), block.values);
-      for (int row = 0; row < kStates; ++row)
-        for (int k = 0; k < block.count; ++k)
-          x[row * stride + 1 + block.first + k] += factor * result[row].derivative[k];
-    }
-    if constexpr (WithPhysics)
-      if (injected_ != nullptr) add_injected(t, state, factor, x, stride);
-    add_recording(t, state, factor, x, stride);
-  }
-
   /// At the begin of a segment: what the jump there adds to [y | S].
-  void cross_jump(double t, double* point, std::size_t stride) const {
+  void cross_jump(double t, double* point, std::size_t stride) const override {
     for (const Column& column : recording_) {
       const std::size_t channel = column.quantity.index;
       if (column.quantity.kind != FreeQuantity::Kind::input_delay || !input_.channels()[channel].hold) continue;
@@ -181,38 +176,18 @@ class PlantSystem {
     return slope;
   }
 
- private:
-  using Course = std::array<double, Model::kInputs.size()>;
-  /// Values and slopes of all inputs.
-  [[nodiscard]] std::pair<Course, Course> course_at(double t) const {
-    std::pair<Course, Course> course;
-    for (std::size_t channel = 0; channel < course.first.size(); ++channel) {
-      course.first[channel] = input_.value(channel, t, segment_, cursor_);
-      course.second[channel] = WithPhysics ? input_.slope(channel, t, cursor_) : 0.0;
-    }
-    return course;
-  }
-  [[nodiscard]] static auto make_input(const Course& values, const Course& slopes) {
-    if constexpr (requires { Model::input(values, slopes); })
-      return Model::input(values, slopes);
-    else
-      return Model::input(values);
-  }
+  static constexpr std::size_t kPlantParameters = Parameters::kFieldCount - 1;  // without the load factor
 
-  void add_recording(double t, const State<double>& state, double factor, double* x, std::size_t stride) const {
-    for (const Column& column : recording_) {
-      State<double> slope;
-      const auto rates_by = [&](const typename Equations::Input& input) {
-        return rates<double>(state, input, values_);
-      };
-      if (column.quantity.kind == FreeQuantity::Kind::clock_rate) {
-        slope = rates_by(input_at(t));
-        for (double& value : slope) value *= -1.0 / (1.0 + input_.clock_rate());
-      } else {
-        slope = by_input(column.quantity, t, rates_by);
-      }
-      for (int row = 0; row < kStates; ++row) x[row * stride + column.place] += factor * slope[row];
-    }
+  template <class P>
+  static void assign(Values<P>& to, const ModelValues& values) {
+    std::size_t index = 0;
+    to.plant.visit(
+        [&](std::string_view, P& parameter) {
+          parameter = index < kPlantParameters ? values.parameters[index] : values.load_factor;
+          ++index;
+        },
+        to.plant);
+    to.laws.assign(values.parameters.begin() + static_cast<std::ptrdiff_t>(kPlantParameters), values.parameters.end());
   }
 
   template <class R, class S, class P>
@@ -234,19 +209,20 @@ class PlantSystem {
     }
   }
 
-  /// Contribution, or rate of the hidden state, of one law at one site.
-  template <class R, class S, class P>
-  [[nodiscard]] R evaluate_law(LawScalar LawOutput::*what, const ActiveTerm& term, std::size_t site, const State<S>& y,
-                               const PlantState<S>& plant, const typename Equations::Input& input,
-                               const Values<P>& values, const std::array<R, kSites>& added) const {
-    const auto signals = Equations::template signals<R>(site, plant, input, values.plant, added);
-    const std::size_t count = term.law->parameters.size();
-    const P* parameter = values.laws.data() + (term.first_parameter - kPlantParameters);
-    const S hidden = term.hidden >= 0 ? y[kPlantStates + term.hidden] : S(0.0);
-    LawInput& at = law_inputs_[static_cast<std::size_t>(&term - terms_.active.data())];
-    for (std::size_t k = 0; k < kSiteSignals; ++k) at.signal[k].value = value_of(signals[k]);
-    at.hidden.value = value_of(hidden);
-    return chain(term.law->evaluate(at).*what, signals, hidden, parameter, count);
+  void add_recording(double t, const State<double>& state, double factor, double* x, std::size_t stride) const {
+    for (const Column& column : recording_) {
+      State<double> slope;
+      const auto rates_by = [&](const typename Equations::Input& input) {
+        return rates<double>(state, input, values_);
+      };
+      if (column.quantity.kind == FreeQuantity::Kind::clock_rate) {
+        slope = rates_by(input_at(t));
+        for (double& value : slope) value *= -1.0 / (1.0 + input_.clock_rate());
+      } else {
+        slope = by_input(column.quantity, t, rates_by);
+      }
+      for (int row = 0; row < kStates; ++row) x[row * stride + column.place] += factor * slope[row];
+    }
   }
 
   // df/dextra w for the injected columns.
@@ -270,45 +246,37 @@ class PlantSystem {
             factor * result[row].derivative[entries[e].site] * weights_[e];
   }
 
-  static constexpr std::size_t kPlantParameters = Parameters::kFieldCount - 1;  // without the load factor
-
-  template <class P>
-  static void assign(Values<P>& to, const ModelValues& values) {
-    std::size_t index = 0;
-    to.plant.visit(
-        [&](std::string_view, P& parameter) {
-          parameter = index < kPlantParameters ? values.parameters[index] : values.load_factor;
-          ++index;
-        },
-        to.plant);
-    to.laws.assign(values.parameters.begin() + static_cast<std::ptrdiff_t>(kPlantParameters), values.parameters.end());
-  }
-
-  static Block make_block(const ModelValues& values, std::span<const FreeQuantity> free, int first) {
-    Block block;
-    block.first = first;
-    block.count = std::min(Width, static_cast<int>(free.size()) - first);
-    assign(block.values, values);
-    for (int k = 0; k < block.count; ++k) {
-      const FreeQuantity& quantity = free[first + k];
-      if (quantity.kind == FreeQuantity::Kind::initial_state || quantity.is_of_recording()) continue;
-      block.has_parameters = true;
-      const bool load = quantity.kind == FreeQuantity::Kind::load_factor;
-      if (!load && quantity.index >= kPlantParameters)
-        block.values.laws[quantity.index - kPlantParameters].derivative[k] = 1.0;
-      else
-        seed(block.values.plant, load ? kPlantParameters : quantity.index, k);
+ private:
+  using Course = std::array<double, Model::kInputs.size()>;
+  /// Values and slopes of all inputs.
+  [[nodiscard]] std::pair<Course, Course> course_at(double t) const {
+    std::pair<Course, Course> course;
+    for (std::size_t channel = 0; channel < course.first.size(); ++channel) {
+      course.first[channel] = input_.value(channel, t, segment_, cursor_);
+      course.second[channel] = WithPhysics ? input_.slope(channel, t, cursor_) : 0.0;
     }
-    return block;
+    return course;
+  }
+  [[nodiscard]] static auto make_input(const Course& values, const Course& slopes) {
+    if constexpr (requires { Model::input(values, slopes); })
+      return Model::input(values, slopes);
+    else
+      return Model::input(values);
   }
 
-  static void seed(typename Equations::template Parameters<Dual<Width>>& parameters, std::size_t which, int direction) {
-    std::size_t index = 0;
-    parameters.visit(
-        [&](std::string_view, Dual<Width>& parameter) {
-          if (index++ == which) parameter.derivative[direction] = 1.0;
-        },
-        parameters);
+  /// Contribution, or rate of the hidden state, of one law at one site.
+  template <class R, class S, class P>
+  [[nodiscard]] R evaluate_law(LawScalar LawOutput::*what, const ActiveTerm& term, std::size_t site, const State<S>& y,
+                               const PlantState<S>& plant, const typename Equations::Input& input,
+                               const Values<P>& values, const std::array<R, kSites>& added) const {
+    const auto signals = Equations::template signals<R>(site, plant, input, values.plant, added);
+    const std::size_t count = term.law->parameters.size();
+    const P* parameter = values.laws.data() + (term.first_parameter - kPlantParameters);
+    const S hidden = term.hidden >= 0 ? y[kPlantStates + term.hidden] : S(0.0);
+    LawInput& at = law_inputs_[static_cast<std::size_t>(&term - terms_.active.data())];
+    for (std::size_t k = 0; k < kSiteSignals; ++k) at.signal[k].value = value_of(signals[k]);
+    at.hidden.value = value_of(hidden);
+    return chain(term.law->evaluate(at).*what, signals, hidden, parameter, count);
   }
 
   const RecordedInput& input_;
@@ -317,7 +285,6 @@ class PlantSystem {
   std::size_t injected_begin_;
   mutable std::vector<double> weights_;
   Values<double> values_;
-  std::vector<Block> blocks_;
   std::vector<Column> recording_;
   mutable std::vector<LawInput> law_inputs_;  ///< of the laws in force, with their parameters
   std::size_t segment_ = 0;

@@ -8,30 +8,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/ode/bdf.hpp"
 
 namespace sealwatch {
 
-template <class System>
+template <int N>
 class QuasiSteadyState {
  public:
-  static constexpr int kStates = System::kStates;
-  using Sizes = SquareSystem<kStates>;
-  using Mask = typename Sizes::Mask;
+  using System = OdeSystem<N>;
+  using Sizes = SquareSystem<N>;
   using Vector = typename Sizes::Vector;
   using Matrix = typename Sizes::Matrix;
 
   /// `scale`: size of each state's allowed error.
-  QuasiSteadyState(const System& system, double time, const Mask& fast, const Vector& scale)
-      : frozen_{system, time, fast}, scale_(scale) {}
+  QuasiSteadyState(const System& system, double time, const std::vector<bool>& fast, std::vector<double> scale)
+      : frozen_(system, time, fast), scale_(std::move(scale)) {}
 
   /// Moves the fast states to rest; false when they do not come to rest.
-  [[nodiscard]] bool solve(Vector& state) { return relax(state) && finish(state); }
+  [[nodiscard]] bool solve(std::vector<double>& state) { return relax(state) && finish(state); }
 
   /// Completes the fast rows of [y | S], whose held rows are seeded.
-  [[nodiscard]] bool differentiate(const Vector& state, double* values, std::size_t stride) {
+  [[nodiscard]] bool differentiate(const std::vector<double>& state, double* values, std::size_t stride) {
     Vector f = Sizes::vector(states());
     Matrix jacobian = Sizes::matrix(states());
     frozen_.system.linearise(frozen_.time, state.data(), f.data(), jacobian);
@@ -52,33 +52,33 @@ class QuasiSteadyState {
 
  private:
   /// The system at a fixed time whose held states do not move.
-  struct Frozen {
-    static constexpr int kStates = System::kStates;
-    [[nodiscard]] int states() const { return state_count(system); }
+  struct Frozen final : System {
+    Frozen(const System& of, double at, const std::vector<bool>& moving) : system(of), time(at), fast(moving) {}
     const System& system;
     double time;
-    Mask fast;
-    void evaluate(double, const double* y, double* f) const {
+    std::vector<bool> fast;
+    [[nodiscard]] int states() const override { return state_count(system); }
+    void evaluate(double, const double* y, double* f) const override {
       system.evaluate(time, y, f);
       for (int row = 0; row < states(); ++row)
         if (!fast[row]) f[row] = 0.0;
     }
-    void linearise(double, const double* y, double* f, Matrix& jacobian) const {
+    void linearise(double, const double* y, double* f, Matrix& jacobian) const override {
       system.linearise(time, y, f, jacobian);
       for (int row = 0; row < states(); ++row)
         if (!fast[row]) f[row] = 0.0, std::ranges::fill(jacobian[row], 0.0);
     }
-    void add_parameter_derivatives(double, const double*, double, double*, std::size_t) const {}
+    void add_parameter_derivatives(double, const double*, double, double*, std::size_t) const override {}
   };
 
   [[nodiscard]] int states() const { return state_count(frozen_.system); }
 
-  [[nodiscard]] bool relax(Vector& state) const {
+  [[nodiscard]] bool relax(std::vector<double>& state) const {
     constexpr double kPseudoTime_s = 100.0;  // many times the slowest leakage of a closed volume
     constexpr double kCoarser = 300.0;
-    Vector scale = scale_;
+    std::vector<double> scale = scale_;
     for (double& value : scale) value *= kCoarser;
-    Bdf<Frozen> bdf(frozen_, 0, scale, {.maximum_steps = 5000});
+    Bdf<N> bdf(frozen_, 0, std::move(scale), {.maximum_steps = 5000});
     if (!bdf.start(0.0, state.data())) return false;
     while (bdf.time() < kPseudoTime_s)
       if (!bdf.step()) return false;
@@ -86,7 +86,7 @@ class QuasiSteadyState {
     return true;
   }
 
-  [[nodiscard]] bool finish(Vector& state) {
+  [[nodiscard]] bool finish(std::vector<double>& state) {
     constexpr int kIterations = 30;
     constexpr double kConverged = 1e-3;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -117,8 +117,8 @@ class QuasiSteadyState {
   }
 
   Frozen frozen_;
-  Vector scale_;
-  LuFactorisation<kStates> lu_;
+  std::vector<double> scale_;
+  LuFactorisation<N> lu_;
 };
 
 }  // namespace sealwatch

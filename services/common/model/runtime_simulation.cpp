@@ -120,16 +120,15 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
   SimulationOptions stepping = options;
   if (runtime_->equations->outputs_see_added() && injected != nullptr)
     stepping.maximum_step_s = std::min(options.maximum_step_s, mean_distance_s(input.times()));
-  RecordingRun<RuntimeSystem> recording(*this, input, std::move(system), values, free, stepping, injected);
-  auto outputs = recording.simulate(values);
-  if (recording.stopped_by_event()) {
+  auto [outputs, stopped_by_event] = run_over_recording(*this, input, system, values, free, stepping, injected);
+  if (stopped_by_event) {
     if (injected == nullptr) return run_by_differences(input, values, free, options);
     return fail("plant " + plant().name + " jumps at events, across which missing physics cannot be looked for",
                 "fit and validate work; a model without such events (friction and stops rounded) can be explained");
   }
   if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
-    return recording.said().empty() ? without_derivatives(plant(), recording.trouble())
-                                    : fail(went_no_further({}, recording.said()));
+    return system.said().empty() ? without_derivatives(plant(), system.trouble())
+                                 : fail(went_no_further({}, system.said()));
   return outputs;
 }
 

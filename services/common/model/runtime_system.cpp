@@ -109,16 +109,16 @@ RuntimeSystem::RuntimeSystem(const RuntimePlant& plant, std::unique_ptr<RuntimeE
   if (injected_ != nullptr) weights_.assign(injected_->entries().size(), 0.0);
 }
 
-RuntimeSystem::Vector RuntimeSystem::scale(double relative_tolerance) const {
-  Vector scale;
+std::vector<double> RuntimeSystem::scale(double relative_tolerance) const {
+  std::vector<double> scale;
   for (const RuntimeState& state : plant_.states) scale.push_back(state.scale);
   for (const double hidden : hidden_scales_) scale.push_back(kHiddenShare * hidden);
   for (double& value : scale) value *= relative_tolerance / 1e-6;
   return scale;
 }
 
-RuntimeSystem::Mask RuntimeSystem::settled() const {
-  Mask settles;
+std::vector<bool> RuntimeSystem::settled() const {
+  std::vector<bool> settles;
   for (const RuntimeState& state : plant_.states) settles.push_back(state.settles);
   settles.resize(state_.size(), false);
   for (const Term& term : terms_)
@@ -146,7 +146,7 @@ bool RuntimeSystem::start(std::span<const FreeQuantity> free, double* y, double*
 
 std::string RuntimeSystem::trouble() const {
   if (std::string words = evaluator_->trouble(); !words.empty()) return words;
-  const Vector sizes = scale(1e-6);
+  const std::vector<double> sizes = scale(1e-6);
   std::size_t fastest = 0;
   for (std::size_t k = 0; k < plant_states_; ++k) {
     if (!std::isfinite(last_rates_[k])) return "d " + plant_.description.states[k].name + "/dt is not a finite number";

@@ -13,9 +13,9 @@
 
 #include "sealwatch/model/runtime_equations.hpp"
 #include "sealwatch/model/simulation.hpp"
-#include "sealwatch/ode/lu.hpp"
 #include "services/common/model/physics_terms.hpp"
 #include "services/common/model/recorded_input.hpp"
+#include "services/common/model/recorded_system.hpp"
 
 namespace sealwatch {
 
@@ -40,39 +40,33 @@ struct FreeColumns {
 /// The plant's parameters, the load with its factor.
 [[nodiscard]] std::vector<double> effective_parameters(const PlantDescription& plant, const ModelValues& values);
 
-class RuntimeSystem {
+class RuntimeSystem final : public SizedSystem<kDynamicSize> {
  public:
-  static constexpr int kStates = kDynamicSize;
-  using Vector = SquareSystem<kDynamicSize>::Vector;
-  using Mask = SquareSystem<kDynamicSize>::Mask;
-
   RuntimeSystem(const RuntimePlant& plant, std::unique_ptr<RuntimeEvaluator> evaluator, const RecordedInput& input,
                 const PhysicsTerms& terms, const ModelValues& values, FreeColumns free, InjectedColumns* injected);
 
-  [[nodiscard]] int states() const { return static_cast<int>(plant_states_ + hidden_states_); }
-  [[nodiscard]] int maximum_order() const { return plant_.maximum_order; }
-  [[nodiscard]] Vector scale(double relative_tolerance) const;
-  [[nodiscard]] Mask settled() const;
-  [[nodiscard]] std::string trouble() const;
-  /// What the equations themselves say of it; "": nothing.
-  [[nodiscard]] std::string said() const { return evaluator_->trouble(); }
-  void set_segment(std::size_t segment);
+  [[nodiscard]] int states() const override { return static_cast<int>(plant_states_ + hidden_states_); }
+  [[nodiscard]] int maximum_order() const override { return plant_.maximum_order; }
+  [[nodiscard]] std::vector<double> scale(double relative_tolerance) const override;
+  [[nodiscard]] std::vector<bool> settled() const override;
+  [[nodiscard]] std::string trouble() const override;
+  [[nodiscard]] std::string said() const override { return evaluator_->trouble(); }
+  void set_segment(std::size_t segment) override;
 
-  /// States that start where the equations say, with their sensitivities; not those that are free. point: [y | S].
-  [[nodiscard]] bool start(std::span<const FreeQuantity> free, double* y, double* point, std::size_t stride) const;
+  [[nodiscard]] bool start(std::span<const FreeQuantity> free, double* y, double* point,
+                           std::size_t stride) const override;
 
-  [[nodiscard]] bool has_events() const { return evaluator_->has_events(); }
-  [[nodiscard]] double next_event_s() const { return evaluator_->next_event_s(); }
-  [[nodiscard]] bool event_before(double t, const double* y) const;
-  [[nodiscard]] bool accept(double t, const double* y) const;
-  /// What an event does: fails, changes nothing that sensitivities see, or more than they can cross.
-  enum class Passed { failed, smooth, jump };
-  [[nodiscard]] Passed pass_event(double t, double* y) const;
+  [[nodiscard]] bool has_events() const override { return evaluator_->has_events(); }
+  [[nodiscard]] double next_event_s() const override { return evaluator_->next_event_s(); }
+  [[nodiscard]] bool event_before(double t, const double* y) const override;
+  [[nodiscard]] bool accept(double t, const double* y) const override;
+  [[nodiscard]] Passed pass_event(double t, double* y) const override;
 
-  void evaluate(double t, const double* y, double* f) const;
-  void linearise(double t, const double* y, double* f, DynamicMatrix& jacobian) const;
-  void add_parameter_derivatives(double t, const double* y, double factor, double* x, std::size_t stride) const;
-  void output(int which, double t, const double* point, std::size_t stride, double* signal) const;
+  void evaluate(double t, const double* y, double* f) const override;
+  void linearise(double t, const double* y, double* f, DynamicMatrix& jacobian) const override;
+  void add_parameter_derivatives(double t, const double* y, double factor, double* x,
+                                 std::size_t stride) const override;
+  void output(int which, double t, const double* point, std::size_t stride, double* signal) const override;
 
  private:
   struct Term {

@@ -12,23 +12,24 @@ namespace {
 
 /// A system from one function f(t, y, p) on dual numbers: N states, and one parameter.
 template <int N, class Function>
-struct DualSystem {
-  static constexpr int kStates = N;
-  using Matrix = typename LuFactorisation<N>::Matrix;
+struct DualSystem final : OdeSystem<N> {
+  using Matrix = typename OdeSystem<N>::Matrix;
+  DualSystem(Function rates, double value) : function(rates), parameter(value) {}
   Function function;
-  double parameter = 0.0;
+  double parameter;
 
-  void evaluate(double t, const double* y, double* f) const {
+  void evaluate(double t, const double* y, double* f) const override {
     Matrix unused;
     linearise(t, y, f, unused);
   }
-  void linearise(double t, const double* y, double* f, Matrix& jacobian) const {
+  void linearise(double t, const double* y, double* f, Matrix& jacobian) const override {
     std::array<Dual<N>, N> state;
     for (int k = 0; k < N; ++k) state[k] = Dual<N>::variable(y[k], k);
     const auto result = function(t, state, Dual<N>(parameter));
     for (int k = 0; k < N; ++k) f[k] = result[k].value, jacobian[k] = result[k].derivative;
   }
-  void add_parameter_derivatives(double t, const double* y, double factor, double* x, std::size_t stride) const {
+  void add_parameter_derivatives(double t, const double* y, double factor, double* x,
+                                 std::size_t stride) const override {
     if (stride == 1) return;  // states alone: there is no column for the parameter
     std::array<Dual<1>, N> state;
     for (int k = 0; k < N; ++k) state[k] = y[k];
@@ -42,10 +43,10 @@ DualSystem<N, Function> make_system(Function function, double parameter = 0.0) {
   return {function, parameter};
 }
 
-template <class System>
-std::vector<double> integrate(Bdf<System>& bdf, const std::array<double, System::kStates>& start, double end) {
+template <int N>
+std::vector<double> integrate(Bdf<N>& bdf, const std::array<double, static_cast<std::size_t>(N)>& start, double end) {
   std::vector<double> values(bdf.size(), 0.0);
-  for (int k = 0; k < System::kStates; ++k) values[k * bdf.stride()] = start[k];
+  for (int k = 0; k < N; ++k) values[k * bdf.stride()] = start[k];
   EXPECT_TRUE(bdf.start(0.0, values.data()));
   while (bdf.time() < end)
     if (!bdf.step()) {
@@ -64,7 +65,7 @@ TEST(Bdf, ConvergesWithTheOrderThatIsAllowed) {
   const auto system = make_system<1>(f);
   for (int order = 1; order <= 5; ++order) {
     const auto run = [&](double tolerance) {
-      Bdf<decltype(make_system<1>(f))> bdf(system, 0, {tolerance}, {.maximum_order = order});
+      Bdf<1> bdf(system, 0, {tolerance}, {.maximum_order = order});
       const double error = std::abs(integrate(bdf, {1.0}, 10.0)[0] - std::cos(10.0));
       return std::pair(static_cast<double>(bdf.statistics().steps), error);
     };
@@ -83,7 +84,7 @@ TEST(Bdf, SolvesRobertsonsProblem) {
     return std::array{-a, a - b, b};
   };
   const auto system = make_system<3>(f, 0.04);
-  Bdf<decltype(make_system<3>(f))> bdf(system, 0, {1e-8, 1e-13, 1e-8});
+  Bdf<3> bdf(system, 0, {1e-8, 1e-13, 1e-8});
   const auto y = integrate(bdf, {1.0, 0.0, 0.0}, 40.0);
   EXPECT_NEAR(y[0], 0.7158270687193941, 1e-6);
   EXPECT_NEAR(y[1], 9.185534764557763e-06, 1e-11);
@@ -99,7 +100,7 @@ TEST(Bdf, SolvesVanDerPolsProblem) {
     return std::array{y[1] + 0.0, ((1.0 - y[0] * y[0]) * y[1] - y[0]) / 1e-6};
   };
   const auto system = make_system<2>(f);
-  Bdf<decltype(make_system<2>(f))> bdf(system, 0, {1e-9, 1e-8});
+  Bdf<2> bdf(system, 0, {1e-9, 1e-8});
   const auto y = integrate(bdf, {2.0, 0.0}, 2.0);
   EXPECT_NEAR(y[0], 1.706167732170469, 1e-5);
   EXPECT_NEAR(y[1], -0.8928097010248125, 1e-5);
@@ -113,7 +114,7 @@ TEST(Bdf, IntegratesSensitivities) {
     return std::array{-rate * y[0] * y[0], -1000.0 * (y[1] - y[0]) + 0.0 * rate};
   };
   const auto system = make_system<2>(f, k);
-  Bdf<decltype(make_system<2>(f))> bdf(system, 1, {1e-9, 1e-9});
+  Bdf<2> bdf(system, 1, {1e-9, 1e-9});
   const auto y = integrate(bdf, {1.0, 1.0}, t);
   EXPECT_NEAR(y[0], 1.0 / (1.0 + k * t), 1e-7);
   EXPECT_NEAR(y[1], -t / ((1.0 + k * t) * (1.0 + k * t)), 1e-6);
@@ -126,7 +127,7 @@ TEST(Bdf, InterpolatesBetweenStepsAsAccuratelyAsItSteps) {
     return std::array{-50.0 * (y[0] - std::cos(t)) - std::sin(t)};
   };
   const auto system = make_system<1>(f);
-  Bdf<decltype(make_system<1>(f))> bdf(system, 0, {1e-9});
+  Bdf<1> bdf(system, 0, {1e-9});
   std::vector<double> value(bdf.size(), 1.0);
   double largest = 0.0;
   ASSERT_TRUE(bdf.start(0.0, value.data()));
@@ -141,7 +142,7 @@ TEST(Bdf, InterpolatesBetweenStepsAsAccuratelyAsItSteps) {
 TEST(Bdf, FailsInsteadOfLoopingWhereTheSolutionEnds) {
   const auto f = [](double, const auto& y, const auto&) { return std::array{y[0] * y[0]}; };  // blows up at t = 1
   const auto system = make_system<1>(f);
-  Bdf<decltype(make_system<1>(f))> bdf(system, 0, {1e-6}, {.maximum_steps = 5000});
+  Bdf<1> bdf(system, 0, {1e-6}, {.maximum_steps = 5000});
   std::vector<double> value(bdf.size(), 1.0);
   ASSERT_TRUE(bdf.start(0.0, value.data()));
   while (bdf.time() < 2.0 && bdf.step()) {

@@ -1,11 +1,25 @@
-// Implementation of ode/bdf.hpp (included by it).
-#pragma once
+#include "sealwatch/ode/backward_differences.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace sealwatch {
 
+BackwardDifferences::BackwardDifferences(int states, int parameters, std::vector<double> scale, BdfOptions options)
+    : parameters_(parameters),
+      stride_(parameters == 0 ? 1 : (1 + parameters + 3) / 4 * 4),
+      scale_(std::move(scale)),
+      options_(options),
+      states_(states) {
+  for (auto& difference : differences_) difference.assign(size(), 0.0);
+  prediction_.assign(size(), 0.0);
+  constants_.assign(size(), 0.0);
+  work_.assign(size(), 0.0);
+}
+
 // kappa, gamma, alpha = (1 - kappa) gamma and error constants kappa gamma + 1/(k+1) of Shampine and Reichelt, table 1.
-template <class System>
-const typename Bdf<System>::Coefficients& Bdf<System>::coefficients() {
+const BackwardDifferences::Coefficients& BackwardDifferences::coefficients() {
   static const Coefficients table = [] {
     constexpr std::array kappa = {0.0, -0.1850, -1.0 / 9.0, -0.0823, -0.0415, 0.0};
     Coefficients c;
@@ -19,55 +33,24 @@ const typename Bdf<System>::Coefficients& Bdf<System>::coefficients() {
   return table;
 }
 
-template <class System>
-double Bdf<System>::norm(const double* values, std::size_t stride) const {
+double BackwardDifferences::norm(const double* values, std::size_t stride) const {
   double largest = 0.0;
-  for (int row = 0; row < states(); ++row) {
+  for (int row = 0; row < states_; ++row) {
     const double ratio = std::abs(values[row * stride]) / scale_[row];
     if (!(ratio <= largest)) largest = ratio;  // keeps NaN
   }
   return largest;
 }
 
-// An error of half of what is allowed:  error_1 h^2 |y''| = 1/2,  y'' = J f where f depends on time by jumps alone. Where
-// it depends on time otherwise the error test judges. The columns of S, which it does not see, may start far from rest.
-template <class System>
-double Bdf<System>::first_step() {
-  constexpr double kLongest_s = 1e-3, kError = 0.5;
-  for (int row = 0; row < states(); ++row) {
-    change_[row] = 0.0;
-    for (int other = 0; other < states(); ++other) change_[row] += matrix_[row][other] * rate_[other];
-  }
-  const double curvature = norm(change_.data(), 1);
-  if (!std::isfinite(curvature)) return 0.0;
-  const double longest = std::min(options_.maximum_step, std::max(step_, kLongest_s));
-  return std::min(longest, std::sqrt(kError / (coefficients().error[1] * std::max(curvature, kError))));
-}
-
-template <class System>
-bool Bdf<System>::start(double time, const double* values) {
+void BackwardDifferences::restart(double time, const double* values) {
   time_ = time;
   order_ = 1;
   equal_steps_ = 0;
   for (auto& difference : differences_) std::fill(difference.begin(), difference.end(), 0.0);
   std::copy(values, values + size(), differences_[0].begin());
-  for (int row = 0; row < states(); ++row) state_[row] = values[row * stride_];
-  system_.linearise(time, state_.data(), rate_.data(), matrix_);
-  step_ = first_step();
-  if (step_ <= 0.0) return false;
-  double* slope = differences_[1].data();
-  for (int row = 0; row < states(); ++row)
-    for (int other = 0; other < states(); ++other)
-      for (int k = 1; k <= parameters_; ++k)
-        slope[row * stride_ + k] += matrix_[row][other] * values[other * stride_ + k];
-  system_.add_parameter_derivatives(time, state_.data(), 1.0, slope, stride_);
-  for (int row = 0; row < states(); ++row) slope[row * stride_] = rate_[row];
-  for (double& value : differences_[1]) value *= step_;
-  return true;
 }
 
-template <class System>
-bool Bdf<System>::step() {
+bool BackwardDifferences::step() {
   for (int tries = 0; tries < 60; ++tries) {
     if (statistics_.steps >= options_.maximum_steps || time_ + step_ <= time_) return false;
     if (step_ > options_.maximum_step) change_step(options_.maximum_step / step_);
@@ -90,8 +73,7 @@ bool Bdf<System>::step() {
 }
 
 // y^0 = sum D_m and psi = sum gamma_m D_m / alpha_k, for all columns.
-template <class System>
-void Bdf<System>::predict() {
+void BackwardDifferences::predict() {
   const auto& c = coefficients();
   const std::size_t count = size();
   std::copy(differences_[0].begin(), differences_[0].end(), prediction_.begin());
@@ -108,81 +90,7 @@ void Bdf<System>::predict() {
   }
 }
 
-template <class System>
-bool Bdf<System>::factorise(double c) {
-  system_.linearise(time_ + step_, state_.data(), rate_.data(), matrix_);
-  ++statistics_.linearisations;
-  for (int row = 0; row < states(); ++row) {
-    for (int column = 0; column < states(); ++column) matrix_[row][column] *= -c;
-    matrix_[row][row] += 1.0;
-  }
-  return lu_.factorise(matrix_);
-}
-
-template <class System>
-bool Bdf<System>::attempt() {
-  predict();
-  for (int row = 0; row < states(); ++row) state_[row] = prediction_[row * stride_];
-  std::fill(correction_.begin(), correction_.end(), 0.0);
-  if (!solve_states(step_ / coefficients().alpha[order_])) return false;
-  error_ = coefficients().error[order_] * norm(correction_.data(), 1);
-  return std::isfinite(error_);
-}
-
-// Newton's iteration for d = y - y^0:  c f(y^0 + d) - psi - d = 0. The Jacobian is fresh at the prediction and is
-// renewed when the iteration contracts slowly. One correction suffices when the last observed contraction says that the
-// next one would be far below the allowed error.
-template <class System>
-bool Bdf<System>::solve_states(double c) {
-  constexpr int kIterations = 8;
-  constexpr double kConverged = 0.02;  // of the allowed local error
-  constexpr double kSlow = 0.2;
-  bool fresh = true;
-  double last = 0.0;
-  if (!factorise(c)) return false;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    for (int row = 0; row < states(); ++row)
-      change_[row] = c * rate_[row] - constants_[row * stride_] - correction_[row];
-    lu_.solve(change_.data(), 1, 1);
-    const double size_of_change = norm(change_.data(), 1);
-    if (!std::isfinite(size_of_change)) return false;
-    for (int row = 0; row < states(); ++row) {
-      state_[row] += change_[row];
-      correction_[row] += change_[row];
-    }
-    double contraction = curvature_ * size_of_change;
-    if (iteration > 0 && last > 0.0) {
-      contraction = size_of_change / last;
-      curvature_ = std::max(0.7 * curvature_, contraction / last);
-      if (!fresh && contraction > 2.0) return false;
-    }
-    if (contraction < 1.0 && contraction * size_of_change < kConverged) return true;
-    fresh = iteration > 0 && contraction > kSlow;
-    if (fresh) {
-      if (!factorise(c)) return false;
-    } else {
-      system_.evaluate(time_ + step_, state_.data(), rate_.data());
-    }
-    last = size_of_change;
-  }
-  return false;
-}
-
-// (I - c J) S = S^0 + c df/dp - psi_S, all columns at once; work_ <- S - S^0 beside the states' correction.
-template <class System>
-void Bdf<System>::solve_sensitivities(double c) {
-  for (int row = 0; row < states(); ++row) work_[row * stride_] = correction_[row];
-  if (parameters_ == 0) return;
-  const std::size_t count = size();
-  for (std::size_t j = 0; j < count; ++j) work_[j] = prediction_[j] - constants_[j];
-  system_.add_parameter_derivatives(time_ + step_, state_.data(), c, work_.data(), stride_);
-  lu_.solve(work_.data(), static_cast<int>(stride_), stride_);
-  for (std::size_t j = 0; j < count; ++j) work_[j] -= prediction_[j];
-  for (int row = 0; row < states(); ++row) work_[row * stride_] = correction_[row];
-}
-
-template <class System>
-void Bdf<System>::accept() {
+void BackwardDifferences::accept() {
   ++statistics_.steps;
   time_ += step_;
   ++equal_steps_;
@@ -201,8 +109,7 @@ void Bdf<System>::accept() {
 }
 
 // After order + 1 equal steps: the order, one lower or one higher, that allows the largest next step.
-template <class System>
-void Bdf<System>::choose_order_and_step() {
+void BackwardDifferences::choose_order_and_step() {
   if (equal_steps_ < order_ + 1) return;
   const auto& c = coefficients();
   const auto factor = [&](double error, int order) { return error > 0.0 ? std::pow(error, -1.0 / (order + 1)) : 10.0; };
@@ -223,8 +130,7 @@ void Bdf<System>::choose_order_and_step() {
 }
 
 // Differences for the step factor * h from those for h: D' = (R(factor) R(1))^T D.
-template <class System>
-void Bdf<System>::change_step(double factor) {
+void BackwardDifferences::change_step(double factor) {
   const int n = order_ + 1;
   using Square = std::array<std::array<double, kMaximumOrder + 1>, kMaximumOrder + 1>;
   const auto polynomial = [n](double ratio) {
@@ -257,8 +163,7 @@ void Bdf<System>::change_step(double factor) {
 }
 
 // y(t) = D_0 + sum_m D_m prod_(i<m) (t - t_(n-i)) / ((i + 1) h)
-template <class System>
-void Bdf<System>::interpolate(double time, double* result) const {
+void BackwardDifferences::interpolate(double time, double* result) const {
   // One pass over the columns with all five terms (those beyond the order have weight zero): faster than one pass for
   // each.
   std::array<double, kMaximumOrder + 1> weight{1.0};

@@ -1,7 +1,8 @@
 #include "services/common/estimation/pem_costs.hpp"
 
 #include <algorithm>
-#include <future>
+
+#include "services/common/core/in_parallel.hpp"
 
 namespace sealwatch {
 namespace {
@@ -101,16 +102,10 @@ void SideBySide::PrepareForEvaluation(bool /*evaluate_jacobians*/, bool new_eval
 
 void SideBySide::evaluate(bool may_keep) {
   failed_ = false;
-  std::vector<std::future<void>> running;
-  for (std::size_t first = 1; first < std::min(threads_, costs_.size()); ++first)
-    running.push_back(std::async(std::launch::async, [this, first, may_keep] { update_from(first, may_keep); }));
-  update_from(0, may_keep);
-  for (std::future<void>& one : running) one.get();
-}
-
-void SideBySide::update_from(std::size_t first, bool may_keep) {
-  for (std::size_t k = first; k < costs_.size() && !failed_; k += threads_)
-    if (!costs_[k]->update(point_.shared.data(), point_.own[k].data(), may_keep)) failed_ = true;
+  in_parallel<char>(costs_.size(), threads_, [&](std::size_t k) {
+    if (!failed_ && !costs_[k]->update(point_.shared.data(), point_.own[k].data(), may_keep)) failed_ = true;
+    return char{};
+  });
 }
 
 }  // namespace sealwatch

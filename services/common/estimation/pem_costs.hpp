@@ -66,7 +66,7 @@ class PriorCost final : public ceres::CostFunction {
 /// cannot be simulated the point is given up: failing costs the integrator most.
 class SideBySide final : public ceres::EvaluationCallback {
  public:
-  SideBySide(const PemPoint& point, int threads) : point_(point), threads_(static_cast<std::size_t>(threads)) {}
+  SideBySide(const PemPoint& point, int threads) : point_(point), threads_(threads) {}
 
   /// All recordings at the point, as RecordingCost::update() has it.
   void evaluate(bool may_keep);
@@ -77,10 +77,8 @@ class SideBySide final : public ceres::EvaluationCallback {
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
  private:
-  void update_from(std::size_t first, bool may_keep);
-
   const PemPoint& point_;
-  std::size_t threads_;
+  int threads_;
   std::vector<const RecordingCost*> costs_;
   std::atomic<bool> failed_ = false;
 };

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <limits>
 
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
@@ -62,14 +62,8 @@ bool is_a_cause(const FittedModel& model, const std::vector<KnownValue>& values)
 std::vector<std::shared_ptr<const FittedModel>> all_fitted(const std::vector<Attempt>& attempts, const Data& fit,
                                                            int threads) {
   constexpr double kNear = 1.5;  // times the best misfit
-  std::vector<std::shared_ptr<const FittedModel>> models;
-  const auto together = static_cast<std::size_t>(threads);
-  for (std::size_t first = 0; first < attempts.size(); first += together) {
-    std::vector<std::future<std::shared_ptr<const FittedModel>>> running;
-    for (std::size_t k = first; k < std::min(attempts.size(), first + together); ++k)
-      running.push_back(std::async(std::launch::async, [&, k] { return begun(attempts[k], fit); }));
-    for (auto& one : running) models.push_back(one.get());
-  }
+  auto models = in_parallel<std::shared_ptr<const FittedModel>>(attempts.size(), threads,
+                                                                [&](std::size_t k) { return begun(attempts[k], fit); });
   double best = std::numeric_limits<double>::infinity();
   for (const auto& model : models)
     if (model != nullptr) best = std::min(best, model->misfit);

@@ -7,14 +7,16 @@
 #include <optional>
 #include <utility>
 
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/datasheet.hpp"
-#include "services/common/mismatch/in_parallel.hpp"
 #include "services/common/mismatch/one_shape.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
+#include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/verdict.hpp"
 
 namespace sealwatch::mismatch {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "services/common/mismatch/in_parallel.hpp"
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/mismatch/term_path.hpp"
 
 namespace sealwatch::mismatch {

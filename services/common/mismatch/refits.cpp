@@ -6,9 +6,9 @@
 #include <ranges>
 
 #include "sealwatch/model/law_sizes.hpp"
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/criterion.hpp"
-#include "services/common/mismatch/in_parallel.hpp"
 
 namespace sealwatch::mismatch {
 namespace {

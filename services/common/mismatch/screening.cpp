@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/mismatch/gram.hpp"
-#include "services/common/mismatch/in_parallel.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/orders.hpp"
 #include "services/common/mismatch/screening_scores.hpp"

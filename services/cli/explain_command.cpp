@@ -16,6 +16,7 @@
 #include "services/common/report/explanation_json.hpp"
 #include "services/common/report/explanation_sections.hpp"
 #include "services/common/runtime/asset_file.hpp"
+#include "services/common/runtime/large_blocks.hpp"
 #include "services/common/text/readable.hpp"
 #include "services/common/text/words.hpp"
 
@@ -218,6 +219,7 @@ bool good(const Status& status) {
 }  // namespace
 
 int explain_with(const ExplainEngine& engine, const ExplainOptions& options) {
+  keep_blocks_of_a_search();
   const std::optional<AssetConfig> asset = load_asset_of_known_plant(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);

@@ -16,6 +16,7 @@
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/runtime/in_process_pipeline.hpp"
+#include "services/common/runtime/large_blocks.hpp"
 #include "services/data_acquisition/data_acquisition.hpp"
 #include "services/data_acquisition/recording_blocks.hpp"
 #include "services/data_manipulation/data_manipulation.hpp"
@@ -216,6 +217,7 @@ std::optional<FitResult> fit_as_asked(const FitOptions& options, const AssetConf
 }  // namespace
 
 int run_fit(const FitOptions& options) {
+  keep_blocks_of_a_search();
   const std::optional<AssetConfig> asset = load_asset_of_known_plant(options.asset_file, options.map_file);
   if (!asset) return kBadInput;
   const Result<const PlantDescription*> plant = find_plant(asset->model);

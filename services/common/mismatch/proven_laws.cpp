@@ -44,11 +44,12 @@ class Proving {
   }
 
   // Of the likeliest explanations the one that predicts the fitted recordings best, each from the others: those that were
-  // kept aside take no part in that. The first is asked whatever time it takes, so that a search that was cut can be
-  // proven.
+  // kept aside take no part in that. Where there are none, the first is asked whatever time it takes, so that a search
+  // that was cut can be proven.
   void choose_what_carries_over() {
     if (of_.held_out.fit.samples.size() < 2) return;
-    time_.allow_what_is_needed();
+    const bool is_the_proof = of_.held_out.holdout.samples.empty();
+    if (is_the_proof) time_.allow_what_is_needed();
     const Data none;
     const CarryOver from_others = carry_over({of_.held_out.fit, none, of_.held_out.window_s, of_.held_out.options});
     std::vector<std::pair<double, Trial>> order;  // by the fall of the misfit that they predict
@@ -59,7 +60,7 @@ class Proving {
       if (!time_.in_time("which other explanation carries over better")) break;
     }
     std::ranges::stable_sort(order, std::greater<>(), &std::pair<double, Trial>::first);
-    time_.allow_what_is_needed();
+    if (is_the_proof) time_.allow_what_is_needed();
     for (auto& [gain, trial] : order) {
       const Worth worth = from_others.of(trial);
       time_.allow(1.0);
@@ -68,7 +69,7 @@ class Proving {
         continue;
       }
       result_.best = std::move(trial);
-      result_.proven = of_.held_out.holdout.samples.empty();
+      result_.proven = is_the_proof;
       if (result_.proven) result_.not_compared = worth.not_compared;
       return;
     }

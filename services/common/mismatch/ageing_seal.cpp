@@ -81,8 +81,10 @@ Status look_beside(AgeingSeal& seal, const ExplainOptions& options, const Progre
 }
 
 bool explains_everything(const AgeingSeal& seal, const ExplainOptions& options) {
-  return seal.wears && changes(seal_course(*seal.naming.best.model, seal.fit)) &&
-         !differs(seal.naming.last.p_value, *seal.naming.best.model, options.false_alarm_rate);
+  const FittedModel& best = *seal.naming.best.model;
+  const bool no_more = !differs(seal.naming.last.p_value, best, options.false_alarm_rate) ||
+                       leaves_its_form(seal.naming, seal.naming.best);
+  return seal.wears && changes(seal_course(best, seal.fit)) && no_more;
 }
 
 bool is_preferred(const AgeingSeal& seal, const Trial& common) {

@@ -34,7 +34,8 @@ struct AgeingSeal {
 /// Laws beside it; whether the seal wears is known then.
 [[nodiscard]] Status look_beside(AgeingSeal& seal, const ExplainOptions& options, const Progress& progress);
 
-/// Whether nothing is left beyond the noise by a seal that wears and the laws beside it.
+/// Whether nothing is left beyond the noise by a seal that wears and the laws beside it, or no more than the exact form of
+/// the only one.
 [[nodiscard]] bool explains_everything(const AgeingSeal& seal, const ExplainOptions& options);
 
 /// Whether R_CL differs by far more than its standard errors, and the best with one for each recording is preferred to

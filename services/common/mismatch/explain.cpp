@@ -354,6 +354,7 @@ class Analysis {
 
   void prove() {
     ProvenLaws laws = mismatch::prove(to_prove(), best_, time_);
+    time_.allow(1.0);
     best_ = std::move(laws.best);
     proven_ = laws.proven;
     std::ranges::move(laws.notes, std::back_inserter(result_.notes));
@@ -376,14 +377,17 @@ class Analysis {
                                                     : std::nullopt;
     while (!best_.effects.empty()) {
       result_.effects = describe_effects(naming_, best_, prepared(fit_), options_, carry_over ? &*carry_over : nullptr);
-      if (best_.effects.size() == 1 || excess(*best_.model) > kGross) return;
+      if (best_.effects.size() == 1 || excess(*best_.model) > kGross) break;
       const std::optional<Remainder> remainder = remainder_among(result_.effects, law_at(best_.effects.back()));
-      if (!remainder) return;
+      if (!remainder) break;
       result_.notes.push_back(remainder->sentence);
       const auto slot = std::ranges::find_if(
           best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder->law); });
       best_ = without(best_, static_cast<std::size_t>(slot - best_.effects.begin()), to_prove());
     }
+    const bool alone = best_.effects.size() == 1 && naming_.best.effects.size() == 1;
+    if (alone && !leaves_nothing() && leaves_its_form_at_most(*baseline_, *best_.model))
+      result_.notes.push_back(left_beside(law_at(best_.effects.front()), *baseline_, *best_.model));
   }
 
   Status finish() {

@@ -102,16 +102,30 @@ bool promising(const Screening& screening, const FittedModel& model) {
   return !order.empty() && order.front()->gain / excess(model) > kWorthAnother + penalty;
 }
 
+// Closed forms that promise what another law must bring, as starts of refits from the trial.
+std::vector<std::vector<LawStart>> closed_forms_for(const Trial& from, const Data& data,
+                                                    const ExplainOptions& options) {
+  const ScreeningOptions forms{.seed = options.seed, .threads = options.threads, .closed_forms = true};
+  std::vector<std::vector<LawStart>> starts;
+  const auto screening = screen(*from.model, data, forms);
+  if (!screening || !promising(*screening, *from.model)) return starts;
+  for (LawStart& start : ranked_laws(*screening, kClosedForms)) starts.push_back({std::move(start)});
+  return starts;
+}
+
+// Whether each of these trials leaves more than half of the model's misfit.
+bool leave_most(const std::vector<Trial>& trials, const FittedModel& model) {
+  return std::ranges::none_of(
+      trials, [&](const Trial& trial) { return trial.model->misfit < kExplainedAtLeast * model.misfit; });
+}
+
 // Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
 void try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& options) {
-  const ScreeningOptions forms{.seed = options.seed, .threads = options.threads, .closed_forms = true};
   std::vector<Trial> trials;
   for (const Trial& from : {Trial{{}, naming.baseline}, naming.best}) {
     if (static_cast<int>(from.effects.size()) == options.maximum_laws) continue;
-    const auto screening = screen(*from.model, data, forms);
-    if (!screening || !promising(*screening, *from.model)) continue;
-    std::vector<std::vector<LawStart>> starts;
-    for (LawStart& start : ranked_laws(*screening, kClosedForms)) starts.push_back({std::move(start)});
+    if (leaves_its_form(naming, from)) continue;
+    const auto starts = closed_forms_for(from, data, options);
     for (Trial& trial : refit(from, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))
       trials.push_back(std::move(trial));
     if (naming.best.effects.empty()) break;
@@ -244,7 +258,8 @@ std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
 
 // Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
 // Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
-// the laws come first, and only laws that could do better are refitted.
+// the laws come first, and only laws that could do better are refitted. Beside a law that leaves no more than its exact
+// form sensors alone are asked.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
@@ -268,13 +283,19 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     if (level == 0) naming.baseline_with_sensors = sensors.model();
     return naming.sensors_are_inexact;
   };
+  if (leaves_its_form(naming, naming.best)) {
+    static_cast<void>(are_inexact());
+    return trials;
+  }
   const std::optional<double> least_gain = sensors.least_gain(asked);
   if (least_gain && by_gain(asked).front()->gain < *least_gain && are_inexact()) return trials;
   const auto first = static_cast<std::ptrdiff_t>(
       gross ? singles.size() : nearly_as_promising(asked, singles.size(), least_gain.value_or(0.0)));
   refit_also({singles.begin(), singles.begin() + first});
-  if (gross)
+  if (gross && !one_law_does(trials, naming, data, options))
     if (const auto given = with_given_values(naming.best, data)) refit_from(*given, singles);
+  if (level == 0 && gross && leave_most(trials, *naming.best.model))
+    refit_also(closed_forms_for(naming.best, data, options));
   if (least_gain && are_inexact()) return trials;
   if (!one_law_does(trials, naming, data, options)) {
     if (are_inexact()) return trials;
@@ -287,6 +308,10 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
 }
 
 }  // namespace
+
+bool leaves_its_form(const Naming& naming, const Trial& trial) {
+  return trial.effects.size() == 1 && leaves_its_form_at_most(*naming.baseline, *trial.model);
+}
 
 bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads) {
   std::vector<std::string> ends;

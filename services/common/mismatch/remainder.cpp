@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -20,13 +21,25 @@ std::string sits_anywhere_in_words(const FoundEffect& effect) {
          " alike: no second law is claimed for it.";
 }
 
-std::string may_be_the_form(const FoundEffect& largest, const FoundEffect& effect) {
-  return "What is left beside " + law_in_words(largest.what) + " is " +
-         number(100.0 * gain_of(effect) / gain_of(largest), 2) + " % of what it took, and may be its exact form. " +
-         "It would be taken by " + law_in_words(effect.what) + ", which is not claimed.";
+std::string may_be_the_form(const LawAt& law, double share) {
+  return "What is left beside " + law_in_words(law) + " is " + number(100.0 * share, 2) +
+         " % of what it took, and may be its exact form.";
+}
+
+// Of what the law took off the misfit, what exceeds the noise's share with it.
+double share_left(const FittedModel& without, const FittedModel& with) {
+  return (with.misfit - with.residuals) / (without.misfit - with.misfit);
 }
 
 }  // namespace
+
+bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with) {
+  return excess(with) <= kGross && with.misfit < without.misfit && share_left(without, with) < kFormElsewhere;
+}
+
+std::string left_beside(const LawAt& law, const FittedModel& without, const FittedModel& with) {
+  return may_be_the_form(law, share_left(without, with));
+}
 
 bool same_place(const LawAt& a, const LawAt& b) { return a.id == b.id && a.element == b.element; }
 
@@ -44,7 +57,8 @@ std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, c
     if (little && (least == nullptr || gain_of(effect) < gain_of(*least))) least = &effect;
   }
   if (least == nullptr) return std::nullopt;
-  return Remainder{least->what, may_be_the_form(largest, *least)};
+  return Remainder{least->what, may_be_the_form(largest.what, gain_of(*least) / gain_of(largest)) +
+                                    " It would be taken by " + law_in_words(least->what) + ", which is not claimed."};
 }
 
 }  // namespace sealwatch::mismatch

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
+#include "services/common/mismatch/fitted_model.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -23,6 +24,12 @@ struct Remainder {
 
 /// Of the laws of one model, described; `last`: the one that was added last. Nothing where each says what it is.
 [[nodiscard]] std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last);
+
+/// Whether all that the first law found leaves beyond the noise (`with`) is no more than its exact form may take, of what
+/// the model without it misses by (`without`). Not in what stays a gross misfit.
+[[nodiscard]] bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with);
+/// The same to a user: which law, and how much is left.
+[[nodiscard]] std::string left_beside(const LawAt& law, const FittedModel& without, const FittedModel& with);
 
 /// Whether it fits at three other elements as well.
 [[nodiscard]] bool could_sit_anywhere(const FoundEffect& effect);

@@ -52,5 +52,22 @@ TEST(Remainder, WhatCouldSitAnywhereIsNotClaimed) {
   EXPECT_THAT(remainder->sentence, testing::HasSubstr("no second law is claimed"));
 }
 
+FittedModel model_with(double misfit) {
+  FittedModel model;
+  model.misfit = misfit;
+  model.residuals = 1e5;
+  return model;
+}
+
+TEST(Remainder, BesideALawThatLeavesAFiveHundredthNoOtherIsLookedFor) {
+  const FittedModel without = model_with(2.01e7), with = model_with(1.2e5);
+  EXPECT_TRUE(leaves_its_form_at_most(without, with));
+  EXPECT_EQ(left_beside(found("stribeck_friction", "piston", 0.0).what, without, with),
+            "What is left beside stribeck friction at the piston is 0.1 % of what it took, and may be its exact form.");
+  EXPECT_FALSE(leaves_its_form_at_most(without, model_with(1.6e5))) << "0.3 %";
+  EXPECT_FALSE(leaves_its_form_at_most(model_with(2e8), model_with(2.1e5))) << "0.05 % of a gross misfit";
+  EXPECT_FALSE(leaves_its_form_at_most(with, with)) << "nothing was taken";
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

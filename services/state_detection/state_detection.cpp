@@ -129,7 +129,6 @@ std::optional<StateReport> StateDetection::judge_anew(const std::string& asset_i
   AssetHistory fresh(options_.region, options_.baseline);
   std::optional<StateReport> last = state.past.judge_anew(asset == assets_.end() ? unknown : asset->second, fresh);
   fresh.last_was_replay = state.history.last_was_replay;
-  fresh.has_live_tests |= state.history.has_live_tests;
   fresh.last_overdue_id = state.history.last_overdue_id;
   state.history = std::move(fresh);
   return last;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -56,8 +57,12 @@ std::vector<Item> in_parallel(std::size_t count, int threads, const F& f) {
   while (static_cast<std::size_t>(threads + taken) < count && spare_threads != nullptr && spare_threads->take())
     ++taken;
   std::vector<std::jthread> others;
-  for (int other = 1; other < threads + taken && static_cast<std::size_t>(other) < count; ++other)
-    others.emplace_back(work);
+  try {
+    for (int other = 1; other < threads + taken && static_cast<std::size_t>(other) < count; ++other)
+      others.emplace_back(work);
+  } catch (const std::system_error&) {
+    // The system grants no more threads: those that there are do it.
+  }
   work();
   others.clear();
   if (taken > 0) spare_threads->give(taken);

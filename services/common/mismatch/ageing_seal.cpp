@@ -82,8 +82,8 @@ Status look_beside(AgeingSeal& seal, const ExplainOptions& options, const Progre
 
 bool explains_everything(const AgeingSeal& seal, const ExplainOptions& options) {
   const FittedModel& best = *seal.naming.best.model;
-  const bool no_more = !differs(seal.naming.last.p_value, best, options.false_alarm_rate) ||
-                       leaves_its_form(seal.naming, seal.naming.best);
+  const bool no_more =
+      !differs(seal.naming.last.p_value, best, options.false_alarm_rate) || leaves_its_form(seal.naming);
   return seal.wears && changes(seal_course(best, seal.fit)) && no_more;
 }
 

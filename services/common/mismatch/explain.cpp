@@ -385,9 +385,6 @@ class Analysis {
           best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder->law); });
       best_ = without(best_, static_cast<std::size_t>(slot - best_.effects.begin()), to_prove());
     }
-    const bool alone = best_.effects.size() == 1 && naming_.best.effects.size() == 1;
-    if (alone && !leaves_nothing() && leaves_its_form_at_most(*baseline_, *best_.model))
-      result_.notes.push_back(left_beside(law_at(best_.effects.front()), *baseline_, *best_.model));
   }
 
   Status finish() {
@@ -551,6 +548,9 @@ class Analysis {
     // Taken back since: what stood for laws has nothing to stand for.
     if (result_.effects.size() != instead_of_) result_.asset_values.clear();
     if (!result_.asset_values.empty()) remark_asset_values(result_);
+    if (best_.effects.size() == 1 && same_effects(best_.effects, naming_.best.effects) && !leaves_nothing() &&
+        leaves_its_form(naming_))
+      result_.notes.push_back(left_beside(law_at(best_.effects.front()), share_left_by_best(naming_)));
     const bool undetermined = result_.verdict == Verdict::undetermined;
     if (input_swings_ && undetermined) remark_faster_sampling(result_);
     const bool nothing_asks = naming_.first.p_value > options_.false_alarm_rate;

@@ -124,7 +124,7 @@ void try_closed_forms(Naming& naming, const Data& data, const ExplainOptions& op
   std::vector<Trial> trials;
   for (const Trial& from : {Trial{{}, naming.baseline}, naming.best}) {
     if (static_cast<int>(from.effects.size()) == options.maximum_laws) continue;
-    if (leaves_its_form(naming, from)) continue;
+    if (!from.effects.empty() && leaves_its_form(naming)) continue;
     const auto starts = closed_forms_for(from, data, options);
     for (Trial& trial : refit(from, starts, data, options.threads, {.to_beat = naming.best.model->misfit}))
       trials.push_back(std::move(trial));
@@ -283,7 +283,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     if (level == 0) naming.baseline_with_sensors = sensors.model();
     return naming.sensors_are_inexact;
   };
-  if (leaves_its_form(naming, naming.best)) {
+  if (leaves_its_form(naming)) {
     static_cast<void>(are_inexact());
     return trials;
   }
@@ -309,8 +309,15 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
 
 }  // namespace
 
-bool leaves_its_form(const Naming& naming, const Trial& trial) {
-  return trial.effects.size() == 1 && leaves_its_form_at_most(*naming.baseline, *trial.model);
+double share_left_by_best(const Naming& naming) {
+  const std::vector<const Variant*> order = by_gain(naming.last);
+  return share_left(*naming.baseline, *naming.best.model, order.empty() ? 0.0 : order.front()->gain);
+}
+
+bool leaves_its_form(const Naming& naming) {
+  const std::vector<const Variant*> order = by_gain(naming.last);
+  return naming.best.effects.size() == 1 &&
+         leaves_its_form_at_most(*naming.baseline, *naming.best.model, order.empty() ? 0.0 : order.front()->gain);
 }
 
 bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads) {

@@ -51,7 +51,9 @@ struct Naming {
 /// are those that the model holds at an end of their tolerance.
 [[nodiscard]] bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads);
 
-/// Whether what the only law of the trial leaves may be its exact form: beside it no other could be claimed.
-[[nodiscard]] bool leaves_its_form(const Naming& naming, const Trial& trial);
+/// Whether what the only law of the best trial leaves may be its exact form: beside it no other could be claimed.
+[[nodiscard]] bool leaves_its_form(const Naming& naming);
+/// How much that is, of what the law took.
+[[nodiscard]] double share_left_by_best(const Naming& naming);
 
 }  // namespace sealwatch::mismatch

@@ -41,7 +41,7 @@ bool came_to_an_end(const FittedModel& model, const std::vector<LawStart>& added
 // at once, beside sizes that are far off, a shape drifts to the end of its range and stays there. Where that leaves
 // nothing of a law, the shape was a wrong one, and is free from the start.
 Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& added, const Data& data,
-                                const FittedModel& from) {
+                                const FittedModel& from, const SearchBound& bound) {
   const AssetConfig free = asset;
   for (std::size_t k = 0; k < added.size(); ++k)
     for (const LawParameter& parameter : added[k].effect.law->parameters)
@@ -50,7 +50,7 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
             false;
   const Result<FittedModel> sized = fit_model(asset, data, &from, 1, kFirstRound);
   const bool sizes_fit = sized && !came_to_an_end(*sized, added);
-  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound);
+  return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound, bound);
 }
 
 // What changes beside all of them; empty where that is not known. In a gross misfit the linear model says too little.
@@ -180,7 +180,7 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
     };
     const PemPoint beside = gross ? PemPoint{} : beside_all(added, share);
     Result<FittedModel> model =
-        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, data, *from.model);
+        options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, data, *from.model, bound);
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated
     if (model) refit.model = std::make_shared<FittedModel>(std::move(*model));
     return refit;

@@ -26,20 +26,17 @@ std::string may_be_the_form(const LawAt& law, double share) {
          " % of what it took, and may be its exact form.";
 }
 
-// Of what the law took off the misfit, what exceeds the noise's share with it.
-double share_left(const FittedModel& without, const FittedModel& with) {
-  return (with.misfit - with.residuals) / (without.misfit - with.misfit);
-}
-
 }  // namespace
 
-bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with) {
-  return excess(with) <= kGross && with.misfit < without.misfit && share_left(without, with) < kFormElsewhere;
+double share_left(const FittedModel& without, const FittedModel& with, double promised) {
+  return std::max(with.misfit - with.residuals, promised) / (without.misfit - with.misfit);
 }
 
-std::string left_beside(const LawAt& law, const FittedModel& without, const FittedModel& with) {
-  return may_be_the_form(law, share_left(without, with));
+bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with, double promised) {
+  return excess(with) <= kGross && with.misfit < without.misfit && share_left(without, with, promised) < kFormElsewhere;
 }
+
+std::string left_beside(const LawAt& law, double share) { return may_be_the_form(law, share); }
 
 bool same_place(const LawAt& a, const LawAt& b) { return a.id == b.id && a.element == b.element; }
 

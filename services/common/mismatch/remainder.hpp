@@ -25,11 +25,13 @@ struct Remainder {
 /// Of the laws of one model, described; `last`: the one that was added last. Nothing where each says what it is.
 [[nodiscard]] std::optional<Remainder> remainder_among(std::span<const FoundEffect> effects, const LawAt& last);
 
-/// Whether all that the first law found leaves beyond the noise (`with`) is no more than its exact form may take, of what
-/// the model without it misses by (`without`). Not in what stays a gross misfit.
-[[nodiscard]] bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with);
+/// What the first law found leaves, of what it took off the misfit `without` it: what exceeds the noise's share of the misfit
+/// `with` it, or, as that share is only known to about sqrt(2 N), what another law promises to take (`promised`).
+[[nodiscard]] double share_left(const FittedModel& without, const FittedModel& with, double promised);
+/// Whether that is no more than its exact form may take. Not in what stays a gross misfit.
+[[nodiscard]] bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with, double promised);
 /// The same to a user: which law, and how much is left.
-[[nodiscard]] std::string left_beside(const LawAt& law, const FittedModel& without, const FittedModel& with);
+[[nodiscard]] std::string left_beside(const LawAt& law, double share);
 
 /// Whether it fits at three other elements as well.
 [[nodiscard]] bool could_sit_anywhere(const FoundEffect& effect);

@@ -129,7 +129,7 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
   if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
     return system.said().empty() ? without_derivatives(plant(), system.trouble())
                                  : fail(went_no_further({}, system.said()));
-  return outputs;
+  return std::move(outputs);  // what a structured binding names is copied else
 }
 
 namespace {

@@ -15,6 +15,7 @@ namespace sealwatch {
 namespace {
 
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+constexpr std::int64_t kNoClockIsSetSoFarBack_ns = 56LL * 365 * kDay_ns;  // to the end of 2025: there was no sealwatch
 constexpr std::int64_t kYear_ns = 366 * kDay_ns;
 /// 1970 to 2260: the difference of any two of these times can be counted in nanoseconds.
 constexpr std::int64_t kLatest_ns = 290 * kYear_ns;
@@ -112,6 +113,10 @@ bool is_of_made_up_test(const Message& message) {
 
 bool is_live(const Message& message) { return !header_of(message).replay && !is_of_made_up_test(message); }
 
+// A computer without a battery starts in 1970, until the network tells it the time. What lies in the future cannot be told
+// then, and what was refused would not come again.
+bool is_set(UtcTime now) { return now.nanoseconds > kNoClockIsSetSoFarBack_ns; }
+
 /// "recording april of XT03-MV2: its start time, ..."
 std::string with_its_time(const Message& message, UtcTime time) {
   const auto* raw = std::get_if<RawSamples>(&message);
@@ -207,7 +212,7 @@ std::optional<std::string> Admission::refusal_of_report(const Message& message, 
 /// What the layers say after an act (that a test is overdue, that tests were retracted) has the time of now or of a test.
 std::optional<std::string> Admission::refusal_of_future_act(const Message& message, UtcTime now) const {
   const Header& header = header_of(message);
-  if (!header.event_time_known || answers_retraction(header)) return std::nullopt;
+  if (!header.event_time_known || answers_retraction(header) || !is_set(now)) return std::nullopt;
   std::int64_t latest = now.nanoseconds;
   if (const auto newest = newest_test(asset_of(message))) latest = std::max(latest, newest->nanoseconds);
   if (header.event_time_ns <= latest + kDay_ns) return std::nullopt;
@@ -231,6 +236,7 @@ std::optional<std::string> Admission::refusal_of_time(const Message& message, Ut
   if (topic_of(message) == Topic::raw_samples && commissioned != commissioned_.end() && time < commissioned->second)
     return with_its_time(message, time) + ", lies before the asset was commissioned, " +
            format_utc(commissioned->second) + "; correct the start time, or 'commissioned' in the configuration";
+  if (!is_set(now)) return std::nullopt;
   return time.nanoseconds <= now.nanoseconds + kDay_ns ? std::nullopt : refusal_of_future(message, time, now);
 }
 

@@ -88,6 +88,13 @@ TYPED_TEST(AdmissionOfDatesOf, EveryLayerAFutureOneIsRefused) {
   EXPECT_EQ(refusal(said_of_test<TypeParam>("1995-04-14T00:00:00Z"), restarted), "");
 }
 
+TEST(AdmissionOfDates, AClockThatIsNotSetRefusesNothing) {
+  const UtcTime boot = parse_utc("1970-01-01T00:00:40Z").value();
+  EXPECT_FALSE(Admission().refusal(live_test("2031-04-12T02:00:00Z"), boot));
+  EXPECT_FALSE(Admission().refusal(said_of_test<TestFeatures>("2031-04-12T02:00:00Z"), boot));
+  EXPECT_FALSE(Admission().refusal(said_of_test<StateReport>("2031-04-12T02:00:00Z", ""), boot));
+}
+
 TEST(AdmissionOfDates, OfTestsFromWhichNothingIsConcludedTheNewestDateIsEnough) {
   Admission admission;
   std::size_t halfway = 0;

@@ -95,11 +95,16 @@ void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
     naming.best = {{}, naming.baseline};
 }
 
-// Whether the best law of a screening promises, on the linearised model, what another law must bring.
-bool promising(const Screening& screening, const FittedModel& model) {
+// What the best law of a screening promises to take off the misfit, on the linearised model.
+double most_promised(const Screening& screening) {
   const std::vector<const Variant*> order = by_gain(screening);
+  return order.empty() ? 0.0 : order.front()->gain;
+}
+
+// Whether that is what another law must bring.
+bool promising(const Screening& screening, const FittedModel& model) {
   const double penalty = std::log(model.residuals);  // of one more parameter
-  return !order.empty() && order.front()->gain / excess(model) > kWorthAnother + penalty;
+  return most_promised(screening) / excess(model) > kWorthAnother + penalty;
 }
 
 // Closed forms that promise what another law must bring, as starts of refits from the trial.
@@ -310,14 +315,12 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
 }  // namespace
 
 double share_left_by_best(const Naming& naming) {
-  const std::vector<const Variant*> order = by_gain(naming.last);
-  return share_left(*naming.baseline, *naming.best.model, order.empty() ? 0.0 : order.front()->gain);
+  return share_left(*naming.baseline, *naming.best.model, most_promised(naming.last));
 }
 
 bool leaves_its_form(const Naming& naming) {
-  const std::vector<const Variant*> order = by_gain(naming.last);
   return naming.best.effects.size() == 1 &&
-         leaves_its_form_at_most(*naming.baseline, *naming.best.model, order.empty() ? 0.0 : order.front()->gain);
+         leaves_its_form_at_most(*naming.baseline, *naming.best.model, most_promised(naming.last));
 }
 
 bool a_value_explains(const FittedModel& model, double score, double phi, const Data& data, int threads) {

@@ -11,7 +11,8 @@
 // wrong. A live test may lie a day ahead of now, as clocks differ, and so may a report, or a day ahead of its asset's
 // newest test. What is played back, and what the virtual bench makes up, may be of another time: month by month into
 // the future, or as a whole, but not more than a year after the asset's newest test, and not where live tests have come.
-// So in every layer, whoever says a test's time. No test is older than its asset.
+// So in every layer, whoever says a test's time. By a clock that is not set yet nothing lies in the future. No test is
+// older than its asset.
 //
 // Assets. Each takes a layer, a lane and a place in every history, for ever, and a stranger may invent as many as it
 // likes: of those that the configuration does not name, kMostUnknownAssets are taken, the first that come and those of

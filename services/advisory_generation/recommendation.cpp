@@ -118,7 +118,7 @@ Recommendation by_wear(const Context& c) {
   return r;
 }
 
-/// Everything that calls for something, the one that is meant first on equal priority first.
+/// Everything that calls for something; what comes first is meant where two are of one rank.
 std::vector<Recommendation> calls(const Context& c) {
   std::vector<Recommendation> calls{by_wear(c)};
   const auto call = [&](AdvisoryPriority priority, AdvisoryAction action, std::string text) {
@@ -171,8 +171,11 @@ Recommendation recommend(const Evidence& evidence, const Assessment& assessment,
   }
   const Context context{evidence, assessment, in_force, site, book_by, part};
   const std::vector<Recommendation> all = calls(context);
-  const auto first =
-      std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.priority < b.priority; });
+  // An actuator that fails its tests is not to wait for the vessel that its seal's wear books.
+  const auto rank = [](const Recommendation& r) {
+    return std::pair(r.priority, r.action == AdvisoryAction::replace_now);
+  };
+  const auto first = std::ranges::max_element(all, {}, rank);
   Recommendation chosen = *first;
   for (auto other = all.begin(); other != all.end(); ++other)
     if (other != first && other->action != AdvisoryAction::none && other->action != chosen.action)

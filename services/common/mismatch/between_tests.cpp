@@ -45,10 +45,14 @@ bool are_of_several_days(const Data& data) {
   return seconds_between(*data.start_time.front(), *data.start_time.back()) > kSecondsPerDay;
 }
 
+bool are_of_one_day(const Data& data) {
+  const bool dated = std::ranges::all_of(data.start_time, [](const auto& time) { return time.has_value(); });
+  return dated && !data.start_time.empty() && !are_of_several_days(data);
+}
+
 std::optional<ChangeBetweenTests> change_between_tests(const AssetConfig& asset, const Data& fit,
                                                        const FittedModel& best) {
-  const bool dated = std::ranges::all_of(fit.start_time, [](const auto& time) { return time.has_value(); });
-  if (dated && !fit.start_time.empty() && !are_of_several_days(fit)) return std::nullopt;
+  if (are_of_one_day(fit)) return std::nullopt;
   std::map<std::string, Course> courses;
   double largest_misfit = 0.0;
   Misfit alone;

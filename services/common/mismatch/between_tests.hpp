@@ -36,6 +36,9 @@ struct Course {
 /// Whether all recordings, which are in the order of time, have one, and more than a day lies between first and last.
 [[nodiscard]] bool are_of_several_days(const Data& data);
 
+/// Whether they are known to be of one day.
+[[nodiscard]] bool are_of_one_day(const Data& data);
+
 /// Standard errors by which a parameter must have changed.
 inline constexpr double kChanged = 10.0;
 

@@ -7,7 +7,6 @@
 #include <optional>
 #include <tuple>
 
-#include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/baseline.hpp"
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/datasheet.hpp"
@@ -17,6 +16,7 @@
 #include "services/common/mismatch/gross_mismatch.hpp"
 #include "services/common/mismatch/held_out.hpp"
 #include "services/common/mismatch/naming.hpp"
+#include "services/common/mismatch/own_values.hpp"
 #include "services/common/mismatch/pieces.hpp"
 #include "services/common/mismatch/power.hpp"
 #include "services/common/mismatch/proof.hpp"
@@ -35,6 +35,7 @@ namespace {
 
 constexpr double kHeldOutAgrees = 1.5;  // noise-normalised rms of a channel: the noise's own estimate is off by less
 constexpr double kSearchShare = 0.75;   // of the time limit, before what was found is proven and told
+constexpr const char* kSensorsAgain = "what was found beside sensors within their tolerances";
 
 // The analysis of one asset, step by step; everything it learns goes into `result`.
 class Analysis {
@@ -73,7 +74,7 @@ class Analysis {
     if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
     if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
     if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
-    if (!why_none_ && seal_) say_what_the_seal_did();
+    if (!why_none_ && own_) say_what_differs();
     if (!why_none_ && time_.in_time("the values that the asset file fixes")) ask_the_datasheet();
     time_.allow(1.0);
     if (why_none_) best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_};
@@ -98,56 +99,148 @@ class Analysis {
   }
 
   // In tests of different days first beside a seal of its own in each, then in common from what was found there, unless
-  // a seal that wears leaves nothing.
+  // a seal that wears leaves nothing. What else differs from test to test is asked beside the laws.
   Status look_for_what_is_missing() {
     tell("looking for what is missing", 0.15);
     ExplainOptions options = options_;
     if (lacks_a_pressure()) options.maximum_laws = 0;
-    if (!windowed() && may_age(asset_, fit_)) {
-      const auto common = screen(*baseline_, fit_, {.seed = options.seed, .threads = options.threads});
-      if (!common) return fail(common.error());
-      say_how_likely_by_noise(*common);
-      if (result_.statistically_significant) seal_ = each_its_own_seal(fit_, *baseline_, options.threads);
-      if (seal_ && !look_beside(*seal_, options, progress_)) seal_.reset();
-      if (seal_ && explains_everything(*seal_, options)) {
-        take_over(*seal_);
+    if (!windowed()) fit_.may_differ = may_differ(asset_, fit_);
+    const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
+    Result<Screening> first = screen(*baseline_, prepared(fit_), screening);
+    if (!first) return fail(first.error());
+    say_how_likely_by_noise(*first);
+    if (!windowed() && may_age(asset_, fit_) && result_.statistically_significant) {
+      look_beside_an_ageing_seal(options);
+      if (own_ && explains_everything(*own_, options)) {
+        take_over(*own_);
         return {};
       }
-    }
-    std::optional<Trial> from;
-    if (seal_ && !seal_->naming.best.effects.empty()) from = in_common(*seal_, fit_, options.threads);
-    if (seal_) tell("looking again, with one seal for all tests", 0.5);
-    Data data = prepared(fit_);
-    data.sensors = known_sensors(asset_, baseline_->problem);
-    Result<Naming> naming = name_effects(baseline_, data, options, progress_, from.value_or(Trial{{}, baseline_}));
-    if (naming && naming->sensors_are_inexact) {
-      Result<Naming> again = beside_inexact_sensors(*naming, options);
-      // The search asked for a value in place of the sensors before it took them for inexact.
-      const bool was_asked = again && naming->with_sensors && same_effects(naming->best.effects, again->best.effects);
-      if (again && !was_asked && value_in_place_of_sensors(*again, data.sensors)) {
-        tell("looking again, with exact sensors", 0.6);
-        data.sensors.clear();
-        again = name_effects(baseline_, data, options, progress_);
-      } else if (again) {
-        std::ranges::copy(data.sensors, std::back_inserter(fit_.known));
-        baseline_ = again->baseline;
+      if (own_ && own_->fit.known.size() > fit_.known.size()) {
+        first = look_with_inexact_sensors(own_->fit.known, screening);
+        if (!first) return fail(first.error());
       }
-      if (again || !time_.deadline().passed())
+    }
+    if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
+    std::optional<Trial> from;
+    if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
+    if (own_) tell("looking again, with one seal for all tests", 0.5);
+    Result<Naming> naming = look_in_common(from.value_or(Trial{{}, baseline_}), options, &*first);
+    if (!naming) return fail(naming.error());
+    if (!naming->differs_in.empty()) {
+      if (look_beside_what_differs(*naming, options)) return {};
+      fit_.may_differ.clear();
+      Result<Naming> again = look_in_common(naming->best, options, nullptr);
+      if (!again && !time_.deadline().passed()) return fail(again.error());
+      if (again)
         naming = std::move(again);
       else
-        naming->not_asked.emplace_back("what was found beside sensors within their tolerances");
+        naming->not_asked.emplace_back("laws in common beside those found");
     }
-    if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
     say_how_likely_by_noise(naming_.first);
     look_at_what_is_left();
-    if (!seal_ || !result_.statistically_significant || !is_preferred(*seal_, best_)) {
-      seal_.reset();
+    if (!own_ || !result_.statistically_significant || !is_preferred(*own_, best_)) {
+      own_.reset();
       return {};
     }
-    if (!seal_->wears) ask_values_in_place_of_seals();
-    if (!why_none_) take_over(*seal_);
+    if (!own_->goes_its_way) ask_values_in_place_of_own();
+    if (!why_none_) take_over(*own_);
     return {};
+  }
+
+  // Given up where something else differs from test to test.
+  void look_beside_an_ageing_seal(const ExplainOptions& options) {
+    own_ = each_its_own(what_wears(asset_), fit_, *baseline_, options.threads);
+    if (own_ && (!look_beside_own(*own_, {}, options) || !own_->naming.differs_in.empty())) own_.reset();
+  }
+
+  // Sensors that were off beside what differs are so in common; also where the time to search is over.
+  Result<Screening> look_with_inexact_sensors(const std::vector<KnownValue>& known, const ScreeningOptions& options) {
+    time_.allow(1.0);
+    fit_.known = known;
+    Result<FittedModel> model = fit_model(baseline_->asset, fit_, baseline_.get(), options_.threads);
+    if (!model) return fail(model.error());
+    baseline_ = std::make_shared<const FittedModel>(std::move(*model));
+    Result<Screening> first = screen(*baseline_, fit_, options);
+    time_.allow(kSearchShare);
+    return first;
+  }
+
+  // Also where the time to search is over: it is what is told then.
+  std::optional<Trial> found_in_common(const OwnValues& own) {
+    time_.allow(1.0);
+    std::optional<Trial> laws = in_common(own, options_.threads);
+    time_.allow(kSearchShare);
+    return laws;
+  }
+
+  // Laws that all recordings have in common, beginning with `from`, beside sensors that are exact or not. `known`: the
+  // baseline's screening.
+  Result<Naming> look_in_common(const Trial& from, const ExplainOptions& options, const Screening* known) {
+    Data data = prepared(fit_);
+    data.sensors = unknown_sensors();
+    Result<Naming> naming = name_effects(baseline_, data, options, progress_, from, known);
+    if (!naming || !naming->sensors_are_inexact) return naming;
+    Result<Naming> again = beside_inexact_sensors(*naming, options);
+    // The search asked for a value in place of the sensors before it took them for inexact.
+    const bool was_asked = again && naming->with_sensors && same_effects(naming->best.effects, again->best.effects);
+    if (again && !was_asked && value_in_place_of_sensors(*again, data.sensors)) {
+      tell("looking again, with exact sensors", 0.6);
+      data.sensors.clear();
+      again = name_effects(baseline_, data, options, progress_);
+    } else if (again) {
+      std::ranges::copy(data.sensors, std::back_inserter(fit_.known));
+      baseline_ = again->baseline;
+    }
+    if (again || !time_.deadline().passed()) return again;
+    naming->not_asked.emplace_back(kSensorsAgain);
+    return naming;
+  }
+
+  // Sensors that are taken for exact so far.
+  [[nodiscard]] std::vector<KnownValue> unknown_sensors() const {
+    std::vector<KnownValue> sensors = known_sensors(asset_, baseline_->problem);
+    std::erase_if(sensors, [&](const KnownValue& one) {
+      return std::ranges::find(fit_.known, one.name, &KnownValue::name) != fit_.known.end();
+    });
+    return sensors;
+  }
+
+  // Laws beside a parameter of which each recording has its own; false where one for all does as well.
+  bool look_beside_what_differs(const Naming& found, const ExplainOptions& options) {
+    tell("looking again, with a " + found.differs_in + " for each test", 0.5);
+    own_.reset();
+    auto own = each_its_own(found.differs_in, fit_, *baseline_, options.threads);
+    if (!own) return false;
+    own->fit.may_differ.clear();
+    if (!look_beside_own(*own, found.best, options)) return false;
+    const auto common = found_in_common(*own);
+    if (!common || !is_preferred(*own, *common)) return false;
+    own_ = std::move(own);
+    ask_values_in_place_of_own();
+    if (!why_none_) take_over(*own_);
+    if (why_none_) naming_ = found;
+    return true;
+  }
+
+  // Laws beside it, beginning with those found in common, beside sensors that are exact or not.
+  bool look_beside_own(OwnValues& own, const Trial& found, const ExplainOptions& options) const {
+    own.fit.sensors = unknown_sensors();
+    if (!look_beside(own, options, progress_, with_own_values(found, own, options.threads))) return false;
+    if (!own.naming.sensors_are_inexact) return true;
+    OwnValues again = own;
+    std::ranges::copy(own.fit.sensors, std::back_inserter(again.fit.known));
+    again.fit.sensors.clear();
+    Result<FittedModel> model = fit_model(own.baseline->asset, again.fit, own.baseline.get(), options.threads);
+    if (model) again.baseline = std::make_shared<const FittedModel>(std::move(*model));
+    const bool looked =
+        model && look_beside(again, options, progress_, with_own_values(own.naming.best, again, options.threads));
+    if (!looked && !time_.deadline().passed()) return false;
+    if (looked)
+      own = std::move(again);
+    else
+      own.naming.not_asked.emplace_back(kSensorsAgain);
+    return true;
   }
 
   // The best of a search that was cut: what it leaves has not been looked at.
@@ -217,10 +310,11 @@ class Analysis {
     result_.statistically_significant = differs(screening.p_value, *baseline_, options_.false_alarm_rate);
   }
 
-  void take_over(const AgeingSeal& seal) {
-    fit_ = seal.fit;
-    baseline_ = seal.baseline;
-    naming_ = seal.naming;
+  void take_over(const OwnValues& own) {
+    fit_ = own.fit;
+    fit_.sensors.clear();
+    baseline_ = own.baseline;
+    naming_ = own.naming;
     best_ = naming_.best;
     time_.add_not_asked(naming_.not_asked);
   }
@@ -232,21 +326,23 @@ class Analysis {
     if (const auto change = change_between_tests(asset_, fit_, *best_.model)) why_none_ = something_changed(*change);
   }
 
-  // Why no law is named beside a seal that differs from test to test, where that is so.
-  void say_what_the_seal_did() {
-    const std::string course = ageing_in_words(*best_.model, fit_);
-    if (!seal_->wears)
+  // Why no law is named beside what differs from test to test, where that is so.
+  void say_what_differs() {
+    const std::string course = course_in_words(*best_.model, fit_);
+    const bool no_more = best_.effects.empty() && leaves_nothing();
+    if (!own_->goes_its_way)
       why_none_ = seal_changed_but_not_by_wear(course);
-    else if (best_.effects.empty() && leaves_nothing())
-      why_none_ = seal_aged_and_no_more(course);
+    else if (no_more)
+      why_none_ = is_wear(*own_) ? seal_aged_and_no_more(course) : differed_and_no_more(course);
   }
 
-  // What looks like another seal in each test, and not by wear, may be a wrong value in all of them.
-  void ask_values_in_place_of_seals() {
-    const DatasheetQuestion question{asset_, *baseline_, seal_->naming.best, fit_, options_.threads};
+  // What looks like another value in each test, and not by wear, may be a wrong value of another parameter in all of them.
+  void ask_values_in_place_of_own() {
+    const DatasheetQuestion question{asset_, *baseline_, own_->naming.best, fit_, options_.threads};
     const auto wrong = values_alone(question, fit_.samples.size());
-    if (wrong && wrong->behind <= 0.0)
-      blame_the_asset_file(*wrong, "another seal in each test", *seal_->naming.best.model);
+    if (!wrong || wrong->behind > 0.0) return;
+    const std::string other = is_wear(*own_) ? "seal" : own_->fit.own_parameter;
+    blame_the_asset_file(*wrong, "another " + other + " in each test", *own_->naming.best.model);
   }
 
   [[nodiscard]] bool leaves_nothing() const {
@@ -370,21 +466,34 @@ class Analysis {
   }
 
   // What is left beside a law says that something is left, not what, where it could as well sit in three other elements
-  // or is no more than the law's own form may be off by.
+  // or is no more than the law's own form may be off by; nor is a law claimed whose strength may be nothing.
   void describe_what_was_found() {
-    const std::optional<CarryOver> carry_over = excess(*best_.model) > kGross && !best_.effects.empty()
-                                                    ? std::optional(carry_over_of(to_prove(), held_out()))
-                                                    : std::nullopt;
+    const bool gross = excess(*best_.model) > kGross;
+    const std::optional<CarryOver> carry_over =
+        gross && !best_.effects.empty() ? std::optional(carry_over_of(to_prove(), held_out())) : std::nullopt;
+    while (!gross && !best_.effects.empty()) {
+      const std::optional<NotTold> law = not_told_from_zero(best_);
+      if (!law) break;
+      result_.notes.push_back(law->sentence);
+      take_out(law->slot);
+    }
     while (!best_.effects.empty()) {
       result_.effects = describe_effects(naming_, best_, prepared(fit_), options_, carry_over ? &*carry_over : nullptr);
-      if (best_.effects.size() == 1 || excess(*best_.model) > kGross) break;
+      if (best_.effects.size() == 1 || gross) break;
       const std::optional<Remainder> remainder = remainder_among(result_.effects, law_at(best_.effects.back()));
       if (!remainder) break;
       result_.notes.push_back(remainder->sentence);
       const auto slot = std::ranges::find_if(
           best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder->law); });
-      best_ = without(best_, static_cast<std::size_t>(slot - best_.effects.begin()), to_prove());
+      take_out(static_cast<std::size_t>(slot - best_.effects.begin()));
     }
+    if (best_.effects.empty()) result_.effects.clear();
+  }
+
+  void take_out(std::size_t slot) {
+    time_.allow_what_is_needed();
+    best_ = without(best_, slot, to_prove());
+    time_.allow(1.0);
   }
 
   Status finish() {
@@ -534,17 +643,20 @@ class Analysis {
     why_none_ = those_kept_aside_differ(*worst);
   }
 
+  [[nodiscard]] std::string what_happened() const {
+    return is_wear(*own_) ? what_aged(asset_) + " aged between these tests. "
+                          : "Something changed between these tests. ";
+  }
+
   // Beside the verdict and the laws.
   void say_what_else_is_known() {
-    const std::string course = fit_.own_parameter.empty() ? ""
-                                                          : what_aged(asset_) + " aged between these tests. " +
-                                                                ageing_in_words(*best_.model, fit_);
+    const std::string course = own_ ? what_happened() + course_in_words(*best_.model, fit_) : "";
     remark_leak_in_two_parts(result_);
     if (why_none_) {
       if (with_another_value_ && !course.empty()) why_none_->summary += " " + course;
       return remark_why_none(*why_none_, result_);
     }
-    if (!course.empty()) remark_ageing(course, result_);
+    if (own_) is_wear(*own_) ? remark_ageing(course, result_) : remark_difference(course, result_);
     // Taken back since: what stood for laws has nothing to stand for.
     if (result_.effects.size() != instead_of_) result_.asset_values.clear();
     if (!result_.asset_values.empty()) remark_asset_values(result_);
@@ -581,7 +693,7 @@ class Analysis {
   const Progress& progress_;
   TimeBudget time_;
   std::shared_ptr<const FittedModel> baseline_;
-  std::optional<AgeingSeal> seal_;  ///< each test has its own, and nothing in common is preferred
+  std::optional<OwnValues> own_;  ///< each test has its own of a parameter, and nothing in common is preferred
   Naming naming_;
   Trial best_;
   Trial tried_;  ///< what was taken back, as it explains too little

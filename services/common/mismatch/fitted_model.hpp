@@ -27,6 +27,7 @@ struct Data {
   std::vector<Eigen::VectorXd> weight = {};
   std::vector<std::optional<UtcTime>> start_time = {};  ///< per recording; empty in windows
   std::string own_parameter = {};                       ///< that each recording has for itself ("R_CL"); "": none
+  std::vector<std::string> may_differ = {};             ///< parameters of which each recording may have its own
   std::vector<KnownValue> known = {};                   ///< fixed values that may be off within their tolerance
   std::map<std::string, double> given = {};             ///< parameters as the asset file has them
   std::vector<KnownValue> sensors = {};  ///< taken for exact until one of them is found to be off within its tolerance

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "sealwatch/model/physics.hpp"
-#include "services/common/mismatch/ageing_seal.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/own_values.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/windows.hpp"
 
@@ -19,16 +19,19 @@ std::size_t part_of(std::size_t recording, std::size_t count) {
   return count <= kMostInTurn ? recording : recording * kThirds / count;
 }
 
-// By a model that was fitted to other recordings.
+// By a model that was fitted to other recordings; a parameter that differs from one to the next, and not by wear, is fitted.
 Result<FittedModel> predict(const HeldOut& of, const FittedModel& model, const Data& fitted, const Data& data,
                             std::size_t recording) {
-  AssetConfig asset = model.asset;
+  AssetConfig asset = with_fixed_parameters(model.asset);
   const std::string& own = of.fit.own_parameter;
-  if (!own.empty()) asset.parameters.at(own).value = predicted_leakage(model, fitted, data.start_time[recording]);
+  if (!own.empty() && own == what_wears(asset))
+    asset.parameters.at(own).value = predicted_leakage(model, fitted, data.start_time[recording]);
+  else if (!own.empty())
+    asset.parameters.at(own).estimate = true;
   Data one = in_windows(only(data, recording), of.window_s);
-  one.own_parameter.clear();  // predicted
-  one.known.clear();          // as fitted
-  return fit_model(with_fixed_parameters(asset), one, nullptr, 1);
+  one.own_parameter.clear();
+  one.known.clear();  // as fitted
+  return fit_model(asset, one, nullptr, 1);
 }
 
 bool is_strength(const PhysicsTerm& term, const std::string& parameter) {

@@ -12,6 +12,7 @@
 #include "services/common/mismatch/datasheet.hpp"
 #include "services/common/mismatch/one_shape.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
+#include "services/common/mismatch/own_gains.hpp"
 #include "services/common/mismatch/plain_laws.hpp"
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/remainder.hpp"
@@ -118,10 +119,12 @@ std::vector<std::vector<LawStart>> closed_forms_for(const Trial& from, const Dat
   return starts;
 }
 
-// Whether each of these trials leaves more than half of the model's misfit.
+// Whether each of these trials leaves more than half of what the model misses beyond the noise.
 bool leave_most(const std::vector<Trial>& trials, const FittedModel& model) {
-  return std::ranges::none_of(
-      trials, [&](const Trial& trial) { return trial.model->misfit < kExplainedAtLeast * model.misfit; });
+  const double before = model.misfit / model.residuals;
+  return std::ranges::none_of(trials, [&](const Trial& trial) {
+    return share_explained(before, trial.model->misfit / trial.model->residuals) > kExplainedAtLeast;
+  });
 }
 
 // Where listed laws leave something beyond the noise: closed forms in place of the laws found, and beside them.
@@ -238,6 +241,53 @@ class InexactSensors {
   std::optional<bool> a_value_explains_;
 };
 
+// The best with a parameter that each recording has for itself, of those that promise most on the linearised model.
+class DifferingTests {
+ public:
+  DifferingTests(const Trial& from, const Data& data, int threads) : from_(from), data_(data), threads_(threads) {
+    constexpr std::size_t kMost = 2;
+    if (!data.may_differ.empty()) gains_ = gains_of_own_values(*from.model, data.may_differ);
+    gains_.resize(std::min(gains_.size(), kMost));
+  }
+
+  // Before any law was tried: only what promises nearly as much as the best of them.
+  void ask_before(const Screening& asked) {
+    constexpr double kNearly = 0.5;
+    if (!gains_.empty() && gains_.front().gain > kNearly * most_promised(asked)) ask({});
+  }
+  // Those that could do better than all laws tried.
+  void ask_beside(const std::vector<Trial>& trials) { ask(trials); }
+
+  [[nodiscard]] const std::vector<Trial>& trials() const { return trials_; }
+
+ private:
+  void ask(const std::vector<Trial>& laws) {
+    const double phi = smallest_dispersion(laws, *from_.model);
+    double best = criterion(*from_.model, phi) - kWorthAnother;
+    for (const Trial& law : laws) best = std::min(best, criterion(*law.model, phi));
+    std::erase_if(gains_, [&](const OwnGain& own) {
+      const auto more = static_cast<double>(data_.samples.size() - 1);
+      const double price = more * std::max(std::log(from_.model->residuals / phi), 2.0);
+      if (criterion(*from_.model, phi) - kOptimistic * own.gain / phi + price >= best) return false;
+      fit(own.parameter);
+      return true;
+    });
+  }
+  void fit(const std::string& parameter) {
+    constexpr int kIterations = 30;
+    Data own = data_;
+    own.own_parameter = parameter;
+    Result<FittedModel> model = fit_model(from_.model->asset, own, from_.model.get(), threads_, kIterations);
+    if (model) trials_.push_back({from_.effects, std::make_shared<const FittedModel>(std::move(*model)), parameter});
+  }
+
+  const Trial& from_;
+  const Data& data_;
+  int threads_;
+  std::vector<OwnGain> gains_;  ///< not fitted yet
+  std::vector<Trial> trials_;
+};
+
 // A sensor's gain or offset that is no further off than its tolerance lets it be is no fault.
 bool is_within_tolerance(const Effect& effect, const Trial& trial, const std::vector<KnownValue>& sensors) {
   const std::string name = tolerated_name(effect);
@@ -263,8 +313,8 @@ std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
 
 // Refits with another law: first the single laws that promise most, in a gross misfit all and from second starts too.
 // Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
-// the laws come first, and only laws that could do better are refitted. Beside a law that leaves no more than its exact
-// form sensors alone are asked.
+// the laws come first, and only laws that could do better are refitted. A parameter of which each recording has its own
+// competes with all of them. Beside a law that leaves no more than its exact form sensors alone are asked.
 std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
@@ -282,8 +332,13 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   };
   const auto refit_also = [&](const std::vector<std::vector<LawStart>>& starts) { refit_from(naming.best, starts); };
   InexactSensors sensors(*naming.best.model, data, options.threads);
+  DifferingTests differing(naming.best, data, options.threads);
+  const auto with_differing = [&](std::vector<Trial> all) {
+    all.insert(all.end(), differing.trials().begin(), differing.trials().end());
+    return all;
+  };
   const auto are_inexact = [&] {
-    naming.sensors_are_inexact = sensors.beat(trials);
+    naming.sensors_are_inexact = sensors.beat(with_differing(trials));
     if (naming.sensors_are_inexact) naming.with_sensors = sensors.model();
     if (level == 0) naming.baseline_with_sensors = sensors.model();
     return naming.sensors_are_inexact;
@@ -292,6 +347,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     static_cast<void>(are_inexact());
     return trials;
   }
+  differing.ask_before(asked);
   const std::optional<double> least_gain = sensors.least_gain(asked);
   if (least_gain && by_gain(asked).front()->gain < *least_gain && are_inexact()) return trials;
   const auto first = static_cast<std::ptrdiff_t>(
@@ -299,8 +355,8 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   refit_also({singles.begin(), singles.begin() + first});
   if (gross && !one_law_does(trials, naming, data, options))
     if (const auto given = with_given_values(naming.best, data)) refit_from(*given, singles);
-  if (level == 0 && gross && leave_most(trials, *naming.best.model))
-    refit_also(closed_forms_for(naming.best, data, options));
+  if (level == 0 && leave_most(trials, *naming.best.model)) refit_also(closed_forms_for(naming.best, data, options));
+  differing.ask_beside(trials);
   if (least_gain && are_inexact()) return trials;
   if (!one_law_does(trials, naming, data, options)) {
     if (are_inexact()) return trials;
@@ -309,7 +365,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
       refit_also(ranked_pairs(asked, naming.best.model->misfit, gross));
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());
-  return trials;
+  return with_differing(std::move(trials));
 }
 
 }  // namespace
@@ -343,9 +399,10 @@ bool a_value_explains(const FittedModel& model, double score, double phi, const 
 }
 
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
-                            const ExplainOptions& options, const Progress& progress, const Trial& from) {
+                            const ExplainOptions& options, const Progress& progress, const Trial& from,
+                            const Screening* known) {
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
-  Result<Screening> first = screen(*baseline, data, screening);
+  Result<Screening> first = known != nullptr ? *known : screen(*baseline, data, screening);
   if (!first) return fail(first.error());
   Naming naming{
       .baseline = baseline, .best = {{}, baseline}, .trials = {{{}, baseline}}, .first = *first, .last = *first};
@@ -381,6 +438,11 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;
     if (best == nullptr || criterion(*best->model, phi) > criterion(*naming.best.model, phi) - worth) break;
+    if (!best->differs_in.empty()) {
+      if (criterion(*best->model, phi) <= criterion(*naming.best.model, phi) - kWorthAnother)
+        naming.differs_in = best->differs_in;
+      break;
+    }
     if (!in_time("laws that did not come to be fitted, and what the best of the others leaves")) {
       naming.best = *best;
       break;
@@ -394,10 +456,11 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       naming.sensors_are_inexact = true;
       return naming;
     }
-    if (in_time("other shapes of the law found")) from_other_shapes(naming, level, asked, data, options);
+    if (in_time("other shapes of the law found")) from_other_shapes(naming, before, asked, data, options);
     if (in_time("other laws in place of those found before")) another_law_for_each(naming, data, options);
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);
   }
+  if (!naming.differs_in.empty()) return naming;
   if (in_time("whether each law is needed")) drop_what_is_not_needed(naming, data, options.threads);
   if (in_time("plainer laws")) prefer_plain_laws(naming, data, options.threads);
   if (naming.last.p_value <= options.false_alarm_rate && in_time("closed forms that no law of the list has"))

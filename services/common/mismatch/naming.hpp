@@ -37,15 +37,18 @@ struct Naming {
   bool sensors_are_inexact = false;
   std::shared_ptr<const FittedModel> with_sensors = {};           ///< `best` beside them, where it was fitted
   std::shared_ptr<const FittedModel> baseline_with_sensors = {};  ///< the same of the baseline
+  /// A parameter that differs from recording to recording (Data::may_differ) explains more than any law: the search ended
+  /// there, and `best` is to be asked beside it. "": none.
+  std::string differs_in = {};
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
 };
 
 /// An Error when nothing can be looked at: the baseline cannot be linearised. A law whose model cannot be is not taken,
 /// `remarks` says so, and the search ends with what it had. `from`: laws to begin with, refitted to the same data;
-/// those that are not needed there are taken out first.
+/// those that are not needed there are taken out first. `known`: the baseline's screening, where it is known.
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                                           const ExplainOptions& options, const Progress& progress,
-                                          const Trial& from = {});
+                                          const Trial& from = {}, const Screening* known = nullptr);
 
 /// Whether one fixed value beyond its tolerance brings the criterion below `score`: sensors need not be off then. Asked
 /// are those that the model holds at an end of their tolerance.

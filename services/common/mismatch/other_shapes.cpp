@@ -12,8 +12,10 @@
 namespace sealwatch::mismatch {
 namespace {
 
-constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid
-constexpr std::size_t kFormStarts = 3;   // and of each closed form that bears its id
+constexpr std::size_t kOtherShapes = 8;  // refits of the best law from other points of its grid,
+constexpr std::size_t kFormStarts = 3;   // and of each closed form that bears its id, in a gross misfit;
+constexpr std::size_t kNearShapes = 3;   // near the noise the linearised model tells the best points of the grid,
+constexpr std::size_t kNearStarts = 1;   // and a form that contains the law begins where that ended
 constexpr double kFar = 100.0;           // times the noise: further off no law's form can be told
 constexpr std::size_t kOtherLaws = 4;    // refits in place of a law that was found before another one
 constexpr std::size_t kSingleLaws = 10;  // refits of one law for several
@@ -33,7 +35,8 @@ std::vector<double> from_fitted(const Candidate& form, std::size_t point, const 
 // Start values of the law of an effect at its usual size and on its shape's grid; of its other forms, of laws that
 // contain it and of the closed forms (`forms`) that bear its id, also from where it ended (`term`).
 std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const PhysicsTerm& term, const Screening& asked,
-                                                const std::vector<Candidate>& forms) {
+                                                const std::vector<Candidate>& forms, bool gross) {
+  const std::size_t shapes = gross ? kOtherShapes : kNearShapes, form_starts = gross ? kFormStarts : kNearStarts;
   std::vector<std::vector<LawStart>> starts;
   const auto add = [&](const Candidate& candidate, std::vector<double> parameters) {
     const auto same_start = [&](const std::vector<LawStart>& other) {
@@ -46,7 +49,7 @@ std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Phys
     const Candidate& candidate = asked.candidates[variant->candidate];
     const bool same_or_richer = (forms.empty() ? candidate.law == effect.law : candidate.law->id == effect.law->id) ||
                                 candidate.law->limit == effect.law->id;
-    if (same_or_richer && candidate.element == effect.element && starts.size() < kOtherShapes)
+    if (same_or_richer && candidate.element == effect.element && starts.size() < shapes)
       add(candidate, usual_size(candidate, variant->point));
   }
   for (const Candidate& candidate : asked.candidates)
@@ -57,7 +60,7 @@ std::vector<std::vector<LawStart>> other_starts(const Effect& effect, const Phys
   for (const Candidate& form : forms) {
     if (form.law->id != effect.law->id || form.law == effect.law || form.element != effect.element) continue;
     add(form, from_fitted(form, 0, term));
-    for (std::size_t point = 0; point < std::min(form.grid.size(), kFormStarts); ++point)
+    for (std::size_t point = 0; point < std::min(form.grid.size(), form_starts); ++point)
       add(form, usual_size(form, point));
   }
   return starts;
@@ -149,7 +152,7 @@ double smallest_dispersion(const std::vector<Trial>& trials, const FittedModel& 
   return phi;
 }
 
-void from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
+void from_other_shapes(Naming& naming, const Trial& before, const Screening& asked, const Data& data,
                        const ExplainOptions& options) {
   if (is_at_the_noise(naming, options)) return;
   // Where everything misses by far, another form of one law says nothing.
@@ -158,10 +161,11 @@ void from_other_shapes(Naming& naming, std::size_t before, const Screening& aske
     forms =
         find_candidates(*naming.baseline->problem.recordings.front().simulation, naming.baseline->asset.physics, true);
   std::vector<Trial> trials;
-  for (std::size_t added = before; added < naming.best.effects.size(); ++added) {
+  const bool gross = excess(*before.model) > kGross;
+  for (std::size_t added = before.effects.size(); added < naming.best.effects.size(); ++added) {
     const auto& physics = naming.best.model->asset.physics;
     const PhysicsTerm& term = physics[physics.size() - naming.best.effects.size() + added];
-    const auto starts = other_starts(naming.best.effects[added], term, asked, forms);
+    const auto starts = other_starts(naming.best.effects[added], term, asked, forms, gross);
     for (Trial& trial : refit(naming.best, starts, data, options.threads,
                               {.in_place_of = {added}, .to_beat = naming.best.model->misfit}))
       trials.push_back(std::move(trial));

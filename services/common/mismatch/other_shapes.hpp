@@ -9,10 +9,10 @@
 
 namespace sealwatch::mismatch {
 
-/// Each law that was just added (from effect `before` on) starts again in its place: where something is left beyond the
+/// Each law that was just added to the best trial `before` starts again in its place: where something is left beyond the
 /// noise, its refit from the linear step may have ended in a hollow, or the law has another form than the catalogue's,
 /// and another law was or would be asked to fill that. `asked`: the screening that proposed them.
-void from_other_shapes(Naming& naming, std::size_t before, const Screening& asked, const Data& data,
+void from_other_shapes(Naming& naming, const Trial& before, const Screening& asked, const Data& data,
                        const ExplainOptions& options);
 
 /// Each law that was found before another one competes with those of other elements that would do best in its place: where

@@ -1,9 +1,15 @@
 #include "services/common/mismatch/remainder.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
+#include "sealwatch/model/physics.hpp"
+#include "services/common/mismatch/candidates.hpp"
 #include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
 
 namespace sealwatch::mismatch {
@@ -37,6 +43,35 @@ bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with
 }
 
 std::string left_beside(const LawAt& law, double share) { return may_be_the_form(law, share); }
+
+std::optional<NotTold> not_told_from_zero(const Trial& trial) {
+  constexpr double kTold = 2.0;  // standard errors: 95 % of them lie closer to the true value
+  const FittedModel& model = *trial.model;
+  const std::vector<double> errors = standard_errors(model);
+  // Of the strengths of one law the one that is told best.
+  const auto told_by = [&](const Effect& effect) {
+    double most = 0.0;
+    for (const std::size_t s : strengths_of(*effect.law)) {
+      const std::string name = physics_parameter_name(effect.element, effect.law->id, effect.law->parameters[s].name);
+      const auto unknown = std::ranges::find(model.problem.shared, name, &Unknown::name);
+      const auto k = static_cast<std::size_t>(unknown - model.problem.shared.begin());
+      if (unknown == model.problem.shared.end() || !std::isfinite(errors[k]) || errors[k] <= 0.0)
+        return std::numeric_limits<double>::infinity();
+      most = std::max(most, std::abs(*estimate_of(model, name)) / errors[k]);
+    }
+    return most;
+  };
+  std::optional<NotTold> least;
+  double told = kTold;
+  for (std::size_t slot = 0; slot < trial.effects.size(); ++slot)
+    if (const double by = told_by(trial.effects[slot]); by < told) {
+      told = by;
+      least = NotTold{slot, "A law that fits better (" + law_in_words(law_at(trial.effects[slot])) +
+                                ") has a strength of only " + number(by, 2) +
+                                " standard errors, which may be nothing: it is not claimed."};
+    }
+  return least;
+}
 
 bool same_place(const LawAt& a, const LawAt& b) { return a.id == b.id && a.element == b.element; }
 

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
-#include "services/common/mismatch/fitted_model.hpp"
+#include "services/common/mismatch/refits.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -32,6 +32,17 @@ struct Remainder {
 [[nodiscard]] bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with, double promised);
 /// The same to a user: which law, and how much is left.
 [[nodiscard]] std::string left_beside(const LawAt& law, double share);
+
+/// A law of a trial, and why it is not claimed.
+struct NotTold {
+  std::size_t slot = 0;
+  std::string sentence;
+};
+
+/// The one whose strength is nearest to nothing, where that is within two of its standard errors (standard_errors.hpp).
+/// The criterion takes what a model leaves for white; where it is a course, neighbouring samples tell less than that,
+/// and a law that follows it is not told from none. Not asked where no standard error is known.
+[[nodiscard]] std::optional<NotTold> not_told_from_zero(const Trial& trial);
 
 /// Whether it fits at three other elements as well.
 [[nodiscard]] bool could_sit_anywhere(const FoundEffect& effect);

@@ -31,6 +31,11 @@ void remark_ageing(const std::string& course, Explanation& result) {
                          "their misfit contains its error.");
 }
 
+void remark_difference(const std::string& course, Explanation& result) {
+  result.summary += " " + course;
+  result.notes.push_back(course + " In held-out recordings, too, it is fitted, before and after.");
+}
+
 void remark_asset_values(Explanation& result) {
   const std::string values = values_in_words(result.asset_values);
   const std::string same = " A wrong value in the asset file would explain it as well: " + values + ".";

@@ -14,6 +14,9 @@ void remark_why_none(const WhyNone& why, Explanation& result);
 /// `course`: R_CL from test to test, in words.
 void remark_ageing(const std::string& course, Explanation& result);
 
+/// `course`: of another parameter from test to test, in words.
+void remark_difference(const std::string& course, Explanation& result);
+
 /// Values of the asset file that would do the same as the laws found.
 void remark_asset_values(Explanation& result);
 

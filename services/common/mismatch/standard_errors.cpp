@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/criterion.hpp"
@@ -47,9 +48,7 @@ std::vector<Eigen::Index> told_by_data(const FittedModel& model, const Eigen::Ma
   return told;
 }
 
-}  // namespace
-
-std::vector<double> standard_errors(const FittedModel& model) {
+Normal normal_of(const FittedModel& model) {
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
   Normal normal{.information = Eigen::MatrixXd::Zero(shared, shared), .scores = Eigen::MatrixXd::Zero(shared, shared)};
   for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k) {
@@ -61,31 +60,88 @@ std::vector<double> standard_errors(const FittedModel& model) {
       add_recording(*again, model.problem.recordings[k].time_s, normal);
   }
   if (normal.blocks > 1) normal.scores *= normal.blocks / (normal.blocks - 1.0);
+  return normal;
+}
+
+Eigen::MatrixXd known_beforehand(const FittedModel& model) {
+  const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(shared, shared);
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k)
     if (const Unknown& unknown = model.problem.shared[k]; unknown.is_known())
       prior(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) = 1.0 / std::pow(unknown.prior_std, 2);
+  return prior;
+}
 
-  const double phi = dispersion(model);
-  const Eigen::MatrixXd information = normal.information / phi + prior;
-  const std::vector<Eigen::Index> told = told_by_data(model, information);
-  const Eigen::VectorXd scale = subvector(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(), told);
-  const auto scaled = [&](const Eigen::MatrixXd& matrix) -> Eigen::MatrixXd {
-    return dense::scaled(submatrix(matrix, told), scale);
-  };
-  Eigen::MatrixXd a = scaled(information);
-  a.diagonal().array() += 1e-12;
-  const Eigen::MatrixXd inverse = dense::inverse(a);
-  const Eigen::MatrixXd by_scores =
-      dense::product(dense::product(inverse, scaled(normal.scores / (phi * phi) + prior)), inverse);
-  std::vector<double> errors(model.problem.shared.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t j = 0; j < told.size(); ++j) {
-    const auto at = static_cast<Eigen::Index>(j);
-    const auto k = static_cast<std::size_t>(told[j]);
-    errors[k] = std::sqrt(std::max(inverse(at, at), by_scores(at, at))) * scale(at) *
-                std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
+// Both variances above, of the unknowns that the data tell of.
+class Covariance {
+ public:
+  explicit Covariance(const FittedModel& model) {
+    const Normal normal = normal_of(model);
+    const Eigen::MatrixXd prior = known_beforehand(model);
+    const double phi = dispersion(model);
+    const Eigen::MatrixXd information = normal.information / phi + prior;
+    told_ = told_by_data(model, information);
+    scale_ = subvector(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(), told_);
+    const auto scaled = [&](const Eigen::MatrixXd& matrix) -> Eigen::MatrixXd {
+      return dense::scaled(submatrix(matrix, told_), scale_);
+    };
+    Eigen::MatrixXd a = scaled(information);
+    a.diagonal().array() += 1e-12;
+    inverse_ = dense::inverse(a);
+    by_scores_ = dense::product(dense::product(inverse_, scaled(normal.scores / (phi * phi) + prior)), inverse_);
+  }
+
+  /// Of a shared unknown; infinite where the data cannot tell.
+  [[nodiscard]] double standard_error(std::size_t k) const {
+    const auto at = place(k);
+    if (!at) return std::numeric_limits<double>::infinity();
+    return std::sqrt(std::max(inverse_(*at, *at), by_scores_(*at, *at))) * scale_(*at);
+  }
+  [[nodiscard]] double of_difference(std::size_t k, std::size_t other) const {
+    const auto a = place(k), b = place(other);
+    if (!a || !b) return std::numeric_limits<double>::infinity();
+    const auto variance = [&](const Eigen::MatrixXd& of) {
+      return of(*a, *a) * scale_(*a) * scale_(*a) + of(*b, *b) * scale_(*b) * scale_(*b) -
+             2.0 * of(*a, *b) * scale_(*a) * scale_(*b);
+    };
+    return std::sqrt(std::max({variance(inverse_), variance(by_scores_), 0.0}));
+  }
+
+ private:
+  [[nodiscard]] std::optional<Eigen::Index> place(std::size_t k) const {
+    const auto at = std::ranges::find(told_, static_cast<Eigen::Index>(k));
+    return at == told_.end() ? std::nullopt : std::optional<Eigen::Index>(at - told_.begin());
+  }
+
+  std::vector<Eigen::Index> told_;
+  Eigen::VectorXd scale_;
+  Eigen::MatrixXd inverse_, by_scores_;
+};
+
+}  // namespace
+
+std::vector<double> standard_errors(const FittedModel& model) {
+  const Covariance covariance(model);
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const double slope = std::abs(model.problem.shared[k].slope(model.optimum.point.shared[k]));
+    const double error = covariance.standard_error(k);
+    errors.push_back(std::isfinite(error) ? error * slope : error);
   }
   return errors;
+}
+
+double standard_errors_apart(const FittedModel& model, std::span<const std::size_t> unknowns) {
+  const Covariance covariance(model);
+  double furthest = 0.0;
+  for (const std::size_t k : unknowns) {
+    if (!std::isfinite(covariance.standard_error(k))) return 0.0;
+    for (const std::size_t other : unknowns)
+      if (const double error = covariance.of_difference(k, other); k < other && error > 0.0)
+        furthest =
+            std::max(furthest, std::abs(model.optimum.point.shared[k] - model.optimum.point.shared[other]) / error);
+  }
+  return furthest;
 }
 
 }  // namespace sealwatch::mismatch

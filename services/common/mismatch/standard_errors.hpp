@@ -13,6 +13,7 @@
 // knows of a bias that is the same in all blocks.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "services/common/mismatch/fitted_model.hpp"
@@ -21,5 +22,10 @@ namespace sealwatch::mismatch {
 
 /// Of each shared unknown in its own unit; infinite where the data cannot tell or where the unknown is at its bound.
 [[nodiscard]] std::vector<double> standard_errors(const FittedModel& model);
+
+/// Between the two of these shared unknowns that lie furthest apart, in standard errors of their difference: what is known
+/// of neither, as both share it (a sensor's gain), says nothing against that. Values of one parameter in several
+/// recordings; 0 where the data cannot tell one of them.
+[[nodiscard]] double standard_errors_apart(const FittedModel& model, std::span<const std::size_t> unknowns);
 
 }  // namespace sealwatch::mismatch

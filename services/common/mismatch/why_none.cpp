@@ -49,6 +49,11 @@ WhyNone seal_aged_and_no_more(const std::string& course) {
           .element = "piston_seal"};
 }
 
+WhyNone differed_and_no_more(const std::string& course) {
+  return {.summary = course + " The asset changed between these tests; nothing else is missing.",
+          .next_test = kTestsOfOneTime};
+}
+
 WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,
                                 const std::string& instead_of, const PooledFit& holdout) {
   const std::string proof = proof_in_words(holdout);

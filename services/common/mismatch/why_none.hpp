@@ -25,6 +25,8 @@ struct WhyNone {
 /// `course`: R_CL from test to test, in words.
 [[nodiscard]] WhyNone seal_changed_but_not_by_wear(const std::string& course);
 [[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
+/// `course`: of another parameter.
+[[nodiscard]] WhyNone differed_and_no_more(const std::string& course);
 
 /// `values`: of the asset file (`several`: more than one), and what would explain the recordings instead, in words;
 /// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for ("" where no law was

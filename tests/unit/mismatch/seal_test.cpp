@@ -1,5 +1,6 @@
 // What an analysis says of the seal: one that ages from test to test is no missing physics, and one whose leak a law
 // tells in part is no healthier seal.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,8 @@
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/fitted_model.hpp"
+#include "services/common/mismatch/own_gains.hpp"
+#include "services/common/mismatch/own_values.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "services/common/runtime/asset_file.hpp"
@@ -86,6 +89,60 @@ TEST(Seal, ThatWasReplacedBetweenTestsNamesNoLaw) {
   EXPECT_TRUE(explanation->effects.empty());
   EXPECT_NE(explanation->summary.find("R_CL is 1.2e+13 (1970-01-31), 2.6"), std::string::npos) << explanation->summary;
   EXPECT_NE(explanation->summary.find("not wear"), std::string::npos) << explanation->summary;
+}
+
+// Months apart, each with the viscous friction of its own temperature.
+Recording test_with_friction(AssetConfig truth, int month, double times) {
+  truth.parameters.at("f_C").value *= times;
+  return monthly_test(truth, month, truth.parameters.at("R_CL").value);
+}
+
+TEST(ParameterThatDiffers, IsToldApartFromMissingPhysics) {
+  const AssetConfig asset = actuator();
+  const AssetConfig truth = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4.0e-13});
+  const std::vector<Recording> fit{test_with_friction(truth, 1, 1.08), test_with_friction(truth, 2, 0.95),
+                                   test_with_friction(truth, 3, 1.04)};
+  const auto explanation = explain(asset, fit, std::vector{test_with_friction(truth, 4, 0.95)});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  ASSERT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
+  ASSERT_EQ(explanation->effects.size(), 1U) << explanation->summary;
+  EXPECT_EQ(explanation->effects[0].what.id, "external_leakage");
+  EXPECT_EQ(explanation->effects[0].what.element, "chamber_a");
+  EXPECT_NEAR(explanation->effects[0].parameters[0].value, 4.0e-13, 0.02 * 4.0e-13);
+  EXPECT_NE(explanation->summary.find("Something changed between these tests. From test to test f_C is"),
+            std::string::npos)
+      << explanation->summary;
+  for (const ChannelComparison& channel : explanation->holdout.channels)
+    EXPECT_LT(channel.rms_after, 1.1) << channel.channel << ": its own value is fitted there";
+}
+
+TEST(ParameterThatDiffers, AloneNamesNoLaw) {
+  const AssetConfig asset = actuator();
+  const std::vector<Recording> fit{test_with_friction(asset, 1, 1.08), test_with_friction(asset, 2, 0.95),
+                                   test_with_friction(asset, 3, 1.04)};
+  const Data data = data_of(fit);
+  const FittedModel common = fit_model(asset, data, nullptr, 1).value();
+  const std::vector<OwnGain> gains = gains_of_own_values(common, may_differ(asset, data));
+  ASSERT_FALSE(gains.empty());
+  EXPECT_EQ(gains.front().parameter, "f_C");
+  const std::optional<OwnValues> own = each_its_own("f_C", data, common, 1);
+  ASSERT_TRUE(own);
+  EXPECT_NEAR(gains.front().gain, common.misfit - own->baseline->misfit, 0.1 * gains.front().gain);
+
+  const auto explanation = explain(asset, fit, {});
+  ASSERT_TRUE(explanation) << explanation.error().describe();
+  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_TRUE(explanation->effects.empty());
+  EXPECT_NE(explanation->summary.find("f_C is"), std::string::npos) << explanation->summary;
+}
+
+TEST(ParameterThatDiffers, IsNotAskedInTestsOfOneDay) {
+  const AssetConfig asset = actuator();
+  std::vector<Recording> tests{test_with_friction(asset, 1, 1.0), test_with_friction(asset, 2, 1.0)};
+  EXPECT_THAT(may_differ(asset, data_of(tests)), testing::Contains("f_C"));
+  EXPECT_THAT(may_differ(asset, data_of(tests)), testing::Not(testing::Contains("R_CL"))) << "that is wear";
+  tests[1].start_time = tests[0].start_time;
+  EXPECT_TRUE(may_differ(asset, data_of(tests)).empty());
 }
 
 TEST(Seal, IsNotSaidToHaveChangedBetweenTestsOfOneDay) {

@@ -110,7 +110,14 @@ class Analysis {
     if (!first) return fail(first.error());
     say_how_likely_by_noise(*first);
     if (!windowed() && may_age(asset_, fit_) && result_.statistically_significant) {
-      look_beside_an_ageing_seal(options);
+      own_ = each_its_own(what_wears(asset_), fit_, *baseline_, options.threads);
+      if (own_ && !look_beside_own(*own_, {}, options)) own_.reset();
+      if (own_ && !own_->naming.differs_in.empty()) {
+        const Naming beside = own_->naming;
+        if (look_beside_what_differs(beside, options)) return {};
+        fit_.may_differ.clear();
+        if (!time_.deadline().passed()) own_.reset();
+      }
       if (own_ && explains_everything(*own_, options)) {
         take_over(*own_);
         return {};
@@ -146,12 +153,6 @@ class Analysis {
     if (!own_->goes_its_way) ask_values_in_place_of_own();
     if (!why_none_) take_over(*own_);
     return {};
-  }
-
-  // Given up where something else differs from test to test.
-  void look_beside_an_ageing_seal(const ExplainOptions& options) {
-    own_ = each_its_own(what_wears(asset_), fit_, *baseline_, options.threads);
-    if (own_ && (!look_beside_own(*own_, {}, options) || !own_->naming.differs_in.empty())) own_.reset();
   }
 
   // Sensors that were off beside what differs are so in common; also where the time to search is over.
@@ -209,7 +210,6 @@ class Analysis {
   // Laws beside a parameter of which each recording has its own; false where one for all does as well.
   bool look_beside_what_differs(const Naming& found, const ExplainOptions& options) {
     tell("looking again, with a " + found.differs_in + " for each test", 0.5);
-    own_.reset();
     auto own = each_its_own(found.differs_in, fit_, *baseline_, options.threads);
     if (!own) return false;
     own->fit.may_differ.clear();

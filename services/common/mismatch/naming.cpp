@@ -353,15 +353,21 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   const auto first = static_cast<std::ptrdiff_t>(
       gross ? singles.size() : nearly_as_promising(asked, singles.size(), least_gain.value_or(0.0)));
   refit_also({singles.begin(), singles.begin() + first});
-  if (gross && !one_law_does(trials, naming, data, options))
+  // What each recording has for itself ends a gross misfit as a law does.
+  const auto one_does = [&] {
+    const auto ends_it = [](const Trial& trial) { return excess(*trial.model) <= kGross; };
+    return (gross && std::ranges::any_of(differing.trials(), ends_it)) || one_law_does(trials, naming, data, options);
+  };
+  if (gross && !one_does())
     if (const auto given = with_given_values(naming.best, data)) refit_from(*given, singles);
-  if (level == 0 && leave_most(trials, *naming.best.model)) refit_also(closed_forms_for(naming.best, data, options));
+  if (level == 0 && leave_most(with_differing(trials), *naming.best.model))
+    refit_also(closed_forms_for(naming.best, data, options));
   differing.ask_beside(trials);
   if (least_gain && are_inexact()) return trials;
-  if (!one_law_does(trials, naming, data, options)) {
+  if (!one_does()) {
     if (are_inexact()) return trials;
     refit_also({singles.begin() + first, singles.end()});
-    if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_law_does(trials, naming, data, options))
+    if (static_cast<int>(level) + 2 <= options.maximum_laws && !one_does())
       refit_also(ranked_pairs(asked, naming.best.model->misfit, gross));
   }
   naming.trials.insert(naming.trials.end(), trials.begin(), trials.end());

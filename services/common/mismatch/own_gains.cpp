@@ -67,7 +67,7 @@ double gain_with(const FittedModel& model, const std::vector<NormalOfRecording>&
   for (Eigen::Index k = 0; k < shared; ++k) {
     const Unknown& unknown = model.problem.shared[static_cast<std::size_t>(k)];
     const double at = model.optimum.point.shared[static_cast<std::size_t>(k)];
-    if (unknown.is_known()) sums.add_known(k, unknown.prior_residual(at), 1.0 / unknown.prior_std);
+    if (unknown.is_known()) sums.add_known(k, unknown.prior_residual(at), -1.0 / unknown.prior_std);
     if (k != split && at_bound(unknown, at)) sums.hold(k);
   }
   return sums.gain();

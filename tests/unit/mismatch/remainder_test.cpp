@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/common/mismatch/explain_input.hpp"
+#include "services/common/runtime/asset_file.hpp"
+#include "tests/unit/mismatch/simulated_test.hpp"
+
 namespace sealwatch::mismatch {
 namespace {
 
@@ -72,6 +76,22 @@ TEST(Remainder, BesideALawThatLeavesAFiveHundredthNoOtherIsLookedFor) {
 TEST(Remainder, ANoiseThatIsLessThanToldHidesNoSecondLaw) {
   const FittedModel without = model_with(1.02e5), with = model_with(9.99e4);
   EXPECT_FALSE(leaves_its_form_at_most(without, with, 200.0)) << "a law that takes a tenth of the first one's";
+}
+
+TEST(Remainder, ALawWhoseStrengthMayBeNothingIsNotClaimed) {
+  const AssetConfig asset = load_asset(SEALWATCH_SOURCE_DIR "/config/assets/xt03-mv2.yaml").value();
+  const Law& law = **find_law("external_leakage", {"G"});
+  const auto fitted = [&](double strength) {
+    const std::vector<Recording> tests{recording_of(with_law(asset, law, "chamber_a", std::vector{strength}), 1.0)};
+    const AssetConfig free = with_law(asset, law, "chamber_a", std::vector{1.0e-14});
+    auto model = std::make_shared<const FittedModel>(fit_model(free, data_of(tests), nullptr, 1).value());
+    return Trial{{{&law, "chamber_a"}}, std::move(model)};
+  };
+  EXPECT_FALSE(not_told_from_zero(fitted(1.0e-13)));
+  const std::optional<NotTold> nothing = not_told_from_zero(fitted(0.0));
+  ASSERT_TRUE(nothing);
+  EXPECT_EQ(nothing->slot, 0U);
+  EXPECT_THAT(nothing->sentence, testing::HasSubstr("external leakage at chamber A"));
 }
 
 }  // namespace

@@ -137,5 +137,43 @@ TEST(Resolution, IsAShareOfWhatMattersAndOfTheSamplingInterval) {
   EXPECT_DOUBLE_EQ(resolution_of(data, plant).of(delay), 1e-5);
 }
 
+// Two recordings with a value of their own each, which both read through one gain that is only known within 0.5.
+FittedModel values_read_through_one_gain(double difference) {
+  FittedModel model;
+  Unknown gain = unknown(1e9);
+  gain.prior_mean = 0.0;
+  gain.prior_std = 0.5;
+  model.problem.shared = {unknown(1e9), unknown(1e9), gain};
+  model.optimum.point.shared = {0.1, 0.1 + difference, 0.0};
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 2; ++i) {
+    PemRecording recording;
+    RowMatrix j = RowMatrix::Zero(kRows, 3);
+    Eigen::VectorXd residual(kRows);
+    for (int row = 0; row < kRows; ++row) {
+      recording.time_s.push_back(row * kSpacing_s);
+      j(row, i) = j(row, 2) = std::sin(0.5 * row * kSpacing_s);
+      residual(row) = normal(random);
+    }
+    model.problem.recordings.push_back(std::move(recording));
+    model.optimum.at_optimum.push_back({.simulated = RowMatrix::Zero(kRows, 1), .residual = residual, .jacobian = j});
+    model.misfit += residual.squaredNorm();
+    model.residuals += kRows;
+  }
+  return model;
+}
+
+TEST(StandardErrors, OfADifferenceLeavesOutWhatBothShare) {
+  const std::vector<std::size_t> values{0, 1};
+  const FittedModel apart = values_read_through_one_gain(0.4);
+  EXPECT_GT(standard_errors(apart)[0], 0.4) << "its slope is the scale's, 2";
+  EXPECT_GT(standard_errors_apart(apart, values), 8.0);
+  EXPECT_LT(standard_errors_apart(values_read_through_one_gain(0.01), values), 1.0);
+  FittedModel untold = values_read_through_one_gain(0.4);
+  for (Linearisation& at : untold.optimum.at_optimum) at.jacobian.col(0).setZero();
+  EXPECT_EQ(standard_errors_apart(untold, values), 0.0);
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

@@ -78,6 +78,7 @@ class BackwardDifferences {
   void accept();
   void choose_order_and_step();
   void change_step(double factor);
+  [[nodiscard]] std::array<const double*, kMaximumOrder + 1> differences() const;
 
   int states_;
   int equal_steps_ = 0;

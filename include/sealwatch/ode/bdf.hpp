@@ -28,7 +28,7 @@
 
 namespace sealwatch {
 
-/// Equations of N states; N may be kDynamicSize.
+/// Equations of N states; N may be kDynamicSize or at_most(n).
 template <int N>
 class OdeSystem {
  public:
@@ -36,7 +36,7 @@ class OdeSystem {
   using Matrix = typename SquareSystem<N>::Matrix;
 
   virtual ~OdeSystem() = default;
-  /// To be overridden where N is kDynamicSize.
+  /// To be overridden where N does not say it.
   [[nodiscard]] virtual int states() const { return N; }
   /// f(t, y)
   virtual void evaluate(double t, const double* y, double* f) const = 0;
@@ -47,10 +47,10 @@ class OdeSystem {
                                          std::size_t stride) const = 0;
 };
 
-/// Known to the compiler where N is not kDynamicSize.
+/// Known to the compiler where N says it.
 template <int N>
 [[nodiscard]] int state_count(const OdeSystem<N>& system) {
-  if constexpr (N == kDynamicSize)
+  if constexpr (N < 0)
     return system.states();
   else
     return N;
@@ -73,7 +73,12 @@ class Bdf final : public BackwardDifferences {
   [[nodiscard]] bool start(double time, const double* values) override;
 
  private:
-  [[nodiscard]] int rows() const { return state_count(system_); }
+  [[nodiscard]] int rows() const {
+    if constexpr (N < 0)
+      return states();
+    else
+      return N;
+  }
   [[nodiscard]] double first_step();
   [[nodiscard]] bool attempt() override;
   [[nodiscard]] bool solve_states(double c);
@@ -128,7 +133,7 @@ bool Bdf<N>::factorise(double c) {
     for (int column = 0; column < rows(); ++column) matrix_[row][column] *= -c;
     matrix_[row][row] += 1.0;
   }
-  return lu_.factorise(matrix_);
+  return lu_.factorise(matrix_, rows());
 }
 
 template <int N>
@@ -154,7 +159,7 @@ bool Bdf<N>::solve_states(double c) {
   if (!factorise(c)) return false;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     for (int row = 0; row < rows(); ++row) change_[row] = c * rate_[row] - constants_[row * stride_] - correction_[row];
-    lu_.solve(change_.data(), 1, 1);
+    lu_.solve(change_.data());
     const double size_of_change = norm(change_.data(), 1);
     if (!std::isfinite(size_of_change)) return false;
     for (int row = 0; row < rows(); ++row) {
@@ -187,7 +192,7 @@ void Bdf<N>::solve_sensitivities(double c) {
   const std::size_t count = size();
   for (std::size_t j = 0; j < count; ++j) work_[j] = prediction_[j] - constants_[j];
   system_.add_parameter_derivatives(time_ + step_, state_.data(), c, work_.data(), stride_);
-  lu_.solve(work_.data(), static_cast<int>(stride_), stride_);
+  lu_.solve(work_.data(), stride_, stride_);
   for (std::size_t j = 0; j < count; ++j) work_[j] -= prediction_[j];
   for (int row = 0; row < rows(); ++row) work_[row * stride_] = correction_[row];
 }

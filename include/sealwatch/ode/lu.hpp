@@ -2,7 +2,8 @@
 //
 //   P M = L U;  X <- M^-1 X, where X is n x m, stored row by row, so that every operation runs over whole rows.
 //
-// The size is a template's argument, or kDynamicSize where it is known at run time only (it may be 0 then).
+// The size is a template's argument. Where it is known at run time only (it may be 0 then), that is kDynamicSize, or
+// at_most(n), which needs no memory of its own.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 namespace sealwatch {
 
 inline constexpr int kDynamicSize = -1;
+[[nodiscard]] constexpr int at_most(int size) { return -1 - size; }
 
 /// A square matrix whose size is known at run time only: m[row][column].
 class DynamicMatrix {
@@ -33,11 +35,13 @@ class DynamicMatrix {
   std::vector<double> values_;
 };
 
-/// Vectors and matrices of N rows, on the stack where N is known.
+/// Vectors and matrices of N rows, on the stack where N is known or has a largest value.
 template <int N>
 struct SquareSystem {
-  using Vector = std::array<double, N>;
-  using Matrix = std::array<std::array<double, N>, N>;
+  static constexpr int kMost = N < 0 ? -1 - N : N;
+  using Vector = std::array<double, kMost>;
+  using Matrix = std::array<std::array<double, kMost>, kMost>;
+  using Pivots = std::array<int, kMost>;
   [[nodiscard]] static Vector vector(int) { return {}; }
   [[nodiscard]] static Matrix matrix(int) { return {}; }
 };
@@ -45,18 +49,31 @@ template <>
 struct SquareSystem<kDynamicSize> {
   using Vector = std::vector<double>;
   using Matrix = DynamicMatrix;
+  using Pivots = std::vector<int>;
   [[nodiscard]] static Vector vector(int rows) { return Vector(static_cast<std::size_t>(rows), 0.0); }
   [[nodiscard]] static Matrix matrix(int rows) { return Matrix(rows); }
 };
+
+/// L and U in one matrix, row by row, as LuFactorisation makes them.
+struct LuFactors {
+  const double* lu;
+  const int* pivot;  ///< row that each column's pivot came from
+  const double* inverse_diagonal;
+  int size;
+  int row_length;  ///< of lu in memory
+};
+/// X <- M^-1 X, some columns at a time.
+void solve_columns(const LuFactors& of, double* x, std::size_t columns, std::size_t stride);
 
 template <int N>
 class LuFactorisation {
  public:
   using Matrix = typename SquareSystem<N>::Matrix;
 
-  /// False when the matrix is singular or not finite.
-  [[nodiscard]] bool factorise(const Matrix& matrix) {
+  /// False when the matrix is singular or not finite. `size_at_run_time`: rows, where N does not say it.
+  [[nodiscard]] bool factorise(const Matrix& matrix, int size_at_run_time = N) {
     lu_ = matrix;
+    size_ = size_at_run_time;
     if constexpr (N == kDynamicSize) {
       pivot_.resize(lu_.size());
       inverse_diagonal_.resize(lu_.size());
@@ -72,23 +89,34 @@ class LuFactorisation {
   }
 
   /// X <- M^-1 X for `columns` right-hand sides; row r starts at x + r * stride.
-  void solve(double* x, int columns, std::size_t stride) const {
+  void solve(double* x, std::size_t columns, std::size_t stride) const {
+    if (size() == 0) return;
+    solve_columns({&lu_[0][0], pivot_.data(), inverse_diagonal_.data(), size(), row_length()}, x, columns, stride);
+  }
+  /// x <- M^-1 x
+  void solve(double* x) const {
     for (int row = 0; row < size(); ++row)
-      if (pivot_[row] != row) std::swap_ranges(x + row * stride, x + row * stride + columns, x + pivot_[row] * stride);
+      if (pivot_[row] != row) std::swap(x[row], x[pivot_[row]]);
     for (int row = 1; row < size(); ++row)
-      for (int k = 0; k < row; ++k) subtract(x + row * stride, lu_[row][k], x + k * stride, columns);
+      for (int k = 0; k < row; ++k) x[row] -= lu_[row][k] * x[k];
     for (int row = size() - 1; row >= 0; --row) {
-      for (int k = row + 1; k < size(); ++k) subtract(x + row * stride, lu_[row][k], x + k * stride, columns);
-      for (int j = 0; j < columns; ++j) x[row * stride + j] *= inverse_diagonal_[row];
+      for (int k = row + 1; k < size(); ++k) x[row] -= lu_[row][k] * x[k];
+      x[row] *= inverse_diagonal_[row];
     }
   }
 
  private:
   [[nodiscard]] int size() const {
-    if constexpr (N == kDynamicSize)
-      return static_cast<int>(lu_.size());
+    if constexpr (N < 0)
+      return size_;
     else
       return N;
+  }
+  [[nodiscard]] int row_length() const {
+    if constexpr (N == kDynamicSize)
+      return size_;
+    else
+      return SquareSystem<N>::kMost;
   }
 
   void swap_rows(int a, int b) {
@@ -114,14 +142,9 @@ class LuFactorisation {
     }
   }
 
-  static void subtract(double* target, double factor, const double* source, int columns) {
-    if (factor == 0.0) return;
-    for (int j = 0; j < columns; ++j) target[j] -= factor * source[j];
-  }
-
-  using Pivots = std::conditional_t<N == kDynamicSize, std::vector<int>, std::array<int, N == kDynamicSize ? 1 : N>>;
   Matrix lu_{};
-  Pivots pivot_{};
+  typename SquareSystem<N>::Pivots pivot_{};
+  int size_ = 0;
   typename SquareSystem<N>::Vector inverse_diagonal_{};
 };
 

@@ -6,6 +6,7 @@
 
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/common/dense/dense.hpp"
+#include "services/common/dense/row_products.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 
 namespace sealwatch {
@@ -343,7 +344,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& gram) {
 KeptDerivatives kept_derivatives(const PemProblem& problem, const Linearisation& linearisation) {
   const Places of = places(problem, linearisation.jacobian.cols());
   KeptDerivatives kept{.jacobian = linearisation.jacobian(Eigen::all, of.known), .gram = {}};
-  kept.gram = dense::product_transposed(kept.jacobian.transpose(), kept.jacobian.transpose());
+  kept.gram = dense::gram_of_rows(kept.jacobian);
   return kept;
 }
 
@@ -363,7 +364,7 @@ Eigen::MatrixXd compress(const Linearisation& linearisation) {
   const RowMatrix& jacobian = linearisation.jacobian;
   const Eigen::Index n = jacobian.cols();
   Eigen::MatrixXd gram(n + 1, n + 1);
-  gram.topLeftCorner(n, n) = dense::product_transposed(jacobian.transpose(), jacobian.transpose());
+  gram.topLeftCorner(n, n) = dense::gram_of_rows(jacobian);
   gram.col(n).head(n).noalias() = jacobian.transpose() * linearisation.residual;
   gram.row(n).head(n) = gram.col(n).head(n).transpose();
   gram(n, n) = linearisation.residual.squaredNorm();
@@ -376,9 +377,9 @@ Eigen::MatrixXd compress(const PemProblem& problem, const Linearisation& not_kno
   of.others.push_back(n);  // the residual
   RowMatrix moving(not_known.jacobian.rows(), not_known.jacobian.cols() + 1);
   moving << not_known.jacobian, not_known.residual;
-  const Eigen::MatrixXd mixed = dense::product_transposed(moving.transpose(), kept.jacobian.transpose());
+  const Eigen::MatrixXd mixed = dense::product_of_rows(moving, kept.jacobian);
   Eigen::MatrixXd gram(n + 1, n + 1);
-  gram(of.others, of.others) = dense::product_transposed(moving.transpose(), moving.transpose());
+  gram(of.others, of.others) = dense::gram_of_rows(moving);
   gram(of.others, of.known) = mixed;
   gram(of.known, of.others) = mixed.transpose();
   gram(of.known, of.known) = kept.gram;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sealwatch/model/law_sizes.hpp"
+#include "services/common/dense/row_products.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/input_jumps.hpp"
 
@@ -87,7 +88,7 @@ std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, const Pe
     if (!same || start.optimum.at_optimum[k].jacobian.size() == 0) return {};
     kept.push_back({start.optimum.at_optimum[k].jacobian(Eigen::all, columns), {}});
     kept.back().jacobian *= Eigen::Map<const Eigen::VectorXd>(slopes.data(), std::ssize(slopes)).asDiagonal();
-    kept.back().gram = kept.back().jacobian.transpose() * kept.back().jacobian;
+    kept.back().gram = dense::gram_of_rows(kept.back().jacobian);
   }
   return kept;
 }

@@ -5,6 +5,7 @@
 
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/dense/dense.hpp"
+#include "services/common/dense/row_products.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -32,11 +33,11 @@ class NormalMatrix {
 // X (X'X)^-1 X'Y taken off Y, in place.
 class Projection {
  public:
-  explicit Projection(const RowMatrix& x) : x_(x), normal_(dense::product_transposed(x.transpose(), x.transpose())) {}
+  explicit Projection(const RowMatrix& x) : x_(x), normal_(dense::gram_of_rows(x)) {}
   template <class Y>
   void remove_from(Y& y) const {
     if (x_.cols() == 0) return;
-    const Eigen::MatrixXd share = normal_.solve(dense::product_transposed(x_.transpose(), y.transpose()));
+    const Eigen::MatrixXd share = normal_.solve(dense::product_of_rows(x_, y));
     dense::subtract_product(y.transpose(), share.transpose(), x_.transpose());
   }
 

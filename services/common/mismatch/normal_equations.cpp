@@ -1,5 +1,7 @@
 #include "services/common/mismatch/normal_equations.hpp"
 
+#include "services/common/dense/row_products.hpp"
+
 namespace sealwatch::mismatch {
 
 NormalEquations normal_equations(const FittedModel& model) {
@@ -14,7 +16,7 @@ NormalEquations normal_equations(const FittedModel& model) {
       const auto column = static_cast<Eigen::Index>(k);
       place[k] = column < shared ? column : own + column - shared;
     }
-    all.gram(place, place) += at.jacobian.transpose() * at.jacobian;
+    all.gram(place, place) += dense::gram_of_rows(at.jacobian);
     all.gradient(place) += at.jacobian.transpose() * at.residual;
     own += at.jacobian.cols() - shared;
   }

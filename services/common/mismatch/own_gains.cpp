@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "services/common/dense/dense.hpp"
+#include "services/common/dense/row_products.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 
 namespace sealwatch::mismatch {
@@ -21,7 +21,7 @@ NormalOfRecording normal_of(const Linearisation& at, Eigen::Index shared) {
   both << at.jacobian.leftCols(shared), at.residual;
   const RowMatrix own = at.jacobian.rightCols(at.jacobian.cols() - shared);
   Projection(own).remove_from(both);
-  const Eigen::MatrixXd gram = dense::product_transposed(both.transpose(), both.transpose());
+  const Eigen::MatrixXd gram = dense::gram_of_rows(both);
   return {.information = gram.topLeftCorner(shared, shared), .score = gram.col(shared).head(shared)};
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "services/common/core/in_parallel.hpp"
-#include "services/common/mismatch/gram.hpp"
+#include "services/common/dense/row_products.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/orders.hpp"
 #include "services/common/mismatch/screening_scores.hpp"
@@ -84,7 +84,7 @@ void leave_out_held(const FittedModel& model, RowMatrix& free) {
 
 // Z becomes Q; R.
 Eigen::MatrixXd orthonormalise(RowMatrix& z) {
-  const Eigen::MatrixXd gram = z.transpose() * z;
+  const Eigen::MatrixXd gram = dense::gram_of_rows(z);
   const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
   Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * gram * scale.cwiseInverse().asDiagonal();
   scaled.diagonal().array() += kRidge;
@@ -101,7 +101,7 @@ void multiply(const Pass& pass, const RowMatrix& q, const std::vector<Eigen::Ind
   const Eigen::Index laws = static_cast<Eigen::Index>(place.size()) - q.cols() - 1, rows = q.rows(),
                      blocks = std::max<Eigen::Index>(1, rows / block_rows), size = products.all.rows();
   products.variant.resize(blocks, entries_of(variants));
-  RowBlock together(std::ssize(place), kAtOnce);
+  dense::RowBlock together(std::ssize(place), kAtOnce);
   std::vector<double> row(place.size());
   for (Eigen::Index b = 0; b < blocks; ++b) {
     const Eigen::Index end = b + 1 == blocks ? rows : (b + 1) * block_rows;
@@ -296,7 +296,7 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
 
   const RowMatrix known = known_beforehand(model);
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
-  Normal all{.gram = known.leftCols(shared).transpose() * known.leftCols(shared),
+  Normal all{.gram = dense::gram_of_rows(known.leftCols(shared)),
              .cross = Eigen::MatrixXd::Zero(shared, layout.size + 1)};
   all.cross.col(0) = known.leftCols(shared).transpose() * known.col(shared);
   Eigen::VectorXd raw_norm = Eigen::VectorXd::Zero(layout.size);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "services/common/dense/dense.hpp"
+#include "services/common/dense/row_products.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -136,7 +137,7 @@ Result<SmoothInput> smooth_input(RowMatrix hats, const RowMatrix& own, Eigen::Ve
   if (!(unit > 0.0) || !std::isfinite(unit)) return fail("the recording does not depend on this input");
   const Eigen::Index rank = take_off(own, hats, residual);
   hats /= unit;
-  Normal normal{.gram = dense::product_transposed(hats.transpose(), hats.transpose()),
+  Normal normal{.gram = dense::gram_of_rows(hats),
                 .gradient = hats.transpose() * residual,
                 .residual_square = residual.squaredNorm(),
                 .freedom = static_cast<double>(residual.size() - rank)};

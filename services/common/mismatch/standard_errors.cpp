@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "services/common/dense/dense.hpp"
+#include "services/common/dense/row_products.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/linear_algebra.hpp"
 
@@ -26,7 +27,7 @@ void add_recording(const Linearisation& at, const std::vector<double>& time_s, N
   RowMatrix jacobian = at.jacobian.leftCols(shared);
   const RowMatrix own = at.jacobian.rightCols(at.jacobian.cols() - shared);
   Projection(own).remove_from(jacobian);
-  normal.information += dense::product_transposed(jacobian.transpose(), jacobian.transpose());
+  normal.information += dense::gram_of_rows(jacobian);
   const double spacing_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   const auto samples = static_cast<Eigen::Index>(std::max(kLeastBlock, std::round(kBlock_s / spacing_s)));
   const Eigen::Index rows = samples * at.simulated.cols();

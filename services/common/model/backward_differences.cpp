@@ -2,9 +2,92 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
+#include "sealwatch/core/wide_vectors.hpp"
+
 namespace sealwatch {
+namespace {
+
+constexpr int kDifferences = BackwardDifferences::kMaximumOrder + 1;  // D_0 to D_5
+using Weights = std::array<double, kDifferences>;
+using Rows = std::array<const double*, kDifferences>;
+
+// w_0 D_0 + ... + w_k D_k in one pass.
+template <int K>
+[[gnu::always_inline]] inline void weighted_sum_of(const Weights& w, const Rows& d, std::size_t count, double* result) {
+  for (std::size_t j = 0; j < count; ++j) {
+    double sum = w[0] * d[0][j];
+    for (int m = 1; m <= K; ++m) sum += w[m] * d[m][j];
+    result[j] = sum;
+  }
+}
+
+SEALWATCH_WIDE_VECTORS
+void weighted_sum(int k, const Weights& w, const Rows& d, std::size_t count, double* result) {
+  switch (k) {
+    case 1:
+      return weighted_sum_of<1>(w, d, count, result);
+    case 2:
+      return weighted_sum_of<2>(w, d, count, result);
+    case 3:
+      return weighted_sum_of<3>(w, d, count, result);
+    case 4:
+      return weighted_sum_of<4>(w, d, count, result);
+    default:
+      return weighted_sum_of<5>(w, d, count, result);
+  }
+}
+
+// D_(k+2) = e - D_(k+1), D_(k+1) = e, and every lower difference grows by the one above it.
+SEALWATCH_WIDE_VECTORS
+void renew(const std::array<double*, BackwardDifferences::kMaximumOrder + 3>& d, int order, const double* e,
+           std::size_t count) {
+  std::size_t j = 0;
+  for (; j + kWidth <= count; j += kWidth) {
+    WideVector above, next;
+    std::memcpy(&above, e + j, sizeof(above));
+    std::memcpy(&next, d[order + 1] + j, sizeof(next));
+    next = above - next;
+    std::memcpy(d[order + 2] + j, &next, sizeof(next));
+    std::memcpy(d[order + 1] + j, &above, sizeof(above));
+    for (int m = order; m >= 0; --m) {
+      std::memcpy(&next, d[m] + j, sizeof(next));
+      above += next;
+      std::memcpy(d[m] + j, &above, sizeof(above));
+    }
+  }
+  for (; j < count; ++j) {
+    double above = e[j];
+    d[order + 2][j] = above - d[order + 1][j];
+    d[order + 1][j] = above;
+    for (int m = order; m >= 0; --m) above = d[m][j] += above;
+  }
+}
+
+using Square = std::array<std::array<double, kDifferences>, kDifferences>;
+
+// D_j = sum_k product_kj D_k for j, k = 1 .. n - 1. Some positions at a time: all differences of these stay in the nearest
+// cache, and each row is one vector operation.
+SEALWATCH_WIDE_VECTORS
+void transform(const Square& product, int n, const std::array<double*, kDifferences>& d, std::size_t size) {
+  constexpr std::size_t kTogether = 32;
+  double old[kDifferences][kTogether];
+  for (std::size_t first = 0; first < size; first += kTogether) {
+    const std::size_t count = std::min(kTogether, size - first);
+    for (int k = 1; k < n; ++k)
+      for (std::size_t p = 0; p < count; ++p) old[k][p] = d[k][first + p];
+    for (int j = 1; j < n; ++j) {
+      double* difference = d[j] + first;
+      for (std::size_t p = 0; p < count; ++p) difference[p] = product[1][j] * old[1][p];
+      for (int k = 2; k < n; ++k)
+        for (std::size_t p = 0; p < count; ++p) difference[p] += product[k][j] * old[k][p];
+    }
+  }
+}
+
+}  // namespace
 
 BackwardDifferences::BackwardDifferences(int states, int parameters, std::vector<double> scale, BdfOptions options)
     : parameters_(parameters),
@@ -75,37 +158,22 @@ bool BackwardDifferences::step() {
 // y^0 = sum D_m and psi = sum gamma_m D_m / alpha_k, for all columns.
 void BackwardDifferences::predict() {
   const auto& c = coefficients();
-  const std::size_t count = size();
-  std::copy(differences_[0].begin(), differences_[0].end(), prediction_.begin());
-  std::fill(constants_.begin(), constants_.end(), 0.0);
+  Weights one{1.0}, weight{};
   for (int m = 1; m <= order_; ++m) {
-    const double weight = c.gamma[m] / c.alpha[order_];
-    const double* difference = differences_[m].data();
-    double* prediction = prediction_.data();
-    double* constants = constants_.data();
-    for (std::size_t j = 0; j < count; ++j) {
-      prediction[j] += difference[j];
-      constants[j] += weight * difference[j];
-    }
+    one[m] = 1.0;
+    weight[m] = c.gamma[m] / c.alpha[order_];
   }
+  weighted_sum(order_, one, differences(), size(), prediction_.data());
+  weighted_sum(order_, weight, differences(), size(), constants_.data());
 }
 
 void BackwardDifferences::accept() {
   ++statistics_.steps;
   time_ += step_;
   ++equal_steps_;
-  const std::size_t count = size();
-  double* d2 = differences_[order_ + 2].data();
-  double* d1 = differences_[order_ + 1].data();
-  for (std::size_t j = 0; j < count; ++j) {
-    d2[j] = work_[j] - d1[j];
-    d1[j] = work_[j];
-  }
-  for (int m = order_; m >= 0; --m) {
-    double* lower = differences_[m].data();
-    const double* upper = differences_[m + 1].data();
-    for (std::size_t j = 0; j < count; ++j) lower[j] += upper[j];
-  }
+  std::array<double*, kMaximumOrder + 3> d;
+  for (std::size_t m = 0; m < d.size(); ++m) d[m] = differences_[m].data();
+  renew(d, order_, work_.data(), size());
 }
 
 // After order + 1 equal steps: the order, one lower or one higher, that allows the largest next step.
@@ -132,7 +200,6 @@ void BackwardDifferences::choose_order_and_step() {
 // Differences for the step factor * h from those for h: D' = (R(factor) R(1))^T D.
 void BackwardDifferences::change_step(double factor) {
   const int n = order_ + 1;
-  using Square = std::array<std::array<double, kMaximumOrder + 1>, kMaximumOrder + 1>;
   const auto polynomial = [n](double ratio) {
     Square r{};
     for (int j = 0; j < n; ++j) r[0][j] = 1.0;
@@ -145,35 +212,24 @@ void BackwardDifferences::change_step(double factor) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       for (int k = 0; k < n; ++k) product[i][j] += r[i][k] * u[k][j];
-  // Some positions at a time: all differences of these stay in the nearest cache, and each row is one vector operation.
-  constexpr std::size_t kTogether = 32;
-  std::array<std::array<double, kTogether>, kMaximumOrder + 1> old;
-  for (std::size_t first = 0; first < size(); first += kTogether) {
-    const std::size_t count = std::min(kTogether, size() - first);
-    for (int k = 1; k <= kMaximumOrder; ++k) std::copy_n(differences_[k].data() + first, count, old[k].data());
-    for (int j = 1; j < n; ++j) {
-      double* difference = differences_[j].data() + first;
-      for (std::size_t p = 0; p < count; ++p) difference[p] = product[1][j] * old[1][p];
-      for (int k = 2; k < n; ++k)
-        for (std::size_t p = 0; p < count; ++p) difference[p] += product[k][j] * old[k][p];
-    }
-  }
+  std::array<double*, kDifferences> d;
+  for (int m = 0; m < kDifferences; ++m) d[m] = differences_[m].data();
+  transform(product, n, d, size());
   step_ *= factor;
   equal_steps_ = 0;
 }
 
 // y(t) = D_0 + sum_m D_m prod_(i<m) (t - t_(n-i)) / ((i + 1) h)
 void BackwardDifferences::interpolate(double time, double* result) const {
-  // One pass over the columns with all five terms (those beyond the order have weight zero): faster than one pass for
-  // each.
-  std::array<double, kMaximumOrder + 1> weight{1.0};
+  Weights weight{1.0};
   for (int m = 1; m <= order_; ++m) weight[m] = weight[m - 1] * (time - (time_ - step_ * (m - 1))) / (m * step_);
+  weighted_sum(order_, weight, differences(), size(), result);
+}
+
+std::array<const double*, BackwardDifferences::kMaximumOrder + 1> BackwardDifferences::differences() const {
   std::array<const double*, kMaximumOrder + 1> d;
   for (int m = 0; m <= kMaximumOrder; ++m) d[m] = differences_[m].data();
-  const std::size_t count = size();
-  for (std::size_t j = 0; j < count; ++j)
-    result[j] = d[0][j] + weight[1] * d[1][j] + weight[2] * d[2][j] + weight[3] * d[3][j] + weight[4] * d[4][j] +
-                weight[5] * d[5][j];
+  return d;
 }
 
 }  // namespace sealwatch

@@ -29,12 +29,11 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
 
   void add_parameter_derivatives(double t, const double* y, double factor, double* x,
                                  std::size_t stride) const override {
-    typename System::template State<double> state;
-    std::copy(y, y + kStates, state.begin());
+    const auto state = this->state_of(y);
     for (const Block& block : blocks_) {
       if (!block.has_parameters) continue;
       const auto result = this->template rates<Dual<Width>>(state, this->input_at(t), block.values);
-      for (int row = 0; row < kStates; ++row)
+      for (int row = 0; row < this->rows(); ++row)
         for (int k = 0; k < block.count; ++k)
           x[row * stride + 1 + block.first + k] += factor * result[row].derivative[k];
     }
@@ -94,7 +93,7 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
   void add_recording_part(int which, const Column& column, double t, const double* point, std::size_t stride,
                           double* signal) const {
     if (column.quantity.kind == FreeQuantity::Kind::clock_rate) return;
-    const auto state = plain(point, stride);
+    const auto state = this->state_of(point, stride);
     const auto value = [&](const typename System::Equations::Input& input) -> std::array<double, 1> {
       if constexpr (WithPhysics) {
         const auto extra = this->template extra<double>(state, input, this->values());
@@ -109,18 +108,12 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
   // dh/dp + dh/dy S by dual numbers whose states carry S.
   void of_blocks(int which, double t, const double* point, std::size_t stride, double* signal) const {
     const auto input = this->input_at(t);
-    if (blocks_.empty()) signal[0] = Model::output(which, plain(point, stride), input, this->values().plant);
+    if (blocks_.empty()) signal[0] = Model::output(which, this->state_of(point, stride), input, this->values().plant);
     for (const auto& block : blocks_) {
       const auto result = Model::output(which, seeded(point, stride, block), input, block.values.plant);
       signal[0] = result.value;
       std::copy(result.derivative.begin(), result.derivative.begin() + block.count, signal + 1 + block.first);
     }
-  }
-
-  [[nodiscard]] static auto plain(const double* point, std::size_t stride) {
-    typename System::template State<double> state;
-    for (int k = 0; k < kStates; ++k) state[k] = point[k * stride];
-    return state;
   }
 
   [[nodiscard]] static auto seeded(const double* point, std::size_t stride, const Block& block) {
@@ -147,7 +140,7 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
     using Gradient = Dual<Directions>;
     const auto input = this->input_at(t);
     typename System::template State<Gradient> state;
-    for (int k = 0; k < kStates; ++k) state[k] = Gradient::variable(point[k * stride], k);
+    for (int k = 0; k < this->rows(); ++k) state[k] = Gradient::variable(point[k * stride], k);
     auto extra = this->template extra<Gradient>(state, input, this->values());
     if constexpr (Directions > kStates)
       for (std::size_t site = 0; site < System::kSites; ++site)
@@ -155,7 +148,7 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
     const Gradient result = evaluate_output(which, System::plant_state(state), input, this->values().plant, extra);
     signal[0] = result.value;
     std::fill(signal + 1, signal + columns_, 0.0);
-    for (int k = 0; k < kStates; ++k) {
+    for (int k = 0; k < this->rows(); ++k) {
       const double slope = result.derivative[static_cast<std::size_t>(k)];
       if (slope == 0.0) continue;  // an output shows few states
       for (std::size_t column = 1; column < columns_; ++column) signal[column] += slope * point[k * stride + column];
@@ -165,7 +158,7 @@ class RecordedPlantSystem final : public PlantSystem<Model, WithPhysics> {
         const auto [column, site] = injected_->entries()[e];
         signal[1 + free_ + column] += result.derivative[static_cast<std::size_t>(kStates) + site] * this->weights()[e];
       }
-    add_parameter_part(which, plain(point, stride), input, signal);
+    add_parameter_part(which, this->state_of(point, stride), input, signal);
   }
 
   template <class State, class Input>

@@ -22,21 +22,23 @@
 
 namespace sealwatch {
 
-/// With physics the state ends with the laws' hidden states.
+/// With physics the state ends with the hidden states of the laws in force.
 template <class Model, bool WithPhysics>
 inline constexpr int kStatesOf = Model::Equations::kStates + (WithPhysics ? kMaximumHiddenStates : 0);
+template <class Model, bool WithPhysics>
+inline constexpr int kSizeOf = WithPhysics ? at_most(kStatesOf<Model, WithPhysics>) : kStatesOf<Model, WithPhysics>;
 
 template <class Model, bool WithPhysics>
-class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
+class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
  public:
   using Equations = typename Model::Equations;
   static constexpr int kPlantStates = Equations::kStates;
-  static constexpr int kStates = kStatesOf<Model, WithPhysics>;
+  static constexpr int kStates = kStatesOf<Model, WithPhysics>;  ///< at most
   static constexpr std::size_t kSites = [] {
     if constexpr (WithPhysics) return Equations::kSites.size();
     return std::size_t{0};
   }();
-  using typename OdeSystem<kStates>::Matrix;
+  using typename OdeSystem<kSizeOf<Model, WithPhysics>>::Matrix;
   using Parameters = typename Equations::template Parameters<double>;
   template <class S>
   using State = std::array<S, kStates>;
@@ -63,10 +65,11 @@ class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
     if (injected_ != nullptr) weights_.resize(injected_->entries().size());
   }
 
+  [[nodiscard]] int states() const override { return rows(); }
   [[nodiscard]] int maximum_order() const override { return Model::kMaximumOrder; }
 
   [[nodiscard]] std::vector<double> scale(double relative_tolerance) const override {
-    std::vector<double> scale(kStates, relative_tolerance / 1e-6);
+    std::vector<double> scale(static_cast<std::size_t>(rows()), relative_tolerance / 1e-6);
     for (int k = 0; k < kPlantStates; ++k) scale[k] *= Model::kScale[k];
     for (std::size_t k = 0; k < terms_.hidden_scales.size(); ++k)
       scale[static_cast<std::size_t>(kPlantStates) + k] *= kHiddenShare * terms_.hidden_scales[k];
@@ -75,7 +78,7 @@ class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
 
   [[nodiscard]] std::vector<bool> settled() const override {
     std::vector<bool> fast(Model::kQuasiSteady.begin(), Model::kQuasiSteady.end());
-    fast.resize(kStates, false);
+    fast.resize(static_cast<std::size_t>(rows()), false);
     if constexpr (WithPhysics)
       for (const ActiveTerm& term : terms_.active)
         if (term.hidden >= 0 && term.law->hidden->settled)
@@ -88,17 +91,15 @@ class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
   [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
 
   void evaluate(double t, const double* y, double* f) const override {
-    State<double> state;
-    std::copy(y, y + kStates, state.begin());
-    const auto result = rates<double>(state, input_at(t), values_);
-    std::copy(result.begin(), result.end(), f);
+    const auto result = rates<double>(state_of(y), input_at(t), values_);
+    std::copy(result.begin(), result.begin() + rows(), f);
   }
 
   void linearise(double t, const double* y, double* f, Matrix& jacobian) const override {
     State<Dual<kStates>> state;
-    for (int k = 0; k < kStates; ++k) state[k] = Dual<kStates>::variable(y[k], k);
+    for (int k = 0; k < rows(); ++k) state[k] = Dual<kStates>::variable(y[k], k);
     const auto result = rates<Dual<kStates>>(state, input_at(t), values_);
-    for (int k = 0; k < kStates; ++k) {
+    for (int k = 0; k < rows(); ++k) {
       f[k] = result[k].value;
       jacobian[k] = result[k].derivative;
     }
@@ -109,13 +110,12 @@ class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
     for (const Column& column : recording_) {
       const std::size_t channel = column.quantity.index;
       if (column.quantity.kind != FreeQuantity::Kind::input_delay || !input_.channels()[channel].hold) continue;
-      State<double> state;
-      for (int row = 0; row < kStates; ++row) state[row] = point[row * stride];
+      const State<double> state = state_of(point, stride);
       auto [values, slopes] = course_at(t);
       const auto after = rates<double>(state, make_input(values, slopes), values_);
       values[channel] = input_.value(channel, t, segment_ - 1, cursor_);
       const auto before = rates<double>(state, make_input(values, slopes), values_);
-      for (int row = 0; row < kStates; ++row) point[row * stride + column.place] += before[row] - after[row];
+      for (int row = 0; row < rows(); ++row) point[row * stride + column.place] += before[row] - after[row];
     }
   }
 
@@ -132,6 +132,13 @@ class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
     return sum;
   }
 
+  /// y, whose rows lie `stride` apart; 0 for hidden states that no law in force has.
+  [[nodiscard]] State<double> state_of(const double* y, std::size_t stride = 1) const {
+    State<double> state{};
+    for (int k = 0; k < rows(); ++k) state[k] = y[static_cast<std::size_t>(k) * stride];
+    return state;
+  }
+
   template <class S>
   [[nodiscard]] static PlantState<S> plant_state(const State<S>& y) {
     PlantState<S> plant{};
@@ -145,6 +152,14 @@ class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
   }
 
  protected:
+  /// The plant's states and the hidden ones of the laws in force.
+  [[nodiscard]] int rows() const {
+    if constexpr (WithPhysics)
+      return kPlantStates + static_cast<int>(terms_.hidden_scales.size());
+    else
+      return kPlantStates;
+  }
+
   /// One of the free quantities that are of the recording, and its place in [y | S].
   struct Column {
     std::size_t place = 0;
@@ -221,7 +236,7 @@ class PlantSystem : public SizedSystem<kStatesOf<Model, WithPhysics>> {
       } else {
         slope = by_input(column.quantity, t, rates_by);
       }
-      for (int row = 0; row < kStates; ++row) x[row * stride + column.place] += factor * slope[row];
+      for (int row = 0; row < rows(); ++row) x[row * stride + column.place] += factor * slope[row];
     }
   }
 

@@ -43,8 +43,8 @@ class QuasiSteadyState {
         for (int held = 0; frozen_.fast[row] && held < states(); ++held)
           if (!frozen_.fast[held]) right[row * stride + k] += jacobian[row][held] * values[held * stride + k];
       }
-    if (!lu_.factorise(reduced(jacobian))) return false;
-    lu_.solve(right.data(), static_cast<int>(stride), stride);
+    if (!lu_.factorise(reduced(jacobian), states())) return false;
+    lu_.solve(right.data(), stride, stride);
     for (int row = 0; row < states(); ++row)
       for (std::size_t k = 1; k < stride; ++k) values[row * stride + k] = right[row * stride + k];
     return true;
@@ -93,8 +93,8 @@ class QuasiSteadyState {
       Vector change = Sizes::vector(states());
       Matrix jacobian = Sizes::matrix(states());
       frozen_.linearise(0.0, state.data(), change.data(), jacobian);
-      if (!lu_.factorise(reduced(jacobian))) return false;
-      lu_.solve(change.data(), 1, 1);
+      if (!lu_.factorise(reduced(jacobian), states())) return false;
+      lu_.solve(change.data());
       double largest = 0.0;
       for (int k = 0; k < states(); ++k) {
         state[k] += change[k];

@@ -57,7 +57,7 @@ class RecordedSystem {
                                     std::vector<double>& state, double* point, std::size_t stride) const = 0;
 };
 
-/// Of N states; N may be kDynamicSize.
+/// Of N states; N may be kDynamicSize or at_most(n).
 template <int N>
 class SizedSystem : public RecordedSystem, public OdeSystem<N> {
  public:

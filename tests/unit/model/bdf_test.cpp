@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <random>
 
 #include "sealwatch/model/dual.hpp"
 
@@ -160,6 +161,32 @@ TEST(LuFactorisation, SolvesWithPivotingAndReportsSingularity) {
   const std::array<double, 6> expected = {1.0, -1.0, 2.0, 0.0, 3.0, 5.0};
   for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], expected[k], 1e-14);
   EXPECT_FALSE(lu.factorise({{{1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}, {0.0, 0.0, 1.0}}}));
+}
+
+// As many columns as vectors hold, and more, and between: each as if it were alone.
+TEST(LuFactorisation, SolvesManyColumnsAsOneByOne) {
+  constexpr int kSize = 5;
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  LuFactorisation<kSize> lu;
+  LuFactorisation<kSize>::Matrix matrix;
+  for (auto& row : matrix)
+    for (double& value : row) value = normal(random);
+  matrix[3][1] = matrix[4][0] = 0.0;
+  ASSERT_TRUE(lu.factorise(matrix));
+  for (const std::size_t columns : {1, 3, 4, 16, 23}) {
+    const std::size_t stride = columns + 2;
+    std::vector<double> x(kSize * stride);
+    for (double& value : x) value = normal(random);
+    const std::vector<double> right = x;
+    lu.solve(x.data(), columns, stride);
+    for (std::size_t column = 0; column < stride; ++column) {
+      std::array<double, kSize> alone;
+      for (std::size_t row = 0; row < kSize; ++row) alone[row] = right[row * stride + column];
+      if (column < columns) lu.solve(alone.data());
+      for (std::size_t row = 0; row < kSize; ++row) EXPECT_EQ(x[row * stride + column], alone[row]) << column;
+    }
+  }
 }
 
 }  // namespace

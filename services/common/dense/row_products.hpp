@@ -1,4 +1,5 @@
-// Sums of products of a block of rows, C'C for C with rows r_1, r_2, ...: where the screening spends its time.
+// Products of matrices with many rows and few columns, X'Y = sum over rows of x_r' y_r: where fits and screenings spend
+// their time.
 //
 // Each entry is summed over the rows in their order, by products and sums of their own: the result is the same on any
 // processor, with wide vectors or without.
@@ -8,7 +9,15 @@
 #include <cstddef>
 #include <vector>
 
-namespace sealwatch::mismatch {
+namespace sealwatch::dense {
+
+/// Rows one after another in memory, or some of their columns.
+using Rows = Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+/// X'X
+[[nodiscard]] Eigen::MatrixXd gram_of_rows(const Rows& x);
+/// X'Y of as many rows
+[[nodiscard]] Eigen::MatrixXd product_of_rows(const Rows& x, const Rows& y);
 
 /// Rows are filled in one by one; `gram` is then their C'C.
 class RowBlock {
@@ -22,10 +31,14 @@ class RowBlock {
   void add(const double* row);
   /// C'C, all of it, added to `gram`.
   void add_gram_to(Eigen::MatrixXd& gram) const;
+  /// C'D, all of it, added to `product`; as many rows in both.
+  void add_product_to(const RowBlock& other, Eigen::MatrixXd& product) const;
 
  private:
+  [[nodiscard]] const double* panel(Eigen::Index which) const;
+
   Eigen::Index columns_, panels_, most_, rows_ = 0;
   std::vector<double> panels_of_rows_;  ///< kPanel columns at a time, row by row
 };
 
-}  // namespace sealwatch::mismatch
+}  // namespace sealwatch::dense

@@ -1,10 +1,10 @@
-#include "services/common/mismatch/gram.hpp"
+#include "services/common/dense/row_products.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace sealwatch::mismatch {
+namespace sealwatch::dense {
 namespace {
 
 Eigen::MatrixXd random_rows(Eigen::Index rows, Eigen::Index columns) {
@@ -53,5 +53,21 @@ TEST(RowBlock, AddsBlockAfterBlock) {
   EXPECT_LT((gram - rows.transpose() * rows).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// More rows than a block takes, of a matrix and of some of its columns.
+TEST(RowProducts, AreThoseOfTheMatrices) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const RowMajor all = random_rows(301, 23);
+  const auto x = all.leftCols(9), y = all.rightCols(13);
+  EXPECT_LT((gram_of_rows(all) - all.transpose() * all).cwiseAbs().maxCoeff(), 1e-11);
+  EXPECT_LT((gram_of_rows(x) - x.transpose() * x).cwiseAbs().maxCoeff(), 1e-11);
+  EXPECT_LT((product_of_rows(x, y) - x.transpose() * y).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+TEST(RowProducts, OfNoRowsOrColumnsAreZeroOrEmpty) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  EXPECT_EQ(gram_of_rows(RowMajor(0, 3)), Eigen::MatrixXd::Zero(3, 3));
+  EXPECT_EQ(product_of_rows(RowMajor(5, 0), RowMajor(5, 2)).size(), 0);
+}
+
 }  // namespace
-}  // namespace sealwatch::mismatch
+}  // namespace sealwatch::dense

@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cstring>
+
+#include "sealwatch/core/wide_vectors.hpp"
+#include "sealwatch/ode/lu.hpp"
+
+namespace sealwatch {
+namespace {
+
+// Row `row` of x less lu(row, k) times row k, from k = begin to end. 4 * `Wide` columns, which stay in registers. Balances
+// couple few states: most factors are 0.
+template <int Wide>
+[[gnu::always_inline]] inline void subtract_rows(const double* factors, int row, int begin, int end, double by,
+                                                 double* x, std::size_t stride) {
+  WideVector sum[Wide], other;
+  double* target = x + static_cast<std::size_t>(row) * stride;
+  for (int v = 0; v < Wide; ++v) std::memcpy(&sum[v], target + v * kWidth, sizeof(other));
+  for (int k = begin; k < end; ++k) {
+    if (factors[k] == 0.0) continue;
+    const double* from = x + static_cast<std::size_t>(k) * stride;
+    for (int v = 0; v < Wide; ++v) {
+      std::memcpy(&other, from + v * kWidth, sizeof(other));
+      sum[v] -= factors[k] * other;
+    }
+  }
+  for (int v = 0; v < Wide; ++v) {
+    sum[v] *= by;
+    std::memcpy(target + v * kWidth, &sum[v], sizeof(other));
+  }
+}
+
+template <int Wide>
+[[gnu::always_inline]] inline void solve_together(const LuFactors& of, double* x, std::size_t stride) {
+  for (int row = 1; row < of.size; ++row) subtract_rows<Wide>(of.lu + row * of.row_length, row, 0, row, 1.0, x, stride);
+  for (int row = of.size - 1; row >= 0; --row)
+    subtract_rows<Wide>(of.lu + row * of.row_length, row, row + 1, of.size, of.inverse_diagonal[row], x, stride);
+}
+
+void solve_one(const LuFactors& of, double* x, std::size_t stride) {
+  const auto at = [&](int row) -> double& { return x[static_cast<std::size_t>(row) * stride]; };
+  for (int row = 1; row < of.size; ++row)
+    for (int k = 0; k < row; ++k) at(row) -= of.lu[row * of.row_length + k] * at(k);
+  for (int row = of.size - 1; row >= 0; --row) {
+    for (int k = row + 1; k < of.size; ++k) at(row) -= of.lu[row * of.row_length + k] * at(k);
+    at(row) *= of.inverse_diagonal[row];
+  }
+}
+
+SEALWATCH_WIDE_VECTORS
+void solve_wide(const LuFactors& of, double* x, std::size_t columns, std::size_t stride) {
+  constexpr int kMost = 4;
+  std::size_t first = 0;
+  for (; first + kMost * kWidth <= columns; first += kMost * kWidth) solve_together<kMost>(of, x + first, stride);
+  for (; first + kWidth <= columns; first += kWidth) solve_together<1>(of, x + first, stride);
+}
+
+}  // namespace
+
+void solve_columns(const LuFactors& of, double* x, std::size_t columns, std::size_t stride) {
+  for (int row = 0; row < of.size; ++row)
+    if (of.pivot[row] != row) {
+      double* from = x + static_cast<std::size_t>(row) * stride;
+      std::swap_ranges(from, from + columns, x + static_cast<std::size_t>(of.pivot[row]) * stride);
+    }
+  solve_wide(of, x, columns, stride);
+  for (std::size_t first = columns / kWidth * kWidth; first < columns; ++first) solve_one(of, x + first, stride);
+}
+
+}  // namespace sealwatch

@@ -181,7 +181,8 @@ void print_text(const Explanation& explanation, const Files& files) {
   std::printf("%s: %s\n  %s\n", explanation.asset_id.c_str(), std::string(name_of(explanation.verdict)).c_str(),
               wrapped(explanation.summary, kWidth, 2).c_str());
   for (const FoundEffect& effect : explanation.effects) print_effect(effect);
-  const bool as_well = !explanation.effects.empty() && !explanation.asset_values.empty();
+  const bool as_well =
+      !explanation.effects.empty() && !explanation.asset_values.empty() && !explanation.values_beside_effects();
   if (as_well) std::printf("    indistinguishable from: a value of the asset file (above)\n");
   const bool changed = explanation.changed();
   if (changed) print_prognosis(explanation);

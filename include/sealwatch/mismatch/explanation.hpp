@@ -179,9 +179,11 @@ struct Explanation {
   std::vector<ParameterShift> parameters;
   std::vector<Power> power;
   std::vector<Rejected> rejected;
-  /// Each entry, of one value to three, would explain the recordings as well as the laws found; the best first.
+  /// Each entry, of one value to three, would explain the recordings as well as the laws found; the best first. With
+  /// effects and `beside_asset_values`: a value that is off beside these effects.
   std::vector<std::vector<AssetValue>> asset_values;
-  std::vector<LawAt> beside_asset_values;  ///< laws that are needed beside the first entry: no names of what is there
+  /// Laws that are needed beside the first entry; without effects they are no names of what is there.
+  std::vector<LawAt> beside_asset_values;
   PrognosisShift prognosis;
   std::string next_test;                   ///< what to record to settle what is still open, or empty
   std::string summary;                     ///< two or three sentences for a maintenance engineer
@@ -191,6 +193,8 @@ struct Explanation {
   std::vector<std::string> notes;      ///< noise model, what was tried, limits of the data
   AssetConfig explained;               ///< the asset with fitted parameters and the found physics
 
+  /// Whether values of the asset file are off beside the effects, and not in their place.
+  [[nodiscard]] bool values_beside_effects() const { return !effects.empty() && !beside_asset_values.empty(); }
   /// Whether a model after differs from that before: by laws, or by a value of the asset file in their place.
   [[nodiscard]] bool changed() const {
     return !effects.empty() || (verdict == Verdict::undetermined && !asset_values.empty());

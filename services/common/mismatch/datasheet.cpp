@@ -259,6 +259,16 @@ std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) 
   return text;
 }
 
+std::vector<AssetValue> values_off(const FittedModel& model, const AssetConfig& asset) {
+  std::vector<AssetValue> values = values_of(model, asset);
+  std::vector<KnownValue> free = known_values(asset, plant_of(model));
+  std::erase_if(free, [&](const KnownValue& one) {
+    return std::ranges::find(values, one.name, &AssetValue::name) == values.end();
+  });
+  if (!is_a_cause(model, free)) values.clear();
+  return values;
+}
+
 std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::size_t most) {
   AssetConfig asset = of.asset;
   const std::vector<KnownValue> known = known_values(asset, plant_of(of.baseline));

@@ -4,7 +4,8 @@
 //   alone            values are freed without any law: of those that the linearised model promises most of, the best;
 //                    where that does not do, the best beside it, and so on
 //   in place of one  a value takes the place of one of the laws found, then the others go that are not needed with it:
-//                    a wrong value and missing physics together come out as more laws than there are
+//                    a wrong value and missing physics together come out as more laws than there are; those that
+//                    stay are claimed beside the value
 //
 // Each fit starts from the asset file's values, as the fit without laws may be bent too far; models are compared by the
 // criterion of the fitted recordings (criterion.hpp). Values that are 0, the mean load (each recording's own load is
@@ -46,6 +47,9 @@ struct DatasheetQuestion {
 
 /// A value in place of one law or more of those found. Nothing where these are better by more than 6.
 [[nodiscard]] std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& question);
+
+/// Values of the asset file that `model` has free; empty where one of them is at a bound or within its tolerance.
+[[nodiscard]] std::vector<AssetValue> values_off(const FittedModel& model, const AssetConfig& asset);
 
 /// The asset with a fixed value set free, up to kOffByAtMost times off and within its range.
 [[nodiscard]] AssetConfig with_free_value(AssetConfig asset, const std::string& name);

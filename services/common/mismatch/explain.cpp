@@ -23,6 +23,7 @@
 #include "services/common/mismatch/proven_laws.hpp"
 #include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/remarks.hpp"
+#include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/time_budget.hpp"
 #include "services/common/mismatch/tolerance.hpp"
@@ -77,10 +78,14 @@ class Analysis {
     if (!why_none_ && own_) say_what_differs();
     if (!why_none_ && time_.in_time("the values that the asset file fixes")) ask_the_datasheet();
     time_.allow(1.0);
-    if (why_none_) best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_};
+    if (why_none_) take_no_law();
     if (!best_.effects.empty()) {
       tell("proving on held-out recordings", 0.75);
       prove();
+    }
+    if (beside_ && best_.effects.empty()) {
+      blame_the_asset_file(beside_->wrong, beside_->instead, *beside_->searched.best.model);
+      take_no_law();
     }
     if (!lacks_a_pressure() && !why_none_ && time_.not_asked().empty()) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
@@ -90,6 +95,8 @@ class Analysis {
     tell("done", 1.0);
     return std::move(result_);
   }
+
+  void take_no_law() { best_ = {.effects = {}, .model = with_another_value_ ? with_another_value_ : baseline_}; }
 
   void take_up(Baseline baseline) {
     baseline_ = std::move(baseline.model);
@@ -365,29 +372,68 @@ class Analysis {
     if (!wrong) return;
     asked_values_.push_back(asked(*wrong, naming_));
     const double better_by = laws > 0 ? kCannotTell : kWorthAnother;
-    if (wrong->behind < -better_by) blame_the_asset_file(*wrong, joined(instead_of, " and "), *best_.model);
+    if (wrong->behind < -better_by) {
+      if (!wrong->with.effects.empty() && take_beside_values(*wrong)) return;
+      blame_the_asset_file(*wrong, joined(instead_of, " and "), *best_.model);
+    }
     if (why_none_ || laws == 0) return;
     result_.asset_values = wrong->values;
     instead_of_ = laws;
   }
 
-  // Not where the value does not help on held-out recordings: it is not claimed either. Near the noise, whose own size is
-  // not known well enough to tell shares of what exceeds it, it has to explain no more than what it replaces.
+  // A value in place of one law, and others needed beside it: these are in both explanations, and are claimed. The search
+  // goes on from them with that value free; false where nothing comes of it.
+  bool take_beside_values(const WrongDatasheet& wrong) {
+    std::vector<RecordingComparison> compared;
+    if (!bears_out(wrong, *best_.model, compared)) return false;
+    AssetConfig asset = baseline_->asset;
+    for (const AssetValue& value : wrong.values.front()) asset = with_free_value(std::move(asset), value.name);
+    Result<FittedModel> alone = fit_model(asset, prepared(fit_), wrong.with.model.get(), options_.threads);
+    if (!alone) return false;
+    tell("looking again, beside a value of the asset file", 0.7);
+    auto naming = name_effects(std::make_shared<const FittedModel>(std::move(*alone)), prepared(fit_), options_,
+                               progress_, wrong.with);
+    if (!naming || !naming->not_asked.empty() || naming->best.effects.empty()) return false;
+    std::vector<AssetValue> values = values_off(*naming->best.model, asset_);
+    if (values.empty()) return false;
+    std::vector<std::string> instead;
+    for (const Effect& effect : best_.effects)
+      if (std::ranges::none_of(naming->best.effects,
+                               [&](const Effect& kept) { return same_effects({kept}, {effect}); }))
+        instead.push_back(law_in_words(law_at(effect)));
+    if (instead.empty()) return false;
+    const std::vector<Asked> before = trace_of(naming_);
+    asked_values_.insert(asked_values_.begin(), before.begin(), before.end());
+    beside_ = Beside{.wrong = wrong, .instead = joined(instead, " and "), .searched = std::move(naming_)};
+    result_.asset_values = {std::move(values)};
+    naming_ = std::move(*naming);
+    best_ = naming_.best;
+    return true;
+  }
+
+  // Not where the value does not help on held-out recordings. Near the noise, whose own size is not known well enough to
+  // tell shares of what exceeds it, it has to explain no more than what it replaces.
+  [[nodiscard]] bool bears_out(const WrongDatasheet& wrong, const FittedModel& replaced,
+                               std::vector<RecordingComparison>& compared) const {
+    const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
+    if (!blocks) return false;
+    const bool none = blocks->gain.empty();
+    if (!none && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0) return false;
+    return share_explained_by(*wrong.with.model) >= std::min(kExplainedAtLeast, share_explained_by(replaced));
+  }
+
   void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of, const FittedModel& replaced) {
     std::vector<RecordingComparison> compared;
-    const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
-    if (!blocks) return;
-    const bool none = blocks->gain.empty();
-    if (!none && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0) return;
-    if (share_explained_by(*wrong.with.model) < std::min(kExplainedAtLeast, share_explained_by(replaced))) return;
+    if (!bears_out(wrong, replaced, compared)) return;
     std::vector<std::string> beside;
     for (const Effect& effect : wrong.with.effects) {
       beside.push_back(law_in_words(law_at(effect)));
       result_.beside_asset_values.push_back(law_at(effect));
     }
     result_.asset_values = wrong.values;
-    why_none_ = value_of_the_asset_file(values_in_words(wrong.values), wrong.values.front().size() > 1,
-                                        joined(beside, " and "), instead_of, none ? PooledFit{} : pool(compared, true));
+    why_none_ =
+        value_of_the_asset_file(values_in_words(wrong.values), wrong.values.front().size() > 1, joined(beside, " and "),
+                                instead_of, compared.empty() ? PooledFit{} : pool(compared, true));
     with_another_value_ = wrong.with.model;
   }
 
@@ -402,7 +448,10 @@ class Analysis {
     if (windowed() || !little || excess(*best_.model) <= kGross) return;
     const auto before = std::tuple(fit_.colour, holdout_.colour, baseline_, naming_, best_, proven_, result_.notes);
     const Status status = weigh_by_colour();
-    if (status) return result_.asset_values.clear();  // those were asked beside other laws
+    if (status) {  // values were asked beside other laws
+      beside_.reset();
+      return result_.asset_values.clear();
+    }
     std::tie(fit_.colour, holdout_.colour, baseline_, naming_, best_, proven_, result_.notes) = before;
     result_.notes.push_back("A second look, weighed by the colour of what is left, was not possible (" +
                             reason_in_words(status.error()) + ").");
@@ -472,7 +521,7 @@ class Analysis {
     const std::optional<CarryOver> carry_over =
         gross && !best_.effects.empty() ? std::optional(carry_over_of(to_prove(), held_out())) : std::nullopt;
     while (!gross && !best_.effects.empty()) {
-      const std::optional<NotTold> law = not_told_from_zero(best_);
+      const std::optional<NotTold> law = not_told_from_zero(best_, resolution_of(prepared(fit_), plant()));
       if (!law) break;
       result_.notes.push_back(law->sentence);
       take_out(law->slot);
@@ -548,7 +597,7 @@ class Analysis {
                    .estimate = false,
                    .tolerance = given.tolerance};
       }
-    if (!naming_.trials.empty()) result_.trace = trace_of(naming_);
+    if (!naming_.trials.empty() && !beside_) result_.trace = trace_of(naming_);
     std::ranges::copy(asked_values_, std::back_inserter(result_.trace));
     if (result_.statistically_significant && !naming_.last.variants.empty())
       result_.candidates =
@@ -657,9 +706,13 @@ class Analysis {
       return remark_why_none(*why_none_, result_);
     }
     if (own_) is_wear(*own_) ? remark_ageing(course, result_) : remark_difference(course, result_);
+    const bool beside = beside_ && !result_.effects.empty();
     // Taken back since: what stood for laws has nothing to stand for.
-    if (result_.effects.size() != instead_of_) result_.asset_values.clear();
-    if (!result_.asset_values.empty()) remark_asset_values(result_);
+    if (!beside && result_.effects.size() != instead_of_) result_.asset_values.clear();
+    if (beside)
+      remark_values_beside(beside_->instead, result_);
+    else if (!result_.asset_values.empty())
+      remark_asset_values(result_);
     if (best_.effects.size() == 1 && same_effects(best_.effects, naming_.best.effects) && !leaves_nothing() &&
         leaves_its_form(naming_))
       result_.notes.push_back(left_beside(law_at(best_.effects.front()), share_left_by_best(naming_)));
@@ -703,7 +756,14 @@ class Analysis {
   std::optional<WhyNone> why_none_;                        ///< set: no law is named
   std::shared_ptr<const FittedModel> with_another_value_;  ///< of the asset file, where that explains it
   std::vector<Asked> asked_values_;                        ///< of the asset file, the best only
-  std::size_t instead_of_ = 0;                             ///< laws, for which a value would do as well
+  /// Values that are off beside the laws that are claimed.
+  struct Beside {
+    WrongDatasheet wrong;
+    std::string instead;  ///< of them: a law in words
+    Naming searched;      ///< without them
+  };
+  std::optional<Beside> beside_;
+  std::size_t instead_of_ = 0;  ///< laws, for which a value would do as well
   double window_s_ = 0.0;
   Explanation result_;
 };

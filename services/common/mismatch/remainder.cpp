@@ -44,7 +44,7 @@ bool leaves_its_form_at_most(const FittedModel& without, const FittedModel& with
 
 std::string left_beside(const LawAt& law, double share) { return may_be_the_form(law, share); }
 
-std::optional<NotTold> not_told_from_zero(const Trial& trial) {
+std::optional<NotTold> not_told_from_zero(const Trial& trial, const Resolution& resolution) {
   constexpr double kTold = 2.0;  // standard errors: 95 % of them lie closer to the true value
   const FittedModel& model = *trial.model;
   const std::vector<double> errors = standard_errors(model);
@@ -52,12 +52,13 @@ std::optional<NotTold> not_told_from_zero(const Trial& trial) {
   const auto told_by = [&](const Effect& effect) {
     double most = 0.0;
     for (const std::size_t s : strengths_of(*effect.law)) {
-      const std::string name = physics_parameter_name(effect.element, effect.law->id, effect.law->parameters[s].name);
+      const LawParameter& strength = effect.law->parameters[s];
+      const std::string name = physics_parameter_name(effect.element, effect.law->id, strength.name);
       const auto unknown = std::ranges::find(model.problem.shared, name, &Unknown::name);
       const auto k = static_cast<std::size_t>(unknown - model.problem.shared.begin());
       if (unknown == model.problem.shared.end() || !std::isfinite(errors[k]) || errors[k] <= 0.0)
         return std::numeric_limits<double>::infinity();
-      most = std::max(most, std::abs(*estimate_of(model, name)) / errors[k]);
+      most = std::max(most, std::abs(*estimate_of(model, name)) / std::hypot(errors[k], resolution.of(strength)));
     }
     return most;
   };

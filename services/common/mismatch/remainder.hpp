@@ -14,6 +14,7 @@
 
 #include "sealwatch/mismatch/explanation.hpp"
 #include "services/common/mismatch/refits.hpp"
+#include "services/common/mismatch/resolution.hpp"
 
 namespace sealwatch::mismatch {
 
@@ -39,10 +40,11 @@ struct NotTold {
   std::string sentence;
 };
 
-/// The one whose strength is nearest to nothing, where that is within two of its standard errors (standard_errors.hpp).
+/// The one whose strength is nearest to nothing, where that is within two of its standard errors (standard_errors.hpp,
+/// and what the simulation's own errors allow, as they are told).
 /// The criterion takes what a model leaves for white; where it is a course, neighbouring samples tell less than that,
 /// and a law that follows it is not told from none. Not asked where no standard error is known.
-[[nodiscard]] std::optional<NotTold> not_told_from_zero(const Trial& trial);
+[[nodiscard]] std::optional<NotTold> not_told_from_zero(const Trial& trial, const Resolution& resolution);
 
 /// Whether it fits at three other elements as well.
 [[nodiscard]] bool could_sit_anywhere(const FoundEffect& effect);

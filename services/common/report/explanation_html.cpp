@@ -25,8 +25,9 @@ VerdictWords words_of(const Explanation& explanation) {
     case Verdict::consistent:
       return {"good", "Consistent: simulation and recordings agree within the noise"};
     case Verdict::mismatch:
-      return {"bad", explanation.asset_values.empty()
-                         ? "Mismatch found and explained"
+      return {"bad", explanation.asset_values.empty() ? "Mismatch found and explained"
+                     : explanation.values_beside_effects()
+                         ? "Mismatch found and explained: missing physics and a wrong value in the asset file"
                          : "Mismatch found and explained: missing physics, or a wrong value in the asset file"};
     case Verdict::undetermined:
       if (!explanation.asset_values.empty()) return {"warn", "Undetermined: a value of the asset file may be wrong"};

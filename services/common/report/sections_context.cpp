@@ -136,16 +136,22 @@ std::string asset_values_section(const Explanation& explanation) {
       which = "and";
     }
   }
+  const bool with_effects = explanation.values_beside_effects();
   std::string beside;
   for (const mismatch::LawAt& law : explanation.beside_asset_values)
-    beside += paragraph("Fitted together with it: " + law_name(law) + " of " + the_element(law.element) +
-                        ". Something is probably missing there; run explain again once the value is right.");
-  return section("A value in the asset file may be wrong",
-                 paragraph("The analysis treats these values as exact. With the fitted value, less missing physics "
-                           "would explain the recordings, or none. Check the drawing or datasheet first.",
-                           "small muted")
-                     .append(table.html())
-                     .append(beside));
+    if (!with_effects)
+      beside += paragraph("Fitted together with it: " + law_name(law) + " of " + the_element(law.element) +
+                          ". Something is probably missing there; run explain again once the value is right.");
+  return section(
+      "A value in the asset file may be wrong",
+      paragraph(with_effects ? "The model was fitted with this value, beside the laws above. Check the drawing "
+                               "or datasheet."
+                             : "The analysis treats these values as exact. With the fitted value, less "
+                               "missing physics would explain the recordings, or none. Check the drawing or "
+                               "datasheet first.",
+                "small muted")
+          .append(table.html())
+          .append(beside));
 }
 
 std::string prognosis_section(const Explanation& explanation) {

@@ -76,19 +76,22 @@ TEST(Verdict, AWrongValueIsFoundWhereTheFitIsFarOff) {
   EXPECT_NEAR(value.fitted, 0.21, 0.001);
 }
 
-// Both at once come out as three laws; the one that is there stays standing beside the value. (2 % could be the value's
-// and the sensors' tolerances together.)
+// Both at once come out as three laws; the one that is there stays standing beside the value, and is claimed with it. (2 %
+// could be the value's and the sensors' tolerances together.)
 TEST(Verdict, AWrongValueIsFoundBesidePhysics) {
   AssetConfig truth =
       with_law(actuator(), **find_law("coulomb_friction", {"F_c", "v_s"}), "piston", std::vector{2e3, 5e-4});
   truth.parameters.at("A_C").value *= 1.03;
   const auto explanation = explained(truth);
   ASSERT_TRUE(explanation) << explanation.error().describe();
-  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
+  EXPECT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
+  ASSERT_EQ(explanation->effects.size(), 1U) << explanation->summary;
+  EXPECT_EQ(explanation->effects.front().what.element, "piston");
+  EXPECT_TRUE(explanation->values_beside_effects());
   ASSERT_EQ(explanation->asset_values.size(), 1U) << explanation->summary;
   EXPECT_EQ(explanation->asset_values.front().front().name, "A_C");
   EXPECT_NEAR(explanation->asset_values.front().front().fitted, 1.03 * 5.89e-3, 1e-5);
-  EXPECT_NE(explanation->summary.find(" friction at the piston the misfit of "), std::string::npos)
+  EXPECT_NE(explanation->summary.find("Beside this a value of the asset file is off: A_C = 0.0060"), std::string::npos)
       << explanation->summary;
   EXPECT_TRUE(explanation->changed());
   EXPECT_NEAR(explanation->explained.parameters.at("A_C").value, 1.03 * 5.89e-3, 1e-5);

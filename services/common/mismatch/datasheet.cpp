@@ -35,14 +35,14 @@ struct Attempt {
 
 // A first round from the asset's values, and from the model near it where that leads further; nothing where it cannot be
 // fitted.
-std::shared_ptr<const FittedModel> begun(const Attempt& attempt, const Data& fit) {
+std::shared_ptr<FittedModel> begun(const Attempt& attempt, const Data& fit) {
   const FittedModel nowhere;
   Result<FittedModel> model = fit_model(attempt.asset, fit, &nowhere, 1, kFirstRound);
   if (!model || model->misfit >= attempt.near->misfit) {
     Result<FittedModel> other = fit_model(attempt.asset, fit, attempt.near.get(), 1, kFirstRound);
     if (other && (!model || other->misfit < model->misfit)) model = std::move(other);
   }
-  return model ? std::make_shared<const FittedModel>(std::move(*model)) : nullptr;
+  return model ? std::make_shared<FittedModel>(std::move(*model)) : nullptr;
 }
 
 // Not where a value ended at a bound, or within its tolerance, where it needs no explanation.
@@ -58,15 +58,22 @@ bool is_a_cause(const FittedModel& model, const std::vector<KnownValue>& values)
   return true;
 }
 
-// In the order of the attempts: the first rounds side by side, then those go on that are not far from the best.
+// In the order of the attempts: the first rounds side by side, then those go on that are not far from the best; the
+// others' derivatives are not needed.
 std::vector<std::shared_ptr<const FittedModel>> all_fitted(const std::vector<Attempt>& attempts, const Data& fit,
                                                            int threads) {
   constexpr double kNear = 1.5;  // times the best misfit
-  auto models = in_parallel<std::shared_ptr<const FittedModel>>(attempts.size(), threads,
-                                                                [&](std::size_t k) { return begun(attempts[k], fit); });
+  auto begins = in_parallel<std::shared_ptr<FittedModel>>(attempts.size(), threads,
+                                                          [&](std::size_t k) { return begun(attempts[k], fit); });
   double best = std::numeric_limits<double>::infinity();
-  for (const auto& model : models)
+  for (const auto& model : begins)
     if (model != nullptr) best = std::min(best, model->misfit);
+  for (const auto& model : begins)
+    for (std::size_t k = 0; model != nullptr && model->misfit >= kNear * best && k < model->problem.recordings.size();
+         ++k)
+      model->optimum.at_optimum[k].jacobian.resize(0, 0);
+  std::vector<std::shared_ptr<const FittedModel>> models(begins.begin(), begins.end());
+  begins.clear();
   for (std::size_t k = 0; k < models.size(); ++k) {
     if (models[k] != nullptr && models[k]->misfit < kNear * best)
       models[k] = polished({{}, models[k]}, fit, threads).model;

@@ -84,7 +84,7 @@ class Analysis {
       prove();
     }
     if (beside_ && best_.effects.empty()) {
-      blame_the_asset_file(beside_->wrong, beside_->instead, *beside_->searched.best.model);
+      blame_the_asset_file(beside_->wrong, beside_->instead, *beside_->replaced);
       take_no_law();
     }
     if (!lacks_a_pressure() && !why_none_ && time_.not_asked().empty()) look_again();
@@ -189,11 +189,13 @@ class Analysis {
     data.sensors = unknown_sensors();
     Result<Naming> naming = name_effects(baseline_, data, options, progress_, from, known);
     if (!naming || !naming->sensors_are_inexact) return naming;
+    naming->trials = {{{}, baseline_}, naming->best};  // all the others take as much memory as the search that follows
     Result<Naming> again = beside_inexact_sensors(*naming, options);
     // The search asked for a value in place of the sensors before it took them for inexact.
     const bool was_asked = again && naming->with_sensors && same_effects(naming->best.effects, again->best.effects);
     if (again && !was_asked && value_in_place_of_sensors(*again, data.sensors)) {
       tell("looking again, with exact sensors", 0.6);
+      again->trials.clear();
       data.sensors.clear();
       again = name_effects(baseline_, data, options, progress_);
     } else if (again) {
@@ -404,7 +406,7 @@ class Analysis {
     if (instead.empty()) return false;
     const std::vector<Asked> before = trace_of(naming_);
     asked_values_.insert(asked_values_.begin(), before.begin(), before.end());
-    beside_ = Beside{.wrong = wrong, .instead = joined(instead, " and "), .searched = std::move(naming_)};
+    beside_ = Beside{.wrong = wrong, .instead = joined(instead, " and "), .replaced = best_.model};
     result_.asset_values = {std::move(values)};
     naming_ = std::move(*naming);
     best_ = naming_.best;
@@ -759,8 +761,8 @@ class Analysis {
   /// Values that are off beside the laws that are claimed.
   struct Beside {
     WrongDatasheet wrong;
-    std::string instead;  ///< of them: a law in words
-    Naming searched;      ///< without them
+    std::string instead;                          ///< of them: a law in words
+    std::shared_ptr<const FittedModel> replaced;  ///< with that law
   };
   std::optional<Beside> beside_;
   std::size_t instead_of_ = 0;  ///< laws, for which a value would do as well

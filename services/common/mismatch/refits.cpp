@@ -125,14 +125,14 @@ class GoesOn {
   double best_, limit_;
 };
 
-// Only those near the best keep their derivatives: ten recordings' worth of them take as much memory as all else.
+// Only the best keeps its derivatives, which take as much memory as all else: a search may go on from there.
 std::vector<Trial> trials_of(std::vector<Refit> refits) {
-  constexpr double kNear = 1.05;
-  double best = std::numeric_limits<double>::infinity();
-  for (const Refit& refit : refits) best = std::min(best, refit.model->misfit);
+  if (refits.empty()) return {};
+  const double phi = dispersion(*refits.front().model);
+  std::ranges::stable_sort(refits, {}, [&](const Refit& refit) { return criterion(*refit.model, phi); });
   std::vector<Trial> trials;
   for (Refit& refit : refits) {
-    if (refit.model->misfit > kNear * best)
+    if (!trials.empty())
       for (Linearisation& at : refit.model->optimum.at_optimum) at.jacobian.resize(0, 0);
     trials.push_back({std::move(refit.effects), std::move(refit.model)});
   }

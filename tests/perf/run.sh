@@ -12,6 +12,7 @@ measure() { "$@" || missed=1; }
 echo "== $(date -u +%F): $(nproc) cores, $(sed -n 's/model name[^:]*: //p' /proc/cpuinfo | head -1), load $(cut -d' ' -f1 /proc/loadavg)"
 measure "$bin/perf/estimation_benchmark" --benchmark_filter=cylinder
 measure "$bin/perf/sensitivity_benchmark"
+measure "$bin/perf/row_products_benchmark"
 measure "$bin/perf/fmu_call_benchmark"
 measure "$bin/perf/text_plant_benchmark"
 measure "$here/services/replay.py" "$bin"

@@ -70,8 +70,10 @@ class LuFactorisation {
  public:
   using Matrix = typename SquareSystem<N>::Matrix;
 
-  /// False when the matrix is singular or not finite. `size_at_run_time`: rows, where N does not say it.
-  [[nodiscard]] bool factorise(const Matrix& matrix, int size_at_run_time = N) {
+  /// False when the matrix is singular or not finite.
+  [[nodiscard]] bool factorise(const Matrix& matrix) requires(N >= 0) { return factorise(matrix, N); }
+  /// `size_at_run_time`: rows, where N does not say it.
+  [[nodiscard]] bool factorise(const Matrix& matrix, int size_at_run_time) {
     lu_ = matrix;
     size_ = size_at_run_time;
     if constexpr (N == kDynamicSize) {

@@ -111,6 +111,7 @@ void RowBlock::add_product_to(const RowBlock& other, Eigen::MatrixXd& product) c
 
 Eigen::MatrixXd gram_of_rows(const Rows& x) {
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(x.cols(), x.cols());
+  if (gram.size() == 0) return gram;
   RowBlock block(x.cols(), kAtOnce);
   for (Eigen::Index begin = 0; begin < x.rows(); begin += kAtOnce) {
     fill(block, x, begin);
@@ -121,6 +122,7 @@ Eigen::MatrixXd gram_of_rows(const Rows& x) {
 
 Eigen::MatrixXd product_of_rows(const Rows& x, const Rows& y) {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(x.cols(), y.cols());
+  if (product.size() == 0) return product;
   RowBlock left(x.cols(), kAtOnce), right(y.cols(), kAtOnce);
   for (Eigen::Index begin = 0; begin < x.rows(); begin += kAtOnce) {
     fill(left, x, begin);

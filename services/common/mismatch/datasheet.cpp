@@ -325,7 +325,7 @@ std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& of
   drop_what_is_not_needed(of, *replaced);
   WrongDatasheet wrong{.values = {values_of(*replaced->model, of.asset)},
                        .behind = behind(*replaced->model, *of.found.model),
-                       .with = {.effects = {}, .model = replaced->model}};
+                       .with = with_derivatives({{}, replaced->model}, of.fit, of.threads)};
   if (wrong.behind > kCannotTell) return std::nullopt;
   for (const std::size_t k : replaced->kept) wrong.with.effects.push_back(of.found.effects[k]);
   return wrong;

@@ -83,10 +83,7 @@ class Analysis {
       tell("proving on held-out recordings", 0.75);
       prove();
     }
-    if (beside_ && best_.effects.empty()) {
-      blame_the_asset_file(beside_->wrong, beside_->instead, *beside_->replaced);
-      take_no_law();
-    }
+    if (beside_ && best_.effects.empty()) fall_back_on_the_value();
     if (!lacks_a_pressure() && !why_none_ && time_.not_asked().empty()) look_again();
     if (const Status status = finish(); !status) return fail(status.error());
     time_.allow(1.0);
@@ -189,7 +186,6 @@ class Analysis {
     data.sensors = unknown_sensors();
     Result<Naming> naming = name_effects(baseline_, data, options, progress_, from, known);
     if (!naming || !naming->sensors_are_inexact) return naming;
-    naming->trials = {{{}, baseline_}, naming->best};  // all the others take as much memory as the search that follows
     Result<Naming> again = beside_inexact_sensors(*naming, options);
     // The search asked for a value in place of the sensors before it took them for inexact.
     const bool was_asked = again && naming->with_sensors && same_effects(naming->best.effects, again->best.effects);
@@ -351,7 +347,9 @@ class Analysis {
     const auto wrong = values_alone(question, fit_.samples.size());
     if (!wrong || wrong->behind > 0.0) return;
     const std::string other = is_wear(*own_) ? "seal" : own_->fit.own_parameter;
-    blame_the_asset_file(*wrong, "another " + other + " in each test", *own_->naming.best.model);
+    std::vector<RecordingComparison> compared;
+    if (bears_out(*wrong, *own_->naming.best.model, compared))
+      blame_the_asset_file(*wrong, "another " + other + " in each test", compared);
   }
 
   [[nodiscard]] bool leaves_nothing() const {
@@ -375,19 +373,20 @@ class Analysis {
     asked_values_.push_back(asked(*wrong, naming_));
     const double better_by = laws > 0 ? kCannotTell : kWorthAnother;
     if (wrong->behind < -better_by) {
-      if (!wrong->with.effects.empty() && take_beside_values(*wrong)) return;
-      blame_the_asset_file(*wrong, joined(instead_of, " and "), *best_.model);
+      std::vector<RecordingComparison> compared;
+      if (bears_out(*wrong, *best_.model, compared) && !take_beside_values(*wrong, instead_of, compared))
+        blame_the_asset_file(*wrong, joined(instead_of, " and "), compared);
     }
-    if (why_none_ || laws == 0) return;
+    if (why_none_ || beside_ || laws == 0) return;
     result_.asset_values = wrong->values;
     instead_of_ = laws;
   }
 
   // A value in place of one law, and others needed beside it: these are in both explanations, and are claimed. The search
-  // goes on from them with that value free; false where nothing comes of it.
-  bool take_beside_values(const WrongDatasheet& wrong) {
-    std::vector<RecordingComparison> compared;
-    if (!bears_out(wrong, *best_.model, compared)) return false;
+  // goes on from them with that value free; false where it does not come to them, or to less than the laws did.
+  bool take_beside_values(const WrongDatasheet& wrong, const std::vector<std::string>& laws,
+                          const std::vector<RecordingComparison>& compared) {
+    if (wrong.with.effects.empty()) return false;
     AssetConfig asset = baseline_->asset;
     for (const AssetValue& value : wrong.values.front()) asset = with_free_value(std::move(asset), value.name);
     Result<FittedModel> alone = fit_model(asset, prepared(fit_), wrong.with.model.get(), options_.threads);
@@ -395,22 +394,38 @@ class Analysis {
     tell("looking again, beside a value of the asset file", 0.7);
     auto naming = name_effects(std::make_shared<const FittedModel>(std::move(*alone)), prepared(fit_), options_,
                                progress_, wrong.with);
-    if (!naming || !naming->not_asked.empty() || naming->best.effects.empty()) return false;
-    std::vector<AssetValue> values = values_off(*naming->best.model, asset_);
-    if (values.empty()) return false;
+    if (naming) time_.add_not_asked(naming->not_asked);
+    if (!naming || !naming->not_asked.empty() || !naming->differs_in.empty() || naming->best.effects.empty())
+      return false;
+    const auto among = [](const Effect& effect, const std::vector<Effect>& effects) {
+      return std::ranges::any_of(effects,
+                                 [&](const Effect& other) { return same_place(law_at(effect), law_at(other)); });
+    };
+    const auto known = [&](const Effect& effect) { return among(effect, best_.effects); };
+    const double phi = std::min(dispersion(*naming->best.model), dispersion(*best_.model));
+    if (!std::ranges::all_of(naming->best.effects, known) ||
+        criterion(*naming->best.model, phi) > criterion(*best_.model, phi) ||
+        values_off(*naming->best.model, asset_).empty())
+      return false;
     std::vector<std::string> instead;
-    for (const Effect& effect : best_.effects)
-      if (std::ranges::none_of(naming->best.effects,
-                               [&](const Effect& kept) { return same_effects({kept}, {effect}); }))
-        instead.push_back(law_in_words(law_at(effect)));
+    for (std::size_t k = 0; k < laws.size(); ++k)
+      if (!among(best_.effects[k], naming->best.effects)) instead.push_back(laws[k]);
     if (instead.empty()) return false;
-    const std::vector<Asked> before = trace_of(naming_);
-    asked_values_.insert(asked_values_.begin(), before.begin(), before.end());
-    beside_ = Beside{.wrong = wrong, .instead = joined(instead, " and "), .replaced = best_.model};
-    result_.asset_values = {std::move(values)};
+    const std::vector<Asked> asked_before = trace_of(naming_);
+    asked_values_.insert(asked_values_.begin(), asked_before.begin(), asked_before.end());
+    beside_ = Beside{wrong, joined(instead, " and "), joined(laws, " and "), compared, std::move(naming_)};
     naming_ = std::move(*naming);
     best_ = naming_.best;
     return true;
+  }
+
+  // The laws beside it were taken back: what is left is the value.
+  void fall_back_on_the_value() {
+    const Beside beside = std::move(*beside_);
+    beside_.reset();
+    naming_ = beside.before;
+    blame_the_asset_file(beside.wrong, beside.laws, beside.compared);
+    take_no_law();
   }
 
   // Not where the value does not help on held-out recordings. Near the noise, whose own size is not known well enough to
@@ -419,14 +434,14 @@ class Analysis {
                                std::vector<RecordingComparison>& compared) const {
     const auto blocks = held_out().gains({{}, baseline_}, wrong.with, &compared);
     if (!blocks) return false;
-    const bool none = blocks->gain.empty();
-    if (!none && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0) return false;
+    if (blocks->gain.empty() && !blocks->not_compared.empty()) return false;
+    if (!blocks->gain.empty() && gain_interval(*blocks, dispersion(*wrong.with.model), options_.seed).low <= 0.0)
+      return false;
     return share_explained_by(*wrong.with.model) >= std::min(kExplainedAtLeast, share_explained_by(replaced));
   }
 
-  void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of, const FittedModel& replaced) {
-    std::vector<RecordingComparison> compared;
-    if (!bears_out(wrong, replaced, compared)) return;
+  void blame_the_asset_file(const WrongDatasheet& wrong, const std::string& instead_of,
+                            const std::vector<RecordingComparison>& compared) {
     std::vector<std::string> beside;
     for (const Effect& effect : wrong.with.effects) {
       beside.push_back(law_in_words(law_at(effect)));
@@ -550,6 +565,11 @@ class Analysis {
   Status finish() {
     tell("writing down what was found", 0.9);
     describe_what_was_found();
+    if (beside_ && !best_.effects.empty()) result_.asset_values = {values_off(*best_.model, asset_)};
+    if (beside_ && (best_.effects.empty() || result_.asset_values.front().empty())) {
+      result_.effects.clear();
+      fall_back_on_the_value();
+    }
     if (!best_.effects.empty()) static_cast<void>(time_.in_time("every alternative to the laws found"));
     time_.allow_what_is_needed();
     const Trial before{{}, baseline_};
@@ -607,7 +627,7 @@ class Analysis {
     compare_with_what_was_kept_aside();
     decide();
     for (FoundEffect& effect : result_.effects)
-      effect.evidence = evidence_of(effect, result_.effects.size(), baseline_->misfit / baseline_->residuals,
+      effect.evidence = evidence_of(effect, result_.effects.size(), without_laws().misfit / without_laws().residuals,
                                     best_.model->misfit / best_.model->residuals);
     result_.next_test = next_test_of(result_);
     if (lacks_a_pressure())
@@ -631,6 +651,7 @@ class Analysis {
     result_.effects.clear();
     result_.asset_values.clear();
     result_.recordings.clear();
+    if (beside_) fall_back_on_the_value();
   }
 
   // Laws that leave less than half of a channel's course reproduced, far above its noise, bend to something else: a
@@ -656,8 +677,10 @@ class Analysis {
     return true;
   }
 
+  /// The model that the laws are beside: with the values that are off, where they were found beside such.
+  [[nodiscard]] const FittedModel& without_laws() const { return beside_ ? *naming_.baseline : *baseline_; }
   [[nodiscard]] double share_explained_by(const FittedModel& model) const {
-    return share_explained(baseline_->misfit / baseline_->residuals, model.misfit / model.residuals);
+    return share_explained(without_laws().misfit / without_laws().residuals, model.misfit / model.residuals);
   }
   [[nodiscard]] double explained_share() const { return share_explained_by(*best_.model); }
 
@@ -667,7 +690,7 @@ class Analysis {
                                .leave_nothing = leaves_nothing(),
                                .share = explained_share(),
                                .as_searched = naming_.best.effects.size() == best_.effects.size(),
-                               .p_before = result_.p_value,
+                               .p_before = beside_ ? naming_.first.p_value : result_.p_value,
                                .p_after = naming_.last.p_value});
   }
 
@@ -678,7 +701,7 @@ class Analysis {
     for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
     result_.notes.push_back("Not enough to be named: with " + joined(laws, " and ") +
                             " the mean squared residual of the fit recordings falls from " +
-                            number(baseline_->misfit / baseline_->residuals) + " to " +
+                            number(without_laws().misfit / without_laws().residuals) + " to " +
                             number(best_.model->misfit / best_.model->residuals) + " times the noise variance.");
     tried_ = best_;
     take_all_laws_back();
@@ -761,8 +784,10 @@ class Analysis {
   /// Values that are off beside the laws that are claimed.
   struct Beside {
     WrongDatasheet wrong;
-    std::string instead;                          ///< of them: a law in words
-    std::shared_ptr<const FittedModel> replaced;  ///< with that law
+    std::string instead;  ///< of them: the laws that they replace, in words
+    std::string laws;     ///< all that were found without them
+    std::vector<RecordingComparison> compared;
+    Naming before;  ///< without them
   };
   std::optional<Beside> beside_;
   std::size_t instead_of_ = 0;  ///< laws, for which a value would do as well

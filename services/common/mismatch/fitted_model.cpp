@@ -195,6 +195,14 @@ Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int
   return model_at(model.asset, std::move(*problem), std::move(*optimum));
 }
 
+const Linearisation& linearised(const FittedModel& model, std::size_t recording, std::optional<Linearisation>& anew) {
+  const Linearisation& kept = model.optimum.at_optimum[recording];
+  if (kept.jacobian.size() > 0) return kept;
+  Result<Linearisation> again =
+      linearise(model.problem, recording, model.optimum.point.shared, model.optimum.point.own[recording]);
+  return again ? anew.emplace(std::move(*again)) : kept;
+}
+
 AssetConfig with_fixed_parameters(AssetConfig asset) {
   for (auto& [name, setting] : asset.parameters) setting.estimate = false;
   for (PhysicsTerm& term : asset.physics)

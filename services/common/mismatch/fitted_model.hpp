@@ -58,6 +58,11 @@ struct FittedModel {
 [[nodiscard]] Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,
                                                const SearchBound& bound = {});
 
+/// Where the search of a recording ended: as it was kept, or computed to `anew` where its derivatives were not (refit). No
+/// derivatives where they cannot be computed.
+[[nodiscard]] const Linearisation& linearised(const FittedModel& model, std::size_t recording,
+                                              std::optional<Linearisation>& anew);
+
 /// As it is, but every shared parameter stays what it is: only load and initial state of each recording are fitted.
 [[nodiscard]] AssetConfig with_fixed_parameters(AssetConfig asset);
 

@@ -45,7 +45,7 @@ void one_shape_for_several(Naming& naming, const Data& data, const ExplainOption
   if (form == nullptr || naming.baseline->misfit - form->model->misfit < kExplainsEnough * taken) return;
   auto last = screen(*form->model, data, {.seed = options.seed, .threads = options.threads});
   if (!last) return;
-  naming.best = *form;
+  naming.best = with_derivatives(*form, data, options.threads);
   naming.last = std::move(*last);
 }
 

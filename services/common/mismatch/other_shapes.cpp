@@ -127,7 +127,7 @@ Result<Screening> look(Naming& naming, const std::shared_ptr<const FittedModel>&
 }
 
 bool take(Naming& naming, const Trial& trial, const Data& data, const ExplainOptions& options) {
-  Trial taken = polished(trial, data, options.threads);
+  Trial taken = with_derivatives(polished(trial, data, options.threads), data, options.threads);
   naming.trials.push_back(taken);
   Result<Screening> next = look(naming, taken.model, data, options);
   if (!next && passed(data.deadline)) {

@@ -77,8 +77,12 @@ double gain_with(const FittedModel& model, const std::vector<NormalOfRecording>&
 
 std::vector<OwnGain> gains_of_own_values(const FittedModel& model, std::span<const std::string> parameters) {
   std::vector<NormalOfRecording> normals;
-  for (const Linearisation& at : model.optimum.at_optimum)
+  for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k) {
+    std::optional<Linearisation> anew;
+    const Linearisation& at = linearised(model, k, anew);
+    if (at.jacobian.size() == 0) return {};
     normals.push_back(normal_of(at, std::ssize(model.problem.shared)));
+  }
   const double in_common = gain_with(model, normals, -1);  // of a search that has not quite ended
   std::vector<OwnGain> gains;
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {

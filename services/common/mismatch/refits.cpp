@@ -146,6 +146,13 @@ double could_reach(const FittedModel& model, double optimism) {
   return model.misfit - optimism * 2.0 * model.optimum.promised;
 }
 
+Trial with_derivatives(Trial trial, const Data& data, int threads) {
+  if (trial.model->optimum.at_optimum.front().jacobian.size() > 0) return trial;
+  Result<FittedModel> again = continue_fit(*trial.model, data, threads, 0);
+  if (again) trial.model = std::make_shared<const FittedModel>(std::move(*again));
+  return trial;
+}
+
 // A search that ran out of iterations goes on from where it is.
 Trial polished(Trial trial, const Data& data, int threads) {
   constexpr int kRounds = 3, kIterations = 30;

@@ -53,6 +53,8 @@ inline constexpr double kOptimistic = 2.0;
 /// The least misfit that its search can come to, at best: `optimism` times what the linear model promises lower.
 [[nodiscard]] double could_reach(const FittedModel& model, double optimism = kOptimistic);
 
+/// The trial with its derivatives, where a round did not keep them (refit); as it is where they cannot be computed.
+[[nodiscard]] Trial with_derivatives(Trial trial, const Data& data, int threads);
 /// A search that ran out of iterations goes on from where it is.
 [[nodiscard]] Trial polished(Trial trial, const Data& data, int threads);
 

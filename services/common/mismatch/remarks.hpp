@@ -19,7 +19,7 @@ void remark_difference(const std::string& course, Explanation& result);
 
 /// Values of the asset file that would do the same as the laws found.
 void remark_asset_values(Explanation& result);
-/// The laws found, and beside them values of the asset file that are off, or `instead`, laws in place of these values.
+/// The laws found, and beside them values of the asset file that are off; without them `instead` would be needed.
 void remark_values_beside(const std::string& instead, Explanation& result);
 
 /// The input's course between its samples may account for what is left.

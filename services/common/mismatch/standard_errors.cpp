@@ -53,12 +53,9 @@ Normal normal_of(const FittedModel& model) {
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
   Normal normal{.information = Eigen::MatrixXd::Zero(shared, shared), .scores = Eigen::MatrixXd::Zero(shared, shared)};
   for (std::size_t k = 0; k < model.optimum.at_optimum.size(); ++k) {
-    const Linearisation& kept = model.optimum.at_optimum[k];
-    // Of trials that came out far from the best the derivatives were not kept.
-    if (kept.jacobian.size() > 0)
-      add_recording(kept, model.problem.recordings[k].time_s, normal);
-    else if (const auto again = linearise(model.problem, k, model.optimum.point.shared, model.optimum.point.own[k]))
-      add_recording(*again, model.problem.recordings[k].time_s, normal);
+    std::optional<Linearisation> anew;
+    if (const Linearisation& at = linearised(model, k, anew); at.jacobian.size() > 0)
+      add_recording(at, model.problem.recordings[k].time_s, normal);
   }
   if (normal.blocks > 1) normal.scores *= normal.blocks / (normal.blocks - 1.0);
   return normal;

@@ -163,6 +163,33 @@ TEST(LuFactorisation, SolvesWithPivotingAndReportsSingularity) {
   EXPECT_FALSE(lu.factorise({{{1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}, {0.0, 0.0, 1.0}}}));
 }
 
+/// Two states of at most five.
+struct FewerStates final : OdeSystem<at_most(5)> {
+  [[nodiscard]] int states() const override { return 2; }
+  void evaluate(double, const double* y, double* f) const override { f[0] = -0.7 * y[0] * y[0], f[1] = y[0] - y[1]; }
+  void linearise(double t, const double* y, double* f, Matrix& jacobian) const override {
+    evaluate(t, y, f);
+    jacobian[0][0] = -1.4 * y[0], jacobian[0][1] = 0.0, jacobian[1][0] = 1.0, jacobian[1][1] = -1.0;
+  }
+  void add_parameter_derivatives(double, const double*, double, double*, std::size_t) const override {}
+};
+
+TEST(Bdf, TakesFewerStatesThanThereMayBe) {
+  const auto f = [](double, const auto& y, const auto&) { return std::array{-0.7 * y[0] * y[0], y[0] - y[1]}; };
+  const auto system = make_system<2>(f);
+  const FewerStates fewer;
+  Bdf<2> of_two(system, 0, {1e-9, 1e-9});
+  Bdf<at_most(5)> of_five(fewer, 0, {1e-9, 1e-9});
+  EXPECT_EQ(of_five.size(), 2U);
+  const std::array<double, 2> start = {1.0, 0.5};
+  ASSERT_TRUE(of_two.start(0.0, start.data()));
+  ASSERT_TRUE(of_five.start(0.0, start.data()));
+  while (of_two.time() < 1.0) ASSERT_TRUE(of_two.step() && of_five.step());
+  EXPECT_EQ(of_five.time(), of_two.time());
+  EXPECT_NEAR(of_five.values()[0], of_two.values()[0], 1e-12);
+  EXPECT_NEAR(of_five.values()[1], of_two.values()[1], 1e-12);
+}
+
 // As many columns as vectors hold, and more, and between: each as if it were alone.
 TEST(LuFactorisation, SolvesManyColumnsAsOneByOne) {
   constexpr int kSize = 5;

@@ -71,6 +71,18 @@ TEST(ReportHtml, TellsWhichValueOfTheAssetFileMayBeWrongBeforeWhatCouldHaveBeenS
       << "on the first screen, with the value";
 }
 
+TEST(ReportHtml, TellsAValueBesideTheLawsThatAreClaimed) {
+  mismatch::Explanation explanation = example_explanation();
+  explanation.model = "eha";
+  explanation.asset_values = {blamed_example().asset_values.front()};
+  explanation.beside_asset_values = {explanation.effects.front().what};
+  const std::string html = explanation_to_html(explanation);
+  EXPECT_EQ(what_is_wrong(html), "");
+  EXPECT_THAT(html, HasSubstr("Mismatch found and explained: missing physics and a wrong value in the asset file"));
+  EXPECT_THAT(html, HasSubstr("The model was fitted with this value, beside the laws above."));
+  EXPECT_THAT(html, Not(HasSubstr("Something is probably missing there")));
+}
+
 TEST(ReportHtml, SaysWhatToDoNextWhateverTheVerdict) {
   mismatch::Explanation cut_off = undetermined_example();
   EXPECT_THAT(explanation_to_html(cut_off), HasSubstr("What to record next"));

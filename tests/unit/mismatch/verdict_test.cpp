@@ -91,7 +91,9 @@ TEST(Verdict, AWrongValueIsFoundBesidePhysics) {
   ASSERT_EQ(explanation->asset_values.size(), 1U) << explanation->summary;
   EXPECT_EQ(explanation->asset_values.front().front().name, "A_C");
   EXPECT_NEAR(explanation->asset_values.front().front().fitted, 1.03 * 5.89e-3, 1e-5);
-  EXPECT_NE(explanation->summary.find("Beside this a value of the asset file is off, which has its share in that: A_C = 0.0060"), std::string::npos)
+  EXPECT_NE(explanation->summary.find(
+                "Beside this a value of the asset file is off, which has its share in that: A_C = 0.0060"),
+            std::string::npos)
       << explanation->summary;
   EXPECT_TRUE(explanation->changed());
   EXPECT_NEAR(explanation->explained.parameters.at("A_C").value, 1.03 * 5.89e-3, 1e-5);

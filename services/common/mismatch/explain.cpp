@@ -374,8 +374,11 @@ class Analysis {
     const double better_by = laws > 0 ? kCannotTell : kWorthAnother;
     if (wrong->behind < -better_by) {
       std::vector<RecordingComparison> compared;
-      if (bears_out(*wrong, *best_.model, compared) && !take_beside_values(*wrong, instead_of, compared))
+      time_.allow(1.0);  // a proof, whatever is searched further
+      const bool borne_out = bears_out(*wrong, *best_.model, compared);
+      if (borne_out && !take_beside_values(*wrong, instead_of, compared))
         blame_the_asset_file(*wrong, joined(instead_of, " and "), compared);
+      time_.allow(kSearchShare);
     }
     if (why_none_ || beside_ || laws == 0) return;
     result_.asset_values = wrong->values;
@@ -392,11 +395,13 @@ class Analysis {
     Result<FittedModel> alone = fit_model(asset, prepared(fit_), wrong.with.model.get(), options_.threads);
     if (!alone) return false;
     tell("looking again, beside a value of the asset file", 0.7);
+    const ScreeningOptions screening{.seed = options_.seed, .threads = options_.threads};
+    const Result<Screening> first = screen(*alone, prepared(fit_), screening);
+    if (!first) return false;
+    time_.allow(kSearchShare);
     auto naming = name_effects(std::make_shared<const FittedModel>(std::move(*alone)), prepared(fit_), options_,
-                               progress_, wrong.with);
-    if (naming) time_.add_not_asked(naming->not_asked);
-    if (!naming || !naming->not_asked.empty() || !naming->differs_in.empty() || naming->best.effects.empty())
-      return false;
+                               progress_, wrong.with, &*first);
+    if (!naming || !naming->differs_in.empty() || naming->best.effects.empty()) return false;
     const auto among = [](const Effect& effect, const std::vector<Effect>& effects) {
       return std::ranges::any_of(effects,
                                  [&](const Effect& other) { return same_place(law_at(effect), law_at(other)); });
@@ -415,7 +420,7 @@ class Analysis {
     asked_values_.insert(asked_values_.begin(), asked_before.begin(), asked_before.end());
     beside_ = Beside{wrong, joined(instead, " and "), joined(laws, " and "), compared, std::move(naming_)};
     naming_ = std::move(*naming);
-    best_ = naming_.best;
+    look_at_what_is_left();
     return true;
   }
 

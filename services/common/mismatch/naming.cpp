@@ -450,7 +450,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       break;
     }
     if (!in_time("laws that did not come to be fitted, and what the best of the others leaves")) {
-      naming.best = *best;  // what is left is looked at where its derivatives are computed anew
+      naming.best = *best;
       break;
     }
     const Screening asked = naming.last;

@@ -101,13 +101,11 @@ std::optional<Trial> without_law(const Naming& naming, const Trial& trial, std::
   Trial fewer{.effects = trial.effects, .model = nullptr};
   fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(slot));
   if (fewer.effects.empty()) return Trial{{}, naming.baseline};
-  for (const Trial& known : naming.trials) {
-    const bool kept = known.model->optimum.converged && known.model->optimum.at_optimum.front().jacobian.size() > 0;
-    if (kept && same_effects(known.effects, fewer.effects) &&
+  for (const Trial& known : naming.trials)
+    if (known.model->optimum.converged && same_effects(known.effects, fewer.effects) &&
         (fewer.model == nullptr || known.model->misfit < fewer.model->misfit))
       fewer.model = known.model;
-  }
-  if (fewer.model != nullptr) return fewer;
+  if (fewer.model != nullptr) return with_derivatives(std::move(fewer), data, threads);
   AssetConfig asset = trial.model->asset;
   asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(trial.effects.size() - slot));
   Result<FittedModel> model = fit_model(asset, data, trial.model.get(), threads);

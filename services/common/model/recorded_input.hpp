@@ -2,7 +2,8 @@
 //
 // A held channel jumps; the times at which any does cut the recording into segments, within which the input is smooth
 // enough for a multistep integrator. Within a segment, and shortly beyond its end, a held channel keeps the segment's
-// value.
+// value. Where rows were lost, up to ten of the usual distance (the median), what a moving channel was held at is not
+// known: it takes steps of that distance along the line between its neighbours.
 //
 // What acted on the plant may differ from what was recorded:
 //   u(t) = (1 + g) (u_recorded(t - tau) - z) + b,   t = t_0 + (t_recorded - t_0) / (1 + c)
@@ -16,6 +17,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace sealwatch {
@@ -42,12 +45,15 @@ class RecordedInput {
  public:
   RecordedInput(std::vector<double> times, std::vector<InputChannel> channels)
       : times_(std::move(times)), channels_(std::move(channels)), segments_{times_.front()} {
-    for (const InputChannel& channel : channels_) add_jumps(channel);
+    for (const InputChannel& channel : channels_) {
+      steps_.push_back(steps_of(channel));
+      add_jumps(steps_.back());
+    }
     std::ranges::sort(segments_);
     segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
-    for (const InputChannel& channel : channels_) {
-      held_.push_back(held_values(channel));
-      const auto [least, largest] = std::ranges::minmax(channel.values);
+    for (std::size_t k = 0; k < channels_.size(); ++k) {
+      held_.push_back(held_values(steps_[k]));
+      const auto [least, largest] = std::ranges::minmax(channels_[k].values);
       size_.push_back(std::max(std::abs(least), std::abs(largest)));
     }
   }
@@ -135,20 +141,55 @@ class RecordedInput {
     const double line = (input.values[k + 1] - input.values[k]) / (times_[k + 1] - times_[k]);
     return 3.0 * s * (1.0 - s) * (2.0 * line - input.slopes[k] - input.slopes[k + 1]);
   }
-  void add_jumps(const InputChannel& input) {
-    for (std::size_t row = 1; input.hold && row < times_.size(); ++row) {
-      const double at = times_[row] + input.delay_s;
-      if (input.values[row] != input.values[row - 1] && at > times_.front() && at <= times_.back())
-        segments_.push_back(at);
+  /// From when a held channel has a value.
+  struct Step {
+    double at_s;
+    double value;
+  };
+  /// Of a held channel, rows that were lost included; none of others.
+  [[nodiscard]] std::vector<Step> steps_of(const InputChannel& input) const {
+    constexpr double kGap = 1.5, kMost = 10.5;  // usual distances
+    std::vector<Step> steps;
+    if (!input.hold) return steps;
+    const double usual_s = usual_distance_s();
+    for (std::size_t row = 0; row < times_.size(); ++row) {
+      steps.push_back({times_[row] + input.delay_s, input.values[row]});
+      if (row + 1 == times_.size()) break;
+      const double gap_s = times_[row + 1] - times_[row];
+      if (!(gap_s > kGap * usual_s) || gap_s > kMost * usual_s || !moves_around(input.values, row)) continue;
+      const double before_s = times_[row] - times_[row - 1], after_s = times_[row + 2] - times_[row + 1];
+      if (std::max(before_s, after_s) > kGap * usual_s) continue;  // a slower course, not rows that were lost
+      const double rise = (input.values[row + 1] - input.values[row]) / gap_s;
+      for (double s = usual_s; s < gap_s - 0.5 * usual_s; s += usual_s)
+        steps.push_back({steps.back().at_s + usual_s, input.values[row] + rise * s});
     }
+    return steps;
+  }
+  [[nodiscard]] double usual_distance_s() const {
+    std::vector<double> distances;
+    for (std::size_t row = 1; row < times_.size(); ++row) distances.push_back(times_[row] - times_[row - 1]);
+    if (distances.empty()) return std::numeric_limits<double>::infinity();
+    const auto middle = distances.begin() + std::ssize(distances) / 2;
+    std::ranges::nth_element(distances, middle);
+    return *middle;
+  }
+  /// Before the gap that follows a row, and after it: a command that is switched stays what it is until it is seen to
+  /// change.
+  [[nodiscard]] static bool moves_around(const std::vector<double>& values, std::size_t row) {
+    return row > 0 && row + 2 < values.size() && values[row] != values[row - 1] && values[row + 1] != values[row + 2];
+  }
+  void add_jumps(const std::vector<Step>& steps) {
+    for (std::size_t k = 1; k < steps.size(); ++k)
+      if (steps[k].value != steps[k - 1].value && steps[k].at_s > times_.front() && steps[k].at_s <= times_.back())
+        segments_.push_back(steps[k].at_s);
   }
   /// Of one channel in each segment; empty where it is not held.
-  [[nodiscard]] std::vector<double> held_values(const InputChannel& input) const {
+  [[nodiscard]] std::vector<double> held_values(const std::vector<Step>& steps) const {
     std::vector<double> values;
-    std::size_t row = 0;
-    for (std::size_t segment = 0; input.hold && segment < segments_.size(); ++segment) {
-      while (row + 1 < times_.size() && times_[row + 1] + input.delay_s <= segments_[segment]) ++row;
-      values.push_back(input.values[row]);
+    std::size_t at = 0;
+    for (std::size_t segment = 0; !steps.empty() && segment < segments_.size(); ++segment) {
+      while (at + 1 < steps.size() && steps[at + 1].at_s <= segments_[segment]) ++at;
+      values.push_back(steps[at].value);
     }
     return values;
   }
@@ -160,6 +201,7 @@ class RecordedInput {
   std::vector<double> times_;
   std::vector<InputChannel> channels_;
   std::vector<double> segments_;           ///< where each begins
+  std::vector<std::vector<Step>> steps_;   ///< by channel
   std::vector<std::vector<double>> held_;  ///< by channel and segment
   std::vector<double> size_;
   double clock_rate_ = 0.0;  ///< that the times have in them

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 
 #include "services/common/model/model_simulator.hpp"
+#include "services/common/model/recorded_input.hpp"
 #include "services/common/model/sensor_filter.hpp"
 #include "tests/unit/model/standard_pst.hpp"
 
@@ -93,6 +95,49 @@ TEST(Simulation, DoesNotDependOnTheRecordingsRateOrGaps) {
           << name << " at " << time;
     }
   }
+}
+
+// A logger that loses rows does not say what the input was held at meanwhile: as it was moving, on the line between.
+TEST(Simulation, TakesAHeldInputAlongTheLineWhereRowsWereLost) {
+  const AssetConfig asset = nominal_asset("eha");
+  TimeSeries all = standard_pst(asset, 100.0, 8.0);
+  all.input_hold = true;
+  std::vector<double>& voltage = all.channels.front().values;
+  for (std::size_t row = 0; row < voltage.size(); ++row)
+    voltage[row] = voltage.front() - 2.0 * std::sin(std::numbers::pi * all.time_s[row]);  // V
+  TimeSeries lost{.time_s = {}, .channels = all.channels, .input_hold = true};
+  for (Series& series : lost.channels) series.values.clear();
+  std::vector<Eigen::Index> kept;
+  for (std::size_t row = 0; row < all.time_s.size(); ++row) {
+    if (row == 200 || row == 305 || row == 306) continue;  // where it is fastest, and beside
+    kept.push_back(static_cast<Eigen::Index>(row));
+    lost.time_s.push_back(all.time_s[row]);
+    for (std::size_t c = 0; c < all.channels.size(); ++c)
+      lost.channels[c].values.push_back(all.channels[c].values[row]);
+  }
+  const auto whole = simulation_of(asset, all), gappy = simulation_of(asset, lost);
+  const auto a = run(*whole, whole->start()), b = run(*gappy, gappy->start());
+  for (const char* name : {"motor_current", "pressure_a", "position"}) {
+    const Eigen::VectorXd there = a.values.col(column(*whole, name))(kept);
+    const double far = (there - b.values.col(column(*gappy, name))).cwiseAbs().maxCoeff();
+    EXPECT_LT(far, 0.3 * asset.sensors.at(name).noise_std) << name;
+  }
+}
+
+TEST(RecordedInput, StepsWhereAMovingInputLostRowsAndKeepsASwitchAsItWas) {
+  const std::vector<double> times{0.0, 0.1, 0.2, 0.5, 0.6, 0.7};
+  const RecordedInput input(times, {{{0.0, 1.0, 2.0, 5.0, 6.0, 7.0}, true}, {{0.0, 0.0, 0.0, 1.0, 1.0, 1.0}, true}});
+  const auto at = [&](std::size_t channel, double t) {
+    std::size_t segment = 0, cursor = 0;
+    while (segment + 1 < input.segment_count() && input.segment_begin(segment + 1) <= t) ++segment;
+    return input.value(channel, t, segment, cursor);
+  };
+  EXPECT_DOUBLE_EQ(at(0, 0.25), 2.0);
+  EXPECT_NEAR(at(0, 0.35), 3.0, 1e-12);
+  EXPECT_NEAR(at(0, 0.45), 4.0, 1e-12);
+  EXPECT_DOUBLE_EQ(at(0, 0.55), 5.0);
+  EXPECT_DOUBLE_EQ(at(1, 0.45), 0.0);
+  EXPECT_DOUBLE_EQ(at(1, 0.55), 1.0);
 }
 
 // Rows further apart than any filter remembers: what is simulated between them is needed by no later row.

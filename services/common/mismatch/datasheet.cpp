@@ -12,6 +12,7 @@
 #include "services/common/mismatch/standard_errors.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/value_swaps.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -45,19 +46,6 @@ std::shared_ptr<FittedModel> begun(const Attempt& attempt, const Data& fit) {
   return model ? std::make_shared<FittedModel>(std::move(*model)) : nullptr;
 }
 
-// Not where a value ended at a bound, or within its tolerance, where it needs no explanation.
-bool is_a_cause(const FittedModel& model, const std::vector<KnownValue>& values) {
-  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
-    const Unknown& unknown = model.problem.shared[k];
-    const auto value = std::ranges::find(values, unknown.name, &KnownValue::name);
-    if (value == values.end()) continue;
-    const double off = unknown.to_value(model.optimum.point.shared[k]) - value->value;
-    const bool within = std::abs(off) < kWithinTolerance * value->standard_deviation;
-    if (within || at_bound(unknown, model.optimum.point.shared[k])) return false;
-  }
-  return true;
-}
-
 // In the order of the attempts: the first rounds side by side, then those go on that are not far from the best; the
 // others' derivatives are not needed.
 std::vector<std::shared_ptr<const FittedModel>> all_fitted(const std::vector<Attempt>& attempts, const Data& fit,
@@ -77,17 +65,9 @@ std::vector<std::shared_ptr<const FittedModel>> all_fitted(const std::vector<Att
   for (std::size_t k = 0; k < models.size(); ++k) {
     if (models[k] != nullptr && models[k]->misfit < kNear * best)
       models[k] = polished({{}, models[k]}, fit, threads).model;
-    if (models[k] != nullptr && !is_a_cause(*models[k], attempts[k].values)) models[k] = nullptr;
+    if (models[k] != nullptr && !are_beyond_tolerance(*models[k], attempts[k].values)) models[k] = nullptr;
   }
   return models;
-}
-
-// Which of them fits best; their number where none could be fitted.
-std::size_t best_of(const std::vector<std::shared_ptr<const FittedModel>>& models) {
-  std::size_t best = models.size();
-  for (std::size_t k = 0; k < models.size(); ++k)
-    if (models[k] != nullptr && (best == models.size() || models[k]->misfit < models[best]->misfit)) best = k;
-  return best;
 }
 
 // What the misfit would fall by, were the model linear in the values and these not more than kOffByAtMost off:
@@ -173,83 +153,20 @@ double behind(const FittedModel& model, const FittedModel& found) {
   return criterion(model, phi) - criterion(found, phi);
 }
 
-// The asset with those of the laws found that are kept, at the values they were found with.
-AssetConfig with_laws(AssetConfig asset, const Trial& found, const std::vector<std::size_t>& kept) {
-  const std::vector<PhysicsTerm>& terms = found.model->asset.physics;
-  for (const std::size_t k : kept) asset.physics.push_back(terms[terms.size() - found.effects.size() + k]);
-  return asset;
-}
-
-std::vector<std::size_t> without(std::vector<std::size_t> kept, std::size_t left_out) {
-  std::erase(kept, left_out);
-  return kept;
-}
-
-// The best value in place of one law.
-struct Replaced {
-  KnownValue value;
-  std::vector<std::size_t> kept;
-  std::shared_ptr<const FittedModel> model;
-};
-
-std::optional<Replaced> one_law_replaced(const DatasheetQuestion& of) {
-  std::vector<std::size_t> all(of.found.effects.size());
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
-  struct Place {
-    Promise promise;
-    std::size_t law;
-    std::shared_ptr<const FittedModel> near;
-  };
-  std::vector<Place> places;
-  for (const std::size_t law : all) {
-    Result<FittedModel> fewer =
-        fit_model(with_laws(of.asset, of.found, without(all, law)), of.fit, of.found.model.get(), of.threads);
-    if (!fewer) continue;
-    const auto near = std::make_shared<const FittedModel>(std::move(*fewer));
-    const double least = kPromising * (near->misfit - of.found.model->misfit);
-    for (Promise& promise : promises_of(of.asset, *near, of.fit, of.threads))
-      if (near->misfit - promise.misfit >= least) places.push_back({std::move(promise), law, near});
-  }
-  std::ranges::stable_sort(places, {}, [](const Place& place) { return place.promise.misfit; });
-  if (places.size() > kAsked) places.resize(kAsked);
-  std::vector<Attempt> attempts;
-  for (const Place& place : places)
-    attempts.push_back(
-        {.asset = with_free_value(with_laws(of.asset, of.found, without(all, place.law)), place.promise.value.name),
-         .values = {place.promise.value},
-         .near = place.near});
-  const auto models = all_fitted(attempts, of.fit, of.threads);
-  const std::size_t best = best_of(models);
-  if (best == models.size()) return std::nullopt;
-  return Replaced{places[best].promise.value, without(all, places[best].law), models[best]};
-}
-
 // Laws that are not needed beside the value are taken out, one at a time.
-void drop_what_is_not_needed(const DatasheetQuestion& of, Replaced& replaced) {
-  while (!replaced.kept.empty()) {
-    std::vector<Attempt> attempts;
-    for (const std::size_t law : replaced.kept)
-      attempts.push_back(
-          {.asset = with_free_value(with_laws(of.asset, of.found, without(replaced.kept, law)), replaced.value.name),
-           .values = {replaced.value},
-           .near = replaced.model});
-    const auto models = all_fitted(attempts, of.fit, of.threads);
-    const std::size_t best = best_of(models);
-    if (best == models.size() || behind(*models[best], *replaced.model) > kWorthAnother) return;
-    replaced.kept = without(replaced.kept, replaced.kept[best]);
-    replaced.model = models[best];
+Trial without_what_is_not_needed(Trial with, const DatasheetQuestion& of) {
+  for (std::size_t slot = with.effects.size(); slot-- > 0;) {
+    AssetConfig asset = with.model->asset;
+    asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(with.effects.size() - slot));
+    Result<FittedModel> fewer = fit_model(asset, of.fit, with.model.get(), of.threads);
+    if (!fewer || behind(*fewer, *with.model) > kWorthAnother) continue;
+    with.effects.erase(with.effects.begin() + static_cast<std::ptrdiff_t>(slot));
+    with.model = std::make_shared<const FittedModel>(std::move(*fewer));
   }
+  return with;
 }
 
 }  // namespace
-
-AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
-  ParameterSetting& setting = asset.parameters.at(name);
-  const auto [low, high] = std::minmax({setting.value / kOffByAtMost, setting.value * kOffByAtMost});
-  setting = {
-      .value = setting.value, .min = std::max(setting.min, low), .max = std::min(setting.max, high), .estimate = true};
-  return asset;
-}
 
 std::string values_in_words(const std::vector<std::vector<AssetValue>>& values) {
   std::string text;
@@ -272,7 +189,7 @@ std::vector<AssetValue> values_off(const FittedModel& model, const AssetConfig& 
   std::erase_if(free, [&](const KnownValue& one) {
     return std::ranges::find(values, one.name, &AssetValue::name) == values.end();
   });
-  if (!is_a_cause(model, free)) values.clear();
+  if (!are_beyond_tolerance(model, free)) values.clear();
   return values;
 }
 
@@ -317,17 +234,26 @@ std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::siz
   return std::nullopt;
 }
 
-std::optional<WrongDatasheet> value_in_place_of_laws(const DatasheetQuestion& of) {
-  const std::size_t laws = of.found.effects.size();
-  if (laws < 2) return std::nullopt;
-  std::optional<Replaced> replaced = one_law_replaced(of);
-  if (!replaced) return std::nullopt;
-  drop_what_is_not_needed(of, *replaced);
-  WrongDatasheet wrong{.values = {values_of(*replaced->model, of.asset)},
-                       .behind = behind(*replaced->model, *of.found.model),
-                       .with = with_derivatives({{}, replaced->model}, of.fit, of.threads)};
-  if (wrong.behind > kCannotTell) return std::nullopt;
-  for (const std::size_t k : replaced->kept) wrong.with.effects.push_back(of.found.effects[k]);
+std::optional<WrongDatasheet> values_in_place_of_laws(const DatasheetQuestion& of) {
+  const std::vector<KnownValue> values = known_values(of.asset, plant_of(of.baseline));
+  std::optional<WrongDatasheet> wrong;
+  Trial now = of.found;
+  for (std::size_t count = 1; count <= kMostValues && !now.effects.empty(); ++count) {
+    const double worse = count == 1 ? kCannotTell : -kCannotTell;
+    const std::vector<std::vector<std::size_t>> out = subsets_of(now.effects.size());
+    const std::vector<ValueSwap> swaps = values_in_place_of({now, out, values, of.fit, of.threads, worse});
+    if (swaps.empty()) break;
+    wrong.emplace();
+    for (const ValueSwap& swap : swaps)
+      if (swap.out == swaps.front().out && behind(*swap.with.model, *swaps.front().with.model) <= kCannotTell)
+        wrong->values.push_back(values_of(*swap.with.model, of.asset));
+    now = without_what_is_not_needed(swaps.front().with, of);
+    const bool too_few = behind(*now.model, *of.found.model) > kCannotTell || values_off(*now.model, of.asset).empty();
+    if (too_few) now = swaps.front().with;
+    wrong->values.front() = values_of(*now.model, of.asset);
+    wrong->behind = behind(*now.model, *of.found.model);
+    wrong->with = now;
+  }
   return wrong;
 }
 

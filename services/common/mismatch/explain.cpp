@@ -28,6 +28,7 @@
 #include "services/common/mismatch/time_budget.hpp"
 #include "services/common/mismatch/tolerance.hpp"
 #include "services/common/mismatch/trace.hpp"
+#include "services/common/mismatch/value_swaps.hpp"
 #include "services/common/mismatch/verdict.hpp"
 #include "services/common/mismatch/why_none.hpp"
 
@@ -75,8 +76,11 @@ class Analysis {
     if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
     if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
     if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
+    if (!why_none_ && own_ && !own_->goes_its_way) say_what_differs();
+    if (!why_none_) take_values_found();
     if (!why_none_ && own_) say_what_differs();
-    if (!why_none_ && time_.in_time("the values that the asset file fixes")) ask_the_datasheet();
+    const bool asked = why_none_ || beside_ || !result_.asset_values.empty();
+    if (!asked && time_.in_time("the values that the asset file fixes")) ask_the_datasheet();
     time_.allow(1.0);
     if (why_none_) take_no_law();
     if (!best_.effects.empty()) {
@@ -109,6 +113,7 @@ class Analysis {
     ExplainOptions options = options_;
     if (lacks_a_pressure()) options.maximum_laws = 0;
     if (!windowed()) fit_.may_differ = may_differ(asset_, fit_);
+    if (!windowed()) fit_.fixed = known_values(asset_, plant());
     const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
     Result<Screening> first = screen(*baseline_, prepared(fit_), screening);
     if (!first) return fail(first.error());
@@ -147,8 +152,9 @@ class Analysis {
       else
         naming->not_asked.emplace_back("laws in common beside those found");
     }
+    if (own_) keep_what_was_replaced(*naming, own_->naming);
     naming_ = std::move(*naming);
-    say_how_likely_by_noise(naming_.first);
+    say_how_likely_by_noise(as_it_began(naming_).first);
     look_at_what_is_left();
     if (!own_ || !result_.statistically_significant || !is_preferred(*own_, best_)) {
       own_.reset();
@@ -196,7 +202,7 @@ class Analysis {
       again = name_effects(baseline_, data, options, progress_);
     } else if (again) {
       std::ranges::copy(data.sensors, std::back_inserter(fit_.known));
-      baseline_ = again->baseline;
+      baseline_ = as_it_began(*again).baseline;
     }
     if (again || !time_.deadline().passed()) return again;
     naming->not_asked.emplace_back(kSensorsAgain);
@@ -241,6 +247,7 @@ class Analysis {
     const bool looked =
         model && look_beside(again, options, progress_, with_own_values(own.naming.best, again, options.threads));
     if (!looked && !time_.deadline().passed()) return false;
+    if (looked) keep_what_was_replaced(again.naming, own.naming);
     if (looked)
       own = std::move(again);
     else
@@ -278,11 +285,18 @@ class Analysis {
     };
     const auto with_sensors = fitted(*baseline_);
     if (!with_sensors) return fail(with_sensors.error());
-    const auto with_laws = laws.effects.empty() ? with_sensors : fitted(*laws.model);
+    const auto with_laws = laws.model == baseline_ ? with_sensors : fitted(*laws.model);
     if (!with_laws) return fail(with_laws.error());
     const Trial from{laws.effects, *with_laws};
     tell("looking again, with sensors within their tolerances", 0.5);
-    return name_effects(*with_sensors, prepared(inexact), options, progress_, from);
+    Result<Naming> beside = name_effects(*with_sensors, prepared(inexact), options, progress_, from);
+    if (beside) keep_what_was_replaced(*beside, found);
+    return beside;
+  }
+
+  // A search that began with values free does not know the laws that they replaced before.
+  static void keep_what_was_replaced(Naming& naming, const Naming& before) {
+    if (!naming.freed.empty() && naming.replaced.empty()) naming.replaced = before.replaced;
   }
 
   // With the laws that were found beside inexact sensors, one value of the asset file does what all sensors did.
@@ -367,22 +381,82 @@ class Analysis {
     const DatasheetQuestion question{asset_, *baseline_, best_, data, options_.threads};
     std::vector<std::string> instead_of;
     for (const Effect& effect : best_.effects) instead_of.push_back(law_in_words(law_at(effect)));
-    auto wrong = values_alone(question, std::max<std::size_t>(1, laws));
-    if (!wrong && laws > 0) wrong = value_in_place_of_laws(question);
+    const auto wrong = laws > 0 ? values_in_place_of_laws(question) : values_alone(question, 1);
     if (!wrong) return;
     asked_values_.push_back(asked(*wrong, naming_));
-    const double better_by = laws > 0 ? kCannotTell : kWorthAnother;
+    // Laws that stand in both explanations are claimed with the better one.
+    const double better_by = laws == 0 ? kWorthAnother : wrong->with.effects.empty() ? kCannotTell : 0.0;
     if (wrong->behind < -better_by) {
       std::vector<RecordingComparison> compared;
       time_.allow(1.0);  // a proof, whatever is searched further
-      const bool borne_out = bears_out(*wrong, *best_.model, compared);
-      if (borne_out && !take_beside_values(*wrong, instead_of, compared))
+      const bool borne_out = bears_out(*wrong, *best_.model, compared),
+                 beside = borne_out && take_beside_values(*wrong, instead_of, compared);
+      if (borne_out && !beside && wrong->behind < -kCannotTell)
         blame_the_asset_file(*wrong, joined(instead_of, " and "), compared);
       time_.allow(kSearchShare);
     }
     if (why_none_ || beside_ || laws == 0) return;
     result_.asset_values = wrong->values;
     instead_of_ = laws;
+  }
+
+  // Values that took the place of laws while these were searched are off, where the held-out recordings bear them out and
+  // laws are beside them. Else the laws again: what values do alone is asked in the end, all that do it alike.
+  void take_values_found() {
+    if (naming_.freed.empty()) return;
+    const Naming laws = *naming_.with_laws;
+    WrongDatasheet wrong{.values = {values_off(*best_.model, asset_)}, .behind = naming_.behind_laws, .with = best_};
+    std::vector<RecordingComparison> compared;
+    time_.allow(1.0);  // a proof, whatever is searched further
+    const bool beside =
+        !best_.effects.empty() && !wrong.values.front().empty() && bears_out(wrong, *laws.best.model, compared);
+    time_.allow(kSearchShare);
+    if (!beside && best_.effects.empty()) ask_what_values_do_alone(laws);
+    if (!beside && !why_none_ && !beside_) look_on_from(laws);
+    if (!beside) return;
+    if (time_.in_time("other values in place of the one that is off")) add_values_that_do_as_well(wrong);
+    std::vector<std::string> replaced;
+    for (const Effect& effect : naming_.replaced)
+      if (!is_among(effect, best_.effects)) replaced.push_back(law_in_words(law_at(effect)));
+    asked_values_ = trace_of(laws);
+    asked_values_.push_back(asked(wrong, laws));
+    beside_ = Beside{wrong, joined(replaced, " and "), joined(replaced, " and "), compared, laws};
+  }
+
+  void add_values_that_do_as_well(WrongDatasheet& wrong) const {
+    if (wrong.values.front().size() != 1) return;
+    std::vector<KnownValue> off = fit_.fixed;
+    std::erase_if(off, [&](const KnownValue& value) { return value.name != wrong.values.front().front().name; });
+    const std::vector<std::vector<std::size_t>> no_law(1);
+    for (const ValueSwap& swap :
+         values_in_place_of({wrong.with, no_law, fit_.fixed, prepared(fit_), options_.threads, kCannotTell, off}))
+      wrong.values.push_back(values_off(*swap.with.model, asset_));
+  }
+
+  // All values that do it alike, and several of them.
+  void ask_what_values_do_alone(const Naming& laws) {
+    naming_ = laws;
+    look_at_what_is_left();
+    time_.allow(1.0);
+    ask_the_datasheet();
+    time_.allow(kSearchShare);
+  }
+
+  // The search for laws goes on where it was left, without values.
+  void look_on_from(const Naming& laws) {
+    result_.asset_values.clear();  // beside the laws so far
+    instead_of_ = 0;
+    fit_.fixed.clear();
+    fit_.may_differ.clear();
+    Result<Naming> further = look_in_common(laws.best, options_, &laws.first);
+    naming_ = further ? std::move(*further) : laws;
+    if (further && naming_.baseline == laws.baseline)
+      naming_.trials.insert(naming_.trials.begin(), laws.trials.begin(), laws.trials.end());
+    look_at_what_is_left();
+  }
+
+  static bool is_among(const Effect& effect, const std::vector<Effect>& effects) {
+    return std::ranges::any_of(effects, [&](const Effect& other) { return same_place(law_at(effect), law_at(other)); });
   }
 
   // A value in place of one law, and others needed beside it: these are in both explanations, and are claimed. The search
@@ -402,11 +476,7 @@ class Analysis {
     auto naming = name_effects(std::make_shared<const FittedModel>(std::move(*alone)), prepared(fit_), options_,
                                progress_, wrong.with, &*first);
     if (!naming || !naming->differs_in.empty() || naming->best.effects.empty()) return false;
-    const auto among = [](const Effect& effect, const std::vector<Effect>& effects) {
-      return std::ranges::any_of(effects,
-                                 [&](const Effect& other) { return same_place(law_at(effect), law_at(other)); });
-    };
-    const auto known = [&](const Effect& effect) { return among(effect, best_.effects); };
+    const auto known = [&](const Effect& effect) { return is_among(effect, best_.effects); };
     const double phi = std::min(dispersion(*naming->best.model), dispersion(*best_.model));
     if (!std::ranges::all_of(naming->best.effects, known) ||
         criterion(*naming->best.model, phi) > criterion(*best_.model, phi) ||
@@ -414,7 +484,7 @@ class Analysis {
       return false;
     std::vector<std::string> instead;
     for (std::size_t k = 0; k < laws.size(); ++k)
-      if (!among(best_.effects[k], naming->best.effects)) instead.push_back(laws[k]);
+      if (!is_among(best_.effects[k], naming->best.effects)) instead.push_back(laws[k]);
     if (instead.empty()) return false;
     const std::vector<Asked> asked_before = trace_of(naming_);
     asked_values_.insert(asked_values_.begin(), asked_before.begin(), asked_before.end());
@@ -429,7 +499,8 @@ class Analysis {
     const Beside beside = std::move(*beside_);
     beside_.reset();
     naming_ = beside.before;
-    blame_the_asset_file(beside.wrong, beside.laws, beside.compared);
+    asked_values_.erase(asked_values_.begin(), std::prev(asked_values_.end()));  // the rest is in the trace again
+    if (beside.wrong.behind < -kCannotTell) blame_the_asset_file(beside.wrong, beside.laws, beside.compared);
     take_no_law();
   }
 
@@ -487,7 +558,9 @@ class Analysis {
     if (!model) return fail(model.error());
     baseline_ = std::make_shared<const FittedModel>(std::move(*model));
     tell("looking again, weighed by the colour of what is left", 0.5);
-    Result<Naming> naming = name_effects(baseline_, prepared(fit_), options_, progress_);
+    Data data = prepared(fit_);
+    data.fixed.clear();
+    Result<Naming> naming = name_effects(baseline_, data, options_, progress_);
     if (!naming) return fail(naming.error());
     naming_ = std::move(*naming);
     look_at_what_is_left();
@@ -570,7 +643,10 @@ class Analysis {
   Status finish() {
     tell("writing down what was found", 0.9);
     describe_what_was_found();
-    if (beside_ && !best_.effects.empty()) result_.asset_values = {values_off(*best_.model, asset_)};
+    if (beside_ && !best_.effects.empty()) {
+      result_.asset_values = beside_->wrong.values;
+      result_.asset_values.front() = values_off(*best_.model, asset_);
+    }
     if (beside_ && (best_.effects.empty() || result_.asset_values.front().empty())) {
       result_.effects.clear();
       fall_back_on_the_value();
@@ -717,9 +793,13 @@ class Analysis {
   // alone, has no part in the fit that could tell it.
   void compare_with_what_was_kept_aside() {
     if (windowed() || why_none_ || result_.statistically_significant) return;
-    const auto worst = std::ranges::max_element(result_.holdout.channels, {}, &ChannelComparison::weighed_rms_after);
-    if (worst == result_.holdout.channels.end() || worst->weighed_rms_after < kHeldOutAgrees) return;
-    why_none_ = those_kept_aside_differ(*worst);
+    if (const ChannelComparison* worst = missed_in(result_.holdout)) why_none_ = those_kept_aside_differ(*worst);
+  }
+
+  // The channel that is furthest off, where that is more than its noise; null where none is.
+  static const ChannelComparison* missed_in(const PooledFit& fit) {
+    const auto worst = std::ranges::max_element(fit.channels, {}, &ChannelComparison::weighed_rms_after);
+    return worst == fit.channels.end() || worst->weighed_rms_after < kHeldOutAgrees ? nullptr : &*worst;
   }
 
   [[nodiscard]] std::string what_happened() const {
@@ -733,6 +813,8 @@ class Analysis {
     remark_leak_in_two_parts(result_);
     if (why_none_) {
       if (with_another_value_ && !course.empty()) why_none_->summary += " " + course;
+      const ChannelComparison* missed = own_ && is_wear(*own_) ? missed_in(result_.holdout) : nullptr;
+      if (missed != nullptr) why_none_->summary += missed_by_trend(*missed);
       return remark_why_none(*why_none_, result_);
     }
     if (own_) is_wear(*own_) ? remark_ageing(course, result_) : remark_difference(course, result_);
@@ -740,7 +822,7 @@ class Analysis {
     // Taken back since: what stood for laws has nothing to stand for.
     if (!beside && result_.effects.size() != instead_of_) result_.asset_values.clear();
     if (beside)
-      remark_values_beside(beside_->instead, result_);
+      remark_values_beside(beside_->instead, beside_->wrong.behind > -kCannotTell, result_);
     else if (!result_.asset_values.empty())
       remark_asset_values(result_);
     if (best_.effects.size() == 1 && same_effects(best_.effects, naming_.best.effects) && !leaves_nothing() &&

@@ -29,6 +29,7 @@ struct Data {
   std::string own_parameter = {};                       ///< that each recording has for itself ("R_CL"); "": none
   std::vector<std::string> may_differ = {};             ///< parameters of which each recording may have its own
   std::vector<KnownValue> known = {};                   ///< fixed values that may be off within their tolerance
+  std::vector<KnownValue> fixed = {};                   ///< all fixed values, of which one may be off further
   std::map<std::string, double> given = {};             ///< parameters as the asset file has them
   std::vector<KnownValue> sensors = {};  ///< taken for exact until one of them is found to be off within its tolerance
   /// Recordings start from what was measured. Else a recording's initial state is among its own unknowns.

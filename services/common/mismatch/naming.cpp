@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "services/common/mismatch/ranking.hpp"
 #include "services/common/mismatch/remainder.hpp"
 #include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/value_swaps.hpp"
 #include "services/common/mismatch/verdict.hpp"
 
 namespace sealwatch::mismatch {
@@ -374,7 +376,117 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   return with_differing(std::move(trials));
 }
 
+double criterion_behind(const FittedModel& model, const FittedModel& other) {
+  const double phi = std::min(dispersion(model), dispersion(other));
+  return criterion(model, phi) - criterion(other, phi);
+}
+
+// The asset with a value free whose place the file gives.
+AssetConfig with_free(AssetConfig asset, const KnownValue& value) {
+  asset.parameters.at(value.name).value = value.value;
+  return with_free_value(std::move(asset), value.name);
+}
+
+// Fixed values that `from` has free and the baseline has not.
+std::vector<KnownValue> freed_by(const Trial& from, const FittedModel& baseline, const Data& data) {
+  std::vector<KnownValue> freed = data.fixed;
+  std::erase_if(freed, [&](const KnownValue& value) {
+    return from.model == nullptr || !from.model->asset.parameters.at(value.name).estimate ||
+           baseline.asset.parameters.at(value.name).estimate;
+  });
+  return freed;
+}
+
+// The search goes on from `from` beside these values.
+Result<Naming> beside_values(const Naming& naming, const std::vector<KnownValue>& values, const Trial& from,
+                             const Data& data, const ExplainOptions& options, const Progress& progress) {
+  std::shared_ptr<const FittedModel> baseline = from.model;
+  if (!from.effects.empty()) {
+    AssetConfig asset = naming.baseline->asset;
+    for (const KnownValue& value : values) {
+      asset = with_free(std::move(asset), value);
+      asset.parameters.at(value.name).value = from.model->asset.parameters.at(value.name).value;
+    }
+    Result<FittedModel> alone = fit_model(asset, data, from.model.get(), options.threads);
+    if (!alone) return fail(alone.error());
+    baseline = std::make_shared<const FittedModel>(std::move(*alone));
+  }
+  Result<Naming> beside = name_effects(baseline, data, options, progress, from);
+  if (!beside) return beside;
+  beside->baseline_with_sensors.reset();  // of the model as it is, that is
+  for (const KnownValue& value : values) beside->freed.insert(beside->freed.begin(), value.name);
+  return beside;
+}
+
+// Criterion of what was found with the value less that with the value as it is known and with its laws again, beside
+// everything else: above 0 the value only stood for these. Infinitely little where that cannot be fitted.
+double behind_laws(const Naming& beside, const Trial& laws, const ValueSwap& swap, const Data& data, int threads) {
+  const FittedModel& best = *beside.best.model;
+  AssetConfig asset = best.asset;
+  ParameterSetting& setting = asset.parameters.at(swap.value.name);
+  const ParameterSetting& was = laws.model->asset.parameters.at(swap.value.name);
+  setting = was;
+  const std::vector<PhysicsTerm>& physics = laws.model->asset.physics;
+  const auto first = physics.size() - laws.effects.size();
+  for (const std::size_t slot : swap.out) {
+    const auto found_again = [&](const Effect& effect) { return same(effect, laws.effects[slot]); };
+    if (std::ranges::none_of(beside.best.effects, found_again)) asset.physics.push_back(physics[first + slot]);
+  }
+  Result<FittedModel> fitted = fit_model(asset, data, &best, threads);
+  if (!fitted) return -std::numeric_limits<double>::infinity();
+  const Trial back = polished({{}, std::make_shared<const FittedModel>(std::move(*fitted))}, data, threads);
+  const double phi = std::min(dispersion(*back.model), dispersion(best));
+  return criterion(best, phi) - criterion(*back.model, phi);
+}
+
+// A law that other shapes or forms of it could serve better than what was found first.
+bool has_shapes(const Effect& effect) {
+  const bool of_its_own =
+      std::ranges::any_of(effect.law->parameters, [](const LawParameter& one) { return !one.strength; });
+  const auto forms = std::ranges::count_if(all_laws(), [&](const Law& law) { return law.id == effect.law->id; });
+  return of_its_own || forms > 1;
+}
+
+// A fixed value of the asset file in place of laws found, all of them without shapes or not, where that explains more by
+// far: the search beside it. Nothing where none does, or laws did better in the end.
+std::optional<Naming> value_in_place(Naming& naming, bool without_shapes, const Data& data,
+                                     const ExplainOptions& options, const Progress& progress) {
+  constexpr long kMostValues = 2;
+  const auto is_free = [&](const KnownValue& value) {
+    return naming.baseline->asset.parameters.at(value.name).estimate;
+  };
+  if (data.fixed.empty() || std::ranges::count_if(data.fixed, is_free) >= kMostValues) return std::nullopt;
+  auto out = subsets_of(naming.best.effects.size());
+  std::erase_if(out, [&](const std::vector<std::size_t>& slots) {
+    const auto shaped = [&](std::size_t slot) { return has_shapes(naming.best.effects[slot]); };
+    return std::ranges::none_of(slots, shaped) != without_shapes;
+  });
+  if (out.empty()) return std::nullopt;
+  std::vector<KnownValue> values = data.fixed;
+  std::erase_if(values, [&](const KnownValue& value) {
+    return std::ranges::find(naming.refused, value.name) != naming.refused.end();
+  });
+  const auto swaps = values_in_place_of({naming.best, out, values, data, options.threads, -kCannotTell});
+  if (swaps.empty() || swaps.front().with.model->optimum.at_optimum.front().jacobian.size() == 0) return std::nullopt;
+  const ValueSwap& swap = swaps.front();
+  if (progress) progress("looking again, beside a value of the asset file", 0.5);
+  Result<Naming> beside = beside_values(naming, {swap.value}, swap.with, data, options, progress);
+  if (!beside) return std::nullopt;
+  const double behind = passed(data.deadline) ? criterion_behind(*swap.with.model, *naming.best.model)
+                                              : behind_laws(*beside, naming.best, swap, data, options.threads);
+  if (behind > 0.0) {
+    naming.refused.push_back(swap.value.name);
+    return std::nullopt;
+  }
+  beside->behind_laws = beside->freed.size() > 1 ? std::max(beside->behind_laws, behind) : behind;
+  for (const std::size_t slot : swap.out) beside->replaced.push_back(naming.best.effects[slot]);
+  beside->with_laws = std::make_shared<const Naming>(naming);
+  return std::move(*beside);
+}
+
 }  // namespace
+
+const Naming& as_it_began(const Naming& naming) { return naming.with_laws == nullptr ? naming : *naming.with_laws; }
 
 double share_left_by_best(const Naming& naming) {
   return share_left(*naming.baseline, *naming.best.model, most_promised(naming.last));
@@ -408,6 +520,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
                             const ExplainOptions& options, const Progress& progress, const Trial& from,
                             const Screening* known) {
   const ScreeningOptions screening{.seed = options.seed, .threads = options.threads};
+  const std::vector<KnownValue> freed = freed_by(from, *baseline, data);
   Result<Screening> first = known != nullptr ? *known : screen(*baseline, data, screening);
   if (!first) return fail(first.error());
   Naming naming{
@@ -418,6 +531,14 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     naming.not_asked.emplace_back(step);
     return false;
   };
+  if (!freed.empty()) {
+    Result<Naming> beside = beside_values(naming, freed, from, data, options, progress);
+    if (!beside) naming.not_asked.emplace_back("what was found beside a value of the asset file");
+    if (!beside) return naming;
+    beside->behind_laws = std::min(beside->behind_laws, criterion_behind(*beside->best.model, *baseline));
+    beside->with_laws = std::make_shared<const Naming>(naming);
+    return beside;
+  }
   if (from.effects.empty()) {
     begin_with_what_shows(naming, data, options);
   } else {
@@ -462,7 +583,11 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
       naming.sensors_are_inexact = true;
       return naming;
     }
+    if (in_time("values of the asset file in place of laws"))
+      if (auto beside = value_in_place(naming, true, data, options, progress)) return std::move(*beside);
     if (in_time("other shapes of the law found")) from_other_shapes(naming, before, asked, data, options);
+    if (in_time("values of the asset file in place of laws with shapes"))
+      if (auto beside = value_in_place(naming, false, data, options, progress)) return std::move(*beside);
     if (in_time("other laws in place of those found before")) another_law_for_each(naming, data, options);
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);
   }

@@ -41,11 +41,21 @@ struct Naming {
   /// there, and `best` is to be asked beside it. "": none.
   std::string differs_in = {};
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
+  /// Fixed values that took the place of laws (Data::fixed): `baseline` has them free, and all others here are beside them.
+  std::vector<std::string> freed = {};
+  /// The search until then, whose best has the laws in their place (none where it began beside them); null without such.
+  std::shared_ptr<const Naming> with_laws = {};
+  std::vector<Effect> replaced = {};      ///< these laws
+  double behind_laws = 0.0;               ///< criterion of `best` less that with the values known and these laws again
+  std::vector<std::string> refused = {};  ///< values that did less well than laws in the end
 };
 
+/// The search as it began: with no value free that the asset file fixes.
+[[nodiscard]] const Naming& as_it_began(const Naming& naming);
+
 /// An Error when nothing can be looked at: the baseline cannot be linearised. A law whose model cannot be is not taken,
-/// `remarks` says so, and the search ends with what it had. `from`: laws to begin with, refitted to the same data;
-/// those that are not needed there are taken out first. `known`: the baseline's screening, where it is known.
+/// `remarks` says so, and the search ends with what it had. `from`: laws and free values to begin with, refitted to the
+/// same data; laws that are not needed there are taken out first. `known`: the baseline's screening, where it is known.
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                                           const ExplainOptions& options, const Progress& progress,
                                           const Trial& from = {}, const Screening* known = nullptr);

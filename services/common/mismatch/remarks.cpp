@@ -48,11 +48,13 @@ void remark_asset_values(Explanation& result) {
   result.next_test = result.next_test.empty() ? check : check + " " + result.next_test;
 }
 
-void remark_values_beside(const std::string& instead, Explanation& result) {
+void remark_values_beside(const std::string& instead, bool as_well, Explanation& result) {
   for (const FoundEffect& effect : result.effects) result.beside_asset_values.push_back(effect.what);
   const std::string values = values_in_words(result.asset_values);
-  result.summary += " Beside this a value of the asset file is off, which has its share in that: " + values +
-                    ". Without it " + instead + " would be needed, which fits less well and is not claimed.";
+  result.summary += " Beside this a value of the asset file is off, which has its share in that: " + values + ".";
+  if (!instead.empty())
+    result.summary += as_well ? " In its place " + instead + " would do as well, and is not claimed."
+                              : " Without it " + instead + " would be needed, which fits less well and is not claimed.";
   const std::string check = "Check this value in the asset file first: " + values + ".";
   result.next_test = result.next_test.empty() ? check : check + " " + result.next_test;
 }

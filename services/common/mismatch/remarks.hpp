@@ -19,8 +19,8 @@ void remark_difference(const std::string& course, Explanation& result);
 
 /// Values of the asset file that would do the same as the laws found.
 void remark_asset_values(Explanation& result);
-/// The laws found, and beside them values of the asset file that are off; without them `instead` would be needed.
-void remark_values_beside(const std::string& instead, Explanation& result);
+/// The laws found, and beside them values of the asset file that are off. In their place `instead` does as well, or less.
+void remark_values_beside(const std::string& instead, bool as_well, Explanation& result);
 
 /// The input's course between its samples may account for what is left.
 void remark_faster_sampling(Explanation& result);

@@ -1,6 +1,7 @@
 // The time limit of an analysis: how much of it a step may use, and what it cut off.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <stop_token>
@@ -31,7 +32,8 @@ class TimeBudget {
     return false;
   }
   void add_not_asked(const std::vector<std::string>& steps) {
-    not_asked_.insert(not_asked_.end(), steps.begin(), steps.end());
+    for (const std::string& step : steps)
+      if (std::ranges::find(not_asked_, step) == not_asked_.end()) not_asked_.push_back(step);
   }
   [[nodiscard]] const std::vector<std::string>& not_asked() const { return not_asked_; }
   [[nodiscard]] const Deadline& deadline() const { return deadline_; }

@@ -87,6 +87,26 @@ std::string tolerated_name(const Effect& effect) {
   return effect.law->kind == SiteKind::sensor_bias ? sensor_offset_name(channel) : "";
 }
 
+AssetConfig with_free_value(AssetConfig asset, const std::string& name) {
+  ParameterSetting& setting = asset.parameters.at(name);
+  const auto [low, high] = std::minmax({setting.value / kOffByAtMost, setting.value * kOffByAtMost});
+  setting = {
+      .value = setting.value, .min = std::max(setting.min, low), .max = std::min(setting.max, high), .estimate = true};
+  return asset;
+}
+
+bool are_beyond_tolerance(const FittedModel& model, const std::vector<KnownValue>& values) {
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const Unknown& unknown = model.problem.shared[k];
+    const auto value = std::ranges::find(values, unknown.name, &KnownValue::name);
+    if (value == values.end()) continue;
+    const double off = unknown.to_value(model.optimum.point.shared[k]) - value->value;
+    const bool within = std::abs(off) < kWithinTolerance * value->standard_deviation;
+    if (within || at_bound(unknown, model.optimum.point.shared[k])) return false;
+  }
+  return true;
+}
+
 std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const FittedModel& model, const Data& data,
                                   int threads) {
   constexpr double kShows = 0.25;

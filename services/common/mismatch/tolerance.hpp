@@ -44,6 +44,12 @@ inline constexpr double kUsualSensorTolerance = 0.0025;
 /// them at all, in units of the criterion: -2 ln of the Occam factor of their evidence.
 [[nodiscard]] double occam_factor(const FittedModel& model, const std::vector<KnownValue>& of, double phi);
 
+/// The asset with a fixed value set free, up to kOffByAtMost times off and within its range.
+[[nodiscard]] AssetConfig with_free_value(AssetConfig asset, const std::string& name);
+
+/// Whether all of `values`, which the model has free, came out beyond their tolerances and not at an end of their range.
+[[nodiscard]] bool are_beyond_tolerance(const FittedModel& model, const std::vector<KnownValue>& values);
+
 /// Those of `known` that show in these recordings, at `model`; none where the model cannot be linearised.
 [[nodiscard]] std::vector<KnownValue> that_show(const std::vector<KnownValue>& known, const FittedModel& model,
                                                 const Data& data, int threads);

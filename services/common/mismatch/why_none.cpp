@@ -44,14 +44,19 @@ WhyNone seal_changed_but_not_by_wear(const std::string& course) {
 }
 
 WhyNone seal_aged_and_no_more(const std::string& course) {
-  return {.summary = course + " The piston seal aged; nothing else is missing.",
+  return {.summary = course + " The piston seal aged; nothing else shows.",
           .next_test = kTestsOfOneTime,
           .element = "piston_seal"};
 }
 
 WhyNone differed_and_no_more(const std::string& course) {
-  return {.summary = course + " The asset changed between these tests; nothing else is missing.",
+  return {.summary = course + " The asset changed between these tests; nothing else shows.",
           .next_test = kTestsOfOneTime};
+}
+
+std::string missed_by_trend(const ChannelComparison& worst) {
+  return " On held-out recordings, with what the trend predicts for them, " + in_words(worst.channel) + " misses by " +
+         number(worst.rms_after) + " times the noise: the prediction's error, or what the fitted tests do not show.";
 }
 
 WhyNone value_of_the_asset_file(const std::string& values, bool several, const std::string& beside,

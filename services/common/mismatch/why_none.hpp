@@ -27,6 +27,8 @@ struct WhyNone {
 [[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
 /// `course`: of another parameter.
 [[nodiscard]] WhyNone differed_and_no_more(const std::string& course);
+/// Behind one of these; `worst`: of the held-out channels, further off than its noise.
+[[nodiscard]] std::string missed_by_trend(const ChannelComparison& worst);
 
 /// `values`: of the asset file (`several`: more than one), and what would explain the recordings instead, in words;
 /// `beside`: laws that are needed with them ("" for none); `instead_of`: what they stand for ("" where no law was

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/mismatch/naming.hpp"
+#include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/value_swaps.hpp"
 #include "services/common/runtime/asset_file.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
@@ -78,7 +81,7 @@ TEST(Datasheet, ARightAssetFileIsNotBlamed) {
   const auto [baseline, laws] =
       found(asset, data, {{{*find_law("quadratic_drag", {"k"}), "piston"}, {1e9}}, gain_of("flow")});
   EXPECT_FALSE(values_alone({asset, *baseline, laws, data, 2}, 2));
-  EXPECT_FALSE(value_in_place_of_laws({asset, *baseline, laws, data, 2}));
+  EXPECT_FALSE(values_in_place_of_laws({asset, *baseline, laws, data, 2}));
 }
 
 TEST(Datasheet, AWrongAreaIsFoundInPlaceOfAGainBesideALeak) {
@@ -89,12 +92,74 @@ TEST(Datasheet, AWrongAreaIsFoundInPlaceOfAGainBesideALeak) {
   const auto [baseline, laws] =
       found(asset, data,
             {{{*find_law("external_leakage", {"G"}), "chamber_a"}, {2e-14}}, gain_of("flow"), gain_of("position")});
-  const auto wrong = value_in_place_of_laws({asset, *baseline, laws, data, 2});
+  const auto wrong = values_in_place_of_laws({asset, *baseline, laws, data, 2});
   ASSERT_TRUE(wrong);
   EXPECT_EQ(wrong->values.front().front().name, "A_C");
   EXPECT_NEAR(wrong->values.front().front().fitted, 1.05 * 5.89e-3, 2e-5);
   ASSERT_EQ(wrong->with.effects.size(), 1U);
   EXPECT_EQ(wrong->with.effects.front().element, "chamber_a");
+}
+
+std::vector<KnownValue> fixed_values(const AssetConfig& asset) {
+  return known_values(asset, **find_plant(asset.model));
+}
+
+// An input's gain does nearly what another constant of the motor does: found as the one, told as the other.
+TEST(ValueSwaps, FindWhichValueDoesWhatALawDoes) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4e-14});
+  truth.parameters.at("Omega_M").value *= 1.1;
+  const Data data = two_tests_of(truth);
+  const auto [baseline, laws] = found(asset, data,
+                                      {{{*find_law("input_gain", {"g"}), "input:motor_voltage"}, {-0.05}},
+                                       {{*find_law("external_leakage", {"G"}), "chamber_a"}, {2e-14}}});
+  const std::vector<KnownValue> values = fixed_values(asset);
+  const auto out = subsets_of(2);
+  const auto swaps = values_in_place_of({laws, out, values, data, 2, kCannotTell});
+  ASSERT_FALSE(swaps.empty());
+  EXPECT_EQ(swaps.front().value.name, "Omega_M");
+  EXPECT_EQ(swaps.front().out, std::vector<std::size_t>{0});
+  ASSERT_EQ(swaps.front().with.effects.size(), 1U);
+  EXPECT_EQ(swaps.front().with.effects.front().element, "chamber_a");
+  EXPECT_NEAR(*estimate_of(*swaps.front().with.model, "Omega_M") / asset.parameter("Omega_M"), 1.1, 0.01);
+
+  // It back at what is known of it, and another in its place: none does.
+  std::vector<KnownValue> back = values;
+  std::erase_if(back, [](const KnownValue& value) { return value.name != "Omega_M"; });
+  const std::vector<std::vector<std::size_t>> no_law(1);
+  for (const ValueSwap& other : values_in_place_of({swaps.front().with, no_law, values, data, 2, kCannotTell, back}))
+    EXPECT_NE(other.value.name, "A_C");
+}
+
+TEST(ValueSwaps, LeaveALawThatNoValueDoes) {
+  const AssetConfig asset = actuator();
+  const Data data = two_tests_of(with_law(asset, **find_law("quadratic_drag", {"k"}), "piston", std::vector{2e9}));
+  const auto [baseline, laws] = found(asset, data, {{{*find_law("quadratic_drag", {"k"}), "piston"}, {1e9}}});
+  const auto out = subsets_of(1);
+  EXPECT_TRUE(values_in_place_of({laws, out, fixed_values(asset), data, 2, kCannotTell}).empty());
+}
+
+TEST(Search, GoesOnBesideAValueThatIsOff) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = with_law(asset, **find_law("external_leakage", {"G"}), "chamber_a", std::vector{4e-14});
+  truth.parameters.at("A_C").value *= 1.05;
+  Data data = two_tests_of(truth);
+  data.fixed = fixed_values(asset);
+  const auto baseline = std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
+  const ExplainOptions options{.threads = 2};
+  const Naming naming = name_effects(baseline, data, options, {}).value();
+  EXPECT_EQ(naming.freed, std::vector<std::string>{"A_C"});
+  EXPECT_FALSE(naming.replaced.empty());
+  EXPECT_LT(naming.behind_laws, -kCannotTell);
+  ASSERT_EQ(naming.best.effects.size(), 1U);
+  EXPECT_EQ(naming.best.effects.front().element, "chamber_a");
+  ASSERT_NE(naming.with_laws, nullptr);
+  EXPECT_EQ(as_it_began(naming).baseline, baseline);
+  EXPECT_NEAR(*estimate_of(*naming.best.model, "A_C"), 1.05 * 5.89e-3, 2e-5);
+
+  // Without the list of what is fixed only laws are asked.
+  data.fixed.clear();
+  EXPECT_TRUE(name_effects(baseline, data, options, {}).value().freed.empty());
 }
 
 }  // namespace

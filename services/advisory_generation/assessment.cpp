@@ -50,7 +50,7 @@ std::optional<UtcTime> campaign_before(const Forecast& forecast, UtcTime work) {
   return before;
 }
 
-/// How far the logarithmic law puts the end of life behind the forecast in charge; 0 where it gives none.
+/// How far the logarithmic law puts the end of life behind the primary forecast; 0 where it gives none.
 double law_gap_months(const RemainingLife& life) {
   const Forecast& in_charge = life.forecasts.front();
   for (const Forecast& other : life.forecasts)

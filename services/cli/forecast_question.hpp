@@ -50,7 +50,7 @@ void take_site(const Configuration& configuration, const std::string& site, Fore
 /// Whether the answer gives the probability of failure before a date.
 [[nodiscard]] bool tells_probability(const Forecast& forecast);
 
-/// Going now, at each date that was asked for, and waiting, by the forecaster in charge. Empty without its forecast.
+/// Going now, at each date that was asked for, and waiting, by the primary forecaster. Empty without its forecast.
 [[nodiscard]] std::vector<DecisionOption> decision_of(const ForecastQuestion& question,
                                                       const forecast::ForecastPanel::Answer& answer);
 

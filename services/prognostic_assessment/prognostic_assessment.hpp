@@ -27,7 +27,7 @@ namespace sealwatch::prognostic_assessment {
 inline constexpr const char* kProducer = "prognostic_assessment 0.1.0";
 
 struct Options {
-  std::vector<forecast::ForecasterSettings> forecasters = forecast::default_forecasters();  ///< the one in charge first
+  std::vector<forecast::ForecasterSettings> forecasters = forecast::default_forecasters();  ///< the primary one first
   /// A test whose theta is less certain tells nothing: a tenth of theta is a quarter of the way from new to failed.
   double largest_condition_std = 0.10;
 

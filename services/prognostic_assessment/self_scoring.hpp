@@ -1,4 +1,4 @@
-// Self-scoring in service: what the forecaster in charge said a quarter of a year before each of the last tests,
+// Self-scoring in service: what the primary forecaster said a quarter of a year before each of the last tests,
 // against what they gave (forecast/forecast_score.hpp).
 #pragma once
 

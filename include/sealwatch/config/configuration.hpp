@@ -14,7 +14,7 @@
 
 namespace sealwatch {
 
-/// QoS of one topic where it departs from the defaults of docs/architecture.md.
+/// QoS of one topic where it departs from the defaults of docs/topics.md.
 struct TopicQos {
   bool keep_all = true;         ///< false: keep_last 1 (state topics)
   bool transient_local = true;  ///< a late subscriber gets the last message of every asset
@@ -67,7 +67,7 @@ struct Configuration {
   std::string cyclonedds_uri;  ///< passed on as CYCLONEDDS_URI where the environment has none
   LoggingConfig logging;
   std::map<std::string, ServiceConfig> services;  ///< by service name
-  std::vector<ForecasterConfig> forecasters;      ///< the one in charge first; none: the default ones
+  std::vector<ForecasterConfig> forecasters;      ///< the primary one first; none: the default ones
   std::optional<FleetConstants> fleet;            ///< of all forecasters; none: the reference's
   AdviceOptions advice;
   std::map<std::string, TopicQos> topics;  ///< by topic name

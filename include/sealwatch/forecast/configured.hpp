@@ -9,7 +9,7 @@
 namespace sealwatch::forecast {
 
 [[nodiscard]] ForecasterSettings configured_forecaster(const ForecasterConfig& config);
-/// The one in charge first; the default ones where the configuration names none.
+/// The primary one first; the default ones where the configuration names none.
 [[nodiscard]] std::vector<ForecasterSettings> configured_forecasters(const Configuration& configuration);
 
 }  // namespace sealwatch::forecast

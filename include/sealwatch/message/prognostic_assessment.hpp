@@ -54,20 +54,19 @@ struct RemainingLife {
   double condition = 0.0;  ///< latest theta that was used
   bool condition_known = false;
   double condition_std = 0.0;
-  std::vector<Forecast> forecasts;  ///< windows side by side; the one in charge first
+  std::vector<Forecast> forecasts;  ///< windows side by side; the primary one first
   bool windows_disagree = false;    ///< prediction intervals of two windows do not overlap
   std::string disagreement;
   std::int32_t tests_since_replacement = 0;
-  /// Earlier forecasts of the condition by the forecaster in charge, against the estimates that have come since.
+  /// Earlier forecasts of the condition by the primary forecaster, against the estimates that have come since.
   std::int32_t scored_forecasts = 0;  ///< 0: the shares and the CRPS say nothing yet
   double coverage_80 = 0.0;           ///< share of those estimates within the 80 % interval
   double coverage_95 = 0.0;
   double mean_crps = 0.0;   ///< of theta [1]
   double confidence = 0.0;  ///< 0..1 that the forecaster still describes this seal; 0 where nothing is forecast
-  std::vector<DecisionOption>
-      decision;                    ///< by the forecaster in charge, in the order of time; empty without a forecast
-  bool replacement_known = false;  ///< a replacement of this seal or actuator has been reported
-  std::int64_t replaced_ns = 0;    ///< when: only tests since then count
+  std::vector<DecisionOption> decision;  ///< by the primary forecaster, in the order of time; empty without a forecast
+  bool replacement_known = false;        ///< a replacement of this seal or actuator has been reported
+  std::int64_t replaced_ns = 0;          ///< when: only tests since then count
   SEALWATCH_FIELDS(RemainingLife, asset_id, header, threshold, condition, condition_known, condition_std, forecasts,
                    windows_disagree, disagreement, tests_since_replacement, scored_forecasts, coverage_80, coverage_95,
                    mean_crps, confidence, decision, replacement_known, replaced_ns)

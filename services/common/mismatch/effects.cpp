@@ -32,7 +32,8 @@ std::size_t place_of(const Trial& trial, std::size_t slot) {
 }
 
 // The same law at the plant's other elements of that kind (the other chamber, the other valve), from where the search
-// ended here: from its own linear step that twin's refit may have ended in a hollow, and the place would look certain.
+// ended here: from its own linear step that twin's refit may have ended in a local minimum, and the place would look
+// certain.
 std::vector<std::vector<LawStart>> twins_of(const Naming& naming, const Trial& best, std::size_t slot) {
   const Effect& effect = best.effects[slot];
   std::vector<std::vector<LawStart>> starts;

@@ -10,8 +10,8 @@
 namespace sealwatch::mismatch {
 
 /// Each law that was just added to the best trial `before` starts again in its place: where something is left beyond the
-/// noise, its refit from the linear step may have ended in a hollow, or the law has another form than the catalogue's,
-/// and another law was or would be asked to fill that. `asked`: the screening that proposed them.
+/// noise, its refit from the linear step may have ended in a local minimum, or the law has another form than the
+/// catalogue's, and another law was or would be asked to fill that. `asked`: the screening that proposed them.
 void from_other_shapes(Naming& naming, const Trial& before, const Screening& asked, const Data& data,
                        const ExplainOptions& options);
 

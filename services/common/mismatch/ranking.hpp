@@ -19,7 +19,7 @@ namespace sealwatch::mismatch {
 [[nodiscard]] std::size_t nearly_as_promising(const Screening& screening, std::size_t most, double least = 0.0);
 
 /// Of the best laws another point of their shape's grid: far from a recording the linearised gain says little about
-/// where a refit ends, and from one start it may end in a hollow beside the best.
+/// where a refit ends, and from one start it may end in a local minimum beside the best.
 [[nodiscard]] std::vector<LawStart> second_starts(const Screening& screening);
 
 /// The best pairs of different laws that promise clearly more than the best single law. Without `also_measurements`

@@ -1,5 +1,5 @@
 // Simulation with laws in force and with injected columns: heavy to compile, so each plant does it in a file of its
-// own, as  template class of run_with_physics  (see simulation_eha_physics.cpp).
+// own (plants/eha/with_physics.cpp).
 #pragma once
 
 #include "services/common/model/plant_simulation.hpp"

@@ -84,4 +84,9 @@ double criterion(const FittedModel& model, double dispersion) {
          static_cast<double>(model.free_shared) * std::max(kLeastPenalty, std::log(model.residuals / dispersion));
 }
 
+double criterion_behind(const FittedModel& model, const FittedModel& other) {
+  const double phi = std::min(dispersion(model), dispersion(other));
+  return criterion(model, phi) - criterion(other, phi);
+}
+
 }  // namespace sealwatch::mismatch

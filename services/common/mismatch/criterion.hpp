@@ -23,6 +23,8 @@ inline constexpr double kCannotTell = 6.0;
 /// Misfit over the noise's share of it, at least 1.
 [[nodiscard]] double excess(const FittedModel& model);
 [[nodiscard]] double criterion(const FittedModel& model, double dispersion);
+/// Criterion of the first less that of the second, by the smaller dispersion of both.
+[[nodiscard]] double criterion_behind(const FittedModel& model, const FittedModel& other);
 /// phi of the model.
 [[nodiscard]] double dispersion(const FittedModel& best);
 /// Whether a fitted model and its recordings differ beyond the noise: by the scores of the laws, or grossly (mean

@@ -148,18 +148,13 @@ std::vector<AssetValue> values_of(const FittedModel& model, const AssetConfig& a
   return values;
 }
 
-double behind(const FittedModel& model, const FittedModel& found) {
-  const double phi = std::min(dispersion(model), dispersion(found));
-  return criterion(model, phi) - criterion(found, phi);
-}
-
 // Laws that are not needed beside the value are taken out, one at a time.
 Trial without_what_is_not_needed(Trial with, const DatasheetQuestion& of) {
   for (std::size_t slot = with.effects.size(); slot-- > 0;) {
     AssetConfig asset = with.model->asset;
     asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(with.effects.size() - slot));
     Result<FittedModel> fewer = fit_model(asset, of.fit, with.model.get(), of.threads);
-    if (!fewer || behind(*fewer, *with.model) > kWorthAnother) continue;
+    if (!fewer || criterion_behind(*fewer, *with.model) > kWorthAnother) continue;
     with.effects.erase(with.effects.begin() + static_cast<std::ptrdiff_t>(slot));
     with.model = std::make_shared<const FittedModel>(std::move(*fewer));
   }
@@ -214,11 +209,12 @@ std::optional<WrongDatasheet> values_alone(const DatasheetQuestion& of, std::siz
     std::erase(models, nullptr);
     std::ranges::stable_sort(models, {}, [](const auto& model) { return model->misfit; });
     if (models.empty()) return std::nullopt;
-    const double best = behind(*models.front(), *of.found.model);
+    const double best = criterion_behind(*models.front(), *of.found.model);
     if (best <= kCannotTell) {
       WrongDatasheet wrong{.values = {}, .behind = best, .with = {.effects = {}, .model = models.front()}};
       for (const auto& model : models)
-        if (behind(*model, *models.front()) <= kCannotTell) wrong.values.push_back(values_of(*model, of.asset));
+        if (criterion_behind(*model, *models.front()) <= kCannotTell)
+          wrong.values.push_back(values_of(*model, of.asset));
       return wrong;
     }
     for (const AssetValue& value : values_of(*models.front(), of.asset)) {
@@ -245,13 +241,14 @@ std::optional<WrongDatasheet> values_in_place_of_laws(const DatasheetQuestion& o
     if (swaps.empty()) break;
     wrong.emplace();
     for (const ValueSwap& swap : swaps)
-      if (swap.out == swaps.front().out && behind(*swap.with.model, *swaps.front().with.model) <= kCannotTell)
+      if (swap.out == swaps.front().out && criterion_behind(*swap.with.model, *swaps.front().with.model) <= kCannotTell)
         wrong->values.push_back(values_of(*swap.with.model, of.asset));
     now = without_what_is_not_needed(swaps.front().with, of);
-    const bool too_few = behind(*now.model, *of.found.model) > kCannotTell || values_off(*now.model, of.asset).empty();
+    const bool too_few =
+        criterion_behind(*now.model, *of.found.model) > kCannotTell || values_off(*now.model, of.asset).empty();
     if (too_few) now = swaps.front().with;
     wrong->values.front() = values_of(*now.model, of.asset);
-    wrong->behind = behind(*now.model, *of.found.model);
+    wrong->behind = criterion_behind(*now.model, *of.found.model);
     wrong->with = now;
   }
   return wrong;

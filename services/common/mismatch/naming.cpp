@@ -376,11 +376,6 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
   return with_differing(std::move(trials));
 }
 
-double criterion_behind(const FittedModel& model, const FittedModel& other) {
-  const double phi = std::min(dispersion(model), dispersion(other));
-  return criterion(model, phi) - criterion(other, phi);
-}
-
 // The asset with a value free whose place the file gives.
 AssetConfig with_free(AssetConfig asset, const KnownValue& value) {
   asset.parameters.at(value.name).value = value.value;
@@ -423,9 +418,7 @@ Result<Naming> beside_values(const Naming& naming, const std::vector<KnownValue>
 double behind_laws(const Naming& beside, const Trial& laws, const ValueSwap& swap, const Data& data, int threads) {
   const FittedModel& best = *beside.best.model;
   AssetConfig asset = best.asset;
-  ParameterSetting& setting = asset.parameters.at(swap.value.name);
-  const ParameterSetting& was = laws.model->asset.parameters.at(swap.value.name);
-  setting = was;
+  asset.parameters.at(swap.value.name) = laws.model->asset.parameters.at(swap.value.name);
   const std::vector<PhysicsTerm>& physics = laws.model->asset.physics;
   const auto first = physics.size() - laws.effects.size();
   for (const std::size_t slot : swap.out) {
@@ -435,8 +428,7 @@ double behind_laws(const Naming& beside, const Trial& laws, const ValueSwap& swa
   Result<FittedModel> fitted = fit_model(asset, data, &best, threads);
   if (!fitted) return -std::numeric_limits<double>::infinity();
   const Trial back = polished({{}, std::make_shared<const FittedModel>(std::move(*fitted))}, data, threads);
-  const double phi = std::min(dispersion(*back.model), dispersion(best));
-  return criterion(best, phi) - criterion(*back.model, phi);
+  return criterion_behind(best, *back.model);
 }
 
 // A law that other shapes or forms of it could serve better than what was found first.

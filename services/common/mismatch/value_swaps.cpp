@@ -257,8 +257,7 @@ std::vector<ValueSwap> values_in_place_of(const SwapQuestion& of) {
   for (std::size_t k = 0; k < promises.size(); ++k) {
     if (models[k] == nullptr) continue;
     ValueSwap swap{promises[k].value, promises[k].out, polished({{}, models[k]}, of.data, of.threads)};
-    const double at_best = std::min(phi, dispersion(*swap.with.model));
-    const bool behind = criterion(*swap.with.model, at_best) > criterion(found, at_best) + of.behind;
+    const bool behind = criterion_behind(*swap.with.model, found) > of.behind;
     if (behind || !are_beyond_tolerance(*swap.with.model, {swap.value})) continue;
     for (std::size_t slot = 0; slot < of.found.effects.size(); ++slot)
       if (!is_among(swap.out, slot)) swap.with.effects.push_back(of.found.effects[slot]);

@@ -51,6 +51,7 @@ struct Promise {
   double misfit = 0.0;
   double parameters = 0.0;  ///< more than what was found has
   double slack = 0.0;       ///< by which the linear model may be wrong here
+  double predicted = 0.0;   ///< the value
   PemPoint change = {};     ///< of the unknowns of the model with all values
 };
 
@@ -101,14 +102,19 @@ class LinearSwaps {
 
   [[nodiscard]] Promise promise(const std::vector<std::size_t>& out, const KnownValue& value) const {
     const Least least = this->least(out, &value);
-    double parameters = 1.0;
-    for (std::size_t j = 0; j < all_.problem.shared.size(); ++j)
+    double parameters = 1.0, predicted = value.value;
+    for (std::size_t j = 0; j < all_.problem.shared.size(); ++j) {
+      const Unknown& unknown = all_.problem.shared[j];
       if (without(out, j)) parameters -= 1.0;
+      if (unknown.name == value.name)
+        predicted = unknown.to_value(all_.optimum.point.shared[j] + least.change(static_cast<Eigen::Index>(j)));
+    }
     return {.value = value,
             .out = out,
             .misfit = least.misfit,
             .parameters = parameters,
             .slack = 0.0,
+            .predicted = predicted,
             .change = point_of(least.change)};
   }
 
@@ -256,7 +262,8 @@ std::vector<ValueSwap> values_in_place_of(const SwapQuestion& of) {
   std::vector<ValueSwap> swaps;
   for (std::size_t k = 0; k < promises.size(); ++k) {
     if (models[k] == nullptr) continue;
-    ValueSwap swap{promises[k].value, promises[k].out, polished({{}, models[k]}, of.data, of.threads)};
+    ValueSwap swap{promises[k].value, promises[k].out, polished({{}, models[k]}, of.data, of.threads),
+                   promises[k].predicted};
     const bool behind = criterion_behind(*swap.with.model, found) > of.behind;
     if (behind || !are_beyond_tolerance(*swap.with.model, {swap.value})) continue;
     for (std::size_t slot = 0; slot < of.found.effects.size(); ++slot)

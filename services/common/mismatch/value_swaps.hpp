@@ -20,6 +20,7 @@ struct ValueSwap {
   KnownValue value;
   std::vector<std::size_t> out;  ///< effects that it stands for
   Trial with;                    ///< the others beside it
+  double predicted = 0.0;        ///< the value by the linear model, in its own unit
 };
 
 /// Which effects of `found` may go (indices, ascending), in favour of one of `values`.

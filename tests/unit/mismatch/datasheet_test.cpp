@@ -123,6 +123,8 @@ TEST(ValueSwaps, FindWhichValueDoesWhatALawDoes) {
   EXPECT_EQ(swaps.front().with.effects.front().element, "chamber_a");
   EXPECT_NEAR(*estimate_of(*swaps.front().with.model, "Omega_M") / asset.parameter("Omega_M"), 1.1, 0.01);
 
+  EXPECT_NEAR(swaps.front().predicted / asset.parameter("Omega_M"), 1.1, 0.02) << "before any fit";
+
   // It back at what is known of it, and another in its place: none does.
   std::vector<KnownValue> back = values;
   std::erase_if(back, [](const KnownValue& value) { return value.name != "Omega_M"; });

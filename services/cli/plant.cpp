@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "sealwatch/core/rate_unit.hpp"
 #include "sealwatch/model/law_sizes.hpp"
 #include "services/cli/columns.hpp"
 #include "services/cli/commands.hpp"
@@ -39,7 +40,7 @@ void print_plant(const std::string& file, const ReadPlant& read) {
   for (std::size_t k = 0; k < read.text.states.size(); ++k) {
     const equations::TextState& state = read.text.states[k];
     const char* own = state.settles ? "settles" : state.own ? "each recording's own" : "starts there";
-    rows.push_back({"d " + state.description.name + "/dt", "[(" + state.description.unit + ")/s]",
+    rows.push_back({"d " + state.description.name + "/dt", "[" + rate_unit(state.description.unit) + "]",
                     "= " + (state.rate.empty() ? "as the FMU says" : state.rate),
                     "from " + text::joined(state.start, " or "), own});
   }

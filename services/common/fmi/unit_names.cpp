@@ -30,12 +30,12 @@ constexpr std::array kKnown = {
     KnownUnit{{-1, 4, 1, 0, 0, 0, 0, 0}, "m3/(s Pa)"}, KnownUnit{{1, -1, -1, 0, 0, 0, 0, 0}, "Pa s"},
     KnownUnit{{1, -4, -1, 0, 0, 0, 0, 0}, "Pa s/m3"}};
 
-/// "kg m2": the base units with an exponent of this sign.
+/// "kg m2": the base units with an exponent of this sign, the second last, as in "N m s".
 std::string product(const BaseExponents& exponents, int sign) {
   constexpr std::array kBase = {"kg", "m", "s", "A", "K", "mol", "cd", "rad"};
   std::ostringstream text;
   const char* between = "";
-  for (std::size_t k = 0; k < kBase.size(); ++k) {
+  for (const std::size_t k : {0, 1, 3, 4, 5, 6, 7, 2}) {
     const int exponent = sign * exponents[k];
     if (exponent <= 0) continue;
     text << between << kBase[k];

@@ -18,19 +18,9 @@ std::size_t Worth::least() const { return static_cast<std::size_t>(std::ranges::
 CarryOver::CarryOver(const HeldOut& held_out, Trial nothing, Without without)
     : held_out_(held_out), nothing_(std::move(nothing)), without_(std::move(without)) {}
 
-const Predictions& CarryOver::predictions(const Trial& trial) const {
-  const Deadline* deadline = held_out_.fit.deadline;
-  if (const auto known = predicted_.find(trial.model);
-      known != predicted_.end() && (!known->second.cut || passed(deadline)))
-    return known->second.models;
-  Predicted made{.models = held_out_.predictions(trial)};
-  made.cut = passed(deadline);
-  return predicted_.insert_or_assign(trial.model, std::move(made)).first->second.models;
-}
-
 Worth CarryOver::of_whole(const Trial& trial) const {
   Worth worth;
-  const auto whole = held_out_.gains(predictions(nothing_), predictions(trial), *trial.model);
+  const auto whole = held_out_.gains(nothing_, trial);
   if (!whole || whole->gain.empty()) return worth;
   worth.compared = true;
   worth.whole = gain_interval(*whole, dispersion(*trial.model), held_out_.options.seed);
@@ -41,14 +31,14 @@ Worth CarryOver::of_whole(const Trial& trial) const {
 Worth CarryOver::of(const Trial& trial) const {
   Worth worth = of_whole(trial);
   for (std::size_t k = 0; k < trial.effects.size() && worth.compared; ++k) {
-    const auto own = held_out_.gains(predictions(without_(trial, k)), predictions(trial), *trial.model);
+    const auto own = held_out_.gains(without_(trial, k), trial);
     worth.of_law.push_back(own ? std::accumulate(own->gain.begin(), own->gain.end(), 0.0) : 0.0);
   }
   return worth;
 }
 
 bool CarryOver::predicts_as_well(const Trial& trial, const Trial& best) const {
-  const auto gains = held_out_.gains(predictions(trial), predictions(best), *best.model);
+  const auto gains = held_out_.gains(trial, best);
   return gains && !gains->gain.empty() && gains->not_compared.empty() &&
          gain_interval(*gains, dispersion(*best.model), held_out_.options.seed).low <= 0.0;
 }

@@ -7,7 +7,6 @@
 
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,17 +42,9 @@ class CarryOver {
   [[nodiscard]] bool predicts_as_well(const Trial& trial, const Trial& best) const;
 
  private:
-  /// Made once: a prediction refits the model.
-  [[nodiscard]] const Predictions& predictions(const Trial& trial) const;
-
   HeldOut held_out_;
   Trial nothing_;
   Without without_;
-  struct Predicted {
-    Predictions models;
-    bool cut = false;  ///< by the time limit, which may be further off when they are asked for again
-  };
-  mutable std::map<std::shared_ptr<const FittedModel>, Predicted> predicted_;
 };
 
 /// Of the explanations that were tried, different ones of at most so many laws, the likeliest first.

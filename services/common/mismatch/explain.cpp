@@ -168,6 +168,7 @@ class Analysis {
   // Sensors that were off beside what differs are so in common; also where the time to search is over.
   Result<Screening> look_with_inexact_sensors(const std::vector<KnownValue>& known, const ScreeningOptions& options) {
     time_.allow(1.0);
+    forget_predictions();
     fit_.known = known;
     Result<FittedModel> model = fit_model(baseline_->asset, fit_, baseline_.get(), options_.threads);
     if (!model) return fail(model.error());
@@ -201,6 +202,7 @@ class Analysis {
       data.sensors.clear();
       again = name_effects(baseline_, data, options, progress_);
     } else if (again) {
+      forget_predictions();
       std::ranges::copy(data.sensors, std::back_inserter(fit_.known));
       baseline_ = as_it_began(*again).baseline;
     }
@@ -329,7 +331,11 @@ class Analysis {
     result_.statistically_significant = differs(screening.p_value, *baseline_, options_.false_alarm_rate);
   }
 
+  // Of other data; what was predicted before is of no use.
+  void forget_predictions() { predictions_ = std::make_shared<KeptPredictions>(); }
+
   void take_over(const OwnValues& own) {
+    forget_predictions();
     fit_ = own.fit;
     fit_.sensors.clear();
     baseline_ = own.baseline;
@@ -545,6 +551,7 @@ class Analysis {
       beside_.reset();
       return result_.asset_values.clear();
     }
+    forget_predictions();
     std::tie(fit_.colour, holdout_.colour, baseline_, naming_, best_, proven_, result_.notes) = before;
     result_.notes.push_back("A second look, weighed by the colour of what is left, was not possible (" +
                             reason_in_words(status.error()) + ").");
@@ -552,6 +559,7 @@ class Analysis {
 
   Status weigh_by_colour() {
     const NoiseColour colour = residual_colour(*baseline_);
+    forget_predictions();
     fit_.colour.assign(fit_.samples.size(), colour);
     holdout_.colour.assign(holdout_.samples.size(), colour);
     Result<FittedModel> model = fit_model(baseline_->asset, prepared(fit_), nullptr, options_.threads);
@@ -587,7 +595,7 @@ class Analysis {
     return baseline_->problem.recordings.front().simulation->plant();
   }
   [[nodiscard]] bool windowed() const { return window_s_ > 0.0; }
-  [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_}; }
+  [[nodiscard]] HeldOut held_out() const { return {fit_, holdout_, window_s_, options_, predictions_}; }
   [[nodiscard]] Data prepared(const Data& data) const { return in_windows(data, window_s_); }
 
   [[nodiscard]] ToProve to_prove() const { return {held_out(), naming_, baseline_}; }
@@ -879,6 +887,7 @@ class Analysis {
   std::optional<Beside> beside_;
   std::size_t instead_of_ = 0;  ///< laws, for which a value would do as well
   double window_s_ = 0.0;
+  std::shared_ptr<KeptPredictions> predictions_ = std::make_shared<KeptPredictions>();  ///< of fit_ and holdout_
   Explanation result_;
 };
 

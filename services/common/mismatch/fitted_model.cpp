@@ -37,24 +37,43 @@ double within_range(const Unknown& unknown, double value) {
   return unknown.max > unknown.min ? std::clamp(value, unknown.min, unknown.max) : value;
 }
 
+// Places of a problem's recordings among those of another fit; the same ones where none are given.
+using Places = std::span<const std::size_t>;
+std::size_t place_of(std::size_t recording, Places places) { return places.empty() ? recording : places[recording]; }
+
+// Name in the problem of a shared unknown of another fit: what belongs to one recording ends in that one's number.
+std::string name_among(const PemProblem& problem, Places places, const PemProblem& there, const Unknown& unknown) {
+  if (places.empty() || unknown.group < 0) return unknown.name;
+  const auto is_its = [&](std::size_t place) { return there.recordings[place].group == unknown.group; };
+  const auto place = std::ranges::find_if(places, is_its);
+  if (place == places.end()) return {};
+  const int group = problem.recordings[static_cast<std::size_t>(place - places.begin())].group;
+  return unknown.name.substr(0, unknown.name.find_last_of("@:") + 1) + std::to_string(group);
+}
+
 // Where another fit of the same recordings ended, changed by `beside`; empty: as it is.
-void continue_from(const FittedModel& start, const PemPoint& beside, const PemProblem& problem, PemPoint& point) {
+void continue_from(const FittedModel& start, const PemPoint& beside, Places places, const PemProblem& problem,
+                   PemPoint& point) {
   for (std::size_t k = 0; k < start.problem.shared.size(); ++k) {
-    const auto same = std::ranges::find(problem.shared, start.problem.shared[k].name, &Unknown::name);
+    const std::string name = name_among(problem, places, start.problem, start.problem.shared[k]);
+    const auto same = std::ranges::find(problem.shared, name, &Unknown::name);
     if (same == problem.shared.end()) continue;
     const double change = beside.shared.empty() ? 0.0 : beside.shared[k],
                  value = start.problem.shared[k].to_value(start.optimum.point.shared[k] + change);
     point.shared[static_cast<std::size_t>(same - problem.shared.begin())] =
         same->to_unknown(change == 0.0 ? value : within_range(*same, value));
   }
-  for (std::size_t r = 0; r < problem.recordings.size() && r < start.problem.recordings.size(); ++r)
+  for (std::size_t r = 0; r < problem.recordings.size(); ++r) {
+    const std::size_t there = place_of(r, places);
+    if (there >= start.problem.recordings.size()) continue;
     for (std::size_t k = 0; k < problem.recordings[r].own.size(); ++k)
-      for (std::size_t j = 0; j < start.problem.recordings[r].own.size(); ++j) {
-        const Unknown& from = start.problem.recordings[r].own[j];
+      for (std::size_t j = 0; j < start.problem.recordings[there].own.size(); ++j) {
+        const Unknown& from = start.problem.recordings[there].own[j];
         if (from.name == problem.recordings[r].own[k].name)
           point.own[r][k] = problem.recordings[r].own[k].to_unknown(
-              from.to_value(start.optimum.point.own[r][j] + (beside.own.empty() ? 0.0 : beside.own[r][j])));
+              from.to_value(start.optimum.point.own[there][j] + (beside.own.empty() ? 0.0 : beside.own[there][j])));
       }
+  }
 }
 
 bool same_noise(const PemRecording& a, const PemRecording& b) {
@@ -67,26 +86,27 @@ bool same_noise(const PemRecording& a, const PemRecording& b) {
 
 // Derivatives by what is known beforehand where another fit of the same recordings ended; none where that lacks some,
 // or misses grossly.
-std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, const PemProblem& problem) {
+std::vector<KeptDerivatives> derivatives_from(const FittedModel& start, Places places, const PemProblem& problem) {
   if (excess(start) > kGross) return {};
-  const std::vector<Unknown>& there = start.problem.shared;
+  const std::vector<Unknown>& known = start.problem.shared;
   std::vector<Eigen::Index> columns;
   std::vector<double> slopes;
   for (const Unknown& unknown : problem.shared) {
     if (!unknown.is_known()) continue;
-    const auto same = std::ranges::find(there, unknown.name, &Unknown::name);
-    if (same == there.end()) return {};
-    const auto k = static_cast<std::size_t>(same - there.begin());
+    const auto same = std::ranges::find(known, unknown.name, &Unknown::name);
+    if (same == known.end()) return {};
+    const auto k = static_cast<std::size_t>(same - known.begin());
     const double at = start.optimum.point.shared[k];
     columns.push_back(static_cast<Eigen::Index>(k));
     slopes.push_back(unknown.slope(unknown.to_unknown(same->to_value(at))) / same->slope(at));
   }
   std::vector<KeptDerivatives> kept;
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
-    const bool same = start.problem.recordings.size() == problem.recordings.size() &&
-                      same_noise(start.problem.recordings[k], problem.recordings[k]);
-    if (!same || start.optimum.at_optimum[k].jacobian.size() == 0) return {};
-    kept.push_back({start.optimum.at_optimum[k].jacobian(Eigen::all, columns), {}});
+    const std::size_t there = place_of(k, places);
+    const bool same = (!places.empty() || start.problem.recordings.size() == problem.recordings.size()) &&
+                      same_noise(start.problem.recordings[there], problem.recordings[k]);
+    if (!same || start.optimum.at_optimum[there].jacobian.size() == 0) return {};
+    kept.push_back({start.optimum.at_optimum[there].jacobian(Eigen::all, columns), {}});
     kept.back().jacobian *= Eigen::Map<const Eigen::VectorXd>(slopes.data(), std::ssize(slopes)).asDiagonal();
     kept.back().gram = dense::gram_of_rows(kept.back().jacobian);
   }
@@ -137,14 +157,15 @@ FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum op
 }
 
 Result<FittedModel> fit_from(const FittedModel& start, const PemPoint& beside, const AssetConfig& asset,
-                             const Data& data, int threads, int iterations, const SearchBound& bound) {
+                             const Data& data, int threads, int iterations, const SearchBound& bound,
+                             Places places = {}) {
   const ActuatorFitOptions options = search_options(threads, iterations);
   Result<PemProblem> problem = problem_of(asset, data, options);
   if (!problem) return fail(problem.error());
   PemPoint point = start_point(*problem, 1.0);
-  continue_from(start, beside, *problem, point);
+  continue_from(start, beside, places, *problem, point);
   Result<PemOptimum> optimum =
-      search(*problem, std::move(point), options, {.kept = derivatives_from(start, *problem), .bound = bound});
+      search(*problem, std::move(point), options, {.kept = derivatives_from(start, places, *problem), .bound = bound});
   if (!optimum) return fail(optimum.error());
   return model_at(asset, std::move(*problem), std::move(*optimum));
 }
@@ -175,6 +196,11 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
 Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
                                      const FittedModel& start, int iterations, const SearchBound& bound) {
   return fit_from(start, beside, asset, data, 1, iterations, bound);
+}
+
+Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data, std::span<const std::size_t> places,
+                                int threads) {
+  return fit_from(model, {}, model.asset, data, threads, kSearchIterations, {}, places);
 }
 
 Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,

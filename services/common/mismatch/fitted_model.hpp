@@ -46,14 +46,23 @@ struct FittedModel {
   std::size_t free_shared = 0;  ///< shared unknowns that are neither known beforehand nor at a bound
 };
 
+/// Of a search, where nothing else is said.
+inline constexpr int kSearchIterations = 30;
+
 /// Fits the asset's free parameters and every recording's own. `start`: a fit of the same data, from whose values the
 /// search sets out, until `bound` is out of reach. `threads`: recordings that are simulated at once.
 [[nodiscard]] Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const FittedModel* start,
-                                            int threads, int iterations = 30, const SearchBound& bound = {});
+                                            int threads, int iterations = kSearchIterations,
+                                            const SearchBound& bound = {});
 /// The same from values that `beside` changes (of as many unknowns as `start` has; empty: none), until `bound` is out of
 /// reach.
 [[nodiscard]] Result<FittedModel> fit_model_beside(const PemPoint& beside, const AssetConfig& asset, const Data& data,
                                                    const FittedModel& start, int iterations, const SearchBound& bound);
+
+/// Fits the model anew to some of its recordings (or windows), from where it ended. `places`: theirs among its own, one
+/// for each of `data`.
+[[nodiscard]] Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data,
+                                              std::span<const std::size_t> places, int threads);
 
 /// Goes on with the search that ended at `model`, with the same unknowns.
 [[nodiscard]] Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,

@@ -1,8 +1,10 @@
 #include "services/common/mismatch/held_out.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "sealwatch/model/physics.hpp"
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/own_values.hpp"
@@ -59,21 +61,48 @@ void leave_out_untold(FittedModel& model) {
     }
 }
 
+// Each of these recordings, by a model that was not fitted to them.
+void predict_each(const HeldOut& of, const FittedModel& model, const Data& fitted, const Data& data, std::size_t first,
+                  std::size_t end, Predictions& models) {
+  auto each = in_parallel<std::optional<Result<FittedModel>>>(end - first, of.options.threads, [&](std::size_t k) {
+    return std::optional(predict(of, model, fitted, data, first + k));
+  });
+  for (auto& one : each) models.push_back(std::move(*one));
+}
+
+// Places of the windows of all recordings but these among the windows of all; of whole recordings without windows.
+std::vector<std::size_t> places_of_others(const Data& prepared, std::size_t first, std::size_t end) {
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < prepared.samples.size(); ++k) {
+    const std::size_t recording = prepared.groups.empty() ? k : static_cast<std::size_t>(prepared.groups[k]);
+    if (recording < first || recording >= end) places.push_back(k);
+  }
+  return places;
+}
+
+// The model fitted to the others of the recordings that it was fitted to, from where it is; from its asset where that
+// does not lead to anything.
+Result<FittedModel> fit_to_others(const HeldOut& of, const FittedModel& model, const Data& rest,
+                                  std::span<const std::size_t> places) {
+  const Data prepared = in_windows(rest, of.window_s);
+  Result<FittedModel> refitted = fit_to_some(model, prepared, places, of.options.threads);
+  return refitted ? std::move(refitted) : fit_model(model.asset, prepared, nullptr, of.options.threads);
+}
+
 // Each part of the fitted recordings by the model that is fitted to the others.
-Predictions predict_in_turn(const HeldOut& of, const Trial& trial) {
+Predictions predict_in_turn(const HeldOut& of, const FittedModel& model) {
   Predictions models;
+  const Data all = in_windows(of.fit, of.window_s);
   const std::size_t count = of.fit.samples.size();
   for (std::size_t first = 0; first < count;) {
     std::size_t end = first;
     while (end < count && part_of(end, count) == part_of(first, count)) ++end;
     Data rest = of.fit;
     for (std::size_t k = end; k-- > first;) rest = without(rest, k);
-    Result<FittedModel> refitted =
-        fit_model(trial.model->asset, in_windows(rest, of.window_s), nullptr, of.options.threads);
+    Result<FittedModel> refitted = fit_to_others(of, model, rest, places_of_others(all, first, end));
     if (refitted) leave_out_untold(*refitted);
-    for (std::size_t k = first; k < end; ++k)
-      models.push_back(refitted ? predict(of, *refitted, rest, of.fit, k)
-                                : Result<FittedModel>(fail(refitted.error())));
+    if (refitted) predict_each(of, *refitted, rest, of.fit, first, end, models);
+    for (std::size_t k = first; !refitted && k < end; ++k) models.emplace_back(fail(refitted.error()));
     first = end;
   }
   return models;
@@ -105,27 +134,28 @@ void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const F
   comparison.gain_high = interval.high;
 }
 
-Predictions HeldOut::predictions(const Trial& trial) const {
-  Predictions models;
-  if (in_turn() && fit.samples.size() < 2) return models;
-  if (in_turn()) return predict_in_turn(*this, trial);
-  for (std::size_t k = 0; k < holdout.samples.size(); ++k)
-    models.push_back(predict(*this, *trial.model, fit, holdout, k));
-  return models;
+std::shared_ptr<const Predictions> HeldOut::predictions(const Trial& trial) const {
+  KeptPredictions::Predicted& known = kept->of[{trial.model, in_turn()}];
+  if (known.models != nullptr && (!known.cut || passed(fit.deadline))) return known.models;
+  auto models = std::make_shared<Predictions>();
+  if (in_turn() && fit.samples.size() >= 2) *models = predict_in_turn(*this, *trial.model);
+  if (!in_turn()) predict_each(*this, *trial.model, fit, holdout, 0, holdout.samples.size(), *models);
+  known = {.models = std::move(models), .cut = passed(fit.deadline)};
+  return known.models;
 }
 
 Result<BlockGains> HeldOut::gains(const Trial& before, const Trial& after,
-                                  std::vector<RecordingComparison>* kept) const {
-  return gains(predictions(before), predictions(after), *after.model, kept);
+                                  std::vector<RecordingComparison>* compared) const {
+  return gains(*predictions(before), *predictions(after), *after.model, compared);
 }
 
 Result<BlockGains> HeldOut::gains(const Predictions& before, const Predictions& after, const FittedModel& model_after,
-                                  std::vector<RecordingComparison>* kept) const {
+                                  std::vector<RecordingComparison>* compared) const {
   BlockGains blocks;
   const Data& data = predicted();
   for (std::size_t k = 0; k < after.size(); ++k) {
     const Result<FittedModel>&old_model = before[k], &new_model = after[k];
-    if (!new_model && kept == nullptr) return fail(new_model.error());
+    if (!new_model && compared == nullptr) return fail(new_model.error());
     if (!old_model || !new_model) {
       blocks.not_compared.push_back(data.names[k] + " (" +
                                     reason_in_words(old_model ? new_model.error() : old_model.error()) + ")");
@@ -137,7 +167,7 @@ Result<BlockGains> HeldOut::gains(const Predictions& before, const Predictions& 
       own.gain.insert(own.gain.end(), piece.gain.begin(), piece.gain.end());
     }
     blocks.gain.insert(blocks.gain.end(), own.gain.begin(), own.gain.end());
-    if (kept == nullptr) continue;
+    if (compared == nullptr) continue;
     auto comparison = compare_whole(*old_model, *new_model, data, k, window_s);
     if (!comparison) {
       blocks.not_compared.push_back(data.names[k] + " as a whole (" + reason_in_words(comparison.error()) + ")");
@@ -145,7 +175,7 @@ Result<BlockGains> HeldOut::gains(const Predictions& before, const Predictions& 
     }
     (in_turn() ? comparison->left_out : comparison->holdout) = true;
     add_gain(*comparison, own, model_after, options.seed);
-    kept->push_back(std::move(*comparison));
+    compared->push_back(std::move(*comparison));
   }
   return blocks;
 }

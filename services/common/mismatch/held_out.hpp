@@ -4,6 +4,9 @@
 // anew.
 #pragma once
 
+#include <map>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/mismatch/explain.hpp"
@@ -15,23 +18,33 @@ namespace sealwatch::mismatch {
 /// Of each recording that took no part, or in turn takes none.
 using Predictions = std::vector<Result<FittedModel>>;
 
+/// Predictions that were made once, of the same recordings: a prediction in turn refits the model.
+struct KeptPredictions {
+  struct Predicted {
+    std::shared_ptr<const Predictions> models;
+    bool cut = false;  ///< by the time limit, which may be further off when they are asked for again
+  };
+  std::map<std::pair<std::shared_ptr<const FittedModel>, bool>, Predicted> of;  ///< model; in turn or not
+};
+
 /// Of an analysis that outlives it.
 struct HeldOut {
   const Data& fit;
   const Data& holdout;    ///< may be empty
   double window_s = 0.0;  ///< predictions of windows of this length; 0: of whole recordings
   const ExplainOptions& options;
+  std::shared_ptr<KeptPredictions> kept = std::make_shared<KeptPredictions>();  ///< shared by copies
 
   /// Blocks of the model `after` against `before`; none with a single recording in all. Each recording's comparison is
   /// added to `kept`, of whole recordings from one initial state even where predictions are of windows. A recording on
   /// which the model before cannot be simulated is not compared; where the one after cannot, that is an Error, unless
   /// comparisons are kept: then it is not compared either.
   [[nodiscard]] Result<BlockGains> gains(const Trial& before, const Trial& after,
-                                         std::vector<RecordingComparison>* kept = nullptr) const;
+                                         std::vector<RecordingComparison>* compared = nullptr) const;
   [[nodiscard]] Result<BlockGains> gains(const Predictions& before, const Predictions& after,
                                          const FittedModel& model_after,
-                                         std::vector<RecordingComparison>* kept = nullptr) const;
-  [[nodiscard]] Predictions predictions(const Trial& trial) const;
+                                         std::vector<RecordingComparison>* compared = nullptr) const;
+  [[nodiscard]] std::shared_ptr<const Predictions> predictions(const Trial& trial) const;
 
  private:
   [[nodiscard]] bool in_turn() const { return holdout.samples.empty(); }

@@ -80,9 +80,8 @@ void drop_what_is_not_needed(Naming& naming, const Data& data, int threads) {
       fewer.effects.erase(fewer.effects.begin() + static_cast<std::ptrdiff_t>(out));
       AssetConfig asset = naming.best.model->asset;
       asset.physics.erase(asset.physics.end() - static_cast<std::ptrdiff_t>(naming.best.effects.size() - out));
-      constexpr int kIterations = 30;
       Result<FittedModel> model =
-          fit_model(asset, data, naming.best.model.get(), threads, kIterations, worth_dropping_to(naming));
+          fit_model(asset, data, naming.best.model.get(), threads, kSearchIterations, worth_dropping_to(naming));
       if (!model) continue;
       fewer.model = std::make_shared<const FittedModel>(std::move(*model));
       naming.trials.push_back(fewer);
@@ -222,10 +221,9 @@ class InexactSensors {
  private:
   // Not where that leaves a gross misfit, or promises to.
   [[nodiscard]] bool fitted() {
-    constexpr int kIterations = 30;
     if (!there_ || model_ != nullptr) return model_ != nullptr;
     const bool hopeless = could_reach(*there_) > kGross * there_->residuals;
-    Result<FittedModel> model = hopeless ? fail("") : continue_fit(*there_, inexact_, threads_, kIterations);
+    Result<FittedModel> model = hopeless ? fail("") : continue_fit(*there_, inexact_, threads_, kSearchIterations);
     there_.reset();
     if (model && excess(*model) <= kGross) model_ = std::make_shared<const FittedModel>(std::move(*model));
     return model_ != nullptr;
@@ -276,10 +274,9 @@ class DifferingTests {
     });
   }
   void fit(const std::string& parameter) {
-    constexpr int kIterations = 30;
     Data own = data_;
     own.own_parameter = parameter;
-    Result<FittedModel> model = fit_model(from_.model->asset, own, from_.model.get(), threads_, kIterations);
+    Result<FittedModel> model = fit_model(from_.model->asset, own, from_.model.get(), threads_, kSearchIterations);
     if (model) trials_.push_back({from_.effects, std::make_shared<const FittedModel>(std::move(*model)), parameter});
   }
 
@@ -501,8 +498,7 @@ bool a_value_explains(const FittedModel& model, double score, double phi, const 
     std::erase_if(others.known, [&](const KnownValue& value) { return value.name == ends[k]; });
     const auto there = fit_model(with_free_value(model.asset, ends[k]), others, &model, 1, 0);
     if (!there || criterion(*there, phi) - (there->misfit - could_reach(*there)) / phi >= score) return false;
-    constexpr int kIterations = 30;
-    const auto freed = continue_fit(*there, others, 1, kIterations);
+    const auto freed = continue_fit(*there, others, 1, kSearchIterations);
     return freed && criterion(*freed, phi) < score;
   };
   return std::ranges::any_of(in_parallel<char>(ends.size(), threads, explains), [](char yes) { return yes != 0; });

@@ -51,7 +51,8 @@ class Proving {
     const bool is_the_proof = of_.held_out.holdout.samples.empty();
     if (is_the_proof) time_.allow_what_is_needed();
     const Data none;
-    const CarryOver from_others = carry_over({of_.held_out.fit, none, of_.held_out.window_s, of_.held_out.options});
+    const CarryOver from_others =
+        carry_over({of_.held_out.fit, none, of_.held_out.window_s, of_.held_out.options, of_.held_out.kept});
     std::vector<std::pair<double, Trial>> order;  // by the fall of the misfit that they predict
     for (const Trial& trial : likeliest(of_.naming, kMostToCarryOver)) {
       const Worth worth = from_others.of_whole(trial);

@@ -155,9 +155,9 @@ Trial with_derivatives(Trial trial, const Data& data, int threads) {
 
 // A search that ran out of iterations goes on from where it is.
 Trial polished(Trial trial, const Data& data, int threads) {
-  constexpr int kRounds = 3, kIterations = 30;
+  constexpr int kRounds = 3;
   for (int round = 0; round < kRounds && !trial.model->optimum.converged; ++round) {
-    Result<FittedModel> further = continue_fit(*trial.model, data, threads, kIterations);
+    Result<FittedModel> further = continue_fit(*trial.model, data, threads, kSearchIterations);
     if (!further || further->misfit > trial.model->misfit) break;
     trial.model = std::make_shared<const FittedModel>(std::move(*further));
   }

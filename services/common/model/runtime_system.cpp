@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "sealwatch/core/rate_unit.hpp"
 #include "services/common/text/format.hpp"
 
 namespace sealwatch {
@@ -154,7 +155,7 @@ std::string RuntimeSystem::trouble() const {
   }
   if (plant_states_ == 0) return {};
   const StateDescription& state = plant_.description.states[fastest];
-  return text::format("{} moves fastest, by {:.3g} ({})/s", state.name, last_rates_[fastest], state.unit);
+  return text::format("{} moves fastest, by {:.3g} {}", state.name, last_rates_[fastest], rate_unit(state.unit));
 }
 
 void RuntimeSystem::set_segment(std::size_t segment) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sealwatch/core/fields.hpp"
+#include "sealwatch/core/rate_unit.hpp"
 #include "sealwatch/core/result.hpp"
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/time.hpp"
@@ -33,6 +34,13 @@ TEST(Time, ParsesAndFormatsIso8601) {
        {"2031-04-12T03:00:00Z", "2009-12-31T23:59:59.25Z", "1969-12-31T23:59:59.5Z", "2024-02-29T00:00:00Z"})
     EXPECT_EQ(format_utc(parse_utc(text).value()), text);
   EXPECT_EQ(format_date(parse_utc("2024-02-29T13:00:00Z").value()), "2024-02-29");
+}
+
+TEST(RateUnit, IsThatOfTheDerivativeInTime) {
+  EXPECT_EQ(rate_unit("K"), "K/s");
+  EXPECT_EQ(rate_unit("m/s"), "m/s2");
+  EXPECT_EQ(rate_unit("kg/m"), "(kg/m)/s");
+  EXPECT_EQ(rate_unit(""), "1/s");
 }
 
 TEST(Time, RefusesWhatIsNoTime) {

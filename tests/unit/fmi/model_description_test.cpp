@@ -175,6 +175,7 @@ TEST(ModelDescription, UnitsGetTheirUsualNames) {
   EXPECT_EQ(name({0, 0, -1, 0, 0, 0, 0, 1}), "rad/s");
   EXPECT_EQ(name({2, 0, -3, 1, 0, 0, 0, 0}), "kg2 A/s3");
   EXPECT_EQ(name({0, -1, -3, 0, 0, 0, 0, 0}), "1/(m s3)");
+  EXPECT_EQ(name({0, -1, 1, 1, 0, 0, 0, 0}), "A s/m");
   EXPECT_EQ(si_name(Unit{}), "1");
 }
 

@@ -36,8 +36,8 @@ double gain_for_the_first(const std::vector<Recording>& recordings, const AssetC
   const Trial trial{{{find_law("input_gain", {"g"}).value(), asset.physics.front().element}},
                     std::make_shared<const FittedModel>(fit_model(asset, fit, nullptr, 2).value())};
   EXPECT_NEAR(trial.model->asset.physics.front().parameters.at("g").value, kGain, 0.1 * kGain);
-  const Predictions predictions = HeldOut{fit, none, 0.0, options}.predictions(trial);
-  return predictions.front().value().asset.physics.front().parameters.at("g").value;
+  const auto predictions = HeldOut{fit, none, 0.0, options}.predictions(trial);
+  return predictions->front().value().asset.physics.front().parameters.at("g").value;
 }
 
 // Without voltage its gain does nothing: such a law acts in one recording alone. The others do not tell its strength, and

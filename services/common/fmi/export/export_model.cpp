@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "sealwatch/core/rate_unit.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/equations/dimension.hpp"
 #include "services/common/fmi/export/c_expressions.hpp"
@@ -119,7 +120,7 @@ class Exporter {
       const std::size_t input = parts_.used_inputs[k];
       if (!used[parts_.places.rates + input]) continue;
       rates_.push_back(input);
-      inputs_.push_back({inputs_[k].name + "_rate", inputs_[k].unit + "/s", "rate of " + inputs_[k].name, 0.0});
+      inputs_.push_back({inputs_[k].name + "_rate", rate_unit(inputs_[k].unit), "rate of " + inputs_[k].name, 0.0});
     }
   }
 

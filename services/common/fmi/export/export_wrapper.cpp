@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "sealwatch/core/rate_unit.hpp"
 #include "sealwatch/core/text.hpp"
 #include "services/common/fmi/export/c_expressions.hpp"
 #include "services/common/fmi/export/law_formulas.hpp"
@@ -162,7 +163,7 @@ class WrapperExporter {
       channels_.push_back({next, "kReal", {}});
       channel_starts_.push_back(0.0);
       description_.inputs.push_back(
-          {channel->name + "_rate", channel->unit + "/s", "rate of " + channel->name, 0.0, next++});
+          {channel->name + "_rate", rate_unit(channel->unit), "rate of " + channel->name, 0.0, next++});
     }
   }
 

@@ -148,9 +148,16 @@ std::vector<double> how_far_behind(const std::vector<Trial>& alternatives, const
   return behind;
 }
 
-// Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place.
+// The plainer law that the chosen one contains.
+const Law* plainer(const Law& law) {
+  const auto plain = std::ranges::find_if(all_laws(), [&](const Law& one) { return one.id == law.limit; });
+  return law.limit.empty() || plain == all_laws().end() ? nullptr : &*plain;
+}
+
+// Probabilities from the criterion: exp(-difference / 2) over all laws tried in this place. `not_asked`: a law that there
+// was no time to try.
 void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& alternatives,
-           const std::vector<double>& how_far, double best_misfit, double phi) {
+           const std::vector<double>& how_far, double best_misfit, double phi, const Law* not_asked) {
   std::map<std::pair<std::string, std::string>, double> weight;  // by id and element
   weight[{effect.what.id, effect.what.element}] = 1.0;
   std::map<std::pair<std::string, std::string>, double> nearest;
@@ -192,6 +199,13 @@ void weigh(FoundEffect& effect, const Effect& chosen, const std::vector<Trial>& 
                                               : trial.model->optimum.out_of_reach
                                                   ? "Cut when it could not win any more, it " + stands_behind(behind)
                                                   : "Refitted in its place it " + stands_behind(behind)});
+  }
+  if (not_asked != nullptr && !weight.contains({std::string(not_asked->id), chosen.element})) {
+    weight[{std::string(not_asked->id), chosen.element}] = 1.0;
+    effect.indistinguishable.push_back(law_at({not_asked, chosen.element}));
+    effect.alternatives.push_back({.what = effect.indistinguishable.back(),
+                                   .misfit_above_best = 0.0,
+                                   .why_not = "Not asked, as time was up: the law that was chosen contains it."});
   }
   double all = 0.0, element = 0.0;
   for (const auto& [key, share] : weight) {
@@ -236,7 +250,7 @@ std::vector<FoundEffect> describe_effects(const Naming& naming, const Trial& bes
     effect.parameters = parameters_of(best.effects[slot], *best.model, errors, resolution);
     effect.engineering_share = engineering_share(effect, best.effects[slot], naming.first.candidates, plant);
     weigh(effect, best.effects[slot], alternatives, how_far_behind(alternatives, best, phi, carry_over),
-          best.model->misfit, phi);
+          best.model->misfit, phi, naming.settled ? nullptr : plainer(*best.effects[slot].law));
     effect.delta_bic = criterion(*best.model, phi) - criterion(fewer ? *fewer->model : *naming.baseline, phi);
     return effect;
   };

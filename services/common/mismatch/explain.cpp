@@ -257,11 +257,12 @@ class Analysis {
     return true;
   }
 
-  // The best of a search that was cut: what it leaves has not been looked at.
+  // The best of a search that was cut: whether it takes all of its laws, and what it leaves, has not been looked at.
   void look_at_what_is_left() {
-    time_.add_not_asked(naming_.not_asked);
-    if (!naming_.not_asked.empty() && !naming_.best.effects.empty()) {
+    const bool was_cut = !naming_.not_asked.empty() && !naming_.best.effects.empty();
+    if (was_cut) {
       time_.allow(1.0);
+      if (!naming_.settled) settle(naming_, prepared(fit_), options_);
       auto last = screen(*naming_.best.model, prepared(fit_), {.seed = options_.seed, .threads = options_.threads});
       if (last)
         naming_.last = std::move(*last);
@@ -269,6 +270,7 @@ class Analysis {
         naming_.best = {{}, baseline_};
       time_.allow(kSearchShare);
     }
+    time_.add_not_asked(naming_.not_asked);
     best_ = naming_.best;
   }
 
@@ -694,6 +696,7 @@ class Analysis {
       result_.location = laws_ask ? locate_without_law(naming_.first) : locate_at_a_sensor(result_.fit);
     }
     for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
+    note_laws_not_asked();
     for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
     result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model);
     result_.prognosis = prognosis_shift(asset_, result_.parameters);
@@ -726,6 +729,15 @@ class Analysis {
     result_.summary = summary_of(result_);
     say_what_else_is_known();
     return {};
+  }
+
+  // A law that has no value where the plant goes may be what is missing.
+  void note_laws_not_asked() {
+    for (const Candidate& candidate : naming_.first.not_asked) {
+      const LawAt law = law_at({candidate.law, candidate.element});
+      result_.notes.push_back(gives_no_number(law));
+      all_compared_ = false;
+    }
   }
 
   static void say_what_was_cut(Explanation& result) {

@@ -504,6 +504,15 @@ bool a_value_explains(const FittedModel& model, double score, double phi, const 
   return std::ranges::any_of(in_parallel<char>(ends.size(), threads, explains), [](char yes) { return yes != 0; });
 }
 
+void settle(Naming& naming, const Data& data, const ExplainOptions& options) {
+  constexpr const char* kWhat = "whether each law is needed, and whether a plainer one does";
+  std::erase(naming.not_asked, kWhat);
+  if (!passed(data.deadline)) drop_what_is_not_needed(naming, data, options.threads);
+  if (!passed(data.deadline)) prefer_plain_laws(naming, data, options.threads);
+  naming.settled = !passed(data.deadline);
+  if (!naming.settled) naming.not_asked.emplace_back(kWhat);
+}
+
 Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                             const ExplainOptions& options, const Progress& progress, const Trial& from,
                             const Screening* known) {
@@ -580,8 +589,7 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     if (in_time("one law in place of several")) one_law_for_several(naming, data, options);
   }
   if (!naming.differs_in.empty()) return naming;
-  if (in_time("whether each law is needed")) drop_what_is_not_needed(naming, data, options.threads);
-  if (in_time("plainer laws")) prefer_plain_laws(naming, data, options.threads);
+  settle(naming, data, options);
   if (naming.last.p_value <= options.false_alarm_rate && in_time("closed forms that no law of the list has"))
     try_closed_forms(naming, data, options);
   one_shape_for_several(naming, data, options);

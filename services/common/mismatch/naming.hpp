@@ -41,6 +41,7 @@ struct Naming {
   /// there, and `best` is to be asked beside it. "": none.
   std::string differs_in = {};
   std::vector<std::string> not_asked = {};  ///< cut off by the deadline; `last` is then of an earlier model than `best`
+  bool settled = false;  ///< it was asked whether each law of `best` is needed, and whether a plainer one does
   /// Fixed values that took the place of laws (Data::fixed): `baseline` has them free, and all others here are beside them.
   std::vector<std::string> freed = {};
   /// The search until then, whose best has the laws in their place (none where it began beside them); null without such.
@@ -59,6 +60,10 @@ struct Naming {
 [[nodiscard]] Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const Data& data,
                                           const ExplainOptions& options, const Progress& progress,
                                           const Trial& from = {}, const Screening* known = nullptr);
+
+/// Whether each law of the best trial is needed, and whether a plainer law does as well, where a search that was cut left
+/// that open; so far as there is time.
+void settle(Naming& naming, const Data& data, const ExplainOptions& options);
 
 /// Whether one fixed value beyond its tolerance brings the criterion below `score`: sensors need not be off then. Asked
 /// are those that the model holds at an end of their tolerance.

@@ -132,19 +132,42 @@ double pooled_floor(const Data& data, const std::string& channel) {
   return std::sqrt(squares / std::max(count, 1.0));
 }
 
+bool are_alike(double one, double other) {
+  constexpr double kAlike = 1.5;
+  return one < kAlike * other && other < kAlike * one;
+}
+
 // Whether what the quiet pieces show is the noise of the rest as well: third differences of it are as large as those of
 // all samples. A sensor that stands still, or a signal that pieces of this length cannot be freed of, is not it.
 bool is_of_all_samples(const Covariances& covariance, double floor) {
-  constexpr double kAlike = 1.5;
   const double third_difference =
       20.0 * covariance[0] - 30.0 * covariance[1] + 12.0 * covariance[2] - 2.0 * covariance[3];
   const double ratio = std::sqrt(std::max(third_difference, 0.0) / 20.0) / floor;
-  return ratio < kAlike && ratio > 1.0 / kAlike;
+  return are_alike(ratio, 1.0);
+}
+
+// Root mean square over the recordings of the noise that sidecar or asset declare for a channel; 0: none does.
+double declared_noise(const AssetConfig& asset, const Data& data, const std::string& channel) {
+  const auto sensor = asset.sensors.find(channel);
+  const double usual = sensor == asset.sensors.end() ? 0.0 : sensor->second.noise_std;
+  double squares = 0.0, count = 0.0;
+  for (const TimeSeries& recorded : data.samples)
+    if (const Series* series = recorded.find(channel)) {
+      squares += std::pow(series->noise_std > 0.0 ? series->noise_std : usual, 2);
+      count += 1.0;
+    }
+  return std::sqrt(squares / std::max(count, 1.0));
+}
+
+// Where differences bear out the noise that is declared, what is slow in the pieces beside it is motion that their
+// polynomials do not follow: a kink, a fast stroke.
+bool shows_motion(const Covariances& covariance, double floor, double declared) {
+  return declared > 0.0 && are_alike(floor, declared) && !are_alike(std::sqrt(covariance[0]), declared);
 }
 
 }  // namespace
 
-std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& channels) {
+std::vector<std::string> find_noise(const AssetConfig& asset, Data& data, const std::vector<std::string>& channels) {
   std::vector<std::string> sentences;
   data.colour.assign(data.samples.size(), NoiseColour(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -158,6 +181,7 @@ std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& 
     covariance = undo_detrending(covariance);
     for (double& one : covariance) one *= static_cast<double>(kPiece) / samples;
     if (!is_of_all_samples(covariance, floor)) continue;
+    if (shows_motion(covariance, floor, declared_noise(asset, data, channels[c]))) continue;
     const double correlation = covariance[1] / covariance[0];
     if (std::abs(correlation) < std::max(kLeastCorrelation, kSignificant / std::sqrt(samples))) continue;
     const ChannelColour colour = autoregression(covariance);

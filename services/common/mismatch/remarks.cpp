@@ -69,6 +69,13 @@ void remark_disturbed_signal(Explanation& result) {
                      " for outliers, and analyse again without them.";
 }
 
+std::string gives_no_number(const LawAt& law) {
+  return "Not asked: " + law_in_words(law) + " (" + law.law +
+         ") gives no finite number somewhere in these recordings. Write the law so that it has a value at standstill "
+         "and "
+         "in both directions, as with abs(speed).";
+}
+
 void remark_leak_in_two_parts(Explanation& result) {
   if (std::ranges::none_of(result.effects, [](const FoundEffect& one) { return one.what.element == "piston_seal"; }))
     return;

@@ -51,10 +51,11 @@ std::vector<Variant> make_variants(const std::vector<PassColumn>& columns, const
 // these products: no column is kept. Z itself would not do, since its columns may nearly depend on each other, and large
 // multiples of them would leave rounding. Columns of L are those of all recordings (Layout); other recordings' are zero.
 struct Products {
-  Eigen::Index free = 0;               ///< columns of Q
-  Eigen::MatrixXd all;                 ///< [Q r L]'[Q r L]
-  std::vector<Eigen::MatrixXd> block;  ///< its rows of Q and r, per block of time
-  Eigen::MatrixXd variant;             ///< L_b'L_b of each variant, its entries one after the other; blocks x entries
+  std::vector<std::size_t> not_finite;  ///< candidates without a finite value somewhere: nothing else is here then
+  Eigen::Index free = 0;                ///< columns of Q
+  Eigen::MatrixXd all;                  ///< [Q r L]'[Q r L]
+  std::vector<Eigen::MatrixXd> block;   ///< its rows of Q and r, per block of time
+  Eigen::MatrixXd variant;              ///< L_b'L_b of each variant, its entries one after the other; blocks x entries
   Eigen::MatrixXd shared_in_q, own_in_q;   ///< R
   Eigen::MatrixXd shared_left, own_taken;  ///< in Q: shared columns without own ones; what own ones take off [r L]
   Eigen::MatrixXd own_for_shared, own_for_laws;  ///< own unknowns that do what they can of each shared one, of [r L]
@@ -132,10 +133,12 @@ Result<Products> products_of(const FittedModel& model, std::size_t recording, co
   Result<Pass> pass = sensitivity_pass(model, recording, candidates, columns);
   if (!pass) return fail(pass.error());
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
+  Products products;
+  products.not_finite = pass->not_finite;
+  if (!products.not_finite.empty()) return products;
   RowMatrix q = std::move(pass->free);
   leave_out_held(model, q);
   const Eigen::MatrixXd r = orthonormalise(q);
-  Products products;
   products.free = q.cols();
   products.all = Eigen::MatrixXd::Zero(q.cols() + 1 + layout.size, q.cols() + 1 + layout.size);
   products.shared_in_q = r.leftCols(shared);
@@ -272,12 +275,20 @@ Eigen::MatrixXd stacked(const std::vector<Left>& parts, Eigen::MatrixXd Left::*w
   return all;
 }
 
-}  // namespace
+// Takes candidates without a finite value in some recording out of the screening; whether there were any.
+bool leave_out_not_finite(const std::vector<std::optional<Result<Products>>>& parts, Screening& screening) {
+  std::vector<bool> finite(screening.candidates.size(), true);
+  for (const auto& part : parts)
+    for (const std::size_t candidate : (*part)->not_finite) finite[candidate] = false;
+  std::vector<Candidate> asked;
+  for (std::size_t k = 0; k < finite.size(); ++k)
+    (finite[k] ? asked : screening.not_asked).push_back(std::move(screening.candidates[k]));
+  screening.candidates = std::move(asked);
+  return screening.candidates.size() < finite.size();
+}
 
-Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
-  Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
-                                                    options.closed_forms)};
-  set_out_from_strongest_orders(screening.candidates, model, options.threads);
+Result<Screening> screen_candidates(const FittedModel& model, const Data& data, const ScreeningOptions& options,
+                                    Screening screening) {
   const std::vector<PassColumn> columns = pass_columns(screening.candidates);
   const std::size_t recordings = data.samples.size();
   const Layout layout = lay_out(columns, recordings);
@@ -293,6 +304,10 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
   });
   for (const Part& part : parts)
     if (!*part) return fail(part->error());
+  if (leave_out_not_finite(parts, screening))
+    return screen_candidates(
+        model, data, options,
+        {.candidates = std::move(screening.candidates), .not_asked = std::move(screening.not_asked)});
 
   const RowMatrix known = known_beforehand(model);
   const auto shared = static_cast<Eigen::Index>(model.problem.shared.size());
@@ -325,6 +340,15 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
            resolution_of(data, model.problem.recordings.front().simulation->plant()));
   calibrate(screening, options);
   return screening;
+}
+
+}  // namespace
+
+Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
+  Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
+                                                    options.closed_forms)};
+  set_out_from_strongest_orders(screening.candidates, model, options.threads);
+  return screen_candidates(model, data, options, std::move(screening));
 }
 
 }  // namespace sealwatch::mismatch

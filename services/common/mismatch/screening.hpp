@@ -43,6 +43,7 @@ struct Variant {
 
 struct Screening {
   std::vector<Candidate> candidates = {};
+  std::vector<Candidate> not_asked = {};  ///< laws that have no finite value where the plant goes
   std::vector<Variant> variants = {};
   Eigen::MatrixXd gram = {};          ///< G, in usual sizes
   Eigen::VectorXd gradient = {};      ///< g

@@ -12,6 +12,16 @@ namespace {
 // to resolve it.
 constexpr double kHiddenStep_s = 0.02;
 
+// Candidates of these laws, by their place among the columns that act in the plant.
+std::vector<std::size_t> candidates_of(const std::vector<std::size_t>& laws, const std::vector<Candidate>& candidates,
+                                       const std::vector<PassColumn>& columns) {
+  std::vector<std::size_t> acting, found;
+  for (const PassColumn& column : columns)
+    if (!candidates[column.candidate].sites.empty()) acting.push_back(column.candidate);
+  for (const std::size_t law : laws) found.push_back(acting[law]);
+  return found;
+}
+
 std::vector<LawColumn> law_columns(const std::vector<Candidate>& candidates, const std::vector<PassColumn>& columns) {
   std::vector<LawColumn> laws;
   for (const PassColumn& column : columns) {
@@ -117,6 +127,7 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
   }
   Pass pass;
   pass.part_ = &part;
+  pass.not_finite = candidates_of(injected.not_finite(), candidates, columns);
   pass.channels = channels;
   const auto is_recorded = [&](const Candidate& candidate) {
     return is_of_recording(candidate.law->kind) ||

@@ -28,6 +28,7 @@ class Pass {
   RowMatrix free;  ///< rows x (shared + own unknowns)
   Eigen::VectorXd residual;
   Eigen::Index channels = 0;
+  std::vector<std::size_t> not_finite;  ///< candidates that gave no finite number somewhere: their columns mean nothing
 
   /// The laws' columns in one row (sample * channels + channel).
   void law_row(Eigen::Index row, Eigen::Index columns, double* values) const;

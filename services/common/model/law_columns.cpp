@@ -71,6 +71,21 @@ void LawColumns::advance(Shape& shape, double step_s, Signals signals) {
   }
 }
 
+// A law of one's own may have no value where the plant goes ("sqrt(speed)"): what else is asked goes on.
+double LawColumns::Shape::finite_or_none(double weight) {
+  if (std::isfinite(weight)) return weight;
+  finite = false;
+  return 0.0;
+}
+
+std::vector<std::size_t> LawColumns::not_finite() const {
+  std::vector<std::size_t> columns;
+  for (const Shape& shape : shapes_)
+    for (const Shape::Strength& strength : shape.strengths)
+      if (!shape.finite) columns.push_back(entries_[strength.first_entry].column);
+  return columns;
+}
+
 void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {
   if (!started_) last_.assign(signals.begin(), signals.end());
   const double step_s = t - time_;
@@ -84,7 +99,7 @@ void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {
       for (std::size_t s = 0; s < kSiteSignals; ++s) shape.at.signal[s].value = signals[shape.sites[k]][s];
       const LawScalar contribution = shape.law->evaluate(shape.at).contribution;
       for (const auto& [parameter, unit, first_entry] : shape.strengths)
-        weights[first_entry + k] = unit * contribution.derivative[kSiteSignals + 1 + parameter];
+        weights[first_entry + k] = shape.finite_or_none(unit * contribution.derivative[kSiteSignals + 1 + parameter]);
     }
   last_.assign(signals.begin(), signals.end());
   time_ = t;

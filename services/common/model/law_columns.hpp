@@ -25,6 +25,8 @@ class LawColumns final : public InjectedColumns {
   [[nodiscard]] std::span<const Entry> entries() const override { return entries_; }
   [[nodiscard]] const std::vector<LawColumn>& laws() const { return laws_; }
   void weigh(double t, Signals signals, std::span<double> weights) override;
+  /// Laws that gave no finite number somewhere, by their place in laws(); their columns mean nothing.
+  [[nodiscard]] std::vector<std::size_t> not_finite() const;
 
  private:
   /// Columns of one law with one shape: they share its hidden state and its evaluation at each site.
@@ -38,6 +40,8 @@ class LawColumns final : public InjectedColumns {
     std::vector<std::size_t> sites;
     LawInput at;  ///< parameters and hidden state as they are; signals as last evaluated
     std::vector<Strength> strengths;
+    bool finite = true;  ///< everywhere so far
+    [[nodiscard]] double finite_or_none(double weight);
   };
   [[nodiscard]] Shape& shape_of(const LawColumn& column, const PlantDescription& plant);
   void advance(Shape& shape, double step_s, Signals signals);

@@ -82,6 +82,7 @@ RecordError BenchPhysics::record_error_of(const std::string& channel) const {
     if (term.kind == SiteKind::input_gain) error.gain = term.parameters[0];
     if (term.kind == SiteKind::input_bias) error.bias = term.parameters[0];
     if (term.kind == SiteKind::input_delay) error.delay_s = term.parameters[0];
+    if (term.kind == SiteKind::input_clock_rate) error.input_clock_rate = term.parameters[0];
   }
   return error;
 }

@@ -25,12 +25,13 @@ struct SensorError {
   double cut = 0.0, end = 0.0;
 };
 
-/// How a recording errs of what acted on the actuator:  u(t) = (1 + gain) u_recorded(t - delay) + bias, and a clock
-/// that is fast by clock_rate.
+/// How a recording errs of what acted on the actuator:  u(t) = (1 + gain) u_recorded(t - delay + r t) + bias with r the
+/// input_clock_rate, and a clock that is fast by clock_rate.
 struct RecordError {
   double gain = 0.0;
   double bias = 0.0;  ///< channel's unit
   double delay_s = 0.0;
+  double input_clock_rate = 0.0;
   double clock_rate = 0.0;
 };
 

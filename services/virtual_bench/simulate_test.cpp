@@ -85,12 +85,13 @@ std::vector<double> sample_times(double duration_s, double rate_Hz) {
   return times;
 }
 
-/// A channel as it was recorded of what acted: values at `delay_s` later, linear between the samples.
+/// A channel as it was recorded of what acted: values at `delay_s` later by a clock of its own, linear between the samples.
 std::vector<double> recorded_of(const std::vector<double>& acted, const std::vector<double>& time_s,
                                 const RecordError& error) {
   std::vector<double> recorded;
   for (const double time : time_s) {
-    const double at = std::clamp(time + error.delay_s, time_s.front(), time_s.back());
+    const double acted_at = (time + error.delay_s) / (1.0 + error.input_clock_rate);
+    const double at = std::clamp(acted_at, time_s.front(), time_s.back());
     const auto after =
         std::clamp<std::ptrdiff_t>(std::ranges::lower_bound(time_s, at) - time_s.begin(), 1, std::ssize(time_s) - 1);
     const auto k = static_cast<std::size_t>(after);

@@ -42,7 +42,7 @@ struct ModelValues {
 
 /// One quantity with respect to which outputs are differentiated. Made by PlantSimulation::find.
 struct FreeQuantity {
-  /// The last four are what a recording is off by (services/common/model/recorded_input.hpp).
+  /// The last five are what a recording is off by (services/common/model/recorded_input.hpp).
   enum class Kind {
     parameter,
     load_factor,
@@ -52,6 +52,7 @@ struct FreeQuantity {
     input_gain,
     input_bias,
     input_delay,
+    input_clock_rate,
     clock_rate
   };
   Kind kind = Kind::parameter;

@@ -62,7 +62,8 @@ void PlantHost::run(Unpacker request) {
   LawColumns laws(run->laws, simulation.plant());
   InjectedColumns* injected = run->laws.empty() ? static_cast<InjectedColumns*>(&asked) : &laws;
   if (!run->injected) injected = nullptr;
-  const auto outputs = simulation.run_driven_by(run->input, run->values, run->free, run->options, injected);
+  auto outputs = simulation.run_driven_by(run->input, run->values, run->free, run->options, injected);
+  if (outputs && injected == &laws) laws.mark_not_finite(outputs->sensitivities);
   Packer answer(conversation_.heap());
   put_outputs(answer, outputs);
 }

@@ -137,6 +137,7 @@ void put_run(Packer& packer, const RuntimeRun& run) {
     packer.put(static_cast<std::uint64_t>(channel.hold));
     packer.put(static_cast<std::uint64_t>(channel.cubic));
     packer.put(channel.delay_s);
+    packer.put(channel.clock_rate);
   }
   put_values(packer, run.values.parameters);
   packer.put(run.values.load_factor);
@@ -163,6 +164,7 @@ Result<HostedRun> get_run(Unpacker& unpacker, const PlantDescription& plant) {
     channel.hold = unpacker.get<std::uint64_t>() != 0;
     channel.cubic = unpacker.get<std::uint64_t>() != 0;
     channel.delay_s = unpacker.get<double>();
+    channel.clock_rate = unpacker.get<double>();
   }
   HostedRun run{.input = {std::move(times), std::move(channels)},
                 .values = {},

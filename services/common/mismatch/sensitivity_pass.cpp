@@ -1,6 +1,7 @@
 #include "services/common/mismatch/sensitivity_pass.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "services/common/model/law_columns.hpp"
@@ -12,13 +13,15 @@ namespace {
 // to resolve it.
 constexpr double kHiddenStep_s = 0.02;
 
-// Candidates of these laws, by their place among the columns that act in the plant.
-std::vector<std::size_t> candidates_of(const std::vector<std::size_t>& laws, const std::vector<Candidate>& candidates,
-                                       const std::vector<PassColumn>& columns) {
+// Candidates without a finite value somewhere, by their columns, which are the last ones.
+std::vector<std::size_t> not_finite(const RowMatrix& sensitivities, const std::vector<Candidate>& candidates,
+                                    const std::vector<PassColumn>& columns) {
   std::vector<std::size_t> acting, found;
   for (const PassColumn& column : columns)
     if (!candidates[column.candidate].sites.empty()) acting.push_back(column.candidate);
-  for (const std::size_t law : laws) found.push_back(acting[law]);
+  const Eigen::Index first = sensitivities.cols() - std::ssize(acting);
+  for (std::size_t k = 0; k < acting.size(); ++k)
+    if (!std::isfinite(sensitivities(0, first + static_cast<Eigen::Index>(k)))) found.push_back(acting[k]);
   return found;
 }
 
@@ -110,6 +113,7 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
   const ModelValues values = values_at(model.problem, recording, shared, own);
   auto outputs = part.simulation->run(values, free.quantity, options, &injected);
   if (!outputs) return fail(outputs.error());
+  injected.mark_not_finite(outputs->sensitivities);
 
   const Eigen::Index samples = outputs->values.rows(), channels = outputs->values.cols();
   const auto unknowns = static_cast<Eigen::Index>(shared.size() + own.size()),
@@ -127,7 +131,7 @@ Result<Pass> sensitivity_pass(const FittedModel& model, std::size_t recording, c
   }
   Pass pass;
   pass.part_ = &part;
-  pass.not_finite = candidates_of(injected.not_finite(), candidates, columns);
+  pass.not_finite = not_finite(outputs->sensitivities, candidates, columns);
   pass.channels = channels;
   const auto is_recorded = [&](const Candidate& candidate) {
     return is_of_recording(candidate.law->kind) ||

@@ -85,6 +85,7 @@ const SiteWords& words_of(SiteKind kind) {
     case SiteKind::input_gain:
     case SiteKind::input_bias:
     case SiteKind::input_delay:
+    case SiteKind::input_clock_rate:
     case SiteKind::clock_rate:
       return kRecording;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sealwatch/model/law_sizes.hpp"
 
@@ -78,12 +79,13 @@ double LawColumns::Shape::finite_or_none(double weight) {
   return 0.0;
 }
 
-std::vector<std::size_t> LawColumns::not_finite() const {
-  std::vector<std::size_t> columns;
+void LawColumns::mark_not_finite(RowMatrix& sensitivities) const {
+  const Eigen::Index first = sensitivities.cols() - std::ssize(laws_);
   for (const Shape& shape : shapes_)
     for (const Shape::Strength& strength : shape.strengths)
-      if (!shape.finite) columns.push_back(entries_[strength.first_entry].column);
-  return columns;
+      if (!shape.finite)
+        sensitivities.col(first + static_cast<Eigen::Index>(entries_[strength.first_entry].column))
+            .setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 void LawColumns::weigh(double t, Signals signals, std::span<double> weights) {

@@ -25,8 +25,9 @@ class LawColumns final : public InjectedColumns {
   [[nodiscard]] std::span<const Entry> entries() const override { return entries_; }
   [[nodiscard]] const std::vector<LawColumn>& laws() const { return laws_; }
   void weigh(double t, Signals signals, std::span<double> weights) override;
-  /// Laws that gave no finite number somewhere, by their place in laws(); their columns mean nothing.
-  [[nodiscard]] std::vector<std::size_t> not_finite() const;
+  /// After a run: not a number in the columns of laws that gave no finite number somewhere, the laws' columns being the
+  /// last ones.
+  void mark_not_finite(RowMatrix& sensitivities) const;
 
  private:
   /// Columns of one law with one shape: they share its hidden state and its evaluation at each site.

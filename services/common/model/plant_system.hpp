@@ -109,13 +109,16 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
   void cross_jump(double t, double* point, std::size_t stride) const override {
     for (const Column& column : recording_) {
       const std::size_t channel = column.quantity.index;
-      if (column.quantity.kind != FreeQuantity::Kind::input_delay || !input_.channels()[channel].hold) continue;
+      const bool by_clock = column.quantity.kind == FreeQuantity::Kind::input_clock_rate;
+      if (!by_clock && column.quantity.kind != FreeQuantity::Kind::input_delay) continue;
+      if (!input_.channels()[channel].hold) continue;
+      const double later = by_clock ? input_.jump_by_clock_rate(channel, t) : input_.jump_by_delay(channel);
       const State<double> state = state_of(point, stride);
       auto [values, slopes] = course_at(t);
       const auto after = rates<double>(state, make_input(values, slopes), values_);
       values[channel] = input_.value(channel, t, segment_ - 1, cursor_);
       const auto before = rates<double>(state, make_input(values, slopes), values_);
-      for (int row = 0; row < rows(); ++row) point[row * stride + column.place] += before[row] - after[row];
+      for (int row = 0; row < rows(); ++row) point[row * stride + column.place] += later * (before[row] - after[row]);
     }
   }
 
@@ -176,6 +179,8 @@ class PlantSystem : public SizedSystem<kSizeOf<Model, WithPhysics>> {
     std::array<double, 2> direction{1.0, 0.0};
     if (quantity.kind == FreeQuantity::Kind::input_gain) direction = input_.by_gain(channel, t, segment_, cursor_);
     if (quantity.kind == FreeQuantity::Kind::input_delay) direction = {input_.by_delay(channel, t, cursor_), 0.0};
+    if (quantity.kind == FreeQuantity::Kind::input_clock_rate)
+      direction = {input_.by_clock_rate(channel, t, cursor_), 0.0};
     const auto moved = [&](double by) {
       auto [values, slopes] = course_at(t);
       values[channel] += by * direction[0];

@@ -6,11 +6,11 @@
 // known: it takes steps of that distance along the line between its neighbours.
 //
 // What acted on the plant may differ from what was recorded:
-//   u(t) = (1 + g) (u_recorded(t - tau) - z) + b,   t = t_0 + (t_recorded - t_0) / (1 + c)
-//   g gain [1], b bias [channel], tau delay [s], z zero of the reading [channel] of one channel, c by how much the
-//   recording's clock is fast [1]
+//   u(t) = (1 + g) (u_recorded(t - tau + r (t - t_0)) - z) + b,   t = t_0 + (t_recorded - t_0) / (1 + c)
+//   g gain [1], b bias [channel], tau delay [s], z zero of the reading [channel], r by how much its own clock is fast [1]
+//   of one channel, c by how much the recording's clock is fast [1]
 // and changes with them by
-//   du/dg = u_recorded - z,   du/db = 1,   du/dtau = -du/dt
+//   du/dg = u_recorded - z,   du/db = 1,   du/dtau = -u_recorded',   du/dr = (t - t_0) u_recorded'
 #pragma once
 
 #include <algorithm>
@@ -28,14 +28,14 @@ struct InputChannel {
   bool hold = false;
   std::vector<double> slopes = {};  ///< at the samples; empty: those of the values' course
   bool cubic = false;               ///< the course between samples has these slopes; else slopes are linear
-  double delay_s = 0.0;
+  double delay_s = 0.0, clock_rate = 0.0;
   double gain = 0.0, bias = 0.0;  ///< that the values have in them
 };
 
 /// By what the recording differs from what acted on the plant.
 struct RecordingErrors {
   struct Input {
-    double gain = 0.0, bias = 0.0, delay_s = 0.0, zero = 0.0;
+    double gain = 0.0, bias = 0.0, delay_s = 0.0, zero = 0.0, clock_rate = 0.0;
   };
   std::vector<Input> inputs;
   double clock_rate = 0.0;
@@ -65,10 +65,11 @@ class RecordedInput {
     for (double& time : times) time = times_.front() + (time - times_.front()) / rate;
     std::vector<InputChannel> channels = channels_;
     for (std::size_t k = 0; k < channels.size(); ++k) {
-      const auto [gain, bias, delay_s, zero] = errors.inputs[k];
+      const auto [gain, bias, delay_s, zero, clock_rate] = errors.inputs[k];
       for (double& value : channels[k].values) value = (1.0 + gain) * (value - zero) + bias;
       for (double& slope : channels[k].slopes) slope *= (1.0 + gain) * rate;
       channels[k].delay_s = delay_s;
+      channels[k].clock_rate = clock_rate;
       channels[k].gain = gain;
       channels[k].bias = bias;
     }
@@ -92,21 +93,15 @@ class RecordedInput {
   [[nodiscard]] double value(std::size_t channel, double t, std::size_t segment, std::size_t& cursor) const {
     const InputChannel& input = channels_[channel];
     if (input.hold) return held_[channel][segment];
-    seek(t - input.delay_s, cursor);
-    const double share = share_at(t - input.delay_s, cursor);
+    seek(read_at(input, t), cursor);
+    const double share = share_at(read_at(input, t), cursor);
     const double linear = input.values[cursor] + share * (input.values[cursor + 1] - input.values[cursor]);
     return input.cubic ? linear + bow(input, share, cursor) : linear;
   }
   /// Slope of a channel at time t, where value() last looked; 0 where it is held.
   [[nodiscard]] double slope(std::size_t channel, double t, std::size_t cursor) const {
     const InputChannel& input = channels_[channel];
-    if (input.hold) return 0.0;
-    if (!input.slopes.empty()) {
-      const double share = share_at(t - input.delay_s, cursor);
-      const double linear = input.slopes[cursor] + share * (input.slopes[cursor + 1] - input.slopes[cursor]);
-      return input.cubic ? linear + slope_of_bow(input, share, cursor) : linear;
-    }
-    return (input.values[cursor + 1] - input.values[cursor]) / (times_[cursor + 1] - times_[cursor]);
+    return input.hold ? 0.0 : (1.0 + input.clock_rate) * recorded_slope(input, t, cursor);
   }
 
   /// d(value, slope) of a channel by its gain.
@@ -119,14 +114,39 @@ class RecordedInput {
   /// d value by its delay, where it does not jump.
   [[nodiscard]] double by_delay(std::size_t channel, double t, std::size_t& cursor) const {
     const InputChannel& input = channels_[channel];
-    const double then = t - input.delay_s;
+    const double then = read_at(input, t);
     if (input.hold || then < times_.front() || then > times_.back()) return 0.0;
     seek(then, cursor);
-    if (input.cubic) return -slope(channel, t, cursor);
+    if (input.cubic) return -recorded_slope(input, t, cursor);
     return -(input.values[cursor + 1] - input.values[cursor]) / (times_[cursor + 1] - times_[cursor]);
+  }
+  /// The same by the rate of its clock.
+  [[nodiscard]] double by_clock_rate(std::size_t channel, double t, std::size_t& cursor) const {
+    return -(t - times_.front()) * by_delay(channel, t, cursor);
+  }
+  /// How much later a jump of a held channel at time t comes by its delay (1 s of it), or by the rate of its clock.
+  [[nodiscard]] double jump_by_delay(std::size_t channel) const { return 1.0 / (1.0 + channels_[channel].clock_rate); }
+  [[nodiscard]] double jump_by_clock_rate(std::size_t channel, double t) const {
+    return -(t - times_.front()) * jump_by_delay(channel);
   }
 
  private:
+  /// When it was recorded what acts at time t.
+  [[nodiscard]] double read_at(const InputChannel& input, double t) const {
+    return t - input.delay_s + input.clock_rate * (t - times_.front());
+  }
+  /// When acts what was recorded then.
+  [[nodiscard]] double acts_at(const InputChannel& input, double recorded_s) const {
+    return times_.front() + (recorded_s - times_.front() + input.delay_s) / (1.0 + input.clock_rate);
+  }
+  [[nodiscard]] double recorded_slope(const InputChannel& input, double t, std::size_t cursor) const {
+    if (!input.slopes.empty()) {
+      const double share = share_at(read_at(input, t), cursor);
+      const double linear = input.slopes[cursor] + share * (input.slopes[cursor + 1] - input.slopes[cursor]);
+      return input.cubic ? linear + slope_of_bow(input, share, cursor) : linear;
+    }
+    return (input.values[cursor + 1] - input.values[cursor]) / (times_[cursor + 1] - times_[cursor]);
+  }
   [[nodiscard]] double share_at(double t, std::size_t cursor) const {
     return std::clamp((t - times_[cursor]) / (times_[cursor + 1] - times_[cursor]), 0.0, 1.0);
   }
@@ -153,7 +173,7 @@ class RecordedInput {
     if (!input.hold) return steps;
     const double usual_s = usual_distance_s();
     for (std::size_t row = 0; row < times_.size(); ++row) {
-      steps.push_back({times_[row] + input.delay_s, input.values[row]});
+      steps.push_back({acts_at(input, times_[row]), input.values[row]});
       if (row + 1 == times_.size()) break;
       const double gap_s = times_[row + 1] - times_[row];
       if (!(gap_s > kGap * usual_s) || gap_s > kMost * usual_s || !moves_around(input.values, row)) continue;
@@ -161,7 +181,7 @@ class RecordedInput {
       if (std::max(before_s, after_s) > kGap * usual_s) continue;  // a slower course, not rows that were lost
       const double rise = (input.values[row + 1] - input.values[row]) / gap_s;
       for (double s = usual_s; s < gap_s - 0.5 * usual_s; s += usual_s)
-        steps.push_back({steps.back().at_s + usual_s, input.values[row] + rise * s});
+        steps.push_back({acts_at(input, times_[row] + s), input.values[row] + rise * s});
     }
     return steps;
   }

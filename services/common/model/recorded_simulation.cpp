@@ -19,6 +19,7 @@ void add_error(RecordingErrors& errors, SiteKind kind, std::size_t input, double
   if (kind == SiteKind::input_gain) acted.gain += size;
   if (kind == SiteKind::input_bias) acted.bias += size;
   if (kind == SiteKind::input_delay) acted.delay_s += size;
+  if (kind == SiteKind::input_clock_rate) acted.clock_rate += size;
   if (kind == SiteKind::sensor_gain) acted.gain += 1.0 / (1.0 + size) - 1.0;
   if (kind == SiteKind::sensor_bias) acted.zero += size;
   if (kind == SiteKind::sensor_lag) acted.delay_s -= size;
@@ -28,7 +29,7 @@ void add_error(RecordingErrors& errors, SiteKind kind, std::size_t input, double
 /// enough that the outputs follow it linearly.
 double difference_step(const RecordedInput& recorded, SiteKind kind, std::size_t input) {
   constexpr double kGain = 2e-3, kOfRange = 2e-3, kOfInterval = 0.2, kRate = 2e-4;
-  if (kind == SiteKind::clock_rate) return kRate;
+  if (kind == SiteKind::clock_rate || kind == SiteKind::input_clock_rate) return kRate;
   if (kind == SiteKind::input_gain || kind == SiteKind::sensor_gain) return kGain;
   if (kind == SiteKind::input_delay || kind == SiteKind::sensor_lag)
     return kOfInterval * (recorded.times().back() - recorded.times().front()) /
@@ -160,6 +161,8 @@ RecordedSimulation::ByRecording RecordedSimulation::by_recording(RecordingLaw la
       return {{Kind::input_bias, law.input}};
     case SiteKind::input_delay:
       return {{Kind::input_delay, law.input}};
+    case SiteKind::input_clock_rate:
+      return {{Kind::input_clock_rate, law.input}};
     case SiteKind::sensor_gain:
       return {{Kind::input_gain, law.input}, -1.0 / ((1.0 + size) * (1.0 + size))};
     case SiteKind::sensor_bias:

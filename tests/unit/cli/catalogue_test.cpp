@@ -105,6 +105,7 @@ TEST(LawsCommand, TakesAnIdAnElementOrAKindOfSite) {
   EXPECT_EQ(ids_in(laws("piston_force", true).out), at_piston);
   EXPECT_THAT(ids_in(laws("sensor:position", true).out), ::testing::Contains("sensor_lag"));
   EXPECT_THAT(ids_in(laws("clock", true).out), ElementsAre("clock_rate"));
+  EXPECT_THAT(ids_in(laws("input:motor_voltage", true).out), ::testing::Contains("input_clock_rate"));
 }
 
 TEST(LawsCommand, OneLawTellsItsSourceAndWhatKeepsItPhysical) {

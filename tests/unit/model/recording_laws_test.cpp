@@ -66,6 +66,25 @@ TEST(RecordingLaws, AFastClockShowsMoreTimeThanThereWas) {
   EXPECT_GT(worst_difference(outputs_of(asset, recorded), outputs_of(asset, acted)), 100.0 * kSame) << "it matters";
 }
 
+/// The voltage was stamped by a logger of its own, whose clock is fast: its record shows every ramp late and slow.
+TEST(RecordingLaws, AnInputsOwnClockStretchesItsRecordAlone) {
+  const AssetConfig asset = with_error(nominal_asset("eha"), "input_gain", "input:motor_voltage", "g", 0.0);
+  const TimeSeries acted = standard_pst(asset, 100.0);
+  TimeSeries recorded = acted;
+  const std::vector<double>& volts = acted.channels.front().values;
+  for (std::size_t row = 0; row < acted.time_s.size(); ++row) {
+    const double at = (acted.time_s[row] - acted.time_s.front()) / 1.02 * 100.0;
+    const auto before = static_cast<std::size_t>(at);
+    const double next = volts[std::min(before + 1, volts.size() - 1)];
+    recorded.channels.front().values[row] = std::lerp(volts[before], next, at - static_cast<double>(before));
+  }
+  ASSERT_EQ(acted.channels.front().name, "motor_voltage");
+  const AssetConfig fast = with_error(asset, "input_clock_rate", "input:motor_voltage", "r", 0.02);
+  constexpr double kLinear = 5.0 * kSame;  // corners between the record's samples are lost
+  EXPECT_LT(worst_difference(outputs_of(fast, recorded), outputs_of(asset, acted)), kLinear);
+  EXPECT_GT(worst_difference(outputs_of(asset, recorded), outputs_of(asset, acted)), 100.0 * kLinear) << "it matters";
+}
+
 /// Held inputs jump: a delay of whole samples moves the record's rows, one of half a sample cuts the step in two.
 TEST(RecordingLaws, AHeldInputActsLate) {
   const AssetConfig asset = nominal_asset("cascaded_tanks");
@@ -131,11 +150,12 @@ TEST(RecordingLaws, SensitivitiesAreThoseOfWholeSimulations) {
   asset = with_error(asset, "input_gain", "input:motor_voltage", "g", 0.01);
   asset = with_error(asset, "input_bias", "input:motor_voltage", "b", 0.1);
   asset = with_error(asset, "input_delay", "input:motor_voltage", "tau", 0.004);
+  asset = with_error(asset, "input_clock_rate", "input:motor_voltage", "r", 0.005);
   asset = with_error(asset, "clock_rate", "clock", "c", 0.01);
   expect_slopes(**PlantSimulation::create(asset, standard_pst(asset, 100.0)),
                 {"input:motor_voltage.input_gain.g", "input:motor_voltage.input_bias.b",
-                 "input:motor_voltage.input_delay.tau", "clock.clock_rate.c"},
-                {1e-3, 1e-2, 1e-4, 1e-4}, 0.02);
+                 "input:motor_voltage.input_delay.tau", "input:motor_voltage.input_clock_rate.r", "clock.clock_rate.c"},
+                {1e-3, 1e-2, 1e-4, 1e-5, 1e-4}, 0.02);
 }
 
 /// Beside a law that sees the input's slope, whose jumps at the samples a delay moves too: those are left out.
@@ -164,11 +184,12 @@ TEST(RecordingLaws, SensitivitiesOfAHeldInput) {
   asset = with_error(asset, "input_gain", "input:pump_voltage", "g", 0.01);
   asset = with_error(asset, "input_bias", "input:pump_voltage", "b", 0.1);
   asset = with_error(asset, "input_delay", "input:pump_voltage", "tau", 1.0);
+  asset = with_error(asset, "input_clock_rate", "input:pump_voltage", "r", 0.02);
   asset = with_error(asset, "clock_rate", "clock", "c", 0.01);
   expect_slopes(**PlantSimulation::create(asset, recorded),
                 {"input:pump_voltage.input_gain.g", "input:pump_voltage.input_bias.b",
-                 "input:pump_voltage.input_delay.tau", "clock.clock_rate.c"},
-                {1e-3, 1e-2, 0.1, 1e-4}, 0.01);
+                 "input:pump_voltage.input_delay.tau", "input:pump_voltage.input_clock_rate.r", "clock.clock_rate.c"},
+                {1e-3, 1e-2, 0.1, 1e-4, 1e-4}, 0.01);
 }
 
 /// The cylinder's circuit is driven by the measured flow: its sensor's errors are taken off it.

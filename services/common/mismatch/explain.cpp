@@ -728,6 +728,10 @@ class Analysis {
           "alone, the pressure of chamber B cannot be separated from missing physics.";
     result_.summary = summary_of(result_);
     say_what_else_is_known();
+    if (const std::string moved = values_at_their_end(*best_.model, asset_); !moved.empty()) {
+      result_.notes.push_back(moved);
+      if (result_.verdict == Verdict::undetermined && !why_none_) result_.summary += " " + moved;
+    }
     return {};
   }
 

@@ -69,6 +69,21 @@ void remark_disturbed_signal(Explanation& result) {
                      " for outliers, and analyse again without them.";
 }
 
+std::string values_at_their_end(const FittedModel& model, const AssetConfig& asset) {
+  std::vector<std::string> moved;
+  for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
+    const Unknown& unknown = model.problem.shared[k];
+    const auto given = asset.parameters.find(unknown.name);
+    const double at = model.optimum.point.shared[k];
+    if (!unknown.is_known() || given == asset.parameters.end() || !at_bound(unknown, at)) continue;
+    moved.push_back(unknown.name + " to " + number(unknown.to_value(at)) + " " + unknown.unit + " from " +
+                    number(given->second.value));
+  }
+  if (moved.empty()) return {};
+  return "The fit moved fixed values as far as their tolerances allow, which may imitate what is missing: " +
+         joined(moved, ", ") + ". Give smaller tolerances where these values are known better.";
+}
+
 std::string gives_no_number(const LawAt& law) {
   return "Not asked: " + law_in_words(law) + " (" + law.law +
          ") gives no finite number somewhere in these recordings. Write the law so that it has a value at standstill "

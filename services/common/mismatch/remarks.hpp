@@ -30,6 +30,8 @@ void remark_disturbed_signal(Explanation& result);
 
 /// A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
 void remark_leak_in_two_parts(Explanation& result);
+/// Fixed values that the fit moved as far as their tolerances allow; "" where there is none.
+[[nodiscard]] std::string values_at_their_end(const FittedModel& model, const AssetConfig& asset);
 /// Of a law that has no finite value where the plant goes.
 [[nodiscard]] std::string gives_no_number(const LawAt& law);
 

@@ -119,6 +119,7 @@ std::string found_in_words(const std::vector<FoundEffect>& effects) {
 }  // namespace
 
 std::string summary_of(const Explanation& explanation) {
+  constexpr double kNoLarger = 1.05;  // times the noise, whose own size is known no better
   std::string text;
   const ChannelComparison* worst = worst_channel(explanation.fit);
   if (explanation.verdict == Verdict::consistent) {
@@ -146,7 +147,10 @@ std::string summary_of(const Explanation& explanation) {
     return "No difference beyond the noise was found, but these recordings could not have shown effects of a "
            "significant "
            "size.";
-  text = "Simulation and recordings differ beyond the noise";
+  const bool small = worst != nullptr && worst->rms_before < kNoLarger;
+  text = small ? "Simulation and recordings differ by no more than the noise, but not at random"
+               : "Simulation and recordings differ beyond the noise";
+  if (small) text.append(", p = ").append(number(explanation.p_value));
   if (worst != nullptr)
     text.append(" (")
         .append(in_words(worst->channel))

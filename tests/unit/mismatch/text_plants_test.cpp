@@ -158,6 +158,36 @@ TEST(TextPlants, ADriveAThousandTimesLargerHasLawsAsLarge) {
   EXPECT_EQ(back->physics[0].parameters.at("F_c").value, strength->second.value);
 }
 
+/// A law of one's own that has no value in one direction is left out by its name; what else may be missing is asked.
+TEST(TextPlants, ALawWithoutAValueIsLeftOutByItsName) {
+  std::string text = large_positioner();
+  text.replace(text.find("large_positioner"), std::string("large_positioner").size(), "rooted_positioner");
+  text += R"yaml(
+laws:
+  - id: root_friction
+    element: piston
+    equation: F_0 * sqrt(speed / v_0)
+    meaning: a root that has no value backwards
+    parameters:
+      F_0: {unit: N, usual: 50.0e3, matters: 1.0e3, min: 0, max: 1.0e6, strength: true, meaning: size}
+      v_0: {unit: m/s, usual: 1.0e-3, grid: [1.0e-3], min: 1.0e-5, max: 0.1, meaning: speed}
+)yaml";
+  const std::string file = ::testing::TempDir() + "rooted_positioner.yaml";
+  std::ofstream(file) << text;
+  const auto plant = load_plant(file);
+  ASSERT_TRUE(plant) << combine(plant.error()).describe();
+  constexpr double kFriction_N = 200.0 * kTimes;
+  const auto found = mismatch::explain(
+      nominal_asset("rooted_positioner"),
+      std::vector{large_stroke("slow", 6.0, kFriction_N, 1), large_stroke("fast", 2.5, kFriction_N, 2)},
+      std::vector{large_stroke("between", 4.0, kFriction_N, 3)});
+  ASSERT_TRUE(found) << found.error().describe();
+  EXPECT_TRUE(names(*found, "coulomb_friction")) << found->summary;
+  EXPECT_TRUE(std::ranges::any_of(found->notes, [](const std::string& note) {
+    return note.find("root friction") != std::string::npos && note.find("finite") != std::string::npos;
+  }));
+}
+
 TEST(TextPlants, FindTheFrictionOfAnORingInAPlantWithoutStates) {
   if (!recorded("seal_friction")) GTEST_SKIP() << "no public recordings";
   const std::vector<Recording> fit = {recording_of("seal_friction/run1_1bar.csv"),

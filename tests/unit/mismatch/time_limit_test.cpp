@@ -1,7 +1,10 @@
 // The analysis ends when its time is up, with what it has, and at once when it is called off.
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "sealwatch/mismatch/explain.hpp"
+#include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/explain_input.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/runtime/asset_file.hpp"
@@ -64,6 +67,43 @@ TEST(TimeLimit, CalledOffInTheMiddleItEndsWithoutAnAnswer) {
   ASSERT_FALSE(found);
   EXPECT_THAT(found.error().describe(), HasSubstr("called off"));
   EXPECT_LE(steps_after, 3U) << "what follows finds its time over";
+}
+
+// A law that contains the right one was fitted first, and time was up before the plainer one was asked: it is asked in
+// what is left of the time, or stands beside the claim.
+TEST(TimeLimit, APlainerLawIsAskedBeforeARicherOneIsClaimed) {
+  AssetConfig truth = actuator();
+  truth.physics.push_back({.id = "coulomb_friction",
+                           .element = "piston",
+                           .parameters = {{"F_c", {.value = 900.0, .min = 0.0, .max = 1e5}},
+                                          {"v_s", {.value = 1e-5, .min = 1e-7, .max = 1e-3}}}});
+  const std::vector<Recording> recordings = {recording_of(truth, 0.8), recording_of(truth, 1.2)};
+  Data data = data_of(recordings);
+  Deadline deadline;
+  data.deadline = &deadline;
+  const auto fitted = [&](const AssetConfig& asset) {
+    auto model = fit_model(asset, data, nullptr, 2);
+    if (!model) ADD_FAILURE() << model.error().describe();
+    return std::make_shared<const FittedModel>(std::move(model).value());
+  };
+  const Law* rich = find_law("stribeck_friction", {"F_c", "F_x", "v_s", "v_st"}).value();
+  Naming naming{.baseline = fitted(actuator()), .best = {}, .trials = {}, .first = {}, .last = {}};
+  naming.best = {{{rich, "piston"}}, fitted(with_law(actuator(), *rich, "piston", std::array{900.0, 0.0, 2e-4, 1e-5}))};
+  naming.first = screen(*naming.baseline, data, {}).value();
+  deadline.set_in(-1.0);
+  settle(naming, data, {});
+  EXPECT_FALSE(naming.settled);
+  EXPECT_THAT(naming.not_asked, SizeIs(1));
+  const auto effects = describe_effects(naming, naming.best, data, {}, nullptr);
+  ASSERT_THAT(effects, SizeIs(1));
+  EXPECT_THAT(effects.front().indistinguishable, testing::Contains(testing::Field(&LawAt::id, "coulomb_friction")));
+  EXPECT_LE(effects.front().probability, 0.5);
+  deadline.set_in(1e6);
+  settle(naming, data, {});
+  EXPECT_TRUE(naming.settled);
+  EXPECT_THAT(naming.not_asked, IsEmpty());
+  ASSERT_THAT(naming.best.effects, SizeIs(1));
+  EXPECT_EQ(naming.best.effects.front().law->id, "coulomb_friction");
 }
 
 // The right law was fitted, and time was up before what it leaves was looked at.

@@ -299,6 +299,7 @@ class Builder {
     });
     plant.description.sites.erase(plant.description.sites.begin(),
                                   plant.description.sites.begin() + static_cast<std::ptrdiff_t>(sites));
+    plant.description.hides_states = block_.file->co_simulation();
     for (std::size_t k = 0; k < starts_by_fmu_.size(); ++k) plant.states[k].by_equations = starts_by_fmu_[k];
     plant.equations = std::make_shared<FmuEquations>(std::move(block_), plant.equations,
                                                      FmuEquations::Counts{.inputs = plant.inputs.size(),

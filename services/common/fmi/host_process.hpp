@@ -72,6 +72,7 @@ class HostProcess {
   /// Where a run is, from what the process has written down before it called the binary.
   [[nodiscard]] std::string place(const char* what, double time_s) const;
   [[nodiscard]] std::string printed() const;
+  [[nodiscard]] std::string said() const;
   void kill_and_reap(int* status);
 
   std::string file_;

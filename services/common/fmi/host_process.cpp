@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "sealwatch/core/visible_text.hpp"
 #include "services/common/fmi/host_launch.hpp"
@@ -55,7 +56,9 @@ Status HostProcess::launch() {
 
 bool HostProcess::alive() const { return alive_ && (local_ || owner_ == getpid()); }
 
-HostProcess::~HostProcess() {
+HostProcess::~HostProcess() { end(); }
+
+void HostProcess::end() {
   if (child_ > 0 && owner_ != getpid()) alive_ = false, child_ = -1;  // it is another's
   if (alive_) {
     constexpr double kPatience_s = 2.0;  // a licence is given back, and the like
@@ -65,8 +68,9 @@ HostProcess::~HostProcess() {
   int status = 0;
   if (child_ > 0) kill_and_reap(&status);
   if (header_ != nullptr) munmap(header_, memory_bytes_);
-  for (const int descriptor : {life_, output_})
-    if (descriptor >= 0) close(descriptor);
+  header_ = nullptr;
+  for (int* descriptor : {&life_, &output_})
+    if (*descriptor >= 0) close(std::exchange(*descriptor, -1));
 }
 
 void HostProcess::kill_and_reap(int* status) {

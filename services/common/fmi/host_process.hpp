@@ -50,6 +50,8 @@ class HostProcess {
   HostProcess(std::string file, std::size_t heap_bytes, const ProcessLimits& limits);
   ~HostProcess();
   [[nodiscard]] Status launch();
+  /// Ends it, with what it has open; launch() may follow.
+  void end();
   /// `what` it is asked, at `time_s` unless that is NaN. `seconds`: how long a call of the binary may take within it.
   /// `look` is called now and then.
   [[nodiscard]] Status request(Operation operation, const char* what, double seconds, double time_s = kNoTime,

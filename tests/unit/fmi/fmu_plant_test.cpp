@@ -328,6 +328,33 @@ laws:
   EXPECT_THAT(code.modelica, HasSubstr("input Real s1 \"excess [K]\";"));
 }
 
+/// Differences by parameters take several instances: as many processes, for each run anew.
+TEST(FmuPlant, AUnitThatIsInstantiatedOnceGivesWhatTheOtherGives) {
+  const TestFolder folder, once_folder;
+  static_cast<void>(folder.build(spring_return("fmu_spring_return2")));
+  TestUnit unit = spring_return("fmu_spring_once2");
+  unit.interfaces = "<ModelExchange modelIdentifier=\"model\" canBeInstantiatedOnlyOncePerProcess=\"true\"/>\n";
+  static_cast<void>(once_folder.build(unit));
+  const auto plant = load_plant(written(folder, plant_text("instantiated_often"))),
+             once = load_plant(written(once_folder, plant_text("instantiated_once")));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  ASSERT_TRUE(once) << once.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("instantiated_often"), strokes()),
+             of_once = PlantSimulation::create(nominal_asset("instantiated_once"), strokes());
+  ASSERT_TRUE(simulation && of_once);
+  const std::vector<FreeQuantity> free = {*(*simulation)->find("M"), *(*simulation)->find("k_s")};
+  const auto expected = (*simulation)->run((*simulation)->start(), free, kTight);
+  ASSERT_TRUE(expected) << expected.error().describe();
+  for (int run = 0; run < 2; ++run) {
+    const auto outputs = (*of_once)->run((*of_once)->start(), free, kTight);
+    ASSERT_TRUE(outputs) << outputs.error().describe();
+    EXPECT_NEAR(outputs->values(100, 0), expected->values(100, 0), 1e-9);
+    for (const Eigen::Index column : {0, 1})
+      EXPECT_NEAR(outputs->sensitivities(100, column), expected->sensitivities(100, column),
+                  1e-6 * std::abs(expected->sensitivities(100, column)) + 1e-12);
+  }
+}
+
 TEST(FmuPlant, ACrashInARunIsAnErrorOfTheRun) {
   const TestFolder folder;
   const std::string fmu = folder.build(spring_return("fmu_crash2"));

@@ -172,6 +172,20 @@ TEST_F(FmuProcessTest, AMissingLicenceIsAnErrorWithTheFmusWords) {
                     HasSubstr("a licence may be missing")));
 }
 
+/// canBeInstantiatedOnlyOncePerProcess: not a second time either, once the first is freed.
+TEST_F(FmuProcessTest, AUnitThatIsInstantiatedOnceHasAProcessForEachRun) {
+  TestUnit unit = spring_return("fmu_spring_once2");
+  unit.interfaces = "<ModelExchange modelIdentifier=\"model\" canBeInstantiatedOnlyOncePerProcess=\"true\"/>\n";
+  const Running fmu = start(folder_.build(unit));
+  for (int run = 0; run < 3; ++run) {
+    const auto beginning = begin_spring(*fmu.process);
+    ASSERT_TRUE(beginning) << beginning.error().describe();
+    const auto value = fmu.process->evaluate(0.0, std::array{0.0, 0.0}, std::array{4.0}, {});
+    ASSERT_TRUE(value) << value.error().describe();
+    EXPECT_THAT(value->derivatives, ElementsAre(0.0, 20.0));
+  }
+}
+
 TEST_F(FmuProcessTest, AWrongTokenIsAnErrorInBothVersions) {
   for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
     TestUnit unit = spring_return(binary);

@@ -28,7 +28,7 @@ class Builder {
 
   std::optional<equations::BuiltPlant> build() {
     auto file = FmuFile::open(section_.file, section_.settings, section_.interface);
-    if (!file) return complain("fmu.file", file.error()), std::nullopt;
+    if (!file) return complain_of_file(file.error()), std::nullopt;
     block_.file = *file;
     if (!text_.file.empty())
       block_.plant = {.file = std::filesystem::absolute(text_.file).string(),
@@ -55,6 +55,15 @@ class Builder {
   void complain(const std::string& key, const Error& error) {
     sound_ = false;
     faults_(key, error);
+  }
+
+  // A setting's fault stands at its own line.
+  void complain_of_file(Error error) {
+    const bool of_setting = error.place.starts_with(kSettingPlace);
+    const std::string key =
+        of_setting ? "fmu.settings." + error.place.substr(std::string_view(kSettingPlace).size()) : "fmu.file";
+    if (of_setting) error.place.clear();
+    complain(key, error);
   }
 
   // The plant's states are the FMU's, in any order; those of the frame stand in the FMU's.

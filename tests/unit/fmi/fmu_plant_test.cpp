@@ -380,6 +380,7 @@ laws:
   const LawCode code = law_code(**plant, asset);
   EXPECT_THAT(code.c, HasSubstr("unit of the result: W"));
   EXPECT_THAT(code.c, HasSubstr("double wall_quadratic_loss(double s1)"));
+  EXPECT_THAT(code.c, HasSubstr(" *   s1: excess [K]\n"));
   EXPECT_THAT(code.modelica, HasSubstr("input Real s1 \"excess [K]\";"));
 }
 

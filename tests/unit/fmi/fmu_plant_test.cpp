@@ -411,6 +411,23 @@ TEST(FmuPlant, AUnitThatIsInstantiatedOnceGivesWhatTheOtherGives) {
   }
 }
 
+TEST(FmuPlant, AnOutputThatIsNoNumberIsNamedWithItsTime) {
+  const TestFolder folder;
+  static_cast<void>(folder.build(spring_return("fmu_spring_return2")));
+  const auto plant = load_plant(written(folder, with(plant_text("without_number"), "position: {value: stem",
+                                                     "position: {value: \"stem + 1e-9[m]*log(0.202 - t/1[s])\"")));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("without_number"), strokes());
+  ASSERT_TRUE(simulation);
+  const auto outputs = (*simulation)->run((*simulation)->start(), {});
+  ASSERT_FALSE(outputs);
+  EXPECT_EQ(outputs.error().place, "output position at t = 0.204 s");
+  EXPECT_EQ(outputs.error().value, "nan");
+  EXPECT_THAT(outputs.error().describe(),
+              testing::AllOf(HasSubstr("an output that is not a finite number"), HasSubstr("in the tool that made it"),
+                             testing::Not(HasSubstr("moves fastest"))));
+}
+
 TEST(FmuPlant, ACrashInARunIsAnErrorOfTheRun) {
   const TestFolder folder;
   const std::string fmu = folder.build(spring_return("fmu_crash2"));

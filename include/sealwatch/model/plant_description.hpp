@@ -83,7 +83,8 @@ struct PlantDescription {
   std::string wear_parameter = {};
   std::optional<ConditionSetting> condition = {};  ///< what `seal:` in an asset's file says the anchors of
   bool judged = false;                             ///< an asset that says nothing of it has that condition
-  std::string file = {};                           ///< that it was read from; "": it is built in
+  bool hides_states = false;  ///< a unit that integrates by itself (Co-Simulation): it can have no sites
+  std::string file = {};      ///< that it was read from; "": it is built in
 
   [[nodiscard]] const ChannelDescription* find_channel(std::string_view channel) const;
   [[nodiscard]] const ParameterDescription* find_parameter(std::string_view parameter) const;

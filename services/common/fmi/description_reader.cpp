@@ -101,15 +101,18 @@ std::optional<double> DescriptionReader::bound(const pugi::xml_node& node, const
 
 namespace {
 
-/// With which an input starts that says nothing of its start.
-std::optional<double> first_item(const DescriptionReader& reader, const pugi::xml_node& type) {
-  std::optional<double> first;
-  for (const pugi::xml_node& item : type.children("Item")) {
-    const std::optional<double> value = reader.number(item, "value");
-    if (value == 0.0) return std::nullopt;
-    if (!first) first = value;
-  }
-  return first;
+std::vector<Item> items_of(const DescriptionReader& reader, const pugi::xml_node& type) {
+  std::vector<Item> items;
+  for (const pugi::xml_node& item : type.children("Item"))
+    if (const std::optional<double> value = reader.number(item, "value"))
+      items.push_back({reader.text(item, "name"), *value});
+  return items;
+}
+
+/// With which an input starts that says nothing of its start: 0, or an enumeration without that value its first.
+std::vector<double> usual_start(const std::vector<Item>& items) {
+  const bool has_zero = std::ranges::find(items, 0.0, &Item::value) != items.end();
+  return items.empty() || has_zero ? std::vector<double>() : std::vector{items.front().value};
 }
 
 }  // namespace
@@ -119,7 +122,7 @@ DeclaredType read_type(const DescriptionReader& reader, const pugi::xml_node& no
           .min = reader.bound(node, "min"),
           .max = reader.bound(node, "max"),
           .nominal = reader.bound(node, "nominal"),
-          .first = first_item(reader, node)};
+          .items = items_of(reader, node)};
 }
 
 void read_number_attributes(const DescriptionReader& reader, const pugi::xml_node& node, const DeclaredTypes& types,
@@ -132,12 +135,13 @@ void read_number_attributes(const DescriptionReader& reader, const pugi::xml_nod
     if (!node.attribute("min")) own.min = type->second.min;
     if (!node.attribute("max")) own.max = type->second.max;
     if (!node.attribute("nominal")) own.nominal = type->second.nominal;
-    own.first = type->second.first;
+    own.items = type->second.items;
   }
   variable.unit = std::move(own.unit);
   variable.min = own.min, variable.max = own.max, variable.nominal = own.nominal;
   variable.start = reader.numbers(node, "start");
-  if (variable.start.empty() && variable.causality == FmiCausality::input && own.first) variable.start = {*own.first};
+  variable.items = std::move(own.items);
+  if (variable.start.empty() && variable.causality == FmiCausality::input) variable.start = usual_start(variable.items);
 }
 
 void add_states(const DescriptionReader& reader, const pugi::xml_node& at, std::size_t derivative,

@@ -50,7 +50,7 @@ class DescriptionReader {
 struct DeclaredType {
   std::string unit;
   std::optional<double> min, max, nominal;
-  std::optional<double> first;  ///< value of an enumeration that has no value 0
+  std::vector<Item> items;  ///< of an enumeration
 };
 using DeclaredTypes = std::map<std::string, DeclaredType>;
 

@@ -1,5 +1,6 @@
 #include "services/common/fmi/fmi_instance.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -46,9 +47,22 @@ void* Library::symbol(const char* name, bool needed) const {
 
 void Messages::add(int status, const std::string& category, const std::string& message) {
   constexpr std::size_t kMost = 1000;
-  if (status == kOkStatus) return;  // a chatty binary's news would push out its complaints
-  text_ += (text_.empty() ? "" : "; ") + (category.empty() ? "" : category + ": ") + message;
+  const std::string words = (category.empty() ? "" : category + ": ") + message;
+  // A chatty binary's news would push out its complaints; where it has none, they are its last words.
+  if (status == kOkStatus) {
+    if (text_.empty()) keep(words);
+    return;
+  }
+  text_ += (text_.empty() ? "" : "; ") + words;
   if (text_.size() > kMost) text_.erase(0, text_.size() - kMost);
+  keep(text_);
+}
+
+void Messages::keep(std::string_view text) const {
+  if (room_.empty()) return;
+  const std::string_view end = text.substr(text.size() - std::min(text.size(), room_.size() - 1));
+  std::ranges::copy(end, room_.begin());
+  room_[end.size()] = '\0';
 }
 
 std::vector<Constant> constants_of(const Setup& setup) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/common/fmi/fmi_functions.hpp"
@@ -100,9 +101,13 @@ class Messages {
   void add(int status, const std::string& category, const std::string& message);
   [[nodiscard]] std::string last() const { return text_; }
   void clear() { text_.clear(); }
+  /// From now on the newest stands here too, ended by a zero byte, the moment it is said: it outlives the process.
+  void keep_in(std::span<char> room) { room_ = room; }
 
  private:
+  void keep(std::string_view text) const;
   std::string text_;
+  std::span<char> room_;
 };
 [[nodiscard]] Messages& messages();
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
+
+#include "services/common/fmi/setting_values.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -62,17 +62,6 @@ std::vector<Handle> handles_of(const ModelDescription& description, std::span<co
   return handles;
 }
 
-std::vector<std::string> parts_of(const std::string& text) {
-  std::istringstream stream(text);
-  return {std::istream_iterator<std::string>(stream), {}};
-}
-
-bool is_value(const std::string& text) {
-  char* end = nullptr;
-  static_cast<void>(std::strtod(text.c_str(), &end));
-  return text == "true" || text == "false" || *end == '\0';
-}
-
 bool can_be_set(const Variable& variable) {
   return (variable.causality == FmiCausality::parameter || variable.causality == FmiCausality::structuralParameter) &&
          variable.variability != FmiVariability::constant && variable.type != FmiType::binary &&
@@ -103,7 +92,7 @@ Result<std::shared_ptr<const FmuFile>> FmuFile::open(const std::string& file, co
               .advice = "leave `interface` out, and the one that it has is taken"});
   if (wants_steps) description->model_exchange.reset();
   std::shared_ptr<FmuFile> fmu(new FmuFile(std::move(*unpacked), std::move(*description), settings));
-  if (const Status sound = fmu->check_settings(); !sound) return fail(sound.error());
+  if (const Status sound = fmu->take_settings(); !sound) return fail(sound.error());
   if (const Status named = fmu->check_states(); !named) return fail(named.error());
   if (const Status found = fmu->find_binary(); !found) return fail(found.error());
   return fmu;
@@ -147,19 +136,19 @@ Status FmuFile::find_binary() {
                   : "export the FMU for Linux on x86-64 (linux64)"));
 }
 
-Status FmuFile::check_settings() const {
+Status FmuFile::take_settings() {
   for (const auto& [name, text] : settings_) {
+    const auto refused = [&, place = kSettingPlace + name](Error error) {
+      error.file = unpacked_.file, error.place = place;
+      return fail(std::move(error));
+    };
     const Variable* variable = description_.find(name);
-    if (variable == nullptr) return fail(description_.find_element(name).error());
+    if (variable == nullptr) return refused(description_.find_element(name).error());
     if (!can_be_set(*variable))
-      return fail(refusal("is no parameter that can be set", "settings are for parameters", name));
-    if (text.find('\0') != std::string::npos)
-      return fail(refusal("has a zero byte in its value", "a text ends at one", name));
-    if (variable->type == FmiType::string) continue;
-    const std::vector<std::string> parts = parts_of(text);
-    if (parts.size() != variable->size || !std::ranges::all_of(parts, is_value))
-      return fail(refusal("must have as many numbers as " + name + " has elements, " + std::to_string(variable->size),
-                          "true and false count as numbers", text));
+      return refused(refusal("is no parameter that can be set", "settings are for parameters", name));
+    Result<std::string> value = value_of_setting(*variable, text);
+    if (!value) return refused(value.error());
+    values_[name] = std::move(*value);
   }
   return {};
 }
@@ -177,7 +166,7 @@ Status FmuFile::check_states() const {
 // Structural parameters come first: they are set in a mode of their own.
 void FmuFile::put_settings(Setup& setup) const {
   for (const bool structural : {true, false})
-    for (const auto& [name, text] : settings_) {
+    for (const auto& [name, text] : values_) {
       const Variable& variable = *description_.find(name);
       if ((variable.causality == FmiCausality::structuralParameter) != structural) continue;
       setup.constants.push_back(handle_of(variable));

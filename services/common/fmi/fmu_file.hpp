@@ -20,6 +20,9 @@ struct Selection {
 /// Which of its interfaces a unit is run by.
 enum class Choice { model_exchange_first, model_exchange, co_simulation };
 
+/// Before a setting's name: the place of an Error that is its fault.
+inline constexpr const char* kSettingPlace = "setting ";
+
 /// Whether a variable may change between events.
 [[nodiscard]] bool changes_between_events(const Variable& variable);
 
@@ -34,6 +37,8 @@ class FmuFile {
   /// Whether it is run for Co-Simulation: then nothing can be added to its derivatives.
   [[nodiscard]] bool co_simulation() const { return !description_.model_exchange; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
+  /// The settings in numbers, where they are no texts: items of enumerations may be set by their names.
+  [[nodiscard]] const Settings& set_values() const { return values_; }
   [[nodiscard]] const Interface& interface() const;
   /// What its process must know; `selection` is put in order.
   [[nodiscard]] Result<Setup> setup(Selection& selection) const;
@@ -44,14 +49,14 @@ class FmuFile {
       : unpacked_(std::move(unpacked)), description_(std::move(description)), settings_(std::move(settings)) {}
   [[nodiscard]] Status find_binary();
   /// Every setting names a variable that can be set, and has a value for it.
-  [[nodiscard]] Status check_settings() const;
+  [[nodiscard]] Status take_settings();
   [[nodiscard]] Status check_states() const;
   void put_settings(Setup& setup) const;
   [[nodiscard]] Error refusal(std::string rule, std::string advice, std::string value = {}) const;
 
   UnpackedFmu unpacked_;
   ModelDescription description_;
-  Settings settings_;
+  Settings settings_, values_;
   std::string binary_;  ///< member
 };
 

@@ -62,6 +62,7 @@ class HostHere final : public LocalHost {
 class Server final : public Conversation {
  public:
   Server(SharedHeader& header, std::span<std::byte> heap) : header_(header), heap_(heap), plant_(*this) {
+    messages().keep_in(header_.said);
     local_hosts() = [this](const Setup& setup) { return std::make_unique<HostHere>(*this, setup); };
   }
 

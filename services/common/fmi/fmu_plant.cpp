@@ -28,7 +28,7 @@ class Builder {
 
   std::optional<equations::BuiltPlant> build() {
     auto file = FmuFile::open(section_.file, section_.settings, section_.interface);
-    if (!file) return complain("fmu.file", file.error()), std::nullopt;
+    if (!file) return complain_of_file(file.error()), std::nullopt;
     block_.file = *file;
     if (!text_.file.empty())
       block_.plant = {.file = std::filesystem::absolute(text_.file).string(),
@@ -55,6 +55,15 @@ class Builder {
   void complain(const std::string& key, const Error& error) {
     sound_ = false;
     faults_(key, error);
+  }
+
+  // A setting's fault stands at its own line.
+  void complain_of_file(Error error) {
+    const bool of_setting = error.place.starts_with(kSettingPlace);
+    const std::string key =
+        of_setting ? "fmu.settings." + error.place.substr(std::string_view(kSettingPlace).size()) : "fmu.file";
+    if (of_setting) error.place.clear();
+    complain(key, error);
   }
 
   // The plant's states are the FMU's, in any order; those of the frame stand in the FMU's.
@@ -299,6 +308,7 @@ class Builder {
     });
     plant.description.sites.erase(plant.description.sites.begin(),
                                   plant.description.sites.begin() + static_cast<std::ptrdiff_t>(sites));
+    plant.description.hides_states = block_.file->co_simulation();
     for (std::size_t k = 0; k < starts_by_fmu_.size(); ++k) plant.states[k].by_equations = starts_by_fmu_[k];
     plant.equations = std::make_shared<FmuEquations>(std::move(block_), plant.equations,
                                                      FmuEquations::Counts{.inputs = plant.inputs.size(),

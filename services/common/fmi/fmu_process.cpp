@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace sealwatch::fmi {
 namespace {
@@ -39,12 +40,15 @@ Result<std::unique_ptr<FmuProcess>> FmuProcess::start(const std::string& file, S
     process->serve_here(process->setup_);
     return process;
   }
-  if (const Status launched = process->launch(); !launched) return fail(launched.error());
-  Packer packer = process->packer();
-  put_setup(packer, process->setup_);
-  const Status loaded = process->request(Operation::load, "loading the binary", limits.start_s);
-  if (!loaded) return fail(loaded.error());
+  if (const Status loaded = process->load(); !loaded) return fail(loaded.error());
   return process;
+}
+
+Status FmuProcess::load() {
+  if (const Status launched = launch(); !launched) return launched;
+  Packer packer = this->packer();
+  put_setup(packer, setup_);
+  return request(Operation::load, "loading the binary", limits().start_s);
 }
 
 namespace {
@@ -61,6 +65,10 @@ Outcome outcome_of(Unpacker& answer) {
 
 Result<Beginning> FmuProcess::begin(const Run& run) {
   assert(run.slots <= most_slots_);
+  if (std::exchange(begun_, true) && setup_.once_per_process != 0 && !local_hosts()) {
+    end();
+    if (const Status again = load(); !again) return fail(again.error());
+  }
   Packer packer = this->packer();
   packer.put(run.start_time_s);
   packer.put_list(run.state_steps);

@@ -56,6 +56,7 @@ class FmuProcess : public HostProcess {
     std::size_t slots = 1;
     std::span<const double> parameters;  ///< of each slot in turn
   };
+  /// Of a binary that takes one instance in the life of its process, each run has a process of its own.
   [[nodiscard]] Result<Beginning> begin(const Run& run);
   /// The spans are valid until the next request.
   [[nodiscard]] Result<Evaluation> evaluate(double time_s, std::span<const double> states,
@@ -74,8 +75,10 @@ class FmuProcess : public HostProcess {
 
  private:
   FmuProcess(std::string file, Setup setup, std::size_t most_slots, const ProcessLimits& limits);
+  [[nodiscard]] Status load();
 
   Setup setup_;
+  bool begun_ = false;
   std::size_t most_slots_, slots_ = 1;
   std::size_t states_, inputs_, outputs_;
 };

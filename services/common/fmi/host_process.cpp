@@ -13,7 +13,9 @@
 #include <csignal>
 #include <cstring>
 #include <new>
+#include <utility>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/fmi/host_launch.hpp"
 
 namespace sealwatch::fmi {
@@ -54,7 +56,9 @@ Status HostProcess::launch() {
 
 bool HostProcess::alive() const { return alive_ && (local_ || owner_ == getpid()); }
 
-HostProcess::~HostProcess() {
+HostProcess::~HostProcess() { end(); }
+
+void HostProcess::end() {
   if (child_ > 0 && owner_ != getpid()) alive_ = false, child_ = -1;  // it is another's
   if (alive_) {
     constexpr double kPatience_s = 2.0;  // a licence is given back, and the like
@@ -64,8 +68,9 @@ HostProcess::~HostProcess() {
   int status = 0;
   if (child_ > 0) kill_and_reap(&status);
   if (header_ != nullptr) munmap(header_, memory_bytes_);
-  for (const int descriptor : {life_, output_})
-    if (descriptor >= 0) close(descriptor);
+  header_ = nullptr;
+  for (int* descriptor : {&life_, &output_})
+    if (*descriptor >= 0) close(std::exchange(*descriptor, -1));
 }
 
 void HostProcess::kill_and_reap(int* status) {
@@ -108,7 +113,7 @@ Status HostProcess::request(Operation operation, const char* what, double second
     kill_and_reap(&status);
     return fail(failure(where,
                         "the FMU did not answer within " + std::to_string(std::lround(most)) + " s and was ended",
-                        "its binary hangs: try it in the tool that made it" + printed()));
+                        "its binary hangs: try it in the tool that made it" + said() + printed()));
   }
   if (header_->status != AnswerStatus::failed) return {};
   std::array<char, kTextBytes> text{};
@@ -161,9 +166,31 @@ Error HostProcess::failure(const std::string& what, std::string rule, std::strin
 Error HostProcess::ended(const std::string& what, int status) const {
   if (WIFSIGNALED(status))
     return failure(what, std::string("the FMU's binary crashed: ") + strsignal(WTERMSIG(status)),
-                   "try it in the tool that made it" + printed());
+                   "try it in the tool that made it" + said() + printed());
   return failure(what, "the FMU's binary ended its process with status " + std::to_string(WEXITSTATUS(status)),
-                 "try it in the tool that made it" + printed());
+                 "try it in the tool that made it" + said() + printed());
+}
+
+namespace {
+
+/// A stranger's text as one line of an error.
+std::string in_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20; }, ' ');
+  text.erase(text.find_last_not_of(' ') + 1);
+  return visible(text, false);
+}
+
+}  // namespace
+
+/// What the binary last told its logger, for where it cannot answer with it any more.
+std::string HostProcess::said() const {
+  constexpr std::size_t kMost = 400;
+  std::array<char, kSaidBytes> text{};
+  std::copy_n(header_->said, kSaidBytes - 1, text.begin());
+  const std::string all(text.data());
+  const std::string last = in_one_line(all.substr(all.size() - std::min(all.size(), kMost)));
+  return last.empty() ? "" : "; it said: " + last;
 }
 
 /// The end of what the binary printed.
@@ -173,10 +200,7 @@ std::string HostProcess::printed() const {
   const off_t size = lseek(output_, 0, SEEK_END);
   const off_t from = std::max<off_t>(0, size - static_cast<off_t>(text.size()));
   const ssize_t got = size > 0 ? pread(output_, text.data(), text.size(), from) : 0;
-  std::string last(text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got)));
-  std::ranges::replace_if(
-      last, [](unsigned char c) { return c < 0x20; }, ' ');
-  last.erase(last.find_last_not_of(' ') + 1);
+  const std::string last = in_one_line({text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got))});
   return last.empty() ? "" : "; it printed: " + last;
 }
 

@@ -50,6 +50,8 @@ class HostProcess {
   HostProcess(std::string file, std::size_t heap_bytes, const ProcessLimits& limits);
   ~HostProcess();
   [[nodiscard]] Status launch();
+  /// Ends it, with what it has open; launch() may follow.
+  void end();
   /// `what` it is asked, at `time_s` unless that is NaN. `seconds`: how long a call of the binary may take within it.
   /// `look` is called now and then.
   [[nodiscard]] Status request(Operation operation, const char* what, double seconds, double time_s = kNoTime,
@@ -72,6 +74,7 @@ class HostProcess {
   /// Where a run is, from what the process has written down before it called the binary.
   [[nodiscard]] std::string place(const char* what, double time_s) const;
   [[nodiscard]] std::string printed() const;
+  [[nodiscard]] std::string said() const;
   void kill_and_reap(int* status);
 
   std::string file_;

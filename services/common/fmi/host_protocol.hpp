@@ -35,6 +35,7 @@ enum class Operation : std::uint32_t {
 enum class AnswerStatus : std::uint32_t { ok, failed, asks };
 
 inline constexpr std::size_t kTextBytes = 4096;
+inline constexpr std::size_t kSaidBytes = 1024;
 inline constexpr int kSharedMemoryDescriptor = 3;
 inline constexpr int kLifeDescriptor = 4;  ///< its end says that sealwatch is gone
 
@@ -50,6 +51,7 @@ struct SharedHeader {
   Operation inside = Operation::end;
   double at_s = 0.0;
   char text[kTextBytes] = {};  ///< of an error: what failed, and then the binary's own last words
+  char said[kSaidBytes] = {};  ///< what the binary last told its logger, for when its process gives no answer any more
 };
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 

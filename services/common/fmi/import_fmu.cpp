@@ -38,6 +38,7 @@ struct Row {
   std::string unit;
   Conversion scale;
   std::string meaning;
+  std::optional<std::size_t> state = {};  ///< that an output shows, as it is
 };
 
 class Writer {
@@ -131,10 +132,19 @@ class Writer {
       for (std::size_t element = 0; rows != nullptr && element < variable.size; ++element)
         rows->push_back(row_of({k, element}));
     }
+    for (Row& output : outputs_)
+      for (std::size_t k = 0; k < states_.size(); ++k)
+        if (is_alias(output.element, states_[k].element)) output.state = k;
   }
 
-  // The states' values and sizes are known to the running model alone, and so are starts that the description lacks.
-  Status start() {
+  [[nodiscard]] bool is_alias(const Element& output, const Element& state) const {
+    const Variable& variable = fmu_.variables[output.variable];
+    return fmu_.variables[state.variable].reference == variable.reference && state.element == output.element &&
+           variable.type == FmiType::float64;
+  }
+
+  // What drives the running model; what is read of it are starts that the description lacks.
+  [[nodiscard]] Selection driven() const {
     Selection selection;
     for (const Row& row : inputs_)
       if (row.element.element == 0) selection.inputs.push_back(row.element.variable);
@@ -142,16 +152,24 @@ class Writer {
       if (row.element.element == 0)
         (fmu_.variables[row.element.variable].start.empty() ? selection.outputs : selection.parameters)
             .push_back(row.element.variable);
+    return selection;
+  }
+  [[nodiscard]] std::vector<double> starts_of(const std::vector<std::size_t>& variables) const {
+    std::vector<double> values;
+    for (const std::size_t variable : variables) {
+      const Variable& of = fmu_.variables[variable];
+      for (std::size_t k = 0; k < of.size; ++k) values.push_back(of.start.empty() ? 0.0 : of.start[k]);
+    }
+    return values;
+  }
+
+  // The states' values and sizes are known to the running model alone, and so are starts that the description lacks.
+  Status start() {
+    Selection selection = driven();
     const auto setup = file_.setup(selection);
     if (!setup) return fail(setup.error());
-    std::vector<double> inputs;
-    for (const std::size_t variable : selection.inputs) {
-      const Variable& of = fmu_.variables[variable];
-      for (std::size_t k = 0; k < of.size; ++k) inputs.push_back(of.start.empty() ? 0.0 : of.start[k]);
-    }
-    std::vector<double> parameters;
-    for (const std::size_t variable : selection.parameters)
-      std::ranges::copy(fmu_.variables[variable].start, std::back_inserter(parameters));
+    const std::vector<double> inputs = starts_of(selection.inputs);
+    std::vector<double> parameters = starts_of(selection.parameters);
     auto process = FmuProcess::start(file_.name(), *setup, 1);
     if (!process) return fail(process.error());
     const std::vector<double> steps(states_.size(), 1e-7), input_steps(inputs.size(), 1e-7);
@@ -169,7 +187,60 @@ class Writer {
     linked_.assign(states_.size(), false);
     for (std::size_t k = 0; k < states_.size(); ++k) linked_[k] = is_linked(states_[k].element.variable);
     try_parameters(parameters, begin, **process);
+    find_shown_states();
     return {};
+  }
+
+  // Outputs that are states under other names: beside the start, with other parameters and inputs, their values are one
+  // as well. What fails here is no fault: then nothing is known of them.
+  void find_shown_states() {
+    Selection selection = driven();
+    selection.outputs.clear();
+    for (const Row& row : outputs_)
+      if (row.element.element == 0 && !row.state && fmu_.variables[row.element.variable].type == FmiType::float64)
+        selection.outputs.push_back(row.element.variable);
+    const auto setup = file_.setup(selection);
+    if (file_.co_simulation() || states_.empty() || selection.outputs.empty() || !setup) return;
+    if (setup->continuous_inputs < setup->inputs.size()) return;  // those that events alone change stay as they are
+    auto process = FmuProcess::start(file_.name(), *setup, 1);
+    if (!process) return;
+    std::vector<double> inputs = starts_of(selection.inputs), parameters = starts_of(selection.parameters);
+    for (std::size_t k = 0; k < inputs.size(); ++k) inputs[k] += beside(k, inputs[k]);
+    for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] += beside(k, parameters[k]);
+    const std::vector<double> steps(states_.size(), 1e-7), input_steps(inputs.size(), 1e-7);
+    const double time_s = fmu_.start_time_s.value_or(0.0);
+    const auto begun = (*process)->begin({.start_time_s = time_s,
+                                          .state_steps = steps,
+                                          .input_steps = input_steps,
+                                          .inputs = inputs,
+                                          .parameters = parameters});
+    if (!begun) return;
+    std::vector<double> states = begun->states;
+    for (std::size_t k = 0; k < states.size(); ++k) states[k] += 10.0 * beside(k, begun->nominals[k]);
+    if (const auto there = (*process)->evaluate(time_s, states, inputs, {}))
+      take_equal(selection.outputs, there->outputs, states);
+  }
+
+  void take_equal(const std::vector<std::size_t>& variables, std::span<const double> values,
+                  const std::vector<double>& states) {
+    constexpr double kRounding = 1e-12;
+    for (const std::size_t variable : variables) {
+      for (Row& output : outputs_) {
+        if (output.element.variable != variable) continue;
+        const double value = values[output.element.element];
+        for (std::size_t k = 0; k < states.size() && !output.state; ++k)
+          if (std::abs(value - states[k]) <= kRounding * std::abs(states[k]) && output.unit == states_[k].unit &&
+              output.scale.factor == states_[k].scale.factor && output.scale.offset == states_[k].scale.offset)
+            output.state = k;
+      }
+      values = values.subspan(fmu_.variables[variable].size);
+    }
+  }
+
+  /// For each a way of its own.
+  static double beside(std::size_t k, double value) {
+    constexpr double kShare = 1e-3;
+    return kShare * (1.0 + 0.01 * static_cast<double>(k % 50)) * (value == 0.0 ? 1.0 : value);
   }
 
   // The description may not say which states parameters move at the start: all parameters are changed at once, each by
@@ -177,10 +248,7 @@ class Writer {
   template <class Begin>
   void try_parameters(std::vector<double>& parameters, const Begin& begin, const FmuProcess& process) {
     const std::vector<double> before = parameters;
-    const auto change = [&](std::size_t k) {
-      constexpr double kShare = 1e-3;
-      parameters[k] += kShare * (1.0 + 0.01 * static_cast<double>(k % 50)) * (before[k] == 0.0 ? 1.0 : before[k]);
-    };
+    const auto change = [&](std::size_t k) { parameters[k] += beside(k, before[k]); };
     for (std::size_t k = 0; k < parameters.size(); ++k) change(k);
     const auto all_moved = begin();
     if (all_moved) note_moved(all_moved->states);
@@ -320,12 +388,7 @@ class Writer {
 
   // An output that is a state, under its own or another name, is taken as the state, which costs nothing.
   [[nodiscard]] const Row* state_shown_by(const Row& output) const {
-    const Variable& variable = fmu_.variables[output.element.variable];
-    for (const Row& state : states_)
-      if (fmu_.variables[state.element.variable].reference == variable.reference &&
-          state.element.element == output.element.element && variable.type == FmiType::float64)
-        return &state;
-    return nullptr;
+    return output.state ? &states_[*output.state] : nullptr;
   }
   [[nodiscard]] std::string shown(const Row& output) const {
     const Row* state = state_shown_by(output);
@@ -362,7 +425,9 @@ class Writer {
             "turn.\n"
             "# start: fmu is the FMU's own, which its parameters move.\n"
             "# size: how large it usually is (the integration keeps to a share of it).\n"
-            "# own: false where every recording starts at the same value.\n"
+            "# own: true where each recording has a start of its own, which is estimated: here for the states that an "
+            "output shows,\n"
+            "# which begin at its first sample. The others begin at the FMU's start in every recording (own: false).\n"
             "states:\n";
     for (std::size_t k = 0; k < states_.size(); ++k) {
       const Row& row = states_[k];

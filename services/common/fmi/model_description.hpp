@@ -45,6 +45,12 @@ struct Unit {
   double offset = 0.0;
 };
 
+/// Of an enumeration.
+struct Item {
+  std::string name;
+  double value = 0.0;
+};
+
 struct Variable {
   std::string name;
   std::uint32_t reference = 0;  ///< value reference: the number by which the binary knows it
@@ -57,6 +63,7 @@ struct Variable {
   std::vector<std::size_t> extents = {};  ///< of an array, in each dimension
   std::vector<double> start;              ///< of numbers: empty, or one for each element
   std::optional<double> min, max, nominal;
+  std::vector<Item> items = {};
   std::optional<std::size_t> derivative_of;  ///< index of the variable that it is the time derivative of
 };
 

@@ -49,9 +49,11 @@ class BaselineFit {
     }
     if (!model) {
       Error error = model.error();
+      const bool has_advice = !error.file.empty() && !error.advice.empty();  // an FMU's, of itself
       if (error.file.empty()) error.file = first_not_simulated();
-      error.advice =
-          "the model cannot be simulated at the start values: check the asset's parameters against the recording";
+      if (!has_advice)
+        error.advice =
+            "the model cannot be simulated at the start values: check the asset's parameters against the recording";
       return fail(std::move(error));
     }
     if (!windowed() && !time_.deadline().passed()) model = weighed_by_what_is_recorded(std::move(*model));

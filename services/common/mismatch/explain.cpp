@@ -691,7 +691,7 @@ class Analysis {
     result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last, plant());
     if (!best_.effects.empty()) {
       result_.location = locate(result_.effects);
-    } else if (result_.statistically_significant) {
+    } else if (result_.statistically_significant && asks_within(plant())) {
       const bool laws_ask = naming_.first.p_value <= options_.false_alarm_rate;
       result_.location = laws_ask ? locate_without_law(naming_.first) : locate_at_a_sensor(result_.fit);
     }
@@ -732,6 +732,7 @@ class Analysis {
       result_.notes.push_back(moved);
       if (result_.verdict == Verdict::undetermined && !why_none_) result_.summary += " " + moved;
     }
+    if (!asks_within(plant())) remark_nothing_asked_within(plant(), why_none_.has_value(), result_);
     return {};
   }
 

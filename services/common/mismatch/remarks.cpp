@@ -87,8 +87,28 @@ std::string values_at_their_end(const FittedModel& model, const AssetConfig& ass
 std::string gives_no_number(const LawAt& law) {
   return "Not asked: " + law_in_words(law) + " (" + law.law +
          ") gives no finite number somewhere in these recordings. Write the law so that it has a value at standstill "
-         "and "
-         "in both directions, as with abs(speed).";
+         "and in both directions, as with abs(speed).";
+}
+
+bool asks_within(const PlantDescription& plant) { return !plant.sites.empty(); }
+
+void remark_nothing_asked_within(const PlantDescription& plant, bool has_reason, Explanation& result) {
+  const std::string why =
+      plant.hides_states
+          ? "The plant is a unit for Co-Simulation, which hides its states: only inputs, parameters and sensors were "
+            "asked, and physics that is missing within it cannot be named."
+          : "The plant file names no place where physics may be missing (elements with sites): only inputs, parameters "
+            "and sensors were asked.";
+  result.notes.push_back(why);
+  if (!result.statistically_significant) return;
+  result.summary += " " + why;
+  const std::string advice =
+      plant.hides_states
+          ? "Export the unit for Model Exchange (or take `interface: me`, where it has both) and "
+            "analyse again: then laws can be added to its derivatives."
+          : "Add elements with sites to the plant file, where physics may be missing, and analyse again.";
+  const bool says_more = has_reason || !result.effects.empty() || !result.asset_values.empty();
+  result.next_test = says_more && !result.next_test.empty() ? result.next_test + " " + advice : advice;
 }
 
 void remark_leak_in_two_parts(Explanation& result) {

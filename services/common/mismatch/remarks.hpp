@@ -4,6 +4,7 @@
 #include <string>
 
 #include "sealwatch/mismatch/explanation.hpp"
+#include "sealwatch/model/plant_description.hpp"
 #include "services/common/mismatch/why_none.hpp"
 
 namespace sealwatch::mismatch {
@@ -27,6 +28,12 @@ void remark_faster_sampling(Explanation& result);
 
 /// Far from the noise, and no law asks for any of it: outliers, or what a cable picks up, at the first place.
 void remark_disturbed_signal(Explanation& result);
+
+/// Whether laws can be asked within the plant: not where its description has no site for them.
+[[nodiscard]] bool asks_within(const PlantDescription& plant);
+/// Of such a plant, whose sensors, inputs and values alone were asked: they must not stand for what it may lack.
+/// `has_reason`: why no law is named is told already.
+void remark_nothing_asked_within(const PlantDescription& plant, bool has_reason, Explanation& result);
 
 /// A law of the leak past the piston takes a part of what R_CL alone had told: the rest is no healthier seal.
 void remark_leak_in_two_parts(Explanation& result);

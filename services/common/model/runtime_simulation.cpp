@@ -11,6 +11,7 @@
 #include "services/common/model/runtime_system.hpp"
 #include "services/common/model/simulation_plants.hpp"
 #include "services/common/model/start_values.hpp"
+#include "services/common/text/format.hpp"
 
 namespace sealwatch {
 namespace {
@@ -46,13 +47,32 @@ double mean_distance_s(const std::vector<double>& times) {
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
 
-tl::unexpected<Error> without_derivatives(const PlantDescription& plant, std::string trouble) {
-  return fail(Error{.file = {},
-                    .place = {},
-                    .value = std::move(trouble),
-                    .rule = "plant " + plant.name + " gave a derivative or an output that is not a finite number",
-                    .advice = "check its equations where something is divided by zero or a root is taken of what may "
-                              "be negative"});
+/// The first output that is no number, or else that its derivatives are none.
+tl::unexpected<Error> not_finite(const PlantSimulation& simulation, const SimulatedOutputs& outputs,
+                                 std::span<const double> times, std::string trouble) {
+  Error error{.file = {},
+              .place = {},
+              .value = std::move(trouble),
+              .rule = "plant " + simulation.plant().name +
+                      " gave a derivative that is not a finite number, though its outputs are finite: of an FMU, its "
+                      "directional derivatives may be wrong there",
+              .advice =
+                  "check its equations where something is divided by zero or a root is taken of what may be negative, "
+                  "or export the FMU without directional derivatives"};
+  for (Eigen::Index row = 0; row < outputs.values.rows(); ++row)
+    for (Eigen::Index channel = 0; channel < outputs.values.cols(); ++channel) {
+      if (std::isfinite(outputs.values(row, channel))) continue;
+      const auto sample = static_cast<std::size_t>(row);
+      error.place = "output " + simulation.channels()[static_cast<std::size_t>(channel)];
+      if (sample < times.size()) error.place += text::format(" at t = {:.6g} s", times[sample]);
+      error.value = std::isnan(outputs.values(row, channel)) ? "nan" : "infinite";
+      error.rule = "plant " + simulation.plant().name + " gave an output that is not a finite number";
+      error.advice =
+          "check what it is computed from: in an expression, a division by zero or a root of what may be negative; in "
+          "an FMU, the model in the tool that made it";
+      return fail(std::move(error));
+    }
+  return fail(std::move(error));
 }
 
 }  // namespace
@@ -127,7 +147,7 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
                 "fit and validate work; a model without such events (friction and stops rounded) can be explained");
   }
   if (outputs && !(outputs->values.allFinite() && outputs->sensitivities.allFinite()))
-    return system.said().empty() ? without_derivatives(plant(), system.trouble())
+    return system.said().empty() ? not_finite(*this, *outputs, input.times(), system.trouble())
                                  : fail(went_no_further({}, system.said()));
   return std::move(outputs);  // what a structured binding names is copied else
 }

@@ -74,14 +74,36 @@ std::string place_in_yaml(const std::string& file, const std::string& key) {
   return root ? place_in_yaml(*root, key) : "key " + key;
 }
 
+namespace {
+
+bool has_key(const YAML::Node& map, const std::string& key) {
+  return std::any_of(map.begin(), map.end(),
+                     [&](const auto& entry) { return entry.first.IsScalar() && entry.first.Scalar() == key; });
+}
+
+/// The next of the names in `rest`, without it: up to a point, or further where a key of the map has points in it, as
+/// variables of an FMU do.
+std::string take_name(const YAML::Node& map, std::string& rest) {
+  const auto end_after = [&](std::size_t from) { return std::min(rest.find('.', from), rest.size()); };
+  std::size_t length = end_after(0);
+  for (std::size_t end = length; end < rest.size();)
+    if (end = end_after(end + 1); has_key(map, rest.substr(0, end))) length = end;
+  std::string name = rest.substr(0, length);
+  rest.erase(0, length + 1);
+  return name;
+}
+
+}  // namespace
+
 std::string place_in_yaml(const YAML::Node& root, const std::string& key) {
   std::optional<YAML::Node> node(root);  // made anew below, never assigned: that would change the document
   std::string line;
-  std::istringstream names(key);
-  for (std::string name; node && node->IsMap() && std::getline(names, name, '.');) {
+  for (std::string rest = key; node && node->IsMap() && !rest.empty();) {
+    const std::string name = take_name(*node, rest);
     std::optional<YAML::Node> inside;
     line.clear();
-    const std::size_t bracket = name.ends_with(']') ? name.find('[') : std::string::npos;
+    const bool is_item = name.ends_with(']') && !has_key(*node, name);
+    const std::size_t bracket = is_item ? name.find('[') : std::string::npos;
     for (const auto& entry : *node)
       if (entry.first.IsScalar() && entry.first.Scalar() == name.substr(0, bracket)) {
         line = line_of(entry.first.Mark()) + ", ";

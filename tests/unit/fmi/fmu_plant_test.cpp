@@ -197,6 +197,61 @@ TEST(FmuPlant, FaultsNamePlaceValueAndRule) {
   EXPECT_THAT(fault(folder, with(good, "position, unit: m}", "position, unit: N}")), HasSubstr("another quantity"));
 }
 
+/// The spring with parameters that are set once: a number of turns, a way of working, its name.
+TestUnit with_settings() {
+  TestUnit unit = spring_return("fmu_spring_return2");
+  unit.interfaces =
+      "<ModelExchange modelIdentifier=\"model\"/><TypeDefinitions><SimpleType name=\"modes\"><Enumeration>"
+      "<Item name=\"free\" value=\"1\"/><Item name=\"very stiff\" value=\"2\"/></Enumeration></SimpleType>"
+      "</TypeDefinitions>\n";
+  const auto add = [&](const std::string& name, const std::string& type) {
+    unit.variables += "<ScalarVariable name=\"" + name +
+                      "\" valueReference=\"40\" causality=\"parameter\" variability=\"fixed\"><" + type +
+                      "/></ScalarVariable>\n";
+  };
+  add("n", "Integer start=\"3\" min=\"1\" max=\"50\"");
+  add("body.mode", "Enumeration declaredType=\"modes\" start=\"1\"");
+  add("on", "Boolean start=\"true\"");
+  add("gap", "Real start=\"1\" min=\"0\"");
+  return unit;
+}
+
+TEST(FmuPlant, ASettingThatItsVariableCannotHaveIsRefusedAtItsLine) {
+  const TestFolder folder;
+  static_cast<void>(folder.build(with_settings()));
+  const auto fault_of = [&](const std::string& setting) {
+    return fault(folder, with(plant_text("any"), "  inputs: {u:", "  settings:\n    " + setting + "\n  inputs: {u:"));
+  };
+  EXPECT_THAT(fault_of("n: 7.5"), testing::AllOf(HasSubstr("line 6, key fmu.settings.n: '7.5': must be a whole number"),
+                                                 testing::Not(HasSubstr("setting n"))));
+  EXPECT_THAT(fault_of("n: 0"), HasSubstr("must be 1 or more"));
+  EXPECT_THAT(fault_of("n: 51"), HasSubstr("must be 50 or less"));
+  EXPECT_THAT(fault_of("gap: -0.5"), HasSubstr("must be 0 or more"));
+  EXPECT_THAT(fault_of("on: 2"), HasSubstr("must be true or false"));
+  EXPECT_THAT(fault_of("n: many"), HasSubstr("must have as many numbers as n has elements, 1"));
+  EXPECT_THAT(fault_of("nn: 7"), HasSubstr("line 6, key fmu.settings.nn: 'nn': is no variable of the FMU"));
+  for (const char* value : {"9", "1.5", "stiff"})
+    EXPECT_THAT(fault_of("body.mode: " + std::string(value)),
+                testing::AllOf(HasSubstr("line 6, key fmu.settings.body.mode: '" + std::string(value) + "'"),
+                               testing::AnyOf(HasSubstr("is no item of the enumeration body.mode"),
+                                              HasSubstr("must be a whole number")),
+                               HasSubstr("its items are free (1), very stiff (2)")));
+}
+
+TEST(FmuPlant, AnItemOfAnEnumerationIsSetByItsName) {
+  const TestFolder folder;
+  const std::string fmu = folder.build(with_settings());
+  const auto file = FmuFile::open(fmu, {{"body.mode", "very stiff"}, {"n", "2e1"}, {"on", "false"}});
+  ASSERT_TRUE(file) << file.error().describe();
+  EXPECT_EQ((*file)->settings().at("body.mode"), "very stiff");
+  EXPECT_EQ((*file)->set_values().at("body.mode"), "2");
+  EXPECT_EQ((*file)->set_values().at("n"), "20");
+  EXPECT_EQ((*file)->set_values().at("on"), "false");
+  const auto wrong = FmuFile::open(fmu, {{"body.mode", "9"}});
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().place, "setting body.mode");
+}
+
 TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {
   const TestFolder folder;
   TestUnit unit = spring_return("fmu_spring_lying2");
@@ -325,7 +380,52 @@ laws:
   const LawCode code = law_code(**plant, asset);
   EXPECT_THAT(code.c, HasSubstr("unit of the result: W"));
   EXPECT_THAT(code.c, HasSubstr("double wall_quadratic_loss(double s1)"));
+  EXPECT_THAT(code.c, HasSubstr(" *   s1: excess [K]\n"));
   EXPECT_THAT(code.modelica, HasSubstr("input Real s1 \"excess [K]\";"));
+}
+
+/// Differences by parameters take several instances: as many processes, for each run anew.
+TEST(FmuPlant, AUnitThatIsInstantiatedOnceGivesWhatTheOtherGives) {
+  const TestFolder folder, once_folder;
+  static_cast<void>(folder.build(spring_return("fmu_spring_return2")));
+  TestUnit unit = spring_return("fmu_spring_once2");
+  unit.interfaces = "<ModelExchange modelIdentifier=\"model\" canBeInstantiatedOnlyOncePerProcess=\"true\"/>\n";
+  static_cast<void>(once_folder.build(unit));
+  const auto plant = load_plant(written(folder, plant_text("instantiated_often"))),
+             once = load_plant(written(once_folder, plant_text("instantiated_once")));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  ASSERT_TRUE(once) << once.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("instantiated_often"), strokes()),
+             of_once = PlantSimulation::create(nominal_asset("instantiated_once"), strokes());
+  ASSERT_TRUE(simulation && of_once);
+  const std::vector<FreeQuantity> free = {*(*simulation)->find("M"), *(*simulation)->find("k_s")};
+  const auto expected = (*simulation)->run((*simulation)->start(), free, kTight);
+  ASSERT_TRUE(expected) << expected.error().describe();
+  for (int run = 0; run < 2; ++run) {
+    const auto outputs = (*of_once)->run((*of_once)->start(), free, kTight);
+    ASSERT_TRUE(outputs) << outputs.error().describe();
+    EXPECT_NEAR(outputs->values(100, 0), expected->values(100, 0), 1e-9);
+    for (const Eigen::Index column : {0, 1})
+      EXPECT_NEAR(outputs->sensitivities(100, column), expected->sensitivities(100, column),
+                  1e-6 * std::abs(expected->sensitivities(100, column)) + 1e-12);
+  }
+}
+
+TEST(FmuPlant, AnOutputThatIsNoNumberIsNamedWithItsTime) {
+  const TestFolder folder;
+  static_cast<void>(folder.build(spring_return("fmu_spring_return2")));
+  const auto plant = load_plant(written(folder, with(plant_text("without_number"), "position: {value: stem",
+                                                     "position: {value: \"stem + 1e-9[m]*log(0.202 - t/1[s])\"")));
+  ASSERT_TRUE(plant) << plant.error().front().describe();
+  const auto simulation = PlantSimulation::create(nominal_asset("without_number"), strokes());
+  ASSERT_TRUE(simulation);
+  const auto outputs = (*simulation)->run((*simulation)->start(), {});
+  ASSERT_FALSE(outputs);
+  EXPECT_EQ(outputs.error().place, "output position at t = 0.204 s");
+  EXPECT_EQ(outputs.error().value, "nan");
+  EXPECT_THAT(outputs.error().describe(),
+              testing::AllOf(HasSubstr("an output that is not a finite number"), HasSubstr("in the tool that made it"),
+                             testing::Not(HasSubstr("moves fastest"))));
 }
 
 TEST(FmuPlant, ACrashInARunIsAnErrorOfTheRun) {

@@ -22,12 +22,13 @@ std::string imported(const TestFolder& folder, const TestUnit& unit) {
 TEST(ImportFmu, BothVersionsGiveTheSameRows) {
   const TestFolder folder;
   for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
-    EXPECT_THAT(imported(folder, spring_return(binary)),
-                AllOf(HasSubstr("file: \"model.fmu\""), HasSubstr("    \"u\": u\n"), HasSubstr("    \"k_s\": k_s\n"),
-                      HasSubstr("position: {variable: \"position\", unit: \"m\"}"),
-                      HasSubstr("M: {unit: \"1\", value: 20.0, min: 2"),
-                      HasSubstr("x: {variable: \"x\", unit: \"m\", start: \"0.0[m]\", size: 1.0"),
-                      HasSubstr("# Its derivatives are: der(x) der(v)")));
+    EXPECT_THAT(
+        imported(folder, spring_return(binary)),
+        AllOf(HasSubstr("file: \"model.fmu\""), HasSubstr("    \"u\": u\n"), HasSubstr("    \"k_s\": k_s\n"),
+              HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("M: {unit: \"1\", value: 20.0, min: 2"),
+              HasSubstr("x: {variable: \"x\", unit: \"m\", start: [position, \"0.0[m]\"], size: 1.0, own: true"),
+              HasSubstr("v: {variable: \"v\", unit: \"1\", start: \"0.0[1]\", size: 1.0, own: false"),
+              HasSubstr("# Its derivatives are: der(x) der(v)")));
   }
 }
 
@@ -50,6 +51,27 @@ TEST(ImportFmu, AnOutputThatIsAStateIsTakenAsTheState) {
   unit.variables.replace(unit.variables.find("5000"), 4, "1000");
   EXPECT_THAT(imported(folder, unit),
               AllOf(HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("start: [position, \"0.0[m]\"]")));
+}
+
+/// As units of most tools are, the exported ones among them: another value reference, with the state's value.
+TEST(ImportFmu, AnOutputThatAlwaysEqualsAStateIsTakenAsTheState) {
+  const TestFolder folder;
+  for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3", "fmu_bouncing2"}) {
+    const bool ball = std::string(binary).starts_with("fmu_bouncing");
+    EXPECT_THAT(imported(folder, ball ? bouncing(binary) : spring_return(binary)),
+                ball ? AllOf(HasSubstr("height: {unit: \"1\", value: h,"),
+                             HasSubstr("start: [height, \"1.0[1]\"], size: 1.0, own: true"))
+                     : AllOf(HasSubstr("position: {unit: \"m\", value: x,"), HasSubstr("start: [position,")));
+  }
+}
+
+TEST(ImportFmu, AnOutputInAnotherUnitThanTheStateIsAVariableOfItsOwn) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  const std::size_t output = unit.variables.find("name=\"position\"");
+  unit.variables.replace(unit.variables.find("unit=\"m\"", output), 8, "unit=\"mm\"");
+  EXPECT_THAT(imported(folder, unit), AllOf(HasSubstr("position: {variable: \"position\", unit: \"m\"}"),
+                                            HasSubstr("start: \"0.0[m]\", size: 1.0, own: false")));
 }
 
 TEST(ImportFmu, ElementsOfAnArrayMayBeOfEitherSignWithinItsSize) {

@@ -1,6 +1,6 @@
 // The same recordings with dry friction hidden in them, and the same plant native, as text and as FMU: fit and explain
 // give the same of all three.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <chrono>
 #include <cmath>
@@ -155,6 +155,102 @@ TEST(FmuPlants, ExplainGivesTheLawOfTheTextAndOfTheNativePlant) {
     EXPECT_NEAR(held_out.rms_before, first->holdout.channels.at(0).rms_before, 0.02 * held_out.rms_before) << plant;
     EXPECT_NEAR(held_out.rms_after, first->holdout.channels.at(0).rms_after, 0.02 * held_out.rms_after) << plant;
   }
+}
+
+/// The spring return without elements: no law can be asked within it.
+std::string closed_text_plant() {
+  static const fmi::TestFolder folder;
+  const std::string file = (folder / "plant.yaml").string();
+  std::ofstream(file) << R"yaml(name: spring_return_closed
+meaning: valve positioner with a return spring
+inputs:
+  drive_voltage: {unit: V, meaning: command u to the drive}
+outputs:
+  position: {value: x, unit: m, noise_std: 1.0e-5, meaning: stem position}
+parameters:
+  M:   {value: 20.0,  unit: kg,    meaning: moved mass, estimate: true}
+  F_v: {value: 2.0e3, unit: N s/m, meaning: viscous friction, estimate: true}
+  k_s: {value: 1.0e4, unit: N/m,   meaning: stiffness of the return spring, estimate: true}
+  k_F: {value: 100.0, unit: N/V,   meaning: force of the drive per voltage}
+states:
+  x: {der: v, unit: m, start: position, size: 0.02}
+  v: {der: (k_F * drive_voltage - F_v * v - k_s * x) / M, unit: m/s, start: "0[m/s]", own: false, size: 0.1}
+elements: {}
+law_sizes: {N: 0.02, m: 1.0, m/s: 10.0, N s/m: 0.01, N s2/m2: 1.0e-3, V: 1.0, A: 1.0, s: 1.0}
+)yaml";
+  return loaded(file);
+}
+
+/// As written for Co-Simulation: dx/dt = k u - x within the unit.
+std::string co_simulated_plant() {
+  static const fmi::TestFolder folder;
+  static_cast<void>(folder.build(fmi::gain()));
+  const std::string file = (folder / "plant.yaml").string();
+  std::ofstream(file) << R"yaml(name: closed_gain
+meaning: a gain with a lag
+fmu:
+  file: model.fmu
+  interface: cs
+  inputs: {u: u}
+  parameters: {k: k}
+  variables: {level: {variable: x, unit: m}}
+inputs: {u: {unit: V, meaning: drive}}
+outputs: {x: {unit: m, value: level, noise_std: 1.0e-4, meaning: level}}
+parameters:
+  k: {unit: m/V, value: 2.0, min: 0.2, max: 20.0, estimate: true, meaning: gain}
+elements: {}
+law_sizes: {N: 0.02, m: 1.0, m/s: 10.0, N s/m: 0.01, N s2/m2: 1.0e-3, V: 1.0, A: 1.0, s: 1.0}
+)yaml";
+  return loaded(file);
+}
+
+/// Of dx/dt = 2 u - x - x^3, in steps of Euler's method.
+Recording saturating(double period_s, unsigned seed) {
+  constexpr double kSample_s = 0.02;
+  Recording recording;
+  recording.recording_id = "saturating_" + std::to_string(seed);
+  recording.samples.channels = {{"u", "V", 0.0, {}}, {"x", "m", 0.0, {}}};
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 1e-4);
+  double x = 0.0;
+  const auto drive = [&](double t) { return std::sin(2.0 * std::numbers::pi * t / period_s); };
+  for (int row = 0; row <= 500; ++row) {
+    const double t = kSample_s * row;
+    recording.samples.time_s.push_back(t);
+    recording.samples.channels[0].values.push_back(drive(t));
+    recording.samples.channels[1].values.push_back(x + noise(random));
+    for (int step = 0; step < 200; ++step)
+      x += kSample_s / 200.0 * (2.0 * drive(t + step * kSample_s / 200.0) - x - x * x * x);
+  }
+  return recording;
+}
+
+/// What no law could be asked for is no fault of the sensor, and the report says what would let it ask.
+void expect_nothing_asked_within(const mismatch::Explanation& found, const std::string& why,
+                                 const std::string& advice) {
+  EXPECT_TRUE(found.statistically_significant) << found.summary;
+  if (found.effects.empty()) {
+    EXPECT_TRUE(found.location.empty()) << found.location.front().element;
+  }
+  EXPECT_THAT(found.summary, testing::HasSubstr(why));
+  EXPECT_THAT(found.notes, testing::Contains(testing::HasSubstr(why)));
+  EXPECT_THAT(found.next_test, testing::HasSubstr(advice));
+  EXPECT_THAT(found.next_test, testing::Not(testing::HasSubstr("outliers")));
+}
+
+TEST(FmuPlants, AUnitForCoSimulationIsNotAskedForPhysicsAndTheReportSaysSo) {
+  const std::vector<Recording> fit = {saturating(5.0, 1), saturating(3.0, 2)}, holdout = {saturating(4.0, 3)};
+  const auto found = mismatch::explain(nominal_asset(co_simulated_plant()), fit, holdout);
+  ASSERT_TRUE(found) << found.error().describe();
+  expect_nothing_asked_within(*found, "for Co-Simulation, which hides its states", "for Model Exchange");
+}
+
+TEST(FmuPlants, ATextPlantWithoutElementsIsNotAskedForPhysicsAndTheReportSaysSo) {
+  const std::vector<Recording> fit = {stroke(6.0, kFriction_N, 1), stroke(2.5, kFriction_N, 2)};
+  const std::vector<Recording> holdout = {stroke(4.0, kFriction_N, 3)};
+  const auto found = mismatch::explain(nominal_asset(closed_text_plant()), fit, holdout);
+  ASSERT_TRUE(found) << found.error().describe();
+  expect_nothing_asked_within(*found, "names no place where physics may be missing", "Add elements with sites");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/remarks.hpp"
 
 namespace sealwatch::mismatch {
 namespace {
@@ -116,6 +117,31 @@ TEST(FarthestOff, IsAChannelOfWhichLessThanHalfIsReproducedFarAboveTheNoise) {
   fit.channels.push_back(channel("position", 7000.0, -550.0));
   ASSERT_NE(farthest_off(fit), nullptr);
   EXPECT_EQ(farthest_off(fit)->channel, "position");
+}
+
+TEST(Remarks, APlantWithoutSitesIsSaidToBeAskedForNoPhysics) {
+  PlantDescription unit, text;
+  unit.hides_states = true;
+  EXPECT_FALSE(asks_within(unit));
+  Explanation found;
+  found.statistically_significant = true;
+  found.next_test = "Record further tests.";
+  remark_nothing_asked_within(unit, false, found);
+  EXPECT_NE(found.summary.find("Co-Simulation"), std::string::npos) << found.summary;
+  EXPECT_EQ(found.next_test.find("Export the unit for Model Exchange"), 0U) << found.next_test;
+  found.next_test = "Check this value in the asset file first.";
+  remark_nothing_asked_within(text, true, found);
+  EXPECT_EQ(found.next_test.find("Check this value"), 0U) << found.next_test;
+  EXPECT_NE(found.next_test.find("Add elements with sites"), std::string::npos) << found.next_test;
+  ASSERT_EQ(found.notes.size(), 2U);
+}
+
+TEST(Remarks, WhereNothingDiffersTheyAreANoteAlone) {
+  Explanation found;
+  remark_nothing_asked_within({}, false, found);
+  EXPECT_EQ(found.notes.size(), 1U);
+  EXPECT_TRUE(found.summary.empty()) << found.summary;
+  EXPECT_TRUE(found.next_test.empty()) << found.next_test;
 }
 
 }  // namespace

@@ -222,7 +222,7 @@ class WrapperExporter {
   [[nodiscard]] std::string settings() const {
     std::ostringstream out;
     out << "static const Setting settings[] = {";
-    for (const auto& [name, text] : block_.file->settings()) {
+    for (const auto& [name, text] : block_.file->set_values()) {
       const Variable& variable = *block_.file->description().find(name);
       const bool is_text = variable.type == FmiType::string;
       const double value = text == "true" ? 1.0 : is_text ? 0.0 : std::strtod(text.c_str(), nullptr);

@@ -76,6 +76,15 @@ std::string with_line_starts(const std::string& text, const std::string& start) 
   return result;
 }
 
+/// What the function of C is called with; its other arguments are constants that say it of themselves.
+std::string words_of_arguments(const std::vector<Argument>& arguments) {
+  std::string words;
+  for (const Argument& argument : arguments)
+    if (argument.value.empty())
+      words += "\n  " + argument.formula_name + ": " + argument.meaning + " [" + argument.unit + "]";
+  return words;
+}
+
 std::string c_function(const std::string& name, const std::vector<Argument>& arguments, std::string_view formula) {
   std::string text = "double " + name + "(";
   std::string defaults, separator;
@@ -124,7 +133,7 @@ LawCode law_code(const PlantDescription& plant, const AssetConfig& asset) {
     }
     const std::vector<Argument> arguments = arguments_of(**law, term, plant);
     const std::string function = name_of_function(term), head = heading(**law, term, plant);
-    code.c += "/*\n" + with_line_starts(head, " * ") + "\n */\n" +
+    code.c += "/*\n" + with_line_starts(head + words_of_arguments(arguments), " * ") + "\n */\n" +
               c_function(function, arguments, formula->contribution) + "\n";
     code.modelica +=
         with_line_starts(head, "  // ") + "\n" + modelica_function(function, arguments, formula->contribution);

@@ -114,7 +114,7 @@ class Rewriter {
       set(variables_[place], "initial", "calculated");
       typed(place).remove_attribute("start");
     }
-    for (const auto& [name, text] : inner_.settings()) {
+    for (const auto& [name, text] : inner_.set_values()) {
       const auto place =
           static_cast<std::size_t>(inner_.description().find(name) - inner_.description().variables.data());
       set_start(place, text);

@@ -1,5 +1,5 @@
 /* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs.
- * BREAKS: it fails over them, and the instance gives nothing after that. */
+ * BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
 #include <stddef.h>
 #include "spring_return.h"
 #ifdef DIRECTIONAL
@@ -9,6 +9,14 @@
 #define MODEL_BEFORE_INSTANTIATE(callbacks)                                                            \
   callbacks->logger(callbacks->environment, "test", 3, "licence", "no %s for %d days", "licence", 30); \
   return NULL;
+#endif
+#ifdef ONCE
+static int instances;
+#define MODEL_BEFORE_INSTANTIATE(callbacks)                                                      \
+  if (instances++ > 0) {                                                                         \
+    callbacks->logger(callbacks->environment, "test", 3, "instances", "only once in a process"); \
+    return NULL;                                                                                 \
+  }
 #endif
 #ifdef HANGS
 static volatile int for_ever = 1;

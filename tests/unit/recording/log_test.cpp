@@ -250,6 +250,24 @@ TEST_F(ForeignLog, ARowThatIsMostlyUnitsBelowNamesIsTheRowOfUnits) {
            map));
 }
 
+// A decimal comma in one row of a comma-separated log splits a cell: what follows would be read as another column.
+TEST_F(ForeignLog, ARowWithMoreCellsThanTheHeaderIsRefusedUnlessTheRestIsEmpty) {
+  const ChannelMap map = map_of({{"time", {.column = "t", .unit = "s"}},
+                                 {"pressure_a", {.column = "P", .unit = "barg"}},
+                                 {"position", {.column = "x", .unit = "mm"}}});
+  EXPECT_THAT(error_of("t,P,x\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59,0\n", map),
+              HasSubstr("log.csv: row 4, column 4: '0': the row has 4 cells where the header has 3; a decimal comma"));
+  EXPECT_THAT(error_of("t,P,x,\n0,1,60,\n0.25,1.2,59.5,\n0.5,1.5,59,0,\n", map),
+              HasSubstr("row 4, column 4: '0': the row has 4 cells where the header has 3"));
+  const ChannelMap numbers =
+      map_of({{"time", {.column = "column 1", .unit = "s"}}, {"position", {.column = "column 2", .unit = "mm"}}});
+  EXPECT_THAT(error_of("0,60\n0.25,59.5\n0.5,59,0\n", numbers),
+              HasSubstr("row 3, column 3: '0': the row has 3 cells where the table has 2"));
+  expect_two_rows(read("t,P,x\n0,1,60,\n0.5,1.5,59,\n", map));
+  EXPECT_THAT(read("t,P,x\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59,,\n", map).samples.time_s, SizeIs(3));
+  EXPECT_THAT(read("t,P,x,\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59, \n", map).samples.time_s, SizeIs(3));
+}
+
 TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {
   EXPECT_THAT(error_of("Zeit;Druck B;Weg [mm]\n2031-04-12T03:00:00;1;60\n2031-04-12T03:00:01;1;60\n", kGermanMap),
               HasSubstr("row 1, channel pressure_a: 'Druck A': is no column of this log; did you mean 'Druck B'?"));

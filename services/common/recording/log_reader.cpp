@@ -141,6 +141,7 @@ class LogReader {
     LogTest test;
     test.first_row = first_row_;
     test.start_time = time_format_.utc(values_[time_].front());
+    test.clock = time_format_.clock(values_[time_].front());
     if (time_format_.is_absolute())
       if (const Status shifted = shift_times(values_[time_], -values_[time_].front()); !shifted) return shifted;
     std::vector<Column> columns;

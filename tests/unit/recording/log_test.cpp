@@ -158,14 +158,80 @@ TEST_F(ForeignLog, ATimeThatStartsAnewIsRefusedJoinedOrAnotherTest) {
               HasSubstr("s.csv: holds 2 tests where one is wanted"));
 }
 
-TEST_F(ForeignLog, TimesOfAFileBehindAnotherStayApart) {
-  const std::map<std::string, ColumnMapping> columns = {{"time", {.column = "t", .unit = "s"}},
-                                                        {"position", {.column = "x", .unit = "mm"}}};
-  write("long.csv", "t,x\n0,60\n1e16,60\n");
-  write("next.csv", "t,x\n0,60\n0.5,60\n");
-  const auto read = read_recordings(path("long.csv") + "+" + path("next.csv"), test_plant(), map_of(columns));
-  ASSERT_FALSE(read);
-  EXPECT_THAT(read.error().describe(), HasSubstr("next.csv: sample 2, column time: two times fall on one"));
+const std::map<std::string, ColumnMapping> kTimeAndPosition = {{"time", {.column = "t", .unit = "s"}},
+                                                               {"position", {.column = "x", .unit = "mm"}}};
+
+/// Reads files of one test, named a.csv, b.csv and so on.
+class JoinedLogs : public ScratchFolder {
+ protected:
+  Result<std::vector<Recording>> read(const std::vector<std::string>& texts, const std::string& time_resets = "refuse",
+                                      const std::string& time_unit = "s") {
+    ChannelMap map = map_of(kTimeAndPosition, resets(time_resets.c_str()));
+    map.columns["time"].unit = time_unit;
+    std::string paths;
+    for (std::size_t k = 0; k < texts.size(); ++k)
+      paths.append(k > 0 ? "+" : "").append(write(std::string(1, static_cast<char>('a' + k)) + ".csv", texts[k]));
+    return read_recordings(paths, test_plant(), map);
+  }
+  std::string error_of(const std::vector<std::string>& texts, const std::string& time_resets = "refuse",
+                       const std::string& time_unit = "s") {
+    const auto result = read(texts, time_resets, time_unit);
+    EXPECT_FALSE(result);
+    return result ? "" : result.error().describe();
+  }
+};
+
+TEST_F(JoinedLogs, TimesOfAFileBehindAnotherStayApart) {
+  EXPECT_THAT(error_of({"t,x\n0,60\n1e16,60\n", "t,x\n0,60\n0.5,60\n"}, "join"),
+              HasSubstr("b.csv: sample 2, column time: two times fall on one"));
+}
+
+TEST_F(JoinedLogs, LaterTimesGoOnWhereTheyAre) {
+  const auto both = read({"t,x\n0,60\n0.5,60\n", "t,x\n2,50\n2.5,50\n"});
+  ASSERT_TRUE(both) << both.error().describe();
+  EXPECT_THAT(both->front().samples.time_s, ElementsAre(0, 0.5, 2, 2.5));
+}
+
+TEST_F(JoinedLogs, TheWrongOrderAndOverlapsAreRefused) {
+  const std::string first = "t,x\n0,60\n0.5,60\n1,60\n", second = "t,x\n1.5,50\n2,50\n";
+  for (const char* time_resets : {"refuse", "join", "split"}) {
+    EXPECT_THAT(error_of({second, first}, time_resets),
+                ::testing::AllOf(HasSubstr("b.csv: row 2, column time: '0 s': begins before "), HasSubstr("a.csv ends"),
+                                 HasSubstr("give the files in the order of their times, and no time twice")));
+    EXPECT_THAT(error_of({first, "t,x\n0.75,50\n2,50\n"}, time_resets),
+                HasSubstr("b.csv: row 2, column time: '0.75 s': begins before "));
+  }
+}
+
+TEST_F(JoinedLogs, TheSameContentTwiceIsRefused) {
+  const std::string text = "t,x\n0,60\n0.5,60\n", other = "t,x\n0,60\n0.5,61\n";
+  EXPECT_THAT(error_of({text, other, text}, "join"),
+              ::testing::AllOf(HasSubstr("c.csv: holds the same as "), HasSubstr("a.csv, which goes before it")));
+}
+
+TEST_F(JoinedLogs, ATimeThatEachFileBeginsAnewIsRefusedJoinedOrAnotherTest) {
+  const std::vector<std::string> texts = {"t,x\n0,60\n0.5,60\n1,60\n", "t,x\n0,50\n0.5,50\n", "t,x\n1,40\n1.5,40\n"};
+  EXPECT_THAT(error_of(texts), ::testing::AllOf(HasSubstr("b.csv: row 2, column time: '0 s': time starts anew, as in "),
+                                                HasSubstr("log: {time_resets: join} takes both as one test")));
+  const auto joined = read(texts, "join");
+  ASSERT_TRUE(joined) << joined.error().describe();
+  ASSERT_THAT(*joined, SizeIs(1));
+  EXPECT_THAT(joined->front().samples.time_s, ElementsAre(0, 0.5, 1, 1.5, 2, 2.5, 3))
+      << "the third counts as the second";
+  const auto split = read(texts, "split");
+  ASSERT_TRUE(split) << split.error().describe();
+  ASSERT_THAT(*split, SizeIs(2));
+  EXPECT_THAT((*split)[1].samples.time_s, ElementsAre(0, 0.5, 1, 1.5));
+}
+
+TEST_F(JoinedLogs, AClockWithoutADayTellsTheOrder) {
+  const std::string first = "t,x\n03:00:00,60\n03:00:01,60\n", second = "t,x\n03:00:05,50\n03:00:06,50\n";
+  const auto both = read({first, second}, "refuse", "%H:%M:%S");
+  ASSERT_TRUE(both) << both.error().describe();
+  EXPECT_THAT(both->front().samples.time_s, ElementsAre(0, 1, 5, 6));
+  EXPECT_FALSE(both->front().start_time);
+  EXPECT_THAT(error_of({second, first}, "refuse", "%H:%M:%S"),
+              HasSubstr("b.csv: row 2, column time: '03:00:00Z': begins before "));
 }
 
 TEST_F(ForeignLog, SeveralFilesAreOneTest) {
@@ -177,7 +243,8 @@ TEST_F(ForeignLog, SeveralFilesAreOneTest) {
   expect_two_rows(both->front());
   EXPECT_EQ(both->front().recording_id, "a");
   const auto turned = read_recordings(path("b.csv") + "+" + path("a.csv"), test_plant(), kGermanMap);
-  EXPECT_THAT(turned.error().describe(), HasSubstr("a.csv: row 1, column time: begins before the file before it ends"));
+  EXPECT_THAT(turned.error().describe(),
+              HasSubstr("a.csv: row 2, column time: '2031-04-12T03:00:00Z': begins before "));
   EXPECT_THAT(read_recordings(path("a.csv") + "+missing.csv", test_plant(), kGermanMap).error().describe(),
               HasSubstr("missing.csv: cannot be opened"));
 }

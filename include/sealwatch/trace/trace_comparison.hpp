@@ -80,7 +80,8 @@ struct TraceComparison {
   std::vector<std::string> remarks;
 };
 
-/// Channels in SI units, of the same names in both. An Error where they share none, or hardly any time.
+/// Channels in SI units, of the same names in both. An Error where they share none or hardly any time, or where one name
+/// is two quantities.
 [[nodiscard]] Result<TraceComparison> compare_traces(const TimeSeries& recorded, const TimeSeries& simulated,
                                                      const Options& options);
 

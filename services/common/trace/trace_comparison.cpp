@@ -54,6 +54,7 @@ class Comparison {
       : recorded_(recorded), simulated_(simulated), options_(options) {}
 
   Result<TraceComparison> run() {
+    if (const Status units = check_units(); !units) return fail(units.error());
     if (const Status common = find_common(); !common) return fail(common.error());
     find_motion();
     for (const Pair& pair : pairs_) {
@@ -70,6 +71,21 @@ class Comparison {
   }
 
  private:
+  /// A gain would explain any two quantities. "1" is what a column without a unit has: it may be any.
+  [[nodiscard]] Status check_units() const {
+    for (const Series& channel : recorded_.channels) {
+      const Series* simulated = simulated_.find(channel.name);
+      if (simulated == nullptr || simulated->unit == channel.unit || simulated->unit == "1" || channel.unit == "1")
+        continue;
+      return fail(Error{.file = {},
+                        .place = "column " + channel.name,
+                        .value = channel.unit,
+                        .rule = "is another quantity than the simulation's " + simulated->unit,
+                        .advice = "give both the same quantity, or different names"});
+    }
+    return {};
+  }
+
   Status find_common() {
     if (recorded_.time_s.size() < kFewestSamples || simulated_.time_s.size() < kFewestSamples)
       return fail("too few samples to tell noise from difference: at least " + std::to_string(kFewestSamples));

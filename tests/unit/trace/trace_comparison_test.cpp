@@ -85,6 +85,20 @@ TEST(TraceComparison, InputsAloneAgreeWithNothing) {
   }
 }
 
+// A gain of 10^5 would make metres of bar.
+TEST(TraceComparison, OneNameForTwoQuantitiesIsRefused) {
+  TimeSeries recorded = stroke();
+  recorded.channels[1].unit = "V";
+  const auto compared = compare_traces(recorded, stroke(), {});
+  ASSERT_FALSE(compared);
+  EXPECT_EQ(
+      compared.error().describe(),
+      "column pressure: 'V': is another quantity than the simulation's Pa; give both the same quantity, or different "
+      "names");
+  recorded.channels[1].unit = "1";
+  EXPECT_TRUE(compare_traces(recorded, stroke(), {})) << "a column without a unit";
+}
+
 TEST(Trace, TheSameIsConsistent) {
   const TraceComparison same = compare(stroke(), stroke());
   EXPECT_TRUE(same.consistent);

@@ -23,12 +23,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFewestSamples = 100;
+constexpr double kShifted = 4.0;            // standard errors: what is nearer to nothing is nothing
+constexpr double kFarMoreLikely = 10.0;     // of -2 log L: very strong evidence (Kass and Raftery 1995)
 constexpr double kLeastOfTheSpread = 1e-9;  // rounding of the arithmetic, as a share of a channel's spread
 
 /// One channel on the common times.
 struct Pair {
   std::string name, unit;
   bool input = false;
+  bool stands_still = false;  ///< the recording, while the simulation moves
   VectorXd recorded, simulated;
   Course course;
   double least_variance = 0.0;  ///< rounding of the arithmetic
@@ -57,6 +60,7 @@ class Comparison {
     if (const Status units = check_units(); !units) return fail(units.error());
     if (const Status common = find_common(); !common) return fail(common.error());
     find_motion();
+    for (Pair& pair : pairs_) pair.stands_still = stands_still(pair);
     for (const Pair& pair : pairs_) {
       if (options_.progress) options_.progress(out_.channels.size(), pairs_.size() + 1);
       out_.channels.push_back(compare(pair));
@@ -66,6 +70,7 @@ class Comparison {
       if (options_.progress) options_.progress(pairs_.size(), pairs_.size() + 1);
       ask_common();
       answer();
+      find_equals();
     }
     return std::move(out_);
   }
@@ -143,6 +148,24 @@ class Comparison {
       pair.step_variance += std::pow(signal::estimate_noise_floor(*series).quantisation_step, 2) / 12.0;
     if (input) drives_.push_back(values);
     pairs_.push_back(std::move(pair));
+  }
+
+  /// A dead channel: its values scatter as its noise does and follow the simulation nowhere.
+  [[nodiscard]] bool stands_still(const Pair& pair) const {
+    constexpr double kOfTheNoise = 2.0;  // of the variance; a course that moves has many times that of its noise
+    const auto variance = [](const VectorXd& values) { return (values.array() - values.mean()).square().mean(); };
+    if (pair.recorded.minCoeff() == pair.recorded.maxCoeff())
+      return pair.simulated.minCoeff() < pair.simulated.maxCoeff();
+    const double moved = variance(pair.recorded);
+    if (!(variance(pair.simulated) > moved) || moved > kOfTheNoise * (pair.white_variance + pair.step_variance))
+      return false;
+    const auto fit = fit_alteration(out_.time_s, {altered(pair)}, {.gain = true, .offset = true});
+    return fit && follows_nothing(*fit, {.gain = true});
+  }
+
+  /// Of a gain that may be 0 nothing of the simulation is left to explain anything with.
+  [[nodiscard]] static bool follows_nothing(const AlterationFit& fit, const Freedom& freedom) {
+    return freedom.gain && std::abs(fit.gain) <= kShifted * fit.gain_std;
   }
 
   void find_motion() {
@@ -244,7 +267,8 @@ class Comparison {
     std::ranges::move(levels_of(pair.simulated), std::back_inserter(regimes));
     out.regimes = misfit_by_regime(difference, regimes);
     out.intervals = misfit_by_time(out_.time_s, difference);
-    if (out.differs) ask_alterations(pair, out);
+    out.stands_still = out.differs && pair.stands_still;
+    if (out.differs && !out.stands_still) ask_alterations(pair, out);
     return out;
   }
 
@@ -278,7 +302,7 @@ class Comparison {
       const VectorXd raw = pairs[k]->recorded - pairs[k]->simulated;
       before += std::max(raw.squaredNorm() / static_cast<double>(raw.size()) / noise - 1.0, 0.0);
       after += std::max(left.squares / noise - 1.0, 0.0);
-      out.would_do = out.would_do && left.test.p_value >= limit();
+      out.would_do = out.would_do && !pairs[k]->stands_still && left.test.p_value >= limit();
     }
     out.removed_share = before > 0.0 ? std::clamp(1.0 - after / before, 0.0, 1.0) : 0.0;
     out.would_do = out.would_do && out.removed_share > 0.0;
@@ -317,7 +341,6 @@ class Comparison {
 
   /// Smooth noise may hide what an alteration leaves; another that is far more likely shows that it is no noise.
   static void keep_the_likeliest(std::vector<Alteration>& alterations) {
-    constexpr double kFarMoreLikely = 10.0;  // of -2 log L: very strong evidence (Kass and Raftery 1995)
     double best = std::numeric_limits<double>::infinity();
     for (const Alteration& alteration : alterations) best = std::min(best, alteration.criterion);
     for (Alteration& alteration : alterations)
@@ -327,7 +350,7 @@ class Comparison {
   void ask(const Way& way, const Pair& pair, ChannelComparison& out) const {
     const std::vector<AlteredChannel> channels{altered(pair)};
     const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom);
-    if (!fit) return;
+    if (!fit || follows_nothing(*fit, way.freedom)) return;
     std::string id = way.id;
     if (pair.input)
       for (const auto& [sensor, input] :
@@ -360,12 +383,11 @@ class Comparison {
     std::vector<AlteredChannel> channels;
     for (const Pair* pair : pairs) channels.push_back(altered(*pair, about_start ? pair->simulated(0) : 0.0));
     const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom);
-    if (fit) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
+    if (fit && !follows_nothing(*fit, freedom)) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
   }
 
   /// An offset of the input shifts all that it drives, each by a size of its own.
   void ask_input_offset(const std::vector<const Pair*>& driven) {
-    constexpr double kShifted = 4.0;  // standard errors, of every one
     Alteration all{.id = "input_bias", .where = "input", .parameters = {}, .removed_share = 1.0, .would_do = true};
     for (const Pair* pair : driven) {
       const Freedom freedom{.offset = true};
@@ -381,11 +403,36 @@ class Comparison {
     out_.common.push_back(std::move(all));
   }
 
-  /// One cause for all channels that differ before one for each.
-  void answer() {
+  /// What would do alone in place of a single answer. Only of the same channels one may be the likelier.
+  void find_equals() {
+    if (out_.answer.size() != 1) return;
+    const Alteration& answer = out_.answer.front();
+    const bool one_driven = std::ranges::count(pairs_, false, &Pair::input) == 1;
+    const auto add = [&](const Alteration& other, bool comparable) {
+      if (answer.id.ends_with("sign") && other.id.ends_with("gain")) return;  // a sign is a gain
+      const auto is_other = [&other](const Alteration& known) { return known.id == other.id; };
+      if (!other.would_do || is_other(answer) || std::ranges::any_of(out_.equally, is_other)) return;
+      if (!comparable || other.criterion <= answer.criterion + kFarMoreLikely) out_.equally.push_back(other);
+    };
+    const std::vector<const ChannelComparison*> differing = unexplained();
+    if (differing.size() == 1)
+      for (const Alteration& other : differing.front()->alterations) add(other, true);
+    const bool of_an_input = std::ranges::any_of(differing, &ChannelComparison::input);
+    for (const Alteration& common : out_.common)
+      if (common.where != "input" || !of_an_input)
+        add(common, common.where == "input" && (answer.where == "input" || one_driven));
+  }
+
+  [[nodiscard]] std::vector<const ChannelComparison*> unexplained() const {
     std::vector<const ChannelComparison*> differing;
     for (const ChannelComparison& channel : out_.channels)
-      if (channel.differs) differing.push_back(&channel);
+      if (channel.differs && !channel.stands_still) differing.push_back(&channel);
+    return differing;
+  }
+
+  /// One cause for all channels that differ before one for each.
+  void answer() {
+    const std::vector<const ChannelComparison*> differing = unexplained();
     if (differing.size() > 1)
       for (const Alteration& common : out_.common)
         if (common.would_do) {

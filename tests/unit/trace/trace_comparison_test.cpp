@@ -11,6 +11,7 @@
 #include <random>
 
 #include "sealwatch/model/plant_description.hpp"
+#include "sealwatch/trace/smooth_course.hpp"
 #include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch::trace {
@@ -192,6 +193,45 @@ TEST(Trace, AnOffsetOfTheInputShiftsAllThatItDrives) {
   EXPECT_EQ(found.answer[0].parameters[0].name, "offset of position");
   EXPECT_NEAR(found.answer[0].parameters[0].value, 0.004, 4.0 * found.answer[0].parameters[0].std_error);
   EXPECT_NEAR(found.answer[0].parameters[1].value, 2e5, 4.0 * found.answer[0].parameters[1].std_error);
+}
+
+// A gain of 0 would make every simulation every dead channel.
+TEST(Trace, ADeadChannelIsExplainedByNothing) {
+  for (const double value : {0.0, 0.02}) {
+    for (const double noise : {0.0, 1e-5}) {
+      TimeSeries dead = changed(stroke(), [value](double, double) { return value; });
+      std::mt19937 random(11);
+      std::normal_distribution<double> normal;
+      for (double& sample : dead.channels[0].values) sample += noise * normal(random);
+      const TraceComparison found = compare(dead, stroke());
+      ASSERT_FALSE(found.consistent);
+      EXPECT_TRUE(found.channels[0].stands_still) << value << " with noise " << noise;
+      EXPECT_TRUE(found.channels[0].alterations.empty());
+      EXPECT_FALSE(found.channels[1].stands_still);
+      EXPECT_TRUE(found.answer.empty() && found.equally.empty());
+      EXPECT_TRUE(std::ranges::none_of(found.common, &Alteration::would_do));
+    }
+  }
+}
+
+// With one output that the input drives, late is late: no trace tells the sensor's delay from the input's.
+TEST(Trace, WhatWouldDoAsWellIsNamed) {
+  TimeSeries late = stroke();
+  for (double& time : late.time_s) time += 0.05;
+  late = noisy(late, 0.002, 0.8, 12);
+  TimeSeries recorded = stroke();
+  const Course between(late.time_s, late.channels[0].values);
+  for (std::size_t k = 0; k < recorded.time_s.size(); ++k)
+    recorded.channels[0].values[k] = between.at(recorded.time_s[k]).first;
+  Options options;
+  options.inputs = {"pressure"};
+  const auto found = compare_traces(recorded, stroke(), options);
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_THAT(found->answer, SizeIs(1));
+  EXPECT_EQ(found->answer[0].id, "sensor_lag");
+  ASSERT_THAT(found->equally, SizeIs(1));
+  EXPECT_EQ(found->equally[0].id, "input_delay");
+  EXPECT_NEAR(found->equally[0].parameters.at(0).value, 0.05, 4.0 * found->equally[0].parameters.at(0).std_error);
 }
 
 TEST(Trace, AFrictionIsNoneOfThese) {

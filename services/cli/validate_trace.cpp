@@ -63,6 +63,7 @@ void print_text(const trace::TraceComparison& comparison) {
     if (!text.empty()) std::printf("  only in the %s, not compared: %s\n", where, text.c_str());
   };
   std::printf("\n");
+  for (const std::string& remark : comparison.remarks) std::printf("  %s\n", remark.c_str());
   list("recording", comparison.only_recorded);
   list("simulation", comparison.only_simulated);
   if (!comparison.consistent) std::printf("%s\n", wrapped(trace_limit(), kWidth, 0).c_str());

@@ -23,6 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFewestSamples = 100;
+constexpr std::size_t kMostMemory = 30;     // samples that noise may depend on (difference_tests.cpp)
 constexpr double kShifted = 4.0;            // standard errors: what is nearer to nothing is nothing
 constexpr double kFarMoreLikely = 10.0;     // of -2 log L: very strong evidence (Kass and Raftery 1995)
 constexpr double kLeastOfTheSpread = 1e-9;  // rounding of the arithmetic, as a share of a channel's spread
@@ -50,6 +51,35 @@ MatrixXd beside(const std::vector<VectorXd>& columns) {
   for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = columns[k];
   return out;
 }
+
+/// Where a file has samples. One without a usual interval, as a solver of variable steps writes it, has no gaps.
+class Presence {
+ public:
+  explicit Presence(const std::vector<double>& time_s) : time_s_(time_s) {
+    const signal::SamplingGrid grid = signal::find_grid(time_s);
+    interval_s_ = grid.interval_s;
+    has_gaps_ = grid.missing_count > 0 && grid.jitter_std_s < kRegular * grid.interval_s;
+  }
+
+  /// On a sample, or where the cubic between samples (smooth_course.hpp) needs none beyond a gap.
+  [[nodiscard]] bool has(double time_s) const {
+    if (!has_gaps_) return true;
+    const auto after = static_cast<std::size_t>(std::ranges::upper_bound(time_s_, time_s) - time_s_.begin());
+    const double rounding = 1e-9 * interval_s_;
+    if (after > 0 && time_s - time_s_[after - 1] <= rounding) return true;
+    if (after < time_s_.size() && time_s_[after] - time_s <= rounding) return true;
+    for (std::size_t k = std::max<std::size_t>(after, 2) - 1; k <= std::min(after + 1, time_s_.size() - 1); ++k)
+      if (time_s_[k] - time_s_[k - 1] > kGap * interval_s_) return false;
+    return true;
+  }
+
+ private:
+  static constexpr double kRegular = 0.1;  // of the interval
+  static constexpr double kGap = 1.5;      // intervals: from there on a row is missing (signal/resampling.hpp)
+  const std::vector<double>& time_s_;
+  double interval_s_ = 0.0;
+  bool has_gaps_ = false;
+};
 
 class Comparison {
  public:
@@ -106,8 +136,8 @@ class Comparison {
                       " s, the recording from " + text::general(recorded_.time_s.front()) + " to " +
                       text::general(recorded_.time_s.back()) + " s",
                   "both times must count from the same moment");
-    for (std::size_t k = first; k < last; ++k) out_.time_s.push_back(grid.time_s(k));
-    for (const Series& channel : recorded_.channels) take(channel, grid, first, last - first);
+    if (const Status taken = take_times(grid, first, last); !taken) return fail(taken.error());
+    for (const Series& channel : recorded_.channels) take(channel);
     for (const Series& channel : simulated_.channels)
       if (!recorded_.has(channel.name)) out_.only_simulated.push_back(channel.name);
     if (pairs_.empty()) return fail("the files share no channel", "give both the same column names, or a map");
@@ -120,12 +150,44 @@ class Comparison {
     return {};
   }
 
-  void take(const Series& channel, const signal::SamplingGrid& grid, std::size_t first, std::size_t count) {
+  /// The grid's times at which both have samples, and where these go on after a gap.
+  Status take_times(const signal::SamplingGrid& grid, std::size_t first, std::size_t last) {
+    const Presence recorded(recorded_.time_s), simulated(simulated_.time_s);
+    for (std::size_t k = first; k < last; ++k) {
+      grid_times_s_.push_back(grid.time_s(k));
+      if (!recorded.has(grid.time_s(k)) || !simulated.has(grid.time_s(k))) continue;
+      if (!present_.empty() && present_.back() + 1 != static_cast<Index>(k - first))
+        joints_.push_back(static_cast<Index>(present_.size()));
+      present_.push_back(static_cast<Index>(k - first));
+      out_.time_s.push_back(grid.time_s(k));
+    }
+    if (present_.size() < kFewestSamples)
+      return fail("too few samples outside of gaps to tell noise from difference: at least " +
+                  std::to_string(kFewestSamples));
+    if (const std::size_t missing = last - first - present_.size(); missing > 0)
+      out_.remarks.push_back(std::to_string(missing) + " of " + std::to_string(last - first) +
+                             " samples lie in gaps and are not compared");
+    // Single lost rows everywhere: there is no other noise to learn from than that across them.
+    if (2 * whole_windows(static_cast<Index>(present_.size()), kMostMemory, joints_).size() < present_.size())
+      joints_.clear();
+    return {};
+  }
+
+  /// d/dt at the common times; over a gap along a smooth course.
+  [[nodiscard]] VectorXd slope_of(const VectorXd& values) const {
+    if (present_.size() == grid_times_s_.size()) return smooth_slope(values, interval_s_);
+    const Course between(out_.time_s, {values.begin(), values.end()});
+    VectorXd whole(static_cast<Index>(grid_times_s_.size()));
+    for (Index k = 0; k < whole.size(); ++k) whole(k) = between.at(grid_times_s_[static_cast<std::size_t>(k)]).first;
+    return smooth_slope(whole, interval_s_)(present_);
+  }
+
+  void take(const Series& channel) {
     const Series* simulated = simulated_.find(channel.name);
     // Both between their samples in the same way, so that what is the same stays so.
     const Course between(recorded_.time_s, channel.values);
-    VectorXd values(static_cast<Index>(count));
-    for (std::size_t k = 0; k < count; ++k) values(static_cast<Index>(k)) = between.at(grid.time_s(first + k)).first;
+    VectorXd values(static_cast<Index>(out_.time_s.size()));
+    for (Index k = 0; k < values.size(); ++k) values(k) = between.at(out_.time_s[static_cast<std::size_t>(k)]).first;
     const bool input = std::ranges::find(options_.inputs, channel.name) != options_.inputs.end();
     if (simulated == nullptr) {
       out_.only_recorded.push_back(channel.name);
@@ -159,7 +221,7 @@ class Comparison {
     const double moved = variance(pair.recorded);
     if (!(variance(pair.simulated) > moved) || moved > kOfTheNoise * (pair.white_variance + pair.step_variance))
       return false;
-    const auto fit = fit_alteration(out_.time_s, {altered(pair)}, {.gain = true, .offset = true});
+    const auto fit = fit_alteration(out_.time_s, {altered(pair)}, {.gain = true, .offset = true}, joints_);
     return fit && follows_nothing(*fit, {.gain = true});
   }
 
@@ -174,15 +236,17 @@ class Comparison {
         if (out_.motion.empty() && pair.unit == unit && !pair.input) {
           out_.motion = pair.name;
           const bool speed = std::string(unit).ends_with("/s");
-          motion_ = speed ? pair.simulated : smooth_slope(pair.simulated, interval_s_);
+          motion_ = speed ? pair.simulated : slope_of(pair.simulated);
         }
   }
 
   /// What a simulation's faults leave behind, of a course on the common times.
   [[nodiscard]] std::vector<RegressorGroup> groups_of(const VectorXd& s, double effective_samples) const {
     const Index n = s.size();
-    const VectorXd one = VectorXd::Ones(n), v = smooth_slope(s, interval_s_), a = smooth_slope(v, interval_s_);
-    const VectorXd t = VectorXd::LinSpaced(n, -1.0, 1.0);
+    const VectorXd one = VectorXd::Ones(n), v = slope_of(s), a = slope_of(v);
+    const double begin_s = out_.time_s.front(), length_s = out_.time_s.back() - begin_s;
+    VectorXd t(n);
+    for (Index k = 0; k < n; ++k) t(k) = 2.0 * (out_.time_s[static_cast<std::size_t>(k)] - begin_s) / length_s - 1.0;
     std::vector<RegressorGroup> groups;
     groups.push_back({"shift, scale, delay and clock", beside({one, s, v, t.cwiseProduct(v)})});
     std::vector<VectorXd> regimes{one};
@@ -191,7 +255,7 @@ class Comparison {
     for (const VectorXd& saturated : saturations(motion_.size() > 0 ? motion_ : v)) regimes.push_back(saturated);
     groups.push_back({"motion and level", beside(regimes)});
     std::vector<VectorXd> shapes{one, a, s.cwiseProduct(s), v.cwiseProduct(v.cwiseAbs())};
-    for (const VectorXd& drive : drives_) shapes.push_back(drive), shapes.push_back(smooth_slope(drive, interval_s_));
+    for (const VectorXd& drive : drives_) shapes.push_back(drive), shapes.push_back(slope_of(drive));
     groups.push_back({"curvature and drive", beside(shapes)});
     constexpr double kMostPieces = 8.0, kSamplesAPiece = 12.0;
     const auto pieces = static_cast<Index>(std::clamp(effective_samples / kSamplesAPiece, 1.0, kMostPieces));
@@ -224,7 +288,7 @@ class Comparison {
     constexpr Index kPieces = 8;
     const Index n = s.size();
     std::vector<VectorXd> motion, pieces;
-    for (const Regime& regime : parts_of(smooth_slope(s, interval_s_))) motion.push_back(regime.indicator);
+    for (const Regime& regime : parts_of(slope_of(s))) motion.push_back(regime.indicator);
     for (Index k = 0; k < kPieces; ++k) {
       pieces.push_back(VectorXd::Zero(n));
       pieces.back().segment(k * n / kPieces, (k + 1) * n / kPieces - k * n / kPieces).setOnes();
@@ -239,7 +303,8 @@ class Comparison {
     for (std::vector<RegressorGroup>* list : {&groups, &partitions})
       for (RegressorGroup& group : *list) group.columns = MatrixXd(group.columns.middleRows(first, count));
     Judged judged{.squares = left.squaredNorm() / static_cast<double>(count), .test = {}};
-    judged.test = test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance});
+    judged.test = test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance},
+                             joints_within(joints_, first, count));
     judged.test.noise_std = std::min(judged.test.noise_std, std::sqrt(judged.squares));
     return judged;
   }
@@ -263,7 +328,7 @@ class Comparison {
     std::ranges::sort(telling, {}, &GroupTest::p_value);
     for (const GroupTest& group : telling)
       if (group.p_value * static_cast<double>(telling.size()) < limit()) out.by.push_back(group.name);
-    std::vector<Regime> regimes = parts_of(smooth_slope(pair.simulated, interval_s_));
+    std::vector<Regime> regimes = parts_of(slope_of(pair.simulated));
     std::ranges::move(levels_of(pair.simulated), std::back_inserter(regimes));
     out.regimes = misfit_by_regime(difference, regimes);
     out.intervals = misfit_by_time(out_.time_s, difference);
@@ -349,7 +414,7 @@ class Comparison {
 
   void ask(const Way& way, const Pair& pair, ChannelComparison& out) const {
     const std::vector<AlteredChannel> channels{altered(pair)};
-    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom);
+    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom, joints_);
     if (!fit || follows_nothing(*fit, way.freedom)) return;
     std::string id = way.id;
     if (pair.input)
@@ -382,7 +447,7 @@ class Comparison {
                   bool about_start) {
     std::vector<AlteredChannel> channels;
     for (const Pair* pair : pairs) channels.push_back(altered(*pair, about_start ? pair->simulated(0) : 0.0));
-    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom);
+    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom, joints_);
     if (fit && !follows_nothing(*fit, freedom)) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
   }
 
@@ -391,7 +456,7 @@ class Comparison {
     Alteration all{.id = "input_bias", .where = "input", .parameters = {}, .removed_share = 1.0, .would_do = true};
     for (const Pair* pair : driven) {
       const Freedom freedom{.offset = true};
-      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair)}, freedom);
+      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair)}, freedom, joints_);
       if (!fit) return;
       Alteration one = judged(all.id, all.where, {pair}, *fit, freedom);
       one.parameters.front().name = "offset of " + pair->name;
@@ -452,6 +517,9 @@ class Comparison {
   const TimeSeries& simulated_;
   const Options& options_;
   double interval_s_ = 0.0;
+  std::vector<double> grid_times_s_;  ///< with the gaps
+  std::vector<Index> present_;        ///< which of them are common times
+  Joints joints_;                     ///< of the common times
   std::vector<Pair> pairs_;
   std::vector<VectorXd> drives_;  ///< inputs, and what only the recording has
   VectorXd motion_;

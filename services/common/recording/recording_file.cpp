@@ -175,6 +175,11 @@ Result<std::vector<Recording>> read_recordings(const std::string& path, const Pl
       return fail_in(part, appended.error());
   }
   std::vector<LogTest> tests = joined.take();
+  for (const LogTest& test : tests)
+    if (tests.size() > 1 && test.read.samples.time_s.size() < 2)
+      return fail_in(parts.back(), error_at("row " + std::to_string(test.first_row) + ", column time", {},
+                                            "the test that begins here has one sample alone",
+                                            "take the row out, or log: {time_resets: join}"));
   const Result<Sidecar> sidecar = read_sidecar(parts.front(), plant);
   if (!sidecar) return fail(sidecar.error());
   std::vector<Recording> recordings;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/log_layout.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "tests/unit/recording/plant.hpp"
@@ -333,6 +334,32 @@ TEST_F(ForeignLog, ARowWithMoreCellsThanTheHeaderIsRefusedUnlessTheRestIsEmpty) 
   expect_two_rows(read("t,P,x\n0,1,60,\n0.5,1.5,59,\n", map));
   EXPECT_THAT(read("t,P,x\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59,,\n", map).samples.time_s, SizeIs(3));
   EXPECT_THAT(read("t,P,x,\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59, \n", map).samples.time_s, SizeIs(3));
+}
+
+TEST_F(ForeignLog, TwoChannelsOfOneColumnAreRefused) {
+  EXPECT_THAT(error_of("t,P\n0,1\n1,2\n", map_of({{"time", {.column = "t", .unit = "s"}},
+                                                  {"pressure_a", {.column = "P", .unit = "bar"}},
+                                                  {"pressure_b", {.column = "p", .unit = "bar"}}})),
+              HasSubstr("row 1, channel pressure_b: 'p': is the column of channel pressure_a too; give each channel"));
+}
+
+// What `asset new` understands a map understands, too.
+TEST_F(ForeignLog, AUnitAtTheEndOfANameIsOne) {
+  const ChannelMap map = map_of({{"time", {.column = "t_ms", .unit = {}}},
+                                 {"pressure_a", {.column = "P barg", .unit = {}}},
+                                 {"position", {.column = "Weg_mm", .unit = {}}}});
+  expect_two_rows(read("t_ms,P barg,Weg_mm\n0,1,60\n500,1.5,59\n", map));
+  EXPECT_EQ(unit_at_the_end("pressure_a", "A"), "") << "a chamber";
+  EXPECT_EQ(unit_at_the_end("Weg_bar", "m"), "") << "another quantity";
+  EXPECT_EQ(unit_at_the_end("opening %", "1"), "%");
+}
+
+TEST_F(ForeignLog, ATestOfOneSampleIsNamed) {
+  const ChannelMap map =
+      map_of({{"time", {.column = "t", .unit = "s"}}, {"position", {.column = "x", .unit = "mm"}}}, resets("split"));
+  EXPECT_THAT(
+      error_of("t,x\n0,60\n1,60\n0,60\n", map),
+      HasSubstr("log.csv: row 4, column time: the test that begins here has one sample alone; take the row out"));
 }
 
 TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {

@@ -282,8 +282,12 @@ void print_table(const Understood& log) {
   if (log.offer.text)
     std::printf("%s between columns, decimal %s, header in row %zu, numbers from row %zu\n", word_of(found.delimiter),
                 found.decimal == ',' ? "comma" : "point", found.header_row, found.first_row);
-  std::printf("plant %s, %s of %zu samples\n", log.plant->name.c_str(), count_of(log.tests.size(), "test").c_str(),
-              log.tests.front().samples.time_s.size());
+  std::vector<std::size_t> sizes;
+  for (const Recording& test : log.tests) sizes.push_back(test.samples.time_s.size());
+  const auto [least, most] = std::ranges::minmax(sizes);
+  const std::string samples = (least < most ? std::to_string(least) + " to " : "") + std::to_string(most);
+  std::printf("plant %s, %s of %s samples\n", log.plant->name.c_str(), count_of(log.tests.size(), "test").c_str(),
+              samples.c_str());
   std::printf("  %-24s %-30s %-12s %s\n", "channel", "column", "unit", "range");
   const auto line = [&](const std::string& channel, const ColumnMapping& mapping, const std::string& range) {
     std::printf("  %s %s %s %s\n", padded(channel, 24).c_str(), padded(mapping.column, 30).c_str(),

@@ -88,10 +88,7 @@ std::string unit_for(const OfferedColumn& column, const ChannelDescription& chan
   const std::string said = unit_of(column);
   const bool plain = channel.unit.empty() || channel.unit == "1";
   if (!said.empty()) return plain && !is_unit(said) ? "1" : said;
-  const std::size_t begin = column.text.find_last_of(" _");
-  const std::string last = begin == std::string::npos ? "" : column.text.substr(begin + 1);
-  const bool fits = plain ? last == "%" : last.size() > 1 && convert_unit(last, channel.unit).has_value();
-  return fits ? last : "";
+  return unit_at_the_end(column.text, channel.unit);
 }
 
 double score_of_name(const OfferedColumn& column, const ChannelDescription& channel) {

@@ -23,6 +23,19 @@ Result<UtcTime> installed_at(const FleetFitOptions& options, std::size_t life, c
   return add_months(read.history.front().time, -1.0);  // tests are monthly: the first a month after installation
 }
 
+/// One life twice would count as two that are alike.
+Status refuse_the_same(const std::vector<FleetLife>& fleet, const std::vector<std::string>& files) {
+  for (std::size_t k = 1; k < fleet.size(); ++k)
+    for (std::size_t before = 0; before < k; ++before)
+      if (fleet[k].history == fleet[before].history)
+        return fail(Error{.file = files[k],
+                          .place = {},
+                          .value = {},
+                          .rule = "holds the same tests as " + files[before],
+                          .advice = "give each life once"});
+  return {};
+}
+
 Result<std::vector<FleetLife>> read_fleet(const FleetFitOptions& options) {
   if (!options.installed.empty() && options.installed.size() != options.histories.size())
     return fail(Error{.file = {},
@@ -47,6 +60,7 @@ Result<std::vector<FleetLife>> read_fleet(const FleetFitOptions& options) {
     life.installed = *installed;
     fleet.push_back(std::move(life));
   }
+  if (const Status once = refuse_the_same(fleet, options.histories); !once) return fail(once.error());
   return fleet;
 }
 

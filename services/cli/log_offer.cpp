@@ -98,16 +98,13 @@ std::string time_unit(const Offer& offer, std::size_t column) {
   const std::vector<double> numbers = numbers_of(offer.cells[column], offer.layout.decimal);
   if (are_excel_days(numbers)) return "excel";
   if (std::string said = unit_of(offer.columns[column]); !said.empty()) return said;
+  if (std::string said = unit_at_the_end(offer.columns[column].text, "s"); !said.empty()) return said;
   for (const auto& [unit, in_s] : {std::pair{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})  // those since 1970 are large
     if (numbers.empty() || numbers.back() * in_s <= TestLimits{}.largest_time_s) return unit;
   return "ns";
 }
 
 }  // namespace
-
-std::string unit_of(const OfferedColumn& column) {
-  return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
-}
 
 bool has_numbers(const Offer& offer, std::size_t column) {
   const std::vector<std::string>& cells = offer.cells[column];

@@ -20,9 +20,6 @@ struct Offer {
 
 [[nodiscard]] Result<Offer> offer_of(const std::string& file, const LogLayout& given);
 
-/// Unit said beside the column or in its header cell.
-[[nodiscard]] std::string unit_of(const OfferedColumn& column);
-
 /// Whether all cells of a column that hold a value are numbers, and there are any.
 [[nodiscard]] bool has_numbers(const Offer& offer, std::size_t column);
 

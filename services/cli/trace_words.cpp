@@ -1,5 +1,6 @@
 #include "services/cli/trace_words.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -43,6 +44,7 @@ Json channel_json(const ChannelComparison& channel) {
                {"unit", channel.unit},
                {"input", channel.input},
                {"differs", channel.differs},
+               {"stands_still", channel.stands_still},
                {"p_value", number_or_null(channel.p_value)},
                {"rms", number_or_null(channel.rms)},
                {"noise_std", number_or_null(channel.noise_std)},
@@ -75,28 +77,50 @@ std::string alteration_text(const Alteration& alteration) {
   return text;
 }
 
-std::string trace_summary(const trace::TraceComparison& comparison) {
-  if (comparison.consistent)
-    return "The simulation agrees with the recording: what is left depends on nothing in the simulation.";
-  std::vector<std::string> channels, inputs;
+namespace {
+
+/// What is not to be explained by an alteration: another input, a dead channel.
+std::string faults_text(const trace::TraceComparison& comparison) {
+  std::vector<std::string> inputs, still;
   for (const ChannelComparison& channel : comparison.channels) {
-    if (channel.differs) channels.push_back(text::in_words(channel.name));
-    if (channel.differs && channel.input) inputs.push_back(channels.back());
+    if (channel.differs && channel.input) inputs.push_back(text::in_words(channel.name));
+    if (channel.stands_still) still.push_back(text::in_words(channel.name));
   }
-  const std::size_t differing = channels.size();
-  std::string text = "They differ beyond noise in " + text::joined(channels) + ". ";
+  std::string text;
   if (!inputs.empty())
     text += "The input itself differs (" + text::joined(inputs) +
             "): the simulation was not given what the recording was, so its outputs prove nothing; simulate with the "
             "recorded input. ";
-  if (comparison.answer.empty())
-    return text + "No gain, offset, delay, clock rate or sign of a channel or of the input explains it.";
-  text += "This explains it: ";
-  for (const Alteration& alteration : comparison.answer)
-    text.append(&alteration == comparison.answer.data() ? "" : "; ").append(alteration_text(alteration));
-  text += ".";
-  if (differing == 1 && comparison.channels.size() == 1 && comparison.answer.front().id == "sensor_lag")
-    text += " With a single channel, a delay of the input looks the same.";
+  if (!still.empty())
+    text += "Recorded " + text::joined(still) + (still.size() > 1 ? " do" : " does") +
+            " not move, while simulated it does: look at the sensor and its cable. ";
+  return text;
+}
+
+std::string listed(const std::vector<Alteration>& alterations) {
+  std::string text;
+  for (const Alteration& alteration : alterations)
+    text.append(text.empty() ? "" : "; ").append(alteration_text(alteration));
+  return text;
+}
+
+}  // namespace
+
+std::string trace_summary(const trace::TraceComparison& comparison) {
+  if (comparison.consistent)
+    return "The simulation agrees with the recording: what is left depends on nothing in the simulation.";
+  std::vector<std::string> channels;
+  for (const ChannelComparison& channel : comparison.channels)
+    if (channel.differs) channels.push_back(text::in_words(channel.name));
+  const auto still = std::ranges::count(comparison.channels, true, &ChannelComparison::stands_still);
+  std::string text = "They differ beyond noise in " + text::joined(channels) + ". " + faults_text(comparison);
+  if (!comparison.answer.empty())
+    text += (still > 0 ? "This explains the rest: " : "This explains it: ") + listed(comparison.answer) + ".";
+  else if (static_cast<std::size_t>(still) < channels.size())
+    text += "No gain, offset, delay, clock rate or sign of a channel or of the input explains it.";
+  if (!comparison.equally.empty())
+    text += " So does " + listed(comparison.equally) + "; a trace cannot tell them apart.";
+  while (text.ends_with(' ')) text.pop_back();
   return text;
 }
 
@@ -115,6 +139,7 @@ std::string trace_json(const trace::TraceComparison& comparison, const std::stri
                {"channels", Json::array()},
                {"common", Json::array()},
                {"answer", Json::array()},
+               {"equally", Json::array()},
                {"only_recorded", comparison.only_recorded},
                {"only_simulated", comparison.only_simulated},
                {"summary", trace_summary(comparison)},
@@ -122,6 +147,7 @@ std::string trace_json(const trace::TraceComparison& comparison, const std::stri
   for (const ChannelComparison& channel : comparison.channels) json["channels"].push_back(channel_json(channel));
   for (const Alteration& alteration : comparison.common) json["common"].push_back(alteration_json(alteration));
   for (const Alteration& alteration : comparison.answer) json["answer"].push_back(alteration_json(alteration));
+  for (const Alteration& alteration : comparison.equally) json["equally"].push_back(alteration_json(alteration));
   return json.dump(1) + "\n";
 }
 

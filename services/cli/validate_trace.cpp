@@ -45,6 +45,7 @@ void print_channel(const trace::ChannelComparison& channel) {
     std::printf("    %6s of it %s (%s of the time), %s rms\n", text::percent_text(regime.misfit_share).c_str(),
                 regime.name.c_str(), text::percent_text(regime.time_share).c_str(),
                 text::readable(regime.rms, channel.unit).c_str());
+  if (channel.alterations.empty()) return;
   std::printf("  share of the misfit of %s that each would remove:\n", text::in_words(channel.name).c_str());
   print_alterations(channel.alterations);
 }
@@ -62,6 +63,7 @@ void print_text(const trace::TraceComparison& comparison) {
     if (!text.empty()) std::printf("  only in the %s, not compared: %s\n", where, text.c_str());
   };
   std::printf("\n");
+  for (const std::string& remark : comparison.remarks) std::printf("  %s\n", remark.c_str());
   list("recording", comparison.only_recorded);
   list("simulation", comparison.only_simulated);
   if (!comparison.consistent) std::printf("%s\n", wrapped(trace_limit(), kWidth, 0).c_str());

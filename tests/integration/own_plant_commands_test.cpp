@@ -214,6 +214,9 @@ TEST_F(OwnPlantCommands, AFleetWithoutALongLifeOrWithTooFewDatesIsRefused) {
   const Finished dates = run({"sealwatch", "fleet", "fit", whole, whole, "--installed", "2019-12-01"});
   EXPECT_EQ(dates.status, 2);
   EXPECT_THAT(dates.output, HasSubstr("--installed"));
+  const Finished twice = run({"sealwatch", "fleet", "fit", whole, write("copy.csv", life(0.003, 40))});
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_THAT(twice.output, HasSubstr("copy.csv: holds the same tests as "));
   const Finished bad = run({"sealwatch", "fleet", "fit", write("bad.csv", "time[iso8601],theta[1]\n2020-01-01,x\n")});
   EXPECT_EQ(bad.status, 2);
   EXPECT_THAT(bad.output, HasSubstr("bad.csv"));

@@ -10,7 +10,11 @@
 //
 // A fit pools complete or running lives: each gives a generalised least-squares estimate of its (g(0), mu) with its
 // covariance, expectation-maximisation (A. P. Dempster, N. M. Laird, D. B. Rubin 1977; random effects: N. M. Laird, J.
-// H. Ware 1982) separates the spread of the fleet from those, and the reference counts as `reference_lives` lives.
+// H. Ware 1982) separates the spread of the fleet from those, and the reference counts as k = `reference_lives` lives.
+// The means' errors hold the scatter between lives and each life's own, by the same model (generalised least squares):
+//
+//   cov(mean) = A^-1 W A^-1,   W = sum_i (D + V_i)^-1,   A = W + k D^-1: the reference pulls, and does not scatter
+//   D spread of the fleet; V_i covariance of life i's own (g(0), mu)
 #pragma once
 
 #include <optional>
@@ -54,8 +58,10 @@ struct FleetLife {
 
 struct FleetFit {
   FleetPopulation population;
-  int lives = 0;        ///< that took part
-  int passed_over = 0;  ///< fewer than `kFewestTestsOfLife` tests
+  double initial_rate_error = 0.0;  ///< standard error of the mean [1]
+  double steepening_error = 0.0;    ///< standard error of the mean [1 per month]
+  int lives = 0;                    ///< that took part
+  int passed_over = 0;              ///< fewer than `kFewestTestsOfLife` tests
 };
 inline constexpr int kFewestTestsOfLife = 12;
 

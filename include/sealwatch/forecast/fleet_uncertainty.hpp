@@ -1,7 +1,8 @@
 // How well a fleet's own histories tell its ageing constants, and what that does to the forecast of one more seal.
 //
-//   standard error of a mean, by leaving out one life in turn:  sqrt((n-1)/n sum_i (m_(-i) - mean m)^2)       (jackknife)
-//   with fewer than three lives:                                spread / sqrt(n + lives that the reference counts as)
+//   of the means:         the random effects' own (fleet_population.hpp); leaving lives out would see their scatter alone
+//   of the irregularity:  by leaving out one life in turn, sqrt((n-1)/n sum_i (m_(-i) - mean m)^2)            (jackknife)
+//                         with fewer than three lives, irregularity / sqrt(n + lives that the reference counts as)
 //
 // A seal that is not yet known is one of the fleet about a mean that is not known better than that: in a forecast the
 // spread is sqrt(spread^2 + error^2).

@@ -22,9 +22,19 @@ namespace sealwatch::trace {
 /// The order up to `largest` with the least n log s_p^2 + p log n.
 [[nodiscard]] std::size_t choose_order(std::span<const double> values, std::size_t largest);
 
-/// w_t = x_t - a_1 x_(t-1) - ... for t >= first (first >= p), column by column.
+/// Where a course goes on after a gap: indices of the first samples behind each. Noise before a gap tells nothing of the
+/// noise behind it, so that `first` samples behind it condition the likelihood as those at the begin do.
+using Joints = std::vector<Eigen::Index>;
+
+/// Those of the `count` samples from `first` on, counted from there.
+[[nodiscard]] Joints joints_within(const Joints& joints, Eigen::Index first, Eigen::Index count);
+
+/// The t in first <= t < count whose `first` samples before them are of one piece.
+[[nodiscard]] std::vector<Eigen::Index> whole_windows(Eigen::Index count, std::size_t first, const Joints& joints);
+
+/// w_t = x_t - a_1 x_(t-1) - ... for the t of whole_windows() (first >= p), column by column.
 [[nodiscard]] Eigen::MatrixXd whitened(const Eigen::MatrixXd& columns, const std::vector<double>& coefficients,
-                                       std::size_t first);
+                                       std::size_t first, const Joints& joints = {});
 
 struct ColouredFit {
   Eigen::VectorXd beta;
@@ -38,7 +48,7 @@ struct ColouredFit {
 /// `order` of the noise; the first `first` samples (at least `order`) condition the likelihood. `least_variance`: what the
 /// innovations have at least, by rounding.
 [[nodiscard]] ColouredFit fit_coloured(const Eigen::VectorXd& y, const Eigen::MatrixXd& X, std::size_t order,
-                                       std::size_t first, double least_variance);
+                                       std::size_t first, double least_variance, const Joints& joints = {});
 
 /// n_eff of noise with these coefficients, 1 to n.
 [[nodiscard]] double effective_samples(const Eigen::VectorXd& noise, const std::vector<double>& coefficients);

@@ -61,6 +61,7 @@ struct ChannelComparison {
   double effective_samples = 0.0;  ///< of that noise
   double nrmse_percent = 0.0;      ///< 100: the same
   bool differs = false;
+  bool stands_still = false;  ///< the recorded channel, while the simulated one moves
   double p_value = 1.0;
   std::vector<std::string> by;  ///< the groups of regressors that tell, most telling first
   std::vector<RegimeMisfit> regimes;
@@ -76,11 +77,13 @@ struct TraceComparison {
   std::string motion;              ///< by which channel the regimes are told
   std::vector<Alteration> common;  ///< of all channels at once: clock, input
   bool consistent = true;
-  std::vector<Alteration> answer;  ///< what together would do; empty: none of these, or nothing needed
+  std::vector<Alteration> answer;   ///< what together would do; empty: none of these, or nothing needed
+  std::vector<Alteration> equally;  ///< each instead of a single answer: the trace cannot tell them apart
   std::vector<std::string> remarks;
 };
 
-/// Channels in SI units, of the same names in both. An Error where they share none, or hardly any time.
+/// Channels in SI units, of the same names in both. An Error where they share none or hardly any time, or where one name
+/// is two quantities.
 [[nodiscard]] Result<TraceComparison> compare_traces(const TimeSeries& recorded, const TimeSeries& simulated,
                                                      const Options& options);
 

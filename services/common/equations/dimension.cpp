@@ -107,14 +107,16 @@ class UnitReader {
     std::vector<std::string> names;
     for (const KnownUnit& unit : kUnits) names.emplace_back(unit.name);
     const std::optional<std::string> apart = split(wrong_);
+    const bool temperature = wrong_ == "degC" || wrong_ == "degF" || wrong_ == "celsius" || wrong_ == "fahrenheit";
     return fail(Error{.file = {},
                       .place = {},
                       .value = std::string(text_),
                       .rule = wrong_ == text_ || wrong_.empty() ? "is not a unit" : "is not a unit: '" + wrong_ + "'",
                       .advice = wrong_.find_first_of("0123456789") == 0
                                     ? "write a power that is not whole with ^: m^2.5"
-                                : apart ? "write a product with blanks: " + *apart
-                                        : suggest(wrong_, names)});
+                                : temperature ? "write temperatures in K: 20 degrees Celsius are 293.15[K]"
+                                : apart       ? "write a product with blanks: " + *apart
+                                              : suggest(wrong_, names)});
   }
 
   void skip() {

@@ -119,6 +119,21 @@ Moments maximise(const Moments& now, const std::vector<LifeEstimate>& estimates,
   return next;
 }
 
+/// Of the means, which the reference pulls as `k` lives that scatter nowhere.
+Matrix covariance_of_means(const Matrix& spread, const std::vector<LifeEstimate>& estimates, double k) {
+  Matrix told{}, pulled = inverse(spread);
+  for (double& entry : pulled) entry *= k;
+  for (const LifeEstimate& one : estimates) {
+    const Matrix own = inverse(one.information);
+    const Matrix weight = inverse({spread[0] + own[0], spread[1] + own[1], spread[2] + own[2]});
+    for (std::size_t i = 0; i < told.size(); ++i) told[i] += weight[i], pulled[i] += weight[i];
+  }
+  const Matrix gain = inverse(pulled);
+  const Pair first = times(told, {gain[0], gain[1]}), second = times(told, {gain[1], gain[2]});
+  return {gain[0] * first[0] + gain[1] * first[1], gain[0] * second[0] + gain[1] * second[1],
+          gain[1] * second[0] + gain[2] * second[1]};
+}
+
 /// Where the parabola through three points, of which the middle one is lowest, is lowest.
 double lowest_between(const std::array<double, 3>& x, const std::array<double, 3>& y) {
   const double left = (y[1] - y[0]) / (x[1] - x[0]), right = (y[2] - y[1]) / (x[2] - x[1]);
@@ -235,6 +250,9 @@ Result<FleetFit> fit_population(std::span<const FleetLife> fleet, const FleetPop
   fit.population.initial_rate_std = std::sqrt(moments.spread[0]);
   fit.population.steepening_std = std::sqrt(moments.spread[2]);
   fit.population.rate_steepening_correlation = moments.spread[1] / std::sqrt(moments.spread[0] * moments.spread[2]);
+  const Matrix of_means = covariance_of_means(moments.spread, estimates, reference_lives);
+  fit.initial_rate_error = std::sqrt(of_means[0]);
+  fit.steepening_error = std::sqrt(of_means[2]);
   return fit;
 }
 

@@ -20,25 +20,21 @@ double jackknife(const std::vector<double>& left_out) {
 
 FleetErrors fleet_errors(std::span<const FleetLife> fleet, const FleetFit& fit, const FleetPopulation& reference,
                          double reference_lives) {
-  std::vector<double> rates, steepenings, irregularities;
+  std::vector<double> irregularities;
   for (std::size_t out = 0; out < fleet.size() && fit.lives >= kFewestForJackknife; ++out) {
     std::vector<FleetLife> others(fleet.begin(), fleet.end());
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
     const Result<FleetFit> without = fit_population(others, reference, reference_lives);
     if (!without || without->lives == fit.lives) continue;  // that life had taken no part
-    rates.push_back(without->population.initial_rate);
-    steepenings.push_back(without->population.steepening);
     irregularities.push_back(without->population.irregularity_std);
   }
-  const double root = std::sqrt(fit.lives + reference_lives);
-  if (rates.size() >= static_cast<std::size_t>(kFewestForJackknife)) {
-    // At the least or the most that is tried it stays there whatever life is left out.
-    const double irregularity = jackknife(irregularities);
-    return {jackknife(rates), jackknife(steepenings),
-            irregularity > 0.0 ? irregularity : fit.population.irregularity_std / root};
-  }
-  return {fit.population.initial_rate_std / root, fit.population.steepening_std / root,
-          fit.population.irregularity_std / root};
+  FleetErrors errors{.initial_rate = fit.initial_rate_error,
+                     .steepening = fit.steepening_error,
+                     .irregularity_std = fit.population.irregularity_std / std::sqrt(fit.lives + reference_lives)};
+  // At the least or the most that is tried it stays there whatever life is left out.
+  if (irregularities.size() >= static_cast<std::size_t>(kFewestForJackknife))
+    if (const double scatter = jackknife(irregularities); scatter > 0.0) errors.irregularity_std = scatter;
+  return errors;
 }
 
 FleetConstants constants_for_forecasts(const FleetPopulation& population, const FleetErrors& errors) {

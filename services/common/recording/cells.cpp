@@ -160,10 +160,13 @@ Status shift_times(std::vector<double>& times_s, double shift_s) {
                        "log the time from the test's begin"));
 }
 
+std::optional<UtcTime> TimeFormat::clock(double seconds) const {
+  return base_ ? std::optional(add_seconds(*base_, seconds)) : std::nullopt;
+}
+
 std::optional<UtcTime> TimeFormat::utc(double seconds) const {
   const bool has_date = kind_ != Kind::pattern || pattern_.find_first_of("djFDxcs") != std::string::npos;
-  if (!base_ || !has_date) return std::nullopt;
-  return add_seconds(*base_, seconds);
+  return has_date ? clock(seconds) : std::nullopt;
 }
 
 }  // namespace sealwatch

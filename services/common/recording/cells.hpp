@@ -37,6 +37,8 @@ class TimeFormat {
   [[nodiscard]] Result<double> seconds(std::string_view cell, char decimal);
   /// The same of a number; an Error where the format wants text.
   [[nodiscard]] Result<double> seconds(double number);
+  /// What the clock shows after so many seconds, on 1970-01-01 where it tells no day; nothing where it is none.
+  [[nodiscard]] std::optional<UtcTime> clock(double seconds) const;
   /// The UTC time of so many seconds; nothing where the format is not absolute.
   [[nodiscard]] std::optional<UtcTime> utc(double seconds) const;
 

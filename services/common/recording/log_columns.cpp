@@ -18,10 +18,6 @@ std::string lower(std::string text) {
   return text;
 }
 
-std::string unit_of(const OfferedColumn& column) {
-  return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
-}
-
 Error of_channel(const std::string& channel, const std::string& value, const Error& why) {
   return error_at("channel " + channel, value, why.rule, why.advice);
 }
@@ -65,7 +61,21 @@ class Mapper {
   Status take_named(const std::string& channel, const ColumnMapping& mapping) {
     const Result<std::size_t> index = find_offered(offered_, mapping.column);
     if (!index) return fail(of_channel(channel, mapping.column, index.error()));
-    return take(channel, *index, mapping.unit.empty() ? unit_of(offered_[*index]) : mapping.unit, mapping);
+    const auto same = std::ranges::find(out_.columns, *index, &MappedColumn::index);
+    if (same != out_.columns.end())
+      return fail(error_at("channel " + channel, mapping.column,
+                           "is the column of channel " + same->column.name + " too",
+                           "give each channel a column of its own"));
+    return take(channel, *index, unit_for(channel, offered_[*index], mapping), mapping);
+  }
+
+  /// A channel's own name is no unit, whatever it ends in.
+  [[nodiscard]] std::string unit_for(const std::string& channel, const OfferedColumn& column,
+                                     const ColumnMapping& mapping) const {
+    if (!mapping.unit.empty()) return mapping.unit;
+    const std::string said = unit_of(column);
+    if (!said.empty() || column.text == channel) return said;
+    return unit_at_the_end(column.text, channel == "time" ? "s" : si_unit_of(channel));
   }
 
   Status take_own_name(std::size_t index) {
@@ -101,6 +111,18 @@ class Mapper {
 };
 
 }  // namespace
+
+std::string unit_of(const OfferedColumn& column) {
+  return column.unit.empty() ? split_header_cell(column.text).unit : column.unit;
+}
+
+std::string unit_at_the_end(std::string_view text, const std::string& si_unit) {
+  const std::size_t begin = text.find_last_of(" _");
+  const std::string_view last = begin == std::string_view::npos ? std::string_view() : text.substr(begin + 1);
+  const bool plain = si_unit.empty() || si_unit == "1";
+  const bool fits = plain ? last == "%" : last.size() > 1 && convert_unit(last, si_unit).has_value();
+  return std::string(fits ? last : std::string_view());
+}
 
 Result<std::size_t> find_offered(const std::vector<OfferedColumn>& offered, const std::string& wanted) {
   const auto matches = [&](const std::function<bool(const OfferedColumn&)>& same) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sealwatch/config/channel_map.hpp"
@@ -27,6 +28,13 @@ struct MappedColumns {
   std::string time_unit;              ///< for TimeFormat
   std::vector<std::string> left_aside;
 };
+
+/// What a column's unit is: said beside it, or in its text by split_header_cell(); "" where neither.
+[[nodiscard]] std::string unit_of(const OfferedColumn& column);
+
+/// The unit at the end of a name, "t_ms", "Speed rpm", where it is one of `si_unit`'s quantity and no letter, which may be
+/// a chamber's; of a plain number "%" alone. "" where there is none.
+[[nodiscard]] std::string unit_at_the_end(std::string_view text, const std::string& si_unit);
 
 /// Errors name the channel, not the place.
 [[nodiscard]] Result<MappedColumns> map_columns(const std::vector<OfferedColumn>& offered,

@@ -15,6 +15,13 @@ namespace {
 
 constexpr std::size_t kHead_bytes = std::size_t{1} << 18U;
 
+/// Without the empty cells at the end: many loggers put a delimiter behind every row.
+std::size_t filled_cells(const auto& cells) {
+  const auto is_filled = [](std::string_view cell) { return !trim(cell).empty(); };
+  const auto last = std::find_if(cells.rbegin(), cells.rend(), is_filled);
+  return static_cast<std::size_t>(cells.rend() - last);
+}
+
 class LogReader {
  public:
   LogReader(std::istream& in, FoundLayout layout, const PlantDescription& plant, const ChannelMap& map)
@@ -53,17 +60,20 @@ class LogReader {
     for (std::size_t k = 0; k < mapped_.columns.size(); ++k)
       if (mapped_.columns[k].column.name == "time") time_ = k;
     values_.resize(mapped_.columns.size());
+    width_ = filled_cells(layout_.header);
     for (std::size_t row = 1; row < layout_.first_row; ++row)
       if (const Result<bool> skipped = rows_.skip_line(); !skipped) return fail(skipped.error());
     return {};
   }
 
   Status read_row() {
-    if (std::ranges::all_of(cells_, [](std::string_view cell) { return trim(cell).empty(); })) return {};
+    const std::size_t filled = filled_cells(cells_);
+    if (filled == 0) return {};
     if (map_.log.incomplete_rows == "skip" && is_incomplete()) return {};
     if (++rows_read_ * mapped_.columns.size() > kMostNumbers)
       return fail(error_in(0, "the file holds more than " + std::to_string(kMostNumbers) + " numbers",
                            "one recording is one test: split the file"));
+    if (filled > width_) return fail(too_wide(filled));
     std::vector<double> numbers(mapped_.columns.size());
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       const Result<double> number = number_at(k);
@@ -131,6 +141,7 @@ class LogReader {
     LogTest test;
     test.first_row = first_row_;
     test.start_time = time_format_.utc(values_[time_].front());
+    test.clock = time_format_.clock(values_[time_].front());
     if (time_format_.is_absolute())
       if (const Status shifted = shift_times(values_[time_], -values_[time_].front()); !shifted) return shifted;
     std::vector<Column> columns;
@@ -150,6 +161,14 @@ class LogReader {
                                  : content_hash(rows_.content_hash().append("#").append(std::to_string(k + 1)));
   }
 
+  /// A decimal comma, or a separator inside a text, moves what follows into other columns.
+  [[nodiscard]] Error too_wide(std::size_t filled) const {
+    const std::string header = layout_.header_row > 0 ? "header has " : "table has ";
+    return error_at("row " + std::to_string(rows_.row()) + ", column " + std::to_string(width_ + 1), cells_[width_],
+                    "the row has " + std::to_string(filled) + " cells where the " + header + std::to_string(width_),
+                    "a decimal comma or a text splits a cell in two: mend the row, or name the column in the header");
+  }
+
   [[nodiscard]] Error error_in(std::size_t k, std::string rule, std::string advice = {}) const {
     const std::string& channel = mapped_.columns[k].column.name;
     const std::size_t index = mapped_.columns[k].index;
@@ -167,6 +186,7 @@ class LogReader {
   std::vector<std::string_view> cells_;
   std::vector<std::vector<double>> values_;  ///< of the test that is being read, by mapped column
   std::size_t time_ = 0;                     ///< index of time among the mapped columns
+  std::size_t width_ = 0;                    ///< cells of the header
   RepeatedTimes repeated_;
   double shift_s_ = 0.0;  ///< added to the log's time since it started anew
   std::size_t rows_read_ = 0;

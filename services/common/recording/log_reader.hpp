@@ -20,6 +20,7 @@ namespace sealwatch {
 struct LogTest {
   ColumnarSamples read;
   std::optional<UtcTime> start_time;  ///< where the time column tells day and hour
+  std::optional<UtcTime> clock = {};  ///< the same of a time column that tells the hour alone, on 1970-01-01
   std::size_t first_row = 1;          ///< of the file, where its first sample stands
 };
 

@@ -226,6 +226,23 @@ Status check_chain(std::FILE* file, bool swapped) {
   return {};
 }
 
+/// Version 4 has no header: its first variable's type, rows, columns, complex or not, and length of the name with its
+/// zero. Decimal digits of the type: machine, 0, precision, kind of matrix.
+bool is_version_4(std::string_view start) {
+  std::array<std::uint32_t, 5> numbers{};
+  if (start.size() <= sizeof numbers) return false;
+  std::memcpy(numbers.data(), start.data(), sizeof numbers);
+  for (const bool swapped : {false, true}) {
+    const auto number = [&](std::size_t k) { return in_order(numbers[k], swapped); };
+    const std::uint32_t type = number(0), name_bytes = number(4);
+    const bool digits = type / 1000 <= 4 && type / 100 % 10 == 0 && type / 10 % 10 <= 5 && type % 10 <= 2;
+    if (!digits || number(3) > 1 || name_bytes < 2 || name_bytes > kMostName_bytes) continue;
+    const std::string_view name = start.substr(sizeof numbers, name_bytes);
+    if (name.size() == name_bytes && name.find('\0') + 1 == name_bytes) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<MatFormat> check_mat_container(const std::string& path) {
@@ -247,6 +264,8 @@ Result<MatFormat> check_mat_container(const std::string& path) {
         header.substr(512) == "\x89HDF\r\n\x1a\n")
       return MatFormat::version_7_3;
   }
+  if (is_version_4(header))
+    return fail("is a MATLAB file of version 4, which is not read", "save it again: save('NAME.mat', '-v7')");
   return fail("is not a MATLAB file of version 5 or 7.3, or it is damaged");
 }
 

@@ -44,7 +44,7 @@ Result<Log> one_test(Result<ColumnarSamples> samples, std::size_t first_row) {
   if (!samples) return fail(samples.error());
   Log log;
   log.left_aside = std::move(samples->left_aside);
-  log.tests.push_back({.read = std::move(*samples), .start_time = {}, .first_row = first_row});
+  log.tests.push_back({.read = std::move(*samples), .start_time = {}, .clock = {}, .first_row = first_row});
   return log;
 }
 
@@ -165,21 +165,28 @@ Result<Recording> recording_of(const std::string& path, LogTest test, const Side
 Result<std::vector<Recording>> read_recordings(const std::string& path, const PlantDescription& plant,
                                                const ChannelMap& map) {
   const std::vector<std::string> parts = parts_of(path);
-  Result<Log> log = read_file(parts.front(), plant, map);
-  if (!log) return fail_in(parts.front(), log.error());
-  for (std::size_t k = 1; k < parts.size(); ++k) {
-    Result<Log> next = read_file(parts[k], plant, map);
-    if (!next) return fail_in(parts[k], next.error());
-    if (const Status appended = append(log->tests, std::move(next->tests)); !appended)
-      return fail_in(parts[k], appended.error());
+  JoinedTests joined(map.log.time_resets);
+  std::vector<std::string> left_aside;
+  for (const std::string& part : parts) {
+    Result<Log> log = read_file(part, plant, map);
+    if (!log) return fail_in(part, log.error());
+    if (left_aside.empty()) left_aside = std::move(log->left_aside);
+    if (const Status appended = joined.append(part, std::move(log->tests)); !appended)
+      return fail_in(part, appended.error());
   }
+  std::vector<LogTest> tests = joined.take();
+  for (const LogTest& test : tests)
+    if (tests.size() > 1 && test.read.samples.time_s.size() < 2)
+      return fail_in(parts.back(), error_at("row " + std::to_string(test.first_row) + ", column time", {},
+                                            "the test that begins here has one sample alone",
+                                            "take the row out, or log: {time_resets: join}"));
   const Result<Sidecar> sidecar = read_sidecar(parts.front(), plant);
   if (!sidecar) return fail(sidecar.error());
   std::vector<Recording> recordings;
-  for (LogTest& test : log->tests) {
-    Result<Recording> recording = recording_of(parts.front(), std::move(test), *sidecar, plant, log->left_aside);
+  for (LogTest& test : tests) {
+    Result<Recording> recording = recording_of(parts.front(), std::move(test), *sidecar, plant, left_aside);
     if (!recording) return fail(recording.error());
-    if (log->tests.size() > 1) recording->recording_id.append("#").append(std::to_string(recordings.size() + 1));
+    if (tests.size() > 1) recording->recording_id.append("#").append(std::to_string(recordings.size() + 1));
     recordings.push_back(std::move(*recording));
   }
   return recordings;

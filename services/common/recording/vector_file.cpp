@@ -64,7 +64,7 @@ Result<Log> log_of_vectors(std::vector<MatVariable> vectors, const PlantDescript
     columns.push_back(found.column);
     values.push_back(std::move(*converted));
   }
-  LogTest test{.read = assemble(std::move(columns), std::move(values)), .start_time = {}, .first_row = 1};
+  LogTest test{.read = assemble(std::move(columns), std::move(values)), .start_time = {}, .clock = {}, .first_row = 1};
   const std::size_t rows = test.read.samples.time_s.size();
   for (const Series& channel : test.read.samples.channels)
     if (channel.values.size() != rows)
@@ -73,6 +73,7 @@ Result<Log> log_of_vectors(std::vector<MatVariable> vectors, const PlantDescript
                    "has " + std::to_string(channel.values.size()) + " samples where time has " + std::to_string(rows)));
   if (rows == 0) return fail(error_at("channel time", {}, "holds no samples"));
   test.start_time = format->utc(test.read.samples.time_s.front());
+  test.clock = format->clock(test.read.samples.time_s.front());
   return Log{.tests = {std::move(test)}, .left_aside = std::move(mapped->left_aside)};
 }
 

@@ -76,7 +76,8 @@ void read_parameters(YamlMap& root, TextPlant& plant) {
     ParameterDescription parameter{.name = name, .unit = {}, .meaning = name};
     need(map, "unit", parameter.unit);
     map.read("meaning", parameter.meaning);
-    if (!map.read("value", parameter.value) && !map.has("value")) map.fault("value", {}, "must be given");
+    const bool given = map.read("value", parameter.value);
+    if (!given && !map.has("value")) map.fault("value", {}, "must be given");
     const double size = parameter.value < 0.0 ? -parameter.value : parameter.value;
     parameter.min = parameter.value > 0.0 ? 0.1 * parameter.value : -10.0 * size;
     parameter.max = 10.0 * size;
@@ -85,9 +86,10 @@ void read_parameters(YamlMap& root, TextPlant& plant) {
     map.read("tolerance", parameter.tolerance, kPositive);
     map.read("estimate", parameter.estimate);
     parameter.role = read_role<ParameterRole>(map);
-    if (map.has("value") && size == 0.0 && !(map.has("min") && map.has("max")))
+    if (given && size == 0.0 && !(map.has("min") && map.has("max")))
       map.fault("value", "0", "has no range that follows from it", "give min and max");
-    else if (!(parameter.min <= parameter.value && parameter.value <= parameter.max) || parameter.min == parameter.max)
+    else if (given && (!(parameter.min <= parameter.value && parameter.value <= parameter.max) ||
+                       parameter.min == parameter.max))
       map.fault(
           "value", text::general(parameter.value),
           "must lie between min and max, " + text::general(parameter.min) + " and " + text::general(parameter.max));

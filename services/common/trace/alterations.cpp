@@ -29,8 +29,9 @@ struct Parameters {
 
 class Problem {
  public:
-  Problem(const std::vector<double>& time_s, const std::vector<AlteredChannel>& channels, const Freedom& freedom)
-      : time_s_(time_s), channels_(channels), freedom_(freedom) {}
+  Problem(const std::vector<double>& time_s, const std::vector<AlteredChannel>& channels, const Freedom& freedom,
+          const Joints& joints)
+      : time_s_(time_s), channels_(channels), freedom_(freedom), joints_(joints) {}
 
   std::optional<AlterationFit> solve() {
     Parameters theta{freedom_.fixed_gain, 0.0, 0.0, 1.0};
@@ -118,7 +119,8 @@ class Problem {
 
   /// Every sample near to none, for courses that change from sample to sample; pieces of the length farther away.
   [[nodiscard]] std::vector<double> delays() const {
-    const double step = length_s() / static_cast<double>(time_s_.size() - 1);
+    double step = length_s();
+    for (std::size_t k = 1; k < time_s_.size(); ++k) step = std::min(step, time_s_[k] - time_s_[k - 1]);
     std::vector<double> values;
     for (int k = -kNearDelays; k <= kNearDelays; ++k) values.push_back(k * step);
     for (int k = -kFarDelays; k <= kFarDelays; ++k) values.push_back(kLargestDelayShare * length_s() * k / kFarDelays);
@@ -172,12 +174,14 @@ class Problem {
     gradient = VectorXd::Zero(free);
     if (2 * count < static_cast<Index>(time_s_.size())) return std::numeric_limits<double>::infinity();
     double criterion = 0.0;
+    const Joints joints = joints_within(joints_, first, count);
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       VectorXd left;
       MatrixXd slopes;
       residual(channels_[c], theta, first, count, left, slopes);
-      const VectorXd white = whitened(left, noises_[c], kLargestOrder);
-      const MatrixXd design = whitened(slopes, noises_[c], kLargestOrder);
+      const VectorXd white = whitened(left, noises_[c], kLargestOrder, joints);
+      if (white.size() == 0) return std::numeric_limits<double>::infinity();
+      const MatrixXd design = whitened(slopes, noises_[c], kLargestOrder, joints);
       const double variance =
           std::max(white.squaredNorm() / static_cast<double>(white.size()), channels_[c].least_variance);
       normal += dense::transposed_product(design, design) / variance;
@@ -249,6 +253,7 @@ class Problem {
   const std::vector<double>& time_s_;
   const std::vector<AlteredChannel>& channels_;
   Freedom freedom_;
+  const Joints& joints_;
   std::vector<std::vector<double>> noises_;  ///< coefficients, one set a channel
   MatrixXd covariance_;
 };
@@ -256,8 +261,9 @@ class Problem {
 }  // namespace
 
 std::optional<AlterationFit> fit_alteration(const std::vector<double>& time_s,
-                                            const std::vector<AlteredChannel>& channels, const Freedom& freedom) {
-  return Problem(time_s, channels, freedom).solve();
+                                            const std::vector<AlteredChannel>& channels, const Freedom& freedom,
+                                            const Joints& joints) {
+  return Problem(time_s, channels, freedom, joints).solve();
 }
 
 }  // namespace sealwatch::trace

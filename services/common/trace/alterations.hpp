@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "sealwatch/trace/coloured_regression.hpp"
 #include "sealwatch/trace/smooth_course.hpp"
 
 namespace sealwatch::trace {
@@ -40,9 +41,9 @@ struct AlterationFit {
   Eigen::Index first = 0, count = 0;     ///< the samples that count
 };
 
-/// `time_s` uniform. Nothing where the best delay or clock rate lies at the edge of what is searched.
+/// `time_s` uniform but for gaps. Nothing where the best delay or clock rate lies at the edge of what is searched.
 [[nodiscard]] std::optional<AlterationFit> fit_alteration(const std::vector<double>& time_s,
                                                           const std::vector<AlteredChannel>& channels,
-                                                          const Freedom& freedom);
+                                                          const Freedom& freedom, const Joints& joints = {});
 
 }  // namespace sealwatch::trace

@@ -67,25 +67,47 @@ std::size_t choose_order(std::span<const double> values, std::size_t largest) {
   return order;
 }
 
-MatrixXd whitened(const MatrixXd& columns, const std::vector<double>& coefficients, std::size_t first) {
+Joints joints_within(const Joints& joints, Index first, Index count) {
+  Joints inside;
+  for (const Index joint : joints)
+    if (joint > first && joint < first + count) inside.push_back(joint - first);
+  return inside;
+}
+
+std::vector<Index> whole_windows(Index count, std::size_t first, const Joints& joints) {
+  std::vector<Index> rows;
+  const auto window = static_cast<Index>(first);
+  auto next = joints.begin();
+  for (Index t = window; t < count; ++t) {
+    while (next != joints.end() && *next <= t - window) ++next;
+    if (next == joints.end() || *next > t) rows.push_back(t);
+  }
+  return rows;
+}
+
+MatrixXd whitened(const MatrixXd& columns, const std::vector<double>& coefficients, std::size_t first,
+                  const Joints& joints) {
   assert(first >= coefficients.size());
   const auto skipped = static_cast<Index>(first);
   const Index rows = columns.rows() - skipped;
   MatrixXd out = columns.bottomRows(rows);
   for (std::size_t k = 0; k < coefficients.size(); ++k)
     out -= coefficients[k] * columns.middleRows(skipped - static_cast<Index>(k) - 1, rows);
-  return out;
+  if (joints.empty()) return out;
+  std::vector<Index> kept = whole_windows(columns.rows(), first, joints);
+  for (Index& row : kept) row -= skipped;
+  return out(kept, Eigen::all);
 }
 
 ColouredFit fit_coloured(const VectorXd& y, const MatrixXd& X, std::size_t order, std::size_t first,
-                         double least_variance) {
+                         double least_variance, const Joints& joints) {
   ColouredFit fit;
   fit.beta = VectorXd::Zero(X.cols());
-  const auto n = static_cast<double>(y.size() - static_cast<Index>(first));
+  const auto n = static_cast<double>(whole_windows(y.size(), first, joints).size());
   fit.coefficients.assign(order, 0.0);
   for (int round = 0; round <= kRounds; ++round) {
-    const MatrixXd design = whitened(X, fit.coefficients, first);
-    const VectorXd target = whitened(y, fit.coefficients, first);
+    const MatrixXd design = whitened(X, fit.coefficients, first, joints);
+    const VectorXd target = whitened(y, fit.coefficients, first, joints);
     if (X.cols() > 0) {
       dense::LeastSquares least = dense::least_squares(design, target);
       fit.beta = std::move(least.solution);
@@ -93,7 +115,7 @@ ColouredFit fit_coloured(const VectorXd& y, const MatrixXd& X, std::size_t order
     }
     fit.residual = y - X * fit.beta;
     fit.innovation_variance =
-        std::max(whitened(fit.residual, fit.coefficients, first).squaredNorm() / n, least_variance);
+        std::max(whitened(fit.residual, fit.coefficients, first, joints).squaredNorm() / n, least_variance);
     if (round < kRounds)
       fit.coefficients = burg({fit.residual.data(), static_cast<std::size_t>(fit.residual.size())}, order);
   }

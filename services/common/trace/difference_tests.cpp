@@ -56,7 +56,7 @@ double spread_p(const VectorXd& innovations, const MatrixXd& parts, double least
 }  // namespace
 
 NoiseTest test_noise(const VectorXd& residual, const std::vector<RegressorGroup>& groups,
-                     const std::vector<RegressorGroup>& partitions, const LeastVariances& least) {
+                     const std::vector<RegressorGroup>& partitions, const LeastVariances& least, const Joints& joints) {
   const double least_variance = least.arithmetic;
   NoiseTest test;
   MatrixXd all(residual.size(), 0);
@@ -65,25 +65,26 @@ NoiseTest test_noise(const VectorXd& residual, const std::vector<RegressorGroup>
     all.rightCols(group.columns.cols()) = group.columns;
   }
   all = independent(all);
-  const ColouredFit explained = fit_coloured(residual, all, order_of(residual), kLargestOrder, least_variance);
+  const ColouredFit explained = fit_coloured(residual, all, order_of(residual), kLargestOrder, least_variance, joints);
   const std::size_t order = std::max(order_of(residual), order_of(explained.residual));
-  const ColouredFit noise = fit_coloured(residual, MatrixXd(residual.size(), 0), order, kLargestOrder, least_variance);
-  const ColouredFit whole = fit_coloured(residual, all, order, kLargestOrder, least_variance);
+  const ColouredFit noise =
+      fit_coloured(residual, MatrixXd(residual.size(), 0), order, kLargestOrder, least_variance, joints);
+  const ColouredFit whole = fit_coloured(residual, all, order, kLargestOrder, least_variance, joints);
   test.effective_samples = effective_samples(whole.residual, whole.coefficients);
   test.noise_std =
       std::sqrt(std::max(whole.residual.squaredNorm() / static_cast<double>(residual.size()), least_variance));
   for (const RegressorGroup& group : groups) {
     const MatrixXd columns = independent(group.columns);
-    const ColouredFit fit = fit_coloured(residual, columns, order, kLargestOrder, least_variance);
+    const ColouredFit fit = fit_coloured(residual, columns, order, kLargestOrder, least_variance, joints);
     const double gain = noise.minus_two_log_likelihood - fit.minus_two_log_likelihood;
     test.groups.push_back({group.name, chi_squared_p(gain, columns.cols())});
   }
-  const VectorXd innovations = whitened(noise.residual, noise.coefficients, kLargestOrder);
+  const VectorXd innovations = whitened(noise.residual, noise.coefficients, kLargestOrder, joints);
+  const std::vector<Index> rows = whole_windows(residual.size(), kLargestOrder, joints);
   double rounding = std::max(least.steps, least_variance);
   for (const double a : noise.coefficients) rounding += a * a * least.steps;
   for (const RegressorGroup& partition : partitions)
-    test.groups.push_back(
-        {partition.name, spread_p(innovations, partition.columns.bottomRows(innovations.size()), rounding)});
+    test.groups.push_back({partition.name, spread_p(innovations, partition.columns(rows, Eigen::all), rounding)});
   for (const GroupTest& group : test.groups)
     test.p_value = std::min(test.p_value, group.p_value * static_cast<double>(test.groups.size()));
   return test;

@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "sealwatch/trace/coloured_regression.hpp"
+
 namespace sealwatch::trace {
 
 struct RegressorGroup {
@@ -41,8 +43,9 @@ struct LeastVariances {
   double steps = 0.0;       ///< of what the channel is recorded in: at rest they may show no noise at all
 };
 
-/// `partitions`: columns of 0 and 1, one 1 a row at most.
+/// `partitions`: columns of 0 and 1, one 1 a row at most. `joints`: gaps in the residual (coloured_regression.hpp).
 [[nodiscard]] NoiseTest test_noise(const Eigen::VectorXd& residual, const std::vector<RegressorGroup>& groups,
-                                   const std::vector<RegressorGroup>& partitions, const LeastVariances& least);
+                                   const std::vector<RegressorGroup>& partitions, const LeastVariances& least,
+                                   const Joints& joints = {});
 
 }  // namespace sealwatch::trace

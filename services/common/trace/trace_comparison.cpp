@@ -23,12 +23,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFewestSamples = 100;
+constexpr std::size_t kMostMemory = 30;     // samples that noise may depend on (difference_tests.cpp)
+constexpr double kShifted = 4.0;            // standard errors: what is nearer to nothing is nothing
+constexpr double kFarMoreLikely = 10.0;     // of -2 log L: very strong evidence (Kass and Raftery 1995)
 constexpr double kLeastOfTheSpread = 1e-9;  // rounding of the arithmetic, as a share of a channel's spread
 
 /// One channel on the common times.
 struct Pair {
   std::string name, unit;
   bool input = false;
+  bool stands_still = false;  ///< the recording, while the simulation moves
   VectorXd recorded, simulated;
   Course course;
   double least_variance = 0.0;  ///< rounding of the arithmetic
@@ -48,14 +52,45 @@ MatrixXd beside(const std::vector<VectorXd>& columns) {
   return out;
 }
 
+/// Where a file has samples. One without a usual interval, as a solver of variable steps writes it, has no gaps.
+class Presence {
+ public:
+  explicit Presence(const std::vector<double>& time_s) : time_s_(time_s) {
+    const signal::SamplingGrid grid = signal::find_grid(time_s);
+    interval_s_ = grid.interval_s;
+    has_gaps_ = grid.missing_count > 0 && grid.jitter_std_s < kRegular * grid.interval_s;
+  }
+
+  /// On a sample, or where the cubic between samples (smooth_course.hpp) needs none beyond a gap.
+  [[nodiscard]] bool has(double time_s) const {
+    if (!has_gaps_) return true;
+    const auto after = static_cast<std::size_t>(std::ranges::upper_bound(time_s_, time_s) - time_s_.begin());
+    const double rounding = 1e-9 * interval_s_;
+    if (after > 0 && time_s - time_s_[after - 1] <= rounding) return true;
+    if (after < time_s_.size() && time_s_[after] - time_s <= rounding) return true;
+    for (std::size_t k = std::max<std::size_t>(after, 2) - 1; k <= std::min(after + 1, time_s_.size() - 1); ++k)
+      if (time_s_[k] - time_s_[k - 1] > kGap * interval_s_) return false;
+    return true;
+  }
+
+ private:
+  static constexpr double kRegular = 0.1;  // of the interval
+  static constexpr double kGap = 1.5;      // intervals: from there on a row is missing (signal/resampling.hpp)
+  const std::vector<double>& time_s_;
+  double interval_s_ = 0.0;
+  bool has_gaps_ = false;
+};
+
 class Comparison {
  public:
   Comparison(const TimeSeries& recorded, const TimeSeries& simulated, const Options& options)
       : recorded_(recorded), simulated_(simulated), options_(options) {}
 
   Result<TraceComparison> run() {
+    if (const Status units = check_units(); !units) return fail(units.error());
     if (const Status common = find_common(); !common) return fail(common.error());
     find_motion();
+    for (Pair& pair : pairs_) pair.stands_still = stands_still(pair);
     for (const Pair& pair : pairs_) {
       if (options_.progress) options_.progress(out_.channels.size(), pairs_.size() + 1);
       out_.channels.push_back(compare(pair));
@@ -65,11 +100,27 @@ class Comparison {
       if (options_.progress) options_.progress(pairs_.size(), pairs_.size() + 1);
       ask_common();
       answer();
+      find_equals();
     }
     return std::move(out_);
   }
 
  private:
+  /// A gain would explain any two quantities. "1" is what a column without a unit has: it may be any.
+  [[nodiscard]] Status check_units() const {
+    for (const Series& channel : recorded_.channels) {
+      const Series* simulated = simulated_.find(channel.name);
+      if (simulated == nullptr || simulated->unit == channel.unit || simulated->unit == "1" || channel.unit == "1")
+        continue;
+      return fail(Error{.file = {},
+                        .place = "column " + channel.name,
+                        .value = channel.unit,
+                        .rule = "is another quantity than the simulation's " + simulated->unit,
+                        .advice = "give both the same quantity, or different names"});
+    }
+    return {};
+  }
+
   Status find_common() {
     if (recorded_.time_s.size() < kFewestSamples || simulated_.time_s.size() < kFewestSamples)
       return fail("too few samples to tell noise from difference: at least " + std::to_string(kFewestSamples));
@@ -85,8 +136,8 @@ class Comparison {
                       " s, the recording from " + text::general(recorded_.time_s.front()) + " to " +
                       text::general(recorded_.time_s.back()) + " s",
                   "both times must count from the same moment");
-    for (std::size_t k = first; k < last; ++k) out_.time_s.push_back(grid.time_s(k));
-    for (const Series& channel : recorded_.channels) take(channel, grid, first, last - first);
+    if (const Status taken = take_times(grid, first, last); !taken) return fail(taken.error());
+    for (const Series& channel : recorded_.channels) take(channel);
     for (const Series& channel : simulated_.channels)
       if (!recorded_.has(channel.name)) out_.only_simulated.push_back(channel.name);
     if (pairs_.empty()) return fail("the files share no channel", "give both the same column names, or a map");
@@ -99,12 +150,44 @@ class Comparison {
     return {};
   }
 
-  void take(const Series& channel, const signal::SamplingGrid& grid, std::size_t first, std::size_t count) {
+  /// The grid's times at which both have samples, and where these go on after a gap.
+  Status take_times(const signal::SamplingGrid& grid, std::size_t first, std::size_t last) {
+    const Presence recorded(recorded_.time_s), simulated(simulated_.time_s);
+    for (std::size_t k = first; k < last; ++k) {
+      grid_times_s_.push_back(grid.time_s(k));
+      if (!recorded.has(grid.time_s(k)) || !simulated.has(grid.time_s(k))) continue;
+      if (!present_.empty() && present_.back() + 1 != static_cast<Index>(k - first))
+        joints_.push_back(static_cast<Index>(present_.size()));
+      present_.push_back(static_cast<Index>(k - first));
+      out_.time_s.push_back(grid.time_s(k));
+    }
+    if (present_.size() < kFewestSamples)
+      return fail("too few samples outside of gaps to tell noise from difference: at least " +
+                  std::to_string(kFewestSamples));
+    if (const std::size_t missing = last - first - present_.size(); missing > 0)
+      out_.remarks.push_back(std::to_string(missing) + " of " + std::to_string(last - first) +
+                             " samples lie in gaps and are not compared");
+    // Single lost rows everywhere: there is no other noise to learn from than that across them.
+    if (2 * whole_windows(static_cast<Index>(present_.size()), kMostMemory, joints_).size() < present_.size())
+      joints_.clear();
+    return {};
+  }
+
+  /// d/dt at the common times; over a gap along a smooth course.
+  [[nodiscard]] VectorXd slope_of(const VectorXd& values) const {
+    if (present_.size() == grid_times_s_.size()) return smooth_slope(values, interval_s_);
+    const Course between(out_.time_s, {values.begin(), values.end()});
+    VectorXd whole(static_cast<Index>(grid_times_s_.size()));
+    for (Index k = 0; k < whole.size(); ++k) whole(k) = between.at(grid_times_s_[static_cast<std::size_t>(k)]).first;
+    return smooth_slope(whole, interval_s_)(present_);
+  }
+
+  void take(const Series& channel) {
     const Series* simulated = simulated_.find(channel.name);
     // Both between their samples in the same way, so that what is the same stays so.
     const Course between(recorded_.time_s, channel.values);
-    VectorXd values(static_cast<Index>(count));
-    for (std::size_t k = 0; k < count; ++k) values(static_cast<Index>(k)) = between.at(grid.time_s(first + k)).first;
+    VectorXd values(static_cast<Index>(out_.time_s.size()));
+    for (Index k = 0; k < values.size(); ++k) values(k) = between.at(out_.time_s[static_cast<std::size_t>(k)]).first;
     const bool input = std::ranges::find(options_.inputs, channel.name) != options_.inputs.end();
     if (simulated == nullptr) {
       out_.only_recorded.push_back(channel.name);
@@ -129,21 +212,41 @@ class Comparison {
     pairs_.push_back(std::move(pair));
   }
 
+  /// A dead channel: its values scatter as its noise does and follow the simulation nowhere.
+  [[nodiscard]] bool stands_still(const Pair& pair) const {
+    constexpr double kOfTheNoise = 2.0;  // of the variance; a course that moves has many times that of its noise
+    const auto variance = [](const VectorXd& values) { return (values.array() - values.mean()).square().mean(); };
+    if (pair.recorded.minCoeff() == pair.recorded.maxCoeff())
+      return pair.simulated.minCoeff() < pair.simulated.maxCoeff();
+    const double moved = variance(pair.recorded);
+    if (!(variance(pair.simulated) > moved) || moved > kOfTheNoise * (pair.white_variance + pair.step_variance))
+      return false;
+    const auto fit = fit_alteration(out_.time_s, {altered(pair)}, {.gain = true, .offset = true}, joints_);
+    return fit && follows_nothing(*fit, {.gain = true});
+  }
+
+  /// Of a gain that may be 0 nothing of the simulation is left to explain anything with.
+  [[nodiscard]] static bool follows_nothing(const AlterationFit& fit, const Freedom& freedom) {
+    return freedom.gain && std::abs(fit.gain) <= kShifted * fit.gain_std;
+  }
+
   void find_motion() {
     for (const char* unit : {"m/s", "m", "rad/s", "rad"})
       for (const Pair& pair : pairs_)
         if (out_.motion.empty() && pair.unit == unit && !pair.input) {
           out_.motion = pair.name;
           const bool speed = std::string(unit).ends_with("/s");
-          motion_ = speed ? pair.simulated : smooth_slope(pair.simulated, interval_s_);
+          motion_ = speed ? pair.simulated : slope_of(pair.simulated);
         }
   }
 
   /// What a simulation's faults leave behind, of a course on the common times.
   [[nodiscard]] std::vector<RegressorGroup> groups_of(const VectorXd& s, double effective_samples) const {
     const Index n = s.size();
-    const VectorXd one = VectorXd::Ones(n), v = smooth_slope(s, interval_s_), a = smooth_slope(v, interval_s_);
-    const VectorXd t = VectorXd::LinSpaced(n, -1.0, 1.0);
+    const VectorXd one = VectorXd::Ones(n), v = slope_of(s), a = slope_of(v);
+    const double begin_s = out_.time_s.front(), length_s = out_.time_s.back() - begin_s;
+    VectorXd t(n);
+    for (Index k = 0; k < n; ++k) t(k) = 2.0 * (out_.time_s[static_cast<std::size_t>(k)] - begin_s) / length_s - 1.0;
     std::vector<RegressorGroup> groups;
     groups.push_back({"shift, scale, delay and clock", beside({one, s, v, t.cwiseProduct(v)})});
     std::vector<VectorXd> regimes{one};
@@ -152,7 +255,7 @@ class Comparison {
     for (const VectorXd& saturated : saturations(motion_.size() > 0 ? motion_ : v)) regimes.push_back(saturated);
     groups.push_back({"motion and level", beside(regimes)});
     std::vector<VectorXd> shapes{one, a, s.cwiseProduct(s), v.cwiseProduct(v.cwiseAbs())};
-    for (const VectorXd& drive : drives_) shapes.push_back(drive), shapes.push_back(smooth_slope(drive, interval_s_));
+    for (const VectorXd& drive : drives_) shapes.push_back(drive), shapes.push_back(slope_of(drive));
     groups.push_back({"curvature and drive", beside(shapes)});
     constexpr double kMostPieces = 8.0, kSamplesAPiece = 12.0;
     const auto pieces = static_cast<Index>(std::clamp(effective_samples / kSamplesAPiece, 1.0, kMostPieces));
@@ -185,7 +288,7 @@ class Comparison {
     constexpr Index kPieces = 8;
     const Index n = s.size();
     std::vector<VectorXd> motion, pieces;
-    for (const Regime& regime : parts_of(smooth_slope(s, interval_s_))) motion.push_back(regime.indicator);
+    for (const Regime& regime : parts_of(slope_of(s))) motion.push_back(regime.indicator);
     for (Index k = 0; k < kPieces; ++k) {
       pieces.push_back(VectorXd::Zero(n));
       pieces.back().segment(k * n / kPieces, (k + 1) * n / kPieces - k * n / kPieces).setOnes();
@@ -200,7 +303,8 @@ class Comparison {
     for (std::vector<RegressorGroup>* list : {&groups, &partitions})
       for (RegressorGroup& group : *list) group.columns = MatrixXd(group.columns.middleRows(first, count));
     Judged judged{.squares = left.squaredNorm() / static_cast<double>(count), .test = {}};
-    judged.test = test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance});
+    judged.test = test_noise(left, groups, partitions, {pair.least_variance, pair.step_variance},
+                             joints_within(joints_, first, count));
     judged.test.noise_std = std::min(judged.test.noise_std, std::sqrt(judged.squares));
     return judged;
   }
@@ -224,11 +328,12 @@ class Comparison {
     std::ranges::sort(telling, {}, &GroupTest::p_value);
     for (const GroupTest& group : telling)
       if (group.p_value * static_cast<double>(telling.size()) < limit()) out.by.push_back(group.name);
-    std::vector<Regime> regimes = parts_of(smooth_slope(pair.simulated, interval_s_));
+    std::vector<Regime> regimes = parts_of(slope_of(pair.simulated));
     std::ranges::move(levels_of(pair.simulated), std::back_inserter(regimes));
     out.regimes = misfit_by_regime(difference, regimes);
     out.intervals = misfit_by_time(out_.time_s, difference);
-    if (out.differs) ask_alterations(pair, out);
+    out.stands_still = out.differs && pair.stands_still;
+    if (out.differs && !out.stands_still) ask_alterations(pair, out);
     return out;
   }
 
@@ -262,7 +367,7 @@ class Comparison {
       const VectorXd raw = pairs[k]->recorded - pairs[k]->simulated;
       before += std::max(raw.squaredNorm() / static_cast<double>(raw.size()) / noise - 1.0, 0.0);
       after += std::max(left.squares / noise - 1.0, 0.0);
-      out.would_do = out.would_do && left.test.p_value >= limit();
+      out.would_do = out.would_do && !pairs[k]->stands_still && left.test.p_value >= limit();
     }
     out.removed_share = before > 0.0 ? std::clamp(1.0 - after / before, 0.0, 1.0) : 0.0;
     out.would_do = out.would_do && out.removed_share > 0.0;
@@ -301,7 +406,6 @@ class Comparison {
 
   /// Smooth noise may hide what an alteration leaves; another that is far more likely shows that it is no noise.
   static void keep_the_likeliest(std::vector<Alteration>& alterations) {
-    constexpr double kFarMoreLikely = 10.0;  // of -2 log L: very strong evidence (Kass and Raftery 1995)
     double best = std::numeric_limits<double>::infinity();
     for (const Alteration& alteration : alterations) best = std::min(best, alteration.criterion);
     for (Alteration& alteration : alterations)
@@ -310,8 +414,8 @@ class Comparison {
 
   void ask(const Way& way, const Pair& pair, ChannelComparison& out) const {
     const std::vector<AlteredChannel> channels{altered(pair)};
-    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom);
-    if (!fit) return;
+    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, way.freedom, joints_);
+    if (!fit || follows_nothing(*fit, way.freedom)) return;
     std::string id = way.id;
     if (pair.input)
       for (const auto& [sensor, input] :
@@ -343,17 +447,16 @@ class Comparison {
                   bool about_start) {
     std::vector<AlteredChannel> channels;
     for (const Pair* pair : pairs) channels.push_back(altered(*pair, about_start ? pair->simulated(0) : 0.0));
-    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom);
-    if (fit) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
+    const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, channels, freedom, joints_);
+    if (fit && !follows_nothing(*fit, freedom)) out_.common.push_back(judged(id, where, pairs, *fit, freedom));
   }
 
   /// An offset of the input shifts all that it drives, each by a size of its own.
   void ask_input_offset(const std::vector<const Pair*>& driven) {
-    constexpr double kShifted = 4.0;  // standard errors, of every one
     Alteration all{.id = "input_bias", .where = "input", .parameters = {}, .removed_share = 1.0, .would_do = true};
     for (const Pair* pair : driven) {
       const Freedom freedom{.offset = true};
-      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair)}, freedom);
+      const std::optional<AlterationFit> fit = fit_alteration(out_.time_s, {altered(*pair)}, freedom, joints_);
       if (!fit) return;
       Alteration one = judged(all.id, all.where, {pair}, *fit, freedom);
       one.parameters.front().name = "offset of " + pair->name;
@@ -365,11 +468,36 @@ class Comparison {
     out_.common.push_back(std::move(all));
   }
 
-  /// One cause for all channels that differ before one for each.
-  void answer() {
+  /// What would do alone in place of a single answer. Only of the same channels one may be the likelier.
+  void find_equals() {
+    if (out_.answer.size() != 1) return;
+    const Alteration& answer = out_.answer.front();
+    const bool one_driven = std::ranges::count(pairs_, false, &Pair::input) == 1;
+    const auto add = [&](const Alteration& other, bool comparable) {
+      if (answer.id.ends_with("sign") && other.id.ends_with("gain")) return;  // a sign is a gain
+      const auto is_other = [&other](const Alteration& known) { return known.id == other.id; };
+      if (!other.would_do || is_other(answer) || std::ranges::any_of(out_.equally, is_other)) return;
+      if (!comparable || other.criterion <= answer.criterion + kFarMoreLikely) out_.equally.push_back(other);
+    };
+    const std::vector<const ChannelComparison*> differing = unexplained();
+    if (differing.size() == 1)
+      for (const Alteration& other : differing.front()->alterations) add(other, true);
+    const bool of_an_input = std::ranges::any_of(differing, &ChannelComparison::input);
+    for (const Alteration& common : out_.common)
+      if (common.where != "input" || !of_an_input)
+        add(common, common.where == "input" && (answer.where == "input" || one_driven));
+  }
+
+  [[nodiscard]] std::vector<const ChannelComparison*> unexplained() const {
     std::vector<const ChannelComparison*> differing;
     for (const ChannelComparison& channel : out_.channels)
-      if (channel.differs) differing.push_back(&channel);
+      if (channel.differs && !channel.stands_still) differing.push_back(&channel);
+    return differing;
+  }
+
+  /// One cause for all channels that differ before one for each.
+  void answer() {
+    const std::vector<const ChannelComparison*> differing = unexplained();
     if (differing.size() > 1)
       for (const Alteration& common : out_.common)
         if (common.would_do) {
@@ -389,6 +517,9 @@ class Comparison {
   const TimeSeries& simulated_;
   const Options& options_;
   double interval_s_ = 0.0;
+  std::vector<double> grid_times_s_;  ///< with the gaps
+  std::vector<Index> present_;        ///< which of them are common times
+  Joints joints_;                     ///< of the common times
   std::vector<Pair> pairs_;
   std::vector<VectorXd> drives_;  ///< inputs, and what only the recording has
   VectorXd motion_;

@@ -62,6 +62,14 @@ TEST_F(AssetNew, TheWrittenFileReadsTheLogWithoutFurtherWork) {
   EXPECT_TRUE(std::filesystem::exists(path("a.html")));
 }
 
+// The same rule as in a map: the unit may end the name.
+TEST_F(AssetNew, ATimeInMillisecondsByItsNameIsTakenForThat) {
+  ASSERT_EQ(make("t_ms,motor_voltage [V],position [mm]\n0,1,60\n10,1,60\n20,1,59\n"), kOk);
+  const Result<AssetConfig> asset = load_asset(path("a.yaml"));
+  ASSERT_TRUE(asset) << asset.error().describe();
+  EXPECT_EQ(asset->channel_map.columns.at("time").unit, "ms");
+}
+
 TEST_F(AssetNew, TestsInOneFileAndRowsWithHolesAreSeen) {
   ASSERT_EQ(make("t [s],motor_voltage [V],position [mm]\n0,1,60\n1,1,\n2,1,59\n0,1,60\n1,1,59\n"), kOk);
   const Result<AssetConfig> asset = load_asset(path("a.yaml"));

@@ -30,6 +30,22 @@ TEST(TraceWords, SayWhereTheSimulationHadAnotherInput) {
   EXPECT_THAT(trace_summary(comparison), Not(HasSubstr("The input itself")));
 }
 
+TEST(TraceWords, NameADeadChannelAndAllThatExplainsTheRest) {
+  trace::TraceComparison comparison;
+  comparison.consistent = false;
+  comparison.channels = {channel_of("position", false, true)};
+  comparison.channels.front().stands_still = true;
+  EXPECT_EQ(
+      trace_summary(comparison),
+      "They differ beyond noise in position. Recorded position does not move, while simulated it does: look at the "
+      "sensor and its cable.");
+  comparison.channels.push_back(channel_of("pressure_a", false, true));
+  comparison.answer = {{.id = "sensor_lag", .where = "sensor:pressure_a", .parameters = {}}};
+  comparison.equally = {{.id = "input_delay", .where = "input", .parameters = {}}};
+  EXPECT_THAT(trace_summary(comparison), HasSubstr("This explains the rest: sensor lag of pressure A. So does input "
+                                                   "delay; a trace cannot tell them apart."));
+}
+
 // A column of remarks, empty in all rows, is no channel whose rows are incomplete.
 TEST(AnyChannels, AColumnWithoutANumberIsNone) {
   const std::string file = ::testing::TempDir() + "sealwatch_any_channels.csv";

@@ -2,6 +2,7 @@
 // law of their own, a table, twenty states.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -60,6 +61,15 @@ std::string faults_of(const std::string& text) {
 
 TEST(PlantFile, OfTheTestsIsSound) { EXPECT_EQ(faults_of(kSound), ""); }
 
+TEST(PlantFile, ABadNumberIsOneFault) {
+  for (const char* number : {".nan", "\"20,0\""}) {
+    const std::string faults =
+        faults_of(with(kSound, "{value: 2.0, unit: kg", std::string("{value: ") + number + ", unit: kg"));
+    EXPECT_NE(faults.find("key parameters.M.value"), std::string::npos) << faults;
+    EXPECT_EQ(std::count(faults.begin(), faults.end(), '\n'), 1) << faults;
+  }
+}
+
 TEST(PlantFile, NamesEachFaultWithItsLine) {
   struct Case {
     std::string what, instead;
@@ -89,6 +99,7 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"c: {value: 4.0, unit", "c: {value: four, unit", {"line 10", "must be a number"}},
       {"kind: piston_force", "kind: force", {"'force'", "known are: voltage_command"}},
       {"unit: N s/m", "unit: Ns/m", {"line 10", "write a product with blanks: N s"}},
+      {"der: v, unit: m", "der: \"v + 20[degC]*1[m/s/K]\", unit: m", {"'degC'", "write temperatures in K"}},
       {"unit: N s/m", "unit: kg rpm", {"is not the SI unit", "here kg/s"}},
       {"c: {value: 4.0", "c: {value: 0", {"line 10", "give min and max"}},
       {"NAME", "eha #NAME", {"line 1, key name", "is the name of a plant that is built in"}},

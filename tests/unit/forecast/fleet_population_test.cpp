@@ -106,7 +106,7 @@ TEST(FleetPopulation, TellsYoungSealsMoreThanTheReferenceDoes) {
   EXPECT_LT(error_fitted, 0.5 * error_reference);
 }
 
-// The jackknife's error of the mean rate against the scatter of the fits of many fleets.
+// The error of the mean rate against the scatter of the fits of many fleets.
 TEST(FleetUncertainty, StandardErrorsAreTheScatterOfManyFleets) {
   constexpr int kFleets = 20, kLives = 8;
   const std::vector<FleetLife> all = fleet(kFleets * kLives, "reference");
@@ -127,11 +127,24 @@ TEST(FleetUncertainty, StandardErrorsAreTheScatterOfManyFleets) {
     EXPECT_GT(constants_for_forecasts(fit->population, errors).initial_rate_std, fit->population.initial_rate_std);
   }
   const double scatter = std::sqrt(squares - mean * mean);
-  EXPECT_GT(claimed / scatter, 0.6) << "of 20 fleets the scatter is good to a sixth, the jackknife of 8 to a quarter";
+  EXPECT_GT(claimed / scatter, 0.6) << "of 20 fleets the scatter is good to a sixth, the model of 8 to a quarter";
   EXPECT_LT(claimed / scatter, 1.7);
   const double irregular_scatter = std::sqrt(irregular_squares - irregular * irregular);
   EXPECT_GT(irregular_claimed / irregular_scatter, 0.6);
   EXPECT_LT(irregular_claimed / irregular_scatter, 1.7);
+}
+
+// Lives that are alike by chance scatter nowhere, but none of them is known exactly.
+TEST(FleetUncertainty, LivesThatAreAlikeLeaveAnErrorOfTheirOwn) {
+  const std::vector<FleetLife> one = fleet(1, "reference");
+  const std::vector<FleetLife> alike(4, one.front());
+  const Result<FleetFit> fit = fit_population(alike);
+  ASSERT_TRUE(fit) << fit.error().describe();
+  const FleetErrors errors = fleet_errors(alike, *fit);
+  // Lives that are known exactly, n = 4 and the reference's k = 4: spread sqrt(n) / (n + k).
+  constexpr double kOfTheSpread = 0.25, kByTheirOwnErrors = 0.05;
+  EXPECT_NEAR(errors.initial_rate / fit->population.initial_rate_std, kOfTheSpread, kByTheirOwnErrors);
+  EXPECT_NEAR(errors.steepening / fit->population.steepening_std, kOfTheSpread, kByTheirOwnErrors);
 }
 
 TEST(FleetUncertainty, ForecastersTakeTheConfiguredFleet) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "services/common/recording/log_columns.hpp"
 #include "services/common/recording/log_layout.hpp"
 #include "services/common/recording/recording_file.hpp"
 #include "tests/unit/recording/plant.hpp"
@@ -158,14 +159,80 @@ TEST_F(ForeignLog, ATimeThatStartsAnewIsRefusedJoinedOrAnotherTest) {
               HasSubstr("s.csv: holds 2 tests where one is wanted"));
 }
 
-TEST_F(ForeignLog, TimesOfAFileBehindAnotherStayApart) {
-  const std::map<std::string, ColumnMapping> columns = {{"time", {.column = "t", .unit = "s"}},
-                                                        {"position", {.column = "x", .unit = "mm"}}};
-  write("long.csv", "t,x\n0,60\n1e16,60\n");
-  write("next.csv", "t,x\n0,60\n0.5,60\n");
-  const auto read = read_recordings(path("long.csv") + "+" + path("next.csv"), test_plant(), map_of(columns));
-  ASSERT_FALSE(read);
-  EXPECT_THAT(read.error().describe(), HasSubstr("next.csv: sample 2, column time: two times fall on one"));
+const std::map<std::string, ColumnMapping> kTimeAndPosition = {{"time", {.column = "t", .unit = "s"}},
+                                                               {"position", {.column = "x", .unit = "mm"}}};
+
+/// Reads files of one test, named a.csv, b.csv and so on.
+class JoinedLogs : public ScratchFolder {
+ protected:
+  Result<std::vector<Recording>> read(const std::vector<std::string>& texts, const std::string& time_resets = "refuse",
+                                      const std::string& time_unit = "s") {
+    ChannelMap map = map_of(kTimeAndPosition, resets(time_resets.c_str()));
+    map.columns["time"].unit = time_unit;
+    std::string paths;
+    for (std::size_t k = 0; k < texts.size(); ++k)
+      paths.append(k > 0 ? "+" : "").append(write(std::string(1, static_cast<char>('a' + k)) + ".csv", texts[k]));
+    return read_recordings(paths, test_plant(), map);
+  }
+  std::string error_of(const std::vector<std::string>& texts, const std::string& time_resets = "refuse",
+                       const std::string& time_unit = "s") {
+    const auto result = read(texts, time_resets, time_unit);
+    EXPECT_FALSE(result);
+    return result ? "" : result.error().describe();
+  }
+};
+
+TEST_F(JoinedLogs, TimesOfAFileBehindAnotherStayApart) {
+  EXPECT_THAT(error_of({"t,x\n0,60\n1e16,60\n", "t,x\n0,60\n0.5,60\n"}, "join"),
+              HasSubstr("b.csv: sample 2, column time: two times fall on one"));
+}
+
+TEST_F(JoinedLogs, LaterTimesGoOnWhereTheyAre) {
+  const auto both = read({"t,x\n0,60\n0.5,60\n", "t,x\n2,50\n2.5,50\n"});
+  ASSERT_TRUE(both) << both.error().describe();
+  EXPECT_THAT(both->front().samples.time_s, ElementsAre(0, 0.5, 2, 2.5));
+}
+
+TEST_F(JoinedLogs, TheWrongOrderAndOverlapsAreRefused) {
+  const std::string first = "t,x\n0,60\n0.5,60\n1,60\n", second = "t,x\n1.5,50\n2,50\n";
+  for (const char* time_resets : {"refuse", "join", "split"}) {
+    EXPECT_THAT(error_of({second, first}, time_resets),
+                ::testing::AllOf(HasSubstr("b.csv: row 2, column time: '0 s': begins before "), HasSubstr("a.csv ends"),
+                                 HasSubstr("give the files in the order of their times, and no time twice")));
+    EXPECT_THAT(error_of({first, "t,x\n0.75,50\n2,50\n"}, time_resets),
+                HasSubstr("b.csv: row 2, column time: '0.75 s': begins before "));
+  }
+}
+
+TEST_F(JoinedLogs, TheSameContentTwiceIsRefused) {
+  const std::string text = "t,x\n0,60\n0.5,60\n", other = "t,x\n0,60\n0.5,61\n";
+  EXPECT_THAT(error_of({text, other, text}, "join"),
+              ::testing::AllOf(HasSubstr("c.csv: holds the same as "), HasSubstr("a.csv, which goes before it")));
+}
+
+TEST_F(JoinedLogs, ATimeThatEachFileBeginsAnewIsRefusedJoinedOrAnotherTest) {
+  const std::vector<std::string> texts = {"t,x\n0,60\n0.5,60\n1,60\n", "t,x\n0,50\n0.5,50\n", "t,x\n1,40\n1.5,40\n"};
+  EXPECT_THAT(error_of(texts), ::testing::AllOf(HasSubstr("b.csv: row 2, column time: '0 s': time starts anew, as in "),
+                                                HasSubstr("log: {time_resets: join} takes both as one test")));
+  const auto joined = read(texts, "join");
+  ASSERT_TRUE(joined) << joined.error().describe();
+  ASSERT_THAT(*joined, SizeIs(1));
+  EXPECT_THAT(joined->front().samples.time_s, ElementsAre(0, 0.5, 1, 1.5, 2, 2.5, 3))
+      << "the third counts as the second";
+  const auto split = read(texts, "split");
+  ASSERT_TRUE(split) << split.error().describe();
+  ASSERT_THAT(*split, SizeIs(2));
+  EXPECT_THAT((*split)[1].samples.time_s, ElementsAre(0, 0.5, 1, 1.5));
+}
+
+TEST_F(JoinedLogs, AClockWithoutADayTellsTheOrder) {
+  const std::string first = "t,x\n03:00:00,60\n03:00:01,60\n", second = "t,x\n03:00:05,50\n03:00:06,50\n";
+  const auto both = read({first, second}, "refuse", "%H:%M:%S");
+  ASSERT_TRUE(both) << both.error().describe();
+  EXPECT_THAT(both->front().samples.time_s, ElementsAre(0, 1, 5, 6));
+  EXPECT_FALSE(both->front().start_time);
+  EXPECT_THAT(error_of({second, first}, "refuse", "%H:%M:%S"),
+              HasSubstr("b.csv: row 2, column time: '03:00:00Z': begins before "));
 }
 
 TEST_F(ForeignLog, SeveralFilesAreOneTest) {
@@ -177,7 +244,8 @@ TEST_F(ForeignLog, SeveralFilesAreOneTest) {
   expect_two_rows(both->front());
   EXPECT_EQ(both->front().recording_id, "a");
   const auto turned = read_recordings(path("b.csv") + "+" + path("a.csv"), test_plant(), kGermanMap);
-  EXPECT_THAT(turned.error().describe(), HasSubstr("a.csv: row 1, column time: begins before the file before it ends"));
+  EXPECT_THAT(turned.error().describe(),
+              HasSubstr("a.csv: row 2, column time: '2031-04-12T03:00:00Z': begins before "));
   EXPECT_THAT(read_recordings(path("a.csv") + "+missing.csv", test_plant(), kGermanMap).error().describe(),
               HasSubstr("missing.csv: cannot be opened"));
 }
@@ -248,6 +316,50 @@ TEST_F(ForeignLog, ARowThatIsMostlyUnitsBelowNamesIsTheRowOfUnits) {
       read("Anlage 3;;\nZeit;Druck A;Weg\nExcel;barg;mm\n"
            "2031-04-12T03:00:00;1;60\n2031-04-12T03:00:00.5;1,5;59\n",
            map));
+}
+
+// A decimal comma in one row of a comma-separated log splits a cell: what follows would be read as another column.
+TEST_F(ForeignLog, ARowWithMoreCellsThanTheHeaderIsRefusedUnlessTheRestIsEmpty) {
+  const ChannelMap map = map_of({{"time", {.column = "t", .unit = "s"}},
+                                 {"pressure_a", {.column = "P", .unit = "barg"}},
+                                 {"position", {.column = "x", .unit = "mm"}}});
+  EXPECT_THAT(error_of("t,P,x\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59,0\n", map),
+              HasSubstr("log.csv: row 4, column 4: '0': the row has 4 cells where the header has 3; a decimal comma"));
+  EXPECT_THAT(error_of("t,P,x,\n0,1,60,\n0.25,1.2,59.5,\n0.5,1.5,59,0,\n", map),
+              HasSubstr("row 4, column 4: '0': the row has 4 cells where the header has 3"));
+  const ChannelMap numbers =
+      map_of({{"time", {.column = "column 1", .unit = "s"}}, {"position", {.column = "column 2", .unit = "mm"}}});
+  EXPECT_THAT(error_of("0,60\n0.25,59.5\n0.5,59,0\n", numbers),
+              HasSubstr("row 3, column 3: '0': the row has 3 cells where the table has 2"));
+  expect_two_rows(read("t,P,x\n0,1,60,\n0.5,1.5,59,\n", map));
+  EXPECT_THAT(read("t,P,x\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59,,\n", map).samples.time_s, SizeIs(3));
+  EXPECT_THAT(read("t,P,x,\n0,1,60\n0.25,1.2,59.5\n0.5,1.5,59, \n", map).samples.time_s, SizeIs(3));
+}
+
+TEST_F(ForeignLog, TwoChannelsOfOneColumnAreRefused) {
+  EXPECT_THAT(error_of("t,P\n0,1\n1,2\n", map_of({{"time", {.column = "t", .unit = "s"}},
+                                                  {"pressure_a", {.column = "P", .unit = "bar"}},
+                                                  {"pressure_b", {.column = "p", .unit = "bar"}}})),
+              HasSubstr("row 1, channel pressure_b: 'p': is the column of channel pressure_a too; give each channel"));
+}
+
+// What `asset new` understands a map understands, too.
+TEST_F(ForeignLog, AUnitAtTheEndOfANameIsOne) {
+  const ChannelMap map = map_of({{"time", {.column = "t_ms", .unit = {}}},
+                                 {"pressure_a", {.column = "P barg", .unit = {}}},
+                                 {"position", {.column = "Weg_mm", .unit = {}}}});
+  expect_two_rows(read("t_ms,P barg,Weg_mm\n0,1,60\n500,1.5,59\n", map));
+  EXPECT_EQ(unit_at_the_end("pressure_a", "A"), "") << "a chamber";
+  EXPECT_EQ(unit_at_the_end("Weg_bar", "m"), "") << "another quantity";
+  EXPECT_EQ(unit_at_the_end("opening %", "1"), "%");
+}
+
+TEST_F(ForeignLog, ATestOfOneSampleIsNamed) {
+  const ChannelMap map =
+      map_of({{"time", {.column = "t", .unit = "s"}}, {"position", {.column = "x", .unit = "mm"}}}, resets("split"));
+  EXPECT_THAT(
+      error_of("t,x\n0,60\n1,60\n0,60\n", map),
+      HasSubstr("log.csv: row 4, column time: the test that begins here has one sample alone; take the row out"));
 }
 
 TEST_F(ForeignLog, WhatCannotBeUnderstoodIsNamedWithRowAndColumn) {

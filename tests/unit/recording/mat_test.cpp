@@ -274,6 +274,14 @@ TEST_F(OtherFile, SuffixInCapitalsIsTheSame) {
   EXPECT_FALSE(read_recording(write("x.MAT", text), test_plant())) << "read as the MATLAB file that its name says";
 }
 
+TEST_F(OtherFile, Version4IsRefusedByName) {
+  { MatWriter(path("old.mat"), {"v4", MAT_FT_MAT4, MAT_COMPRESSION_NONE}).column("time", {0.0, 0.01}); }
+  const Result<Recording> result = read_recording(path("old.mat"), test_plant());
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().describe(),
+              HasSubstr("old.mat: is a MATLAB file of version 4, which is not read; save it"));
+}
+
 TEST_F(OtherFile, CsvNamedMatIsAnError) {
   const Result<Recording> result = read_recording(write("a.mat", "time,position\n0,1\n"), test_plant());
   ASSERT_FALSE(result);

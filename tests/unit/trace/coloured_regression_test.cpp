@@ -67,6 +67,16 @@ TEST(ColouredRegression, EffectiveSamplesAreThoseOfAMean) {
   EXPECT_EQ(effective_samples(VectorXd::Zero(100), {}), 100.0);
 }
 
+TEST(ColouredRegression, NoWindowReachesOverAGap) {
+  EXPECT_EQ(whole_windows(8, 2, {}), (std::vector<Index>{2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(whole_windows(8, 2, {4}), (std::vector<Index>{2, 3, 6, 7}));
+  EXPECT_EQ(whole_windows(8, 2, {3, 4}), (std::vector<Index>{2, 6, 7}));
+  EXPECT_EQ(joints_within({3, 4, 7}, 3, 4), (Joints{1}));
+  VectorXd steps(6);
+  steps << 1, 2, 3, 101, 102, 103;
+  EXPECT_EQ(whitened(steps, {1.0}, 1, {3}), VectorXd::Ones(4));
+}
+
 TEST(ColouredRegression, AColumnThatSaysNothingNewDoesNoHarm) {
   MatrixXd X(100, 3);
   X.col(0).setOnes();

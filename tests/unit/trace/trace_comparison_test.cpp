@@ -11,6 +11,7 @@
 #include <random>
 
 #include "sealwatch/model/plant_description.hpp"
+#include "sealwatch/trace/smooth_course.hpp"
 #include "services/common/recording/recording_file.hpp"
 
 namespace sealwatch::trace {
@@ -83,6 +84,20 @@ TEST(TraceComparison, InputsAloneAgreeWithNothing) {
     ASSERT_FALSE(compared) << declared;
     EXPECT_THAT(compared.error().describe(), ::testing::HasSubstr("only the recording has presure"));
   }
+}
+
+// A gain of 10^5 would make metres of bar.
+TEST(TraceComparison, OneNameForTwoQuantitiesIsRefused) {
+  TimeSeries recorded = stroke();
+  recorded.channels[1].unit = "V";
+  const auto compared = compare_traces(recorded, stroke(), {});
+  ASSERT_FALSE(compared);
+  EXPECT_EQ(
+      compared.error().describe(),
+      "column pressure: 'V': is another quantity than the simulation's Pa; give both the same quantity, or different "
+      "names");
+  recorded.channels[1].unit = "1";
+  EXPECT_TRUE(compare_traces(recorded, stroke(), {})) << "a column without a unit";
 }
 
 TEST(Trace, TheSameIsConsistent) {
@@ -178,6 +193,105 @@ TEST(Trace, AnOffsetOfTheInputShiftsAllThatItDrives) {
   EXPECT_EQ(found.answer[0].parameters[0].name, "offset of position");
   EXPECT_NEAR(found.answer[0].parameters[0].value, 0.004, 4.0 * found.answer[0].parameters[0].std_error);
   EXPECT_NEAR(found.answer[0].parameters[1].value, 2e5, 4.0 * found.answer[0].parameters[1].std_error);
+}
+
+/// Without the rows that `lost` says.
+TimeSeries without(const TimeSeries& series, const std::function<bool(std::size_t)>& lost) {
+  TimeSeries out;
+  for (const Series& channel : series.channels) out.channels.push_back({channel.name, channel.unit, 0.0, {}});
+  for (std::size_t k = 0; k < series.time_s.size(); ++k) {
+    if (lost(k)) continue;
+    out.time_s.push_back(series.time_s[k]);
+    for (std::size_t c = 0; c < out.channels.size(); ++c)
+      out.channels[c].values.push_back(series.channels[c].values[k]);
+  }
+  return out;
+}
+
+/// A voltage that moves fast, the same in both files: a line across a gap is far from it.
+TimeSeries with_drive(TimeSeries series) {
+  Series drive{.name = "drive", .unit = "V", .values = {}};
+  for (const double t : series.time_s) drive.values.push_back(5.0 * std::sin(3.0 * t + 0.1 * t * t));
+  series.channels.push_back(std::move(drive));
+  return series;
+}
+
+// What lies in a gap is not compared, with lost rows in one place, in many, or in the simulation.
+TEST(Trace, LostRowsAreNoDifference) {
+  const TimeSeries simulated = with_drive(stroke());
+  Options options;
+  options.inputs = {"drive"};
+  const auto judged = [&](const TimeSeries& recorded, const TimeSeries& beside) {
+    const auto result = compare_traces(recorded, beside, options);
+    EXPECT_TRUE(result) << result.error().describe();
+    return result ? *result : TraceComparison{};
+  };
+  std::mt19937 random(21);
+  std::vector<bool> one_in_ten(simulated.time_s.size());
+  for (std::size_t k = 1; k + 1 < one_in_ten.size(); ++k) one_in_ten[k] = random() % 10 == 0;
+  const auto in_one_place = [](std::size_t k) { return k > 700 && k < 1300; };
+  const auto in_many = [&](std::size_t k) { return one_in_ten[k]; };
+  for (const double rho : {0.0, 0.8}) {
+    TimeSeries recorded = noisy(stroke(), 0.005, rho, 31);
+    recorded = with_drive(recorded);
+    EXPECT_TRUE(judged(without(recorded, in_one_place), simulated).consistent) << rho;
+    EXPECT_TRUE(judged(without(recorded, in_many), simulated).consistent) << rho;
+    const TraceComparison beside = judged(recorded, without(simulated, in_one_place));
+    EXPECT_TRUE(beside.consistent) << rho;
+    EXPECT_THAT(beside.remarks, ::testing::ElementsAre("599 of 3000 samples lie in gaps and are not compared"));
+  }
+}
+
+TEST(Trace, BesideLostRowsAnAlterationIsFound) {
+  const TimeSeries simulated = with_drive(stroke());
+  Options options;
+  options.inputs = {"drive"};
+  TimeSeries recorded = noisy(changed(stroke(), [](double x, double) { return 1.02 * x; }), 0.002, 0.8, 33);
+  recorded = without(with_drive(recorded), [](std::size_t k) { return k > 700 && k < 1300; });
+  const auto found = compare_traces(recorded, simulated, options);
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_THAT(found->answer, SizeIs(1));
+  EXPECT_EQ(found->answer[0].id, "sensor_gain");
+  EXPECT_NEAR(found->answer[0].parameters[0].value, 1.02, 4.0 * found->answer[0].parameters[0].std_error);
+}
+
+// A gain of 0 would make every simulation every dead channel.
+TEST(Trace, ADeadChannelIsExplainedByNothing) {
+  for (const double value : {0.0, 0.02}) {
+    for (const double noise : {0.0, 1e-5}) {
+      TimeSeries dead = changed(stroke(), [value](double, double) { return value; });
+      std::mt19937 random(11);
+      std::normal_distribution<double> normal;
+      for (double& sample : dead.channels[0].values) sample += noise * normal(random);
+      const TraceComparison found = compare(dead, stroke());
+      ASSERT_FALSE(found.consistent);
+      EXPECT_TRUE(found.channels[0].stands_still) << value << " with noise " << noise;
+      EXPECT_TRUE(found.channels[0].alterations.empty());
+      EXPECT_FALSE(found.channels[1].stands_still);
+      EXPECT_TRUE(found.answer.empty() && found.equally.empty());
+      EXPECT_TRUE(std::ranges::none_of(found.common, &Alteration::would_do));
+    }
+  }
+}
+
+// With one output that the input drives, late is late: no trace tells the sensor's delay from the input's.
+TEST(Trace, WhatWouldDoAsWellIsNamed) {
+  TimeSeries late = stroke();
+  for (double& time : late.time_s) time += 0.05;
+  late = noisy(late, 0.002, 0.8, 12);
+  TimeSeries recorded = stroke();
+  const Course between(late.time_s, late.channels[0].values);
+  for (std::size_t k = 0; k < recorded.time_s.size(); ++k)
+    recorded.channels[0].values[k] = between.at(recorded.time_s[k]).first;
+  Options options;
+  options.inputs = {"pressure"};
+  const auto found = compare_traces(recorded, stroke(), options);
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_THAT(found->answer, SizeIs(1));
+  EXPECT_EQ(found->answer[0].id, "sensor_lag");
+  ASSERT_THAT(found->equally, SizeIs(1));
+  EXPECT_EQ(found->equally[0].id, "input_delay");
+  EXPECT_NEAR(found->equally[0].parameters.at(0).value, 0.05, 4.0 * found->equally[0].parameters.at(0).std_error);
 }
 
 TEST(Trace, AFrictionIsNoneOfThese) {

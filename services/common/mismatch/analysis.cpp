@@ -1,0 +1,91 @@
+#include "services/common/mismatch/analysis.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "services/common/mismatch/drawn_terms.hpp"
+#include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/gross_mismatch.hpp"
+#include "services/common/mismatch/resolution.hpp"
+#include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/verdict.hpp"
+
+namespace sealwatch::mismatch {
+Result<Explanation> Analysis::run() {
+  Result<Explanation> result = analyse();
+  if (time_.deadline().cancelled()) return fail("the analysis was called off");
+  if (result) std::ranges::copy(time_.not_asked(), std::back_inserter(result->not_asked));
+  if (result && time_.deadline().was_met()) say_what_was_cut(*result);
+  return result;
+}
+
+Result<Explanation> Analysis::analyse() {
+  time_.allow(kSearchShare);
+  result_.asset_id = asset_.asset_id;
+  result_.model = asset_.model;
+  result_.fit_recordings = fit_.names;
+  result_.holdout_recordings = holdout_.names;
+  if (auto gross = explain_gross_mismatch(asset_, fit_, holdout_, options_, progress_)) return std::move(*gross);
+  tell("fitting the model as it is", 0.02);
+  Result<Baseline> baseline = fit_baseline(asset_, fit_, holdout_, options_, time_);
+  if (!baseline) return fail(baseline.error());
+  take_up(std::move(*baseline));
+  if (const Status status = look_for_what_is_missing(); !status) return cannot_look(status.error());
+  if (at_rest(*baseline_, prepared(fit_))) why_none_ = nothing_moves();
+  if (!why_none_ && time_.in_time("whether something changed between the tests")) look_for_a_change();
+  if (!why_none_ && own_ && !own_->goes_its_way) say_what_differs();
+  if (!why_none_) take_values_found();
+  if (!why_none_ && own_) say_what_differs();
+  const bool asked = why_none_ || beside_ || !result_.asset_values.empty();
+  if (!asked && time_.in_time("the values that the asset file fixes")) ask_the_datasheet();
+  time_.allow(1.0);
+  if (why_none_) take_no_law();
+  if (!best_.effects.empty()) {
+    tell("proving on held-out recordings", 0.75);
+    prove();
+  }
+  if (beside_ && best_.effects.empty()) fall_back_on_the_value();
+  if (!lacks_a_pressure() && !why_none_ && time_.not_asked().empty()) look_again();
+  if (const Status status = finish(); !status) return fail(status.error());
+  time_.allow(1.0);
+  if (time_.in_time("a picture of what is missing"))
+    draw_missing_terms(*baseline_, tried_.effects.empty() ? best_ : tried_, prepared(fit_), !windowed(), result_);
+  tell("done", 1.0);
+  return std::move(result_);
+}
+
+void Analysis::take_up(Baseline baseline) {
+  baseline_ = std::move(baseline.model);
+  window_s_ = baseline.window_s;
+  input_swings_ = baseline.input_swings;
+  result_.notes = std::move(baseline.notes);
+}
+
+Result<Explanation> Analysis::cannot_look(const Error& why) {
+  why_none_ = time_.in_time("what is missing") ? cannot_be_asked(why) : time_was_up();
+  time_.allow_what_is_needed();
+  result_.statistically_significant = excess(*baseline_) > kGross;  // seen without any law
+  if (result_.statistically_significant) result_.p_value = kSmallestP;
+  naming_ = {.baseline = baseline_, .best = {{}, baseline_}, .trials = {{{}, baseline_}}, .first = {}, .last = {}};
+  best_ = naming_.best;
+  if (const Status status = finish(); !status) return fail(status.error());
+  tell("done", 1.0);
+  return std::move(result_);
+}
+
+void Analysis::tell(std::string_view step, double share) const {
+  if (progress_) progress_(step, share);
+}
+
+bool Analysis::lacks_a_pressure() const {
+  return windowed() && by_measurements(asset_, fit_) && !recorded(ChannelRole::pressure_down) &&
+         excess(*baseline_) > kGross;
+}
+
+bool Analysis::recorded(ChannelRole role) const {
+  return find_series(fit_.samples.front(), plant_or_default(asset_.model), role) != nullptr;
+}
+
+const PlantDescription& Analysis::plant() const { return baseline_->problem.recordings.front().simulation->plant(); }
+
+}  // namespace sealwatch::mismatch

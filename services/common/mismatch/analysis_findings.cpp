@@ -1,0 +1,301 @@
+#include "services/common/mismatch/analysis.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "services/common/mismatch/between_tests.hpp"
+#include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/explain_input.hpp"
+#include "services/common/mismatch/power.hpp"
+#include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/remainder.hpp"
+#include "services/common/mismatch/remarks.hpp"
+#include "services/common/mismatch/resolution.hpp"
+#include "services/common/mismatch/telling.hpp"
+#include "services/common/mismatch/tolerance.hpp"
+#include "services/common/mismatch/value_swaps.hpp"
+#include "services/common/mismatch/verdict.hpp"
+
+namespace sealwatch::mismatch {
+namespace {
+
+constexpr double kHeldOutAgrees = 1.5;  // noise-normalised rms of a channel: the noise's own estimate is off by less
+
+}  // namespace
+
+void Analysis::prove() {
+  ProvenLaws laws = mismatch::prove(to_prove(), best_, time_);
+  time_.allow(1.0);
+  best_ = std::move(laws.best);
+  proven_ = laws.proven;
+  std::ranges::move(laws.notes, std::back_inserter(result_.notes));
+  note_not_compared({.gain = {}, .not_compared = std::move(laws.not_compared)});
+}
+
+void Analysis::note_not_compared(const BlockGains& blocks) {
+  all_compared_ = all_compared_ && blocks.not_compared.empty();
+  for (const std::string& one : blocks.not_compared)
+    if (const std::string note = "Not compared, as a model cannot be simulated there: " + one + ".";
+        std::ranges::find(result_.notes, note) == result_.notes.end())
+      result_.notes.push_back(note);
+}
+
+void Analysis::describe_what_was_found() {
+  const bool gross = excess(*best_.model) > kGross;
+  const std::optional<CarryOver> carry_over =
+      gross && !best_.effects.empty() ? std::optional(carry_over_of(to_prove(), held_out())) : std::nullopt;
+  while (!gross && !best_.effects.empty()) {
+    const std::optional<NotTold> law = not_told_from_zero(best_, resolution_of(prepared(fit_), plant()));
+    if (!law) break;
+    result_.notes.push_back(law->sentence);
+    take_out(law->slot);
+  }
+  while (!best_.effects.empty()) {
+    result_.effects = describe_effects(naming_, best_, prepared(fit_), options_, carry_over ? &*carry_over : nullptr);
+    if (best_.effects.size() == 1 || gross) break;
+    const std::optional<Remainder> remainder = remainder_among(result_.effects, law_at(best_.effects.back()));
+    if (!remainder) break;
+    result_.notes.push_back(remainder->sentence);
+    const auto slot = std::ranges::find_if(
+        best_.effects, [&](const Effect& effect) { return same_place(law_at(effect), remainder->law); });
+    take_out(static_cast<std::size_t>(slot - best_.effects.begin()));
+  }
+  if (best_.effects.empty()) result_.effects.clear();
+}
+
+void Analysis::take_out(std::size_t slot) {
+  time_.allow_what_is_needed();
+  best_ = without(best_, slot, to_prove());
+  time_.allow(1.0);
+}
+
+Status Analysis::finish() {
+  tell("writing down what was found", 0.9);
+  describe_what_was_found();
+  take_values_beside();
+  if (!best_.effects.empty()) static_cast<void>(time_.in_time("every alternative to the laws found"));
+  time_.allow_what_is_needed();
+  if (const Status compared = compare_recordings(); !compared) return compared;
+  if (takes_back_what_comes_nowhere_near() || takes_back_what_does_not_carry_over() ||
+      takes_back_what_does_not_explain())
+    return finish();
+  result_.explained_share = explained_share();
+  result_.power = power_of(best_.effects.empty() ? naming_.first : naming_.last, plant());
+  say_where();
+  for (const std::string& remark : naming_.remarks) result_.notes.push_back(remark);
+  note_laws_not_asked();
+  for (const Forbidden& forbidden : naming_.forbidden) result_.rejected.push_back(describe(forbidden));
+  result_.parameters = parameter_shifts(asset_, *baseline_, *best_.model);
+  result_.prognosis = prognosis_shift(asset_, result_.parameters);
+  result_.explained = best_.model->asset;
+  fix_values_again();
+  if (!naming_.trials.empty() && !beside_) result_.trace = trace_of(naming_);
+  std::ranges::copy(asked_values_, std::back_inserter(result_.trace));
+  if (result_.statistically_significant && !naming_.last.variants.empty())
+    result_.candidates =
+        candidate_causes(best_.effects.empty() ? naming_.first : naming_.last, *best_.model, *baseline_);
+  compare_with_what_was_kept_aside();
+  decide();
+  put_in_words();
+  return {};
+}
+
+void Analysis::take_values_beside() {
+  if (beside_ && !best_.effects.empty()) {
+    result_.asset_values = beside_->wrong.values;
+    result_.asset_values.front() = values_off(*best_.model, asset_);
+  }
+  if (beside_ && (best_.effects.empty() || result_.asset_values.front().empty())) {
+    result_.effects.clear();
+    fall_back_on_the_value();
+  }
+}
+
+Status Analysis::compare_recordings() {
+  for (std::size_t k = 0; k < fit_.samples.size(); ++k) compare_fitted(k);
+  const auto blocks = held_out().gains({{}, baseline_}, best_, &result_.recordings);
+  if (!blocks) return fail(blocks.error());
+  note_not_compared(*blocks);
+  result_.fit = pool(result_.recordings, false);
+  result_.holdout = pool(result_.recordings, true);
+  return {};
+}
+
+void Analysis::compare_fitted(std::size_t recording) {
+  const auto add = [&](const FittedModel& before, const FittedModel& after, const Data& data, std::size_t place) {
+    result_.recordings.push_back(compare(before, after, data, place));
+    add_gain(result_.recordings.back(), block_gains(before, after, place), *best_.model, options_.seed);
+  };
+  if (!windowed()) return add(*baseline_, *best_.model, fit_, recording);
+  const auto before = free_run(baseline_->asset, fit_, recording),
+             after = free_run(best_.model->asset, fit_, recording);
+  if (before && after) return add(*before, *after, only(fit_, recording), 0);
+  const std::string why = reason_in_words(before ? after.error() : before.error());
+  note_not_compared({.gain = {}, .not_compared = {fit_.names[recording] + " as a whole (" + why + ")"}});
+}
+
+void Analysis::say_where() {
+  if (!best_.effects.empty()) {
+    result_.location = locate(result_.effects);
+  } else if (result_.statistically_significant && asks_within(plant())) {
+    const bool laws_ask = naming_.first.p_value <= options_.false_alarm_rate;
+    result_.location = laws_ask ? locate_without_law(naming_.first) : locate_at_a_sensor(result_.fit);
+  }
+}
+
+void Analysis::fix_values_again() {
+  for (const std::vector<AssetValue>& entry : result_.asset_values)
+    for (const AssetValue& value : entry) {
+      ParameterSetting& setting = result_.explained.parameters.at(value.name);
+      const ParameterSetting& given = asset_.parameters.at(value.name);
+      setting = {
+          .value = setting.value, .min = given.min, .max = given.max, .estimate = false, .tolerance = given.tolerance};
+    }
+}
+
+void Analysis::put_in_words() {
+  for (FoundEffect& effect : result_.effects)
+    effect.evidence = evidence_of(effect, result_.effects.size(), without_laws().misfit / without_laws().residuals,
+                                  best_.model->misfit / best_.model->residuals);
+  result_.next_test = next_test_of(result_);
+  if (lacks_a_pressure())
+    result_.next_test =
+        "Record the pressures of both chambers, or the motor's voltage: with the flow and the differential pressure "
+        "alone, the pressure of chamber B cannot be separated from missing physics.";
+  result_.summary = summary_of(result_);
+  say_what_else_is_known();
+  if (const std::string moved = values_at_their_end(*best_.model, asset_); !moved.empty()) {
+    result_.notes.push_back(moved);
+    if (result_.verdict == Verdict::undetermined && !why_none_) result_.summary += " " + moved;
+  }
+  if (!asks_within(plant())) remark_nothing_asked_within(plant(), why_none_.has_value(), result_);
+}
+
+void Analysis::note_laws_not_asked() {
+  for (const Candidate& candidate : naming_.first.not_asked) {
+    const LawAt law = law_at({candidate.law, candidate.element});
+    result_.notes.push_back(gives_no_number(law));
+    all_compared_ = false;
+  }
+}
+
+void Analysis::say_what_was_cut(Explanation& result) {
+  if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of what was being fitted");
+  result.summary += " The time limit cut the search: not everything was asked.";
+  result.notes.push_back("Not asked, as time was up: " + joined(result.not_asked, "; and ") + ".");
+}
+
+void Analysis::take_all_laws_back() {
+  best_ = {.effects = {}, .model = baseline_};
+  proven_ = false;
+  result_.effects.clear();
+  result_.asset_values.clear();
+  result_.recordings.clear();
+  if (beside_) fall_back_on_the_value();
+}
+
+bool Analysis::takes_back_what_comes_nowhere_near() {
+  if (windowed() || best_.effects.empty()) return false;
+  const ChannelComparison* far = farthest_off(result_.fit);
+  // Where the seal ages, R_CL of the held-out ones is predicted, and what they miss by is that prediction's error.
+  if (far == nullptr && fit_.own_parameter.empty()) far = farthest_off(result_.holdout);
+  if (far == nullptr) return false;
+  why_none_ = nowhere_near(*far, fit_, result_.fit);
+  take_all_laws_back();
+  return true;
+}
+
+bool Analysis::takes_back_what_does_not_carry_over() {
+  const ChannelComparison* worse = best_.effects.empty() ? nullptr : made_worse(result_.holdout);
+  if (worse == nullptr) return false;
+  result_.notes.push_back(does_not_carry_over(*worse));
+  tried_ = best_;
+  take_all_laws_back();
+  return true;
+}
+
+double Analysis::share_explained_by(const FittedModel& model) const {
+  return share_explained(without_laws().misfit / without_laws().residuals, model.misfit / model.residuals);
+}
+
+bool Analysis::explains() const {
+  return mismatch::explains({.any = !best_.effects.empty(),
+                             .proven = proven_,
+                             .leave_nothing = leaves_nothing(),
+                             .share = explained_share(),
+                             .as_searched = naming_.best.effects.size() == best_.effects.size(),
+                             .p_before = beside_ ? naming_.first.p_value : result_.p_value,
+                             .p_after = naming_.last.p_value});
+}
+
+bool Analysis::takes_back_what_does_not_explain() {
+  if (best_.effects.empty() || explains()) return false;
+  std::vector<std::string> laws;
+  for (const Effect& effect : best_.effects) laws.push_back(law_in_words(law_at(effect)));
+  result_.notes.push_back("Not enough to be named: with " + joined(laws, " and ") +
+                          " the mean squared residual of the fit recordings falls from " +
+                          number(without_laws().misfit / without_laws().residuals) + " to " +
+                          number(best_.model->misfit / best_.model->residuals) + " times the noise variance.");
+  tried_ = best_;
+  take_all_laws_back();
+  return true;
+}
+
+void Analysis::compare_with_what_was_kept_aside() {
+  if (windowed() || why_none_ || result_.statistically_significant) return;
+  if (const ChannelComparison* worst = missed_in(result_.holdout)) why_none_ = those_kept_aside_differ(*worst);
+}
+
+const ChannelComparison* Analysis::missed_in(const PooledFit& fit) {
+  const auto worst = std::ranges::max_element(fit.channels, {}, &ChannelComparison::weighed_rms_after);
+  return worst == fit.channels.end() || worst->weighed_rms_after < kHeldOutAgrees ? nullptr : &*worst;
+}
+
+std::string Analysis::what_happened() const {
+  return is_wear(*own_) ? what_aged(asset_) + " aged between these tests. " : "Something changed between these tests. ";
+}
+
+void Analysis::say_what_else_is_known() {
+  const std::string course = own_ ? what_happened() + course_in_words(*best_.model, fit_) : "";
+  remark_leak_in_two_parts(result_);
+  if (why_none_) {
+    if (with_another_value_ && !course.empty()) why_none_->summary += " " + course;
+    const ChannelComparison* missed = own_ && is_wear(*own_) ? missed_in(result_.holdout) : nullptr;
+    if (missed != nullptr) why_none_->summary += missed_by_trend(*missed);
+    return remark_why_none(*why_none_, result_);
+  }
+  if (own_) is_wear(*own_) ? remark_ageing(course, result_) : remark_difference(course, result_);
+  const bool beside = beside_ && !result_.effects.empty();
+  // Taken back since: what stood for laws has nothing to stand for.
+  if (!beside && result_.effects.size() != instead_of_) result_.asset_values.clear();
+  if (beside)
+    remark_values_beside(beside_->instead, beside_->wrong.behind > -kCannotTell, result_);
+  else if (!result_.asset_values.empty())
+    remark_asset_values(result_);
+  if (best_.effects.size() == 1 && same_effects(best_.effects, naming_.best.effects) && !leaves_nothing() &&
+      leaves_its_form(naming_))
+    result_.notes.push_back(left_beside(law_at(best_.effects.front()), share_left_by_best(naming_)));
+  const bool undetermined = result_.verdict == Verdict::undetermined;
+  if (input_swings_ && undetermined) remark_faster_sampling(result_);
+  const bool nothing_asks = naming_.first.p_value > options_.false_alarm_rate;
+  if (result_.statistically_significant && nothing_asks && !result_.location.empty()) remark_disturbed_signal(result_);
+}
+
+void Analysis::decide() {
+  const std::vector<const Power*> blind = could_not_show(result_.power);
+  const Findings findings{.no_law_for_a_reason = why_none_.has_value(),
+                          .differs = result_.statistically_significant,
+                          .something_hides = !blind.empty(),
+                          .all_compared = all_compared_,
+                          .explained = explains()};
+  result_.verdict = verdict_of(findings);
+  if (result_.verdict == Verdict::mismatch && naming_.last.p_value <= options_.false_alarm_rate)
+    result_.notes.emplace_back("A remainder beyond the noise stays unexplained.");
+  if (why_none_ || findings.differs) return;
+  for (const Power* one : blind)
+    result_.notes.push_back("These recordings would show " + law_in_words(one->what) + " only from " +
+                            number(one->minimum_detectable) + " " + one->unit + "; an engineer would care from " +
+                            number(one->significant) + " " + one->unit + ".");
+}
+
+}  // namespace sealwatch::mismatch

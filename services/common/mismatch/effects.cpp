@@ -49,6 +49,12 @@ std::vector<std::vector<LawStart>> twins_of(const Naming& naming, const Trial& b
   return starts;
 }
 
+// Whether a search that was ended early, as another had come further, may yet come as far as the best, near the noise.
+bool may_come_as_far(const FittedModel& model, const FittedModel& best) {
+  const double as_far = best.misfit + kCannotTell * dispersion(best);
+  return excess(best) <= kGross && !model.optimum.converged && model.misfit > as_far && could_reach(model) <= as_far;
+}
+
 // Trials that differ from `best` in the effect `slot` alone; `fewer`: the model without that effect, where there is one.
 std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std::size_t slot,
                                    const std::optional<Trial>& fewer, const Data& data, const ExplainOptions& options) {
@@ -58,7 +64,8 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   for (const Trial& trial : naming.trials) {
     if (trial.effects.size() != best.effects.size() || trial.model == best.model) continue;
     std::vector<Effect> first(trial.effects.begin(), trial.effects.end() - 1);
-    if (same_effects(first, others)) found.push_back(trial);
+    if (same_effects(first, others))
+      found.push_back(may_come_as_far(*trial.model, *best.model) ? polished(trial, data, options.threads) : trial);
   }
   if (!fewer) return found;
   std::vector<std::vector<LawStart>> starts;

@@ -63,6 +63,10 @@ Status LayerRunner::start() {
   if (Status status = restore_quarantine(); !status) return status;
   if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
+  if (Status status = look_at_own_acts(); !status) return status;
+  const auto is_new = journal_.is_new();
+  if (!is_new) return fail(is_new.error());
+  is_new_ = *is_new && last_act_.sequence == 0;
   started_ns_ = clock_.now().nanoseconds;
   look_at_clock();
   if (Status status = publish_latest(); !status) return status;

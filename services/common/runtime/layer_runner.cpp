@@ -350,9 +350,10 @@ Status LayerRunner::let_time_pass() {
   return {};
 }
 
-/// A history that is played back is over. An asset that lives goes on beside it.
+/// A history that is played back is over. An asset that lives goes on beside it, and so does one that should: of which
+/// is known since when tests are due.
 bool LayerRunner::time_stands_still(const std::string& asset_id) {
-  return replaying_[asset_id] && !admission_.has_live_tests(asset_id);
+  return replaying_[asset_id] && !admission_.has_live_tests(asset_id) && !options_.commissioned.contains(asset_id);
 }
 
 /// A test is not overdue or lost while messages about it may be on their way.

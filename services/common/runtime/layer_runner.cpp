@@ -241,6 +241,8 @@ Status LayerRunner::take(Message message) {
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
   admission_.note(*input, false);
+  const auto* const raw = std::get_if<RawSamples>(input.get());
+  if (raw == nullptr || raw->block_number == 0) look_for_future_test(asset_id);
   replaying_[asset_id] = header_of(*input).replay;
   log_message(LogLevel::debug, "received", *input);
   lanes_.add(asset_id, **id, input);

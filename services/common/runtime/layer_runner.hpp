@@ -178,6 +178,8 @@ class LayerRunner {
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);
   void tell_of_floods();
+  /// Live tests that change no advice, as one that was played back is of the future.
+  void look_for_future_test(const std::string& asset_id);
   void note_unknown_asset(const Message& message, const std::string& refused);
   void note_alarms_of(const Message& output);
   void look_for_trouble();

@@ -122,6 +122,7 @@ void LayerRunner::confirm(const Message& message) {
     no_longer_awaiting_[*act_id] = rejects(message) ? InputState::consumed : InputState::open;
   if (rejects(message)) return;
   admission_.note(*act, false);
+  look_for_future_test(asset_of(*act));
   lanes_.add(asset_of(*act), *act_id, act);
 }
 

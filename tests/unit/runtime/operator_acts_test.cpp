@@ -435,14 +435,14 @@ class DatesInAcquisition : public ActsTest {
     return process;
   }
   /// Whether a test of that date is taken.
-  bool takes(Process& process, const std::string& date) {
+  bool takes(Process& process, const std::string& date, bool is_replay = true) {
     RawSamples block;
     block.asset_id = "A";
     block.recording_id = "A-" + date;
     block.boundary = BlockBoundary::end;
     block.start_time_known = block.header.event_time_known = true;
     block.start_time_ns = block.header.event_time_ns = parse_utc(date).value().nanoseconds;
-    block.header.replay = true;
+    block.header.replay = is_replay;
     block.header.message_id = "raw_samples/" + date + "/" + std::to_string(++sent_);
     const std::size_t before = process.outputs().size();
     say(process, block);
@@ -488,6 +488,36 @@ TEST_F(DatesInAcquisition, AllSinceADateMeansTheTestsThatWereKnownThen) {
   const auto process = start();
   process->clock().set(now_);
   EXPECT_TRUE(takes(*process, "2046-11-01T00:00:00Z")) << "less than a year after it";
+}
+
+/// A slip in the year of the first recording that is played back: nothing live would change the advice any more.
+TEST_F(DatesInAcquisition, AFutureTestThatWasPlayedBackIsAnAlarmOnceTheAssetLivesUntilItIsRetracted) {
+  const std::string today = format_utc(TestClock().now());
+  const auto told = [this](const std::unique_ptr<Process>& process) {
+    EXPECT_TRUE(operator_.subscribe_service_topics());
+    process->step();
+    (void)operator_.receive(std::chrono::milliseconds(0), 1'000'000);
+    std::vector<std::string> texts;
+    for (const BusItem& item : operator_.receive(std::chrono::milliseconds(100), 1))
+      if (const auto* status = std::get_if<ServiceStatus>(&item))
+        for (const ServiceAlarm& alarm : status->alarms) texts.push_back(alarm.asset_id + ": " + alarm.text);
+    return texts;
+  };
+  auto process = start();
+  ASSERT_TRUE(takes(*process, "2200-01-01T00:00:00Z"));
+  EXPECT_THAT(told(process), IsEmpty()) << "it may be a simulated life";
+  ASSERT_TRUE(takes(*process, today, false));
+  const auto is_alarm = ElementsAre(AllOf(HasSubstr("A: a test of 2200-01-01T00:00:00Z was played back"),
+                                          HasSubstr("sealwatch retract A --since 2030-03-1")));
+  EXPECT_THAT(told(process), is_alarm);
+  process.reset();
+  process = start();
+  EXPECT_THAT(told(process), is_alarm) << "it is known after a restart";
+  retract(*process, kTestsRetracted, "2030-03-19T00:00:00Z");
+  EXPECT_THAT(told(process), IsEmpty());
+  process.reset();
+  process = start();
+  EXPECT_THAT(told(process), IsEmpty());
 }
 
 }  // namespace

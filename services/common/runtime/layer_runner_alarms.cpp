@@ -90,8 +90,8 @@ void LayerRunner::note_unknown_asset(const Message& message, const std::string& 
   log_event(LogLevel::error, "unknown asset", {{"error", refused}});
 }
 
-/// Of whoever gives tests their names, which all layers conclude from: six would say the same. A replay ahead of the clock
-/// is a simulated life, or a slip in the year of a recording, which nobody can tell before the asset lives.
+/// Of whoever gives tests their names, which all layers conclude from: six would say the same. A replay ahead of the
+/// clock is a simulated life, or a slip in the year of a recording, which nobody can tell before the asset lives.
 void LayerRunner::look_for_future_test(const std::string& asset_id) {
   if (std::ranges::find(kind_->inputs(), Topic::raw_samples) == kind_->inputs().end()) return;
   const UtcTime now = clock_.now();

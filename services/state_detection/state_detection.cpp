@@ -20,6 +20,8 @@ namespace {
 constexpr const char* kProducer = "state_detection 0.1.0";
 /// An asset whose test has been overdue for longer is not in live operation: old recordings are being taken in.
 constexpr double kLongestSilence_months = 12.0;
+/// The tests of a history that is played back follow each other faster.
+constexpr double kReplayIsOver_s = 60.0;
 
 void add_source(Header& header, const Header& source) {
   const auto add = [&header](const std::string& id) {
@@ -109,6 +111,7 @@ void StateDetection::restore(const Message& own_output) {
 Conclusion StateDetection::receive(const Message& input) {
   AssetState& state = state_of(asset_of(input));
   state.history.last_was_replay = header_of(input).replay;
+  state.has_input = true;
   Conclusion conclusion;
   if (const auto* features = std::get_if<TestFeatures>(&input)) state.tests.add(*features, conclusion);
   if (const auto* window = std::get_if<TestWindow>(&input)) state.windows.add(*window, conclusion);
@@ -278,12 +281,23 @@ void StateDetection::note_lateness(const AssetState& state, const AssetConfig& a
                                    format_date(late->due) + " (last judged test on " + format_date(late->last) + ")");
 }
 
+bool StateDetection::waits_for_first_live_test(const std::string& asset_id, const AssetState& state) const {
+  return options_.commissioned.contains(asset_id) && !state.history.has_live_tests;
+}
+
+bool StateDetection::is_under_way(AssetState& state, UtcTime now) {
+  if (std::exchange(state.has_input, false) || !state.quiet_since) state.quiet_since = now;
+  return seconds_between(*state.quiet_since, now) < kReplayIsOver_s;
+}
+
 Conclusion StateDetection::tick(UtcTime now) {
   Conclusion conclusion;
   for (auto& [asset_id, state] : states_) {
     state.accepted.tick(now, conclusion);
-    // A history that is played back is over. An asset that lives goes on beside it.
-    if (state.history.last_was_replay && !state.history.has_live_tests) continue;
+    // A history that is played back is over. An asset that lives, or should, goes on beside it.
+    const bool under_way = is_under_way(state, now);
+    const bool is_history = state.history.last_was_replay && !state.history.has_live_tests;
+    if (is_history && (under_way || !waits_for_first_live_test(asset_id, state))) continue;
     if (assets_.count(asset_id) == 0) continue;
     std::optional<StateReport> report = overdue_report(asset_id, state, now);
     if (!report || report->header.message_id == state.history.last_overdue_id) continue;
@@ -304,7 +318,8 @@ std::optional<StateReport> StateDetection::overdue_report(const std::string& ass
   const PstSetting& pst = assets_.at(asset_id).pst;
   const auto overdue = schedule.overdue_from(pst, options_.overdue_grace_share);
   if (!overdue || now < *overdue) return std::nullopt;
-  if (!never_tested && add_months(*overdue, kLongestSilence_months) < now) return std::nullopt;
+  const bool is_old = add_months(*overdue, kLongestSilence_months) < now;
+  if (is_old && !never_tested && !waits_for_first_live_test(asset_id, state)) return std::nullopt;
   const auto late = schedule.lateness(*overdue, pst, options_.overdue_grace_share);  // says nothing about `now`
   StateReport report;
   report.asset_id = asset_id;

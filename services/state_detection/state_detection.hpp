@@ -34,8 +34,10 @@ struct StateDetectionOptions {
 /// Concludes each asset's tests in the order of their test_features, each as soon as its test_window is there too. A
 /// maintenance_event starts the asset's history anew with the first test after it; it counts as consumed when a test
 /// after it has been judged. An asset of which nothing was ever heard is asked for its first test, where it is known when
-/// it was commissioned. After a retraction the asset's tests are judged anew from those that count (past_tests.hpp), and
-/// a report of no test says so. While a model_acceptance is in force the accepted model is judged beside the nominal one.
+/// it was commissioned; one of which only recordings were played back, for the next after the last of them. After a
+/// retraction the asset's tests are judged anew from those that count (past_tests.hpp), and a report of no test says
+/// so.
+/// While a model_acceptance is in force the accepted model is judged beside the nominal one.
 class StateDetection final : public Layer {
  public:
   /// `simulator` may be null: then there are no residuals. `options` must be valid.
@@ -58,6 +60,8 @@ class StateDetection final : public Layer {
     std::vector<MaintenanceEvent> events;  // not consumed yet
     AcceptedModel accepted;
     PastTests past;
+    bool has_input = false;                   ///< since the last tick
+    std::optional<UtcTime> quiet_since = {};  ///< the tick from which on nothing was received
   };
 
   [[nodiscard]] AssetState& state_of(const std::string& asset_id);
@@ -72,6 +76,10 @@ class StateDetection final : public Layer {
   std::optional<double> add_residuals(const AssetState& state, const AssetConfig& asset, const TestFeatures& features,
                                       const TestWindow& window, StateReport& report) const;
   void note_lateness(const AssetState& state, const AssetConfig& asset, StateReport& report) const;
+  /// Whether tests are due though none was live: its sender may never have worked, whatever history was played back.
+  [[nodiscard]] bool waits_for_first_live_test(const std::string& asset_id, const AssetState& state) const;
+  /// Whether a history is being played back, whose next test comes soon.
+  [[nodiscard]] static bool is_under_way(AssetState& state, UtcTime now);
   [[nodiscard]] std::optional<StateReport> overdue_report(const std::string& asset_id, const AssetState& state,
                                                           UtcTime now) const;
 

@@ -359,6 +359,39 @@ TEST_F(Operator, ConcludesHealthAndStateAnewWithoutARetractedTest) {
   }
 }
 
+/// In a journal that was made anew the retracted test counts again: nobody says it a second time by himself.
+TEST_F(Operator, IsToldThatALostJournalForgotARetractionAndSaysItAgain) {
+  const std::string state = state_directory("state").string();
+  const json shown = json::parse(run({"sealwatch", "show", "XT03-MV2", "--state", state, "--json"}).output);
+  const std::string pst_id = shown["message"]["header"]["pst_id"];
+  const auto retract = [&] {
+    return run({"sealwatch", "retract", "--config", config(), "XT03-MV2", "--test", pst_id, "--by", "J. Silva",
+                "--reason", "wrong valve"})
+        .status;
+  };
+  const auto status = [&] { return run({"sealwatch", "status", "--config", config()}); };
+  ASSERT_EQ(retract(), 0);
+  kill(up_, SIGTERM);
+  waitpid(up_, nullptr, 0);
+  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(state + "/prognostic_assessment.db" + end);
+  up_ = start({"sealwatch", "up", "--config", config(), "--state", state}, folder_ / "up_again.log");
+  Finished told;
+  for (int attempt = 0; attempt < 30 && told.output.find("the journal was lost") == std::string::npos; ++attempt)
+    told = status();
+  EXPECT_EQ(told.status, 1);
+  EXPECT_THAT(told.output, AllOf(HasSubstr("the journal was lost"),
+                                 HasSubstr("sealwatch quarantine retry journal/prognostic_assessment --by NAME")));
+  EXPECT_THAT(run({"sealwatch", "audit", "--state", state}).output, HasSubstr("retraction/XT03-MV2/test/" + pst_id))
+      << "the neighbours know what is to be said again";
+  EXPECT_EQ(retract(), 0);
+  EXPECT_EQ(
+      run({"sealwatch", "quarantine", "retry", "journal/prognostic_assessment", "--by", "J. Silva", "--state", state})
+          .status,
+      0);
+  for (int attempt = 0; attempt < 30 && told.status != 0; ++attempt) told = status();  // an alarm is over after 10 s
+  EXPECT_EQ(told.status, 0) << told.output;
+}
+
 /// Services that ask for a second person.
 TEST_F(Operator, CountsAReplacementOnceAnotherPersonConfirmsIt) {
   kill(up_, SIGTERM);

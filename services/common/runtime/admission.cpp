@@ -174,6 +174,12 @@ std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const
   return heard == heard_.end() ? newest : std::max(newest, std::optional(heard->second));
 }
 
+std::optional<UtcTime> Admission::future_test_before_live(const std::string& asset_id, UtcTime now) const {
+  if (!live_.contains(asset_id) || !is_set(now)) return std::nullopt;
+  const auto newest = newest_test(asset_id);
+  return newest && newest->nanoseconds > now.nanoseconds + kDay_ns ? newest : std::nullopt;
+}
+
 /// What is about no asset (an act upon a service's alarm) is refused for none.
 std::optional<std::string> Admission::refusal_of_asset(const Message& message) const {
   const std::string asset_id = asset_of(message);

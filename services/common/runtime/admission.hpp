@@ -62,6 +62,9 @@ class Admission {
   /// Of tests that were neither played back nor made up: time passes for such an asset, whatever is played back beside.
   [[nodiscard]] bool has_live_tests(const std::string& asset_id) const { return live_.contains(asset_id); }
 
+  /// The date of a test in the future, which was played back, where live tests have come: beside it they are old.
+  [[nodiscard]] std::optional<UtcTime> future_test_before_live(const std::string& asset_id, UtcTime now) const;
+
  private:
   void note_test(const Message& message, UtcTime time);
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw) const;

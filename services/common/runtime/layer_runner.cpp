@@ -63,6 +63,10 @@ Status LayerRunner::start() {
   if (Status status = restore_quarantine(); !status) return status;
   if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
+  if (Status status = look_at_own_acts(); !status) return status;
+  const auto is_new = journal_.is_new();
+  if (!is_new) return fail(is_new.error());
+  is_new_ = *is_new && last_act_.sequence == 0;
   started_ns_ = clock_.now().nanoseconds;
   look_at_clock();
   if (Status status = publish_latest(); !status) return status;
@@ -237,6 +241,8 @@ Status LayerRunner::take(Message message) {
   if (state == InputState::consumed && !refused) confirm(*input);
   if (state != InputState::open) return {};
   admission_.note(*input, false);
+  const auto* const raw = std::get_if<RawSamples>(input.get());
+  if (raw == nullptr || raw->block_number == 0) look_for_future_test(asset_id);
   replaying_[asset_id] = header_of(*input).replay;
   log_message(LogLevel::debug, "received", *input);
   lanes_.add(asset_id, **id, input);
@@ -346,9 +352,10 @@ Status LayerRunner::let_time_pass() {
   return {};
 }
 
-/// A history that is played back is over. An asset that lives goes on beside it.
+/// A history that is played back is over. An asset that lives goes on beside it, and so does one that should: of which
+/// is known since when tests are due.
 bool LayerRunner::time_stands_still(const std::string& asset_id) {
-  return replaying_[asset_id] && !admission_.has_live_tests(asset_id);
+  return replaying_[asset_id] && !admission_.has_live_tests(asset_id) && !options_.commissioned.contains(asset_id);
 }
 
 /// A test is not overdue or lost while messages about it may be on their way.

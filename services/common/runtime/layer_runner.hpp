@@ -178,6 +178,8 @@ class LayerRunner {
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);
   void tell_of_floods();
+  /// Live tests that change no advice, as one that was played back is of the future.
+  void look_for_future_test(const std::string& asset_id);
   void note_unknown_asset(const Message& message, const std::string& refused);
   void note_alarms_of(const Message& output);
   void look_for_trouble();
@@ -207,6 +209,9 @@ class LayerRunner {
   void hear_of_acts(const ServiceStatus& status);
   /// Keeps it, and looks how far the own record goes.
   [[nodiscard]] Status note_acts();
+  [[nodiscard]] Status look_at_own_acts();
+  /// Where the journal is new and others' records are not, what people said to this service is lost: an alarm.
+  [[nodiscard]] Status compare_acts();
   [[nodiscard]] Status record(const OperatorAct& act);
   /// What a layer does not act upon.
   [[nodiscard]] Status tell(const Refusal& refused);
@@ -258,6 +263,9 @@ class LayerRunner {
   AuditAnchor last_act_;                                  ///< of the own record
   std::map<std::string, AuditAnchor> heard_acts_;         ///< the last of each other service, as kept
   std::vector<AuditAnchor> new_anchors_;                  ///< not yet kept
+  bool is_new_ = false;                                   ///< the journal, and not yet compared with others' records
+  std::set<std::string> first_heard_;                     ///< services that were heard since the start
+  std::string has_older_acts_;                            ///< of them, one whose record began before the own journal
   std::vector<LaneResult> results_;                       ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal

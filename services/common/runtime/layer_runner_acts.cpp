@@ -16,6 +16,8 @@ constexpr const char* kTaken = "taken";
 constexpr std::size_t kHashLength = 64;
 /// Of a second: who invents records invents many.
 constexpr std::size_t kMostNewAnchors = 16;
+/// After so long whoever runs was heard: what others record from then on is not older than the own journal.
+constexpr std::chrono::minutes kAllHeard{1};
 
 std::string who_said(const Message& message) {
   const auto act = act_of(message, {}, {});
@@ -29,6 +31,21 @@ std::string plain(const std::string& who) {
     if (std::isspace(static_cast<unsigned char>(letter)) == 0)
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   return name;
+}
+
+/// That a new journal has not got what people said, of which another service has a record.
+SetAside acts_lost(std::string_view service, const std::string& other, UtcTime now) {
+  return {.message_id = "journal/" + std::string(service),
+          .topic = {},
+          .asset_id = {},
+          .pst_id = {},
+          .since_ns = now.nanoseconds,
+          .reason =
+              "the journal was lost and is made again from the neighbours' messages, but for what people said, "
+              "of which " +
+              other +
+              " has a record: retract, accept and acknowledge again what sealwatch audit shows to be "
+              "in force"};
 }
 
 /// Whether it rejects what it speaks of.
@@ -105,6 +122,7 @@ void LayerRunner::confirm(const Message& message) {
     no_longer_awaiting_[*act_id] = rejects(message) ? InputState::consumed : InputState::open;
   if (rejects(message)) return;
   admission_.note(*act, false);
+  look_for_future_test(asset_of(*act));
   lanes_.add(asset_of(*act), *act_id, act);
 }
 
@@ -148,8 +166,10 @@ void LayerRunner::hear_of_acts(const ServiceStatus& status) {
   const auto& services = options_.strangers.services;
   const bool is_known = services.empty() || std::ranges::find(services, status.service) != services.end();
   if (!is_known || status.service == kind_->name()) return;
+  const bool is_first = first_heard_.insert(status.service).second;
   for (const StreamPosition& told : status.written) {
     if (told.topic != kActsTopic || told.writer_id.size() != kHashLength) continue;
+    if (is_first && told.sequence > 0) has_older_acts_ = status.service;
     const AuditAnchor heard{status.service, static_cast<std::int64_t>(told.sequence), told.writer_id};
     AuditAnchor& last = heard_acts_[status.service];
     if (heard == last) continue;
@@ -158,11 +178,44 @@ void LayerRunner::hear_of_acts(const ServiceStatus& status) {
   }
 }
 
-/// About once a second. Also those who ask for something in a journal of their own (sealwatch quarantine) write there.
-Status LayerRunner::note_acts() {
+/// Before the first heartbeat, which others compare with their own record where that is new.
+Status LayerRunner::look_at_own_acts() {
   auto last = journal_.last_act();
   if (!last) return fail(last.error());
   last_act_ = std::move(*last);
+  return {};
+}
+
+/// The neighbours' messages make the conclusions again. Acts were told once, by people who are gone: a retracted test
+/// would count again in this service alone, and nobody would know.
+Status LayerRunner::compare_acts() {
+  if (!is_new_) return {};
+  const bool takes_acts = std::ranges::find(kind_->inputs(), Topic::maintenance_event) != kind_->inputs().end();
+  const bool is_lost = takes_acts && !has_older_acts_.empty();
+  const bool all_heard = !first_heard_.empty() && std::chrono::steady_clock::now() - started_ > kAllHeard;
+  if (!is_lost && !all_heard) return {};
+  is_new_ = false;
+  const SetAside lost = acts_lost(kind_->name(), has_older_acts_, clock_.now());
+  const bool is_known = std::ranges::find(set_aside_, lost.message_id, &SetAside::message_id) != set_aside_.end();
+  const bool tells = is_lost && !is_known;  // a damaged one that was made again says so itself
+  Status kept = in_batch(
+      [&] {
+        Status done = journal_.no_longer_new();
+        return done && tells ? journal_.set_aside(lost) : done;
+      },
+      Survives::power_cuts);
+  if (!kept || !tells) return kept;
+  set_aside_.push_back(lost);
+  raise_alarm(lost);
+  note_error(lost.reason);
+  log_event(LogLevel::error, "acts lost", {{"error", lost.reason}});
+  return {};
+}
+
+/// About once a second. Also those who ask for something in a journal of their own (sealwatch quarantine) write there.
+Status LayerRunner::note_acts() {
+  if (Status looked = look_at_own_acts(); !looked) return looked;
+  if (Status compared = compare_acts(); !compared) return compared;
   if (new_anchors_.empty()) return {};
   return in_batch([this] {
     for (const AuditAnchor& heard : std::exchange(new_anchors_, {}))

@@ -17,6 +17,7 @@ constexpr const char* kRival = "rival";
 constexpr const char* kUnknownWriter = "unknown_writer";
 constexpr const char* kUnknownAsset = "unknown_asset";
 constexpr const char* kRefusedRight = "refused_right";
+constexpr const char* kFutureTest = "future_test";
 constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
 constexpr const char* kFlood = "flood";
@@ -87,6 +88,32 @@ void LayerRunner::note_unknown_asset(const Message& message, const std::string& 
   if (!is_new) return;
   note_error(refused);
   log_event(LogLevel::error, "unknown asset", {{"error", refused}});
+}
+
+/// Of whoever gives tests their names, which all layers conclude from: six would say the same. A replay ahead of the
+/// clock is a simulated life, or a slip in the year of a recording, which nobody can tell before the asset lives.
+void LayerRunner::look_for_future_test(const std::string& asset_id) {
+  if (std::ranges::find(kind_->inputs(), Topic::raw_samples) == kind_->inputs().end()) return;
+  const UtcTime now = clock_.now();
+  const auto future = admission_.future_test_before_live(asset_id, now);
+  if (!future) {
+    alarms_.clear(kFutureTest, asset_id, {});
+    return;
+  }
+  const std::string text = "a test of " + format_utc(*future) +
+                           " was played back, so that live tests change no advice; retract what is of the future: "
+                           "sealwatch retract " +
+                           asset_id + " --since " + format_date(add_seconds(now, kSecondsPerDay)) +
+                           " --by NAME --reason WHY";
+  const bool is_new = alarms_.raise({.kind = kFutureTest,
+                                     .asset_id = asset_id,
+                                     .subject = {},
+                                     .pst_id = {},
+                                     .text = text,
+                                     .since_ns = now.nanoseconds});
+  if (!is_new) return;
+  note_error(asset_id + ": " + text);
+  log_event(LogLevel::error, "test of the future", {{"asset", asset_id}, {"error", text}});
 }
 
 void LayerRunner::look_at_clock() {

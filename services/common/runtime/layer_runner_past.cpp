@@ -67,7 +67,9 @@ Status LayerRunner::recall(const std::string& asset_id) {
   if (!outputs) return outputs;
   for (; act != acts.end(); ++act) admission_.note_act(asset_id, act->id);
   if (desk_ && advice) desk_->stand(*advice, clock_.now());
-  return recall_inputs(asset_id);
+  if (Status recalled = recall_inputs(asset_id); !recalled) return recalled;
+  look_for_future_test(asset_id);
+  return {};
 }
 
 Status LayerRunner::restore_layer(const std::string& asset_id) {

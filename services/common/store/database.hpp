@@ -25,6 +25,9 @@ inline constexpr int kJournalSchemaVersion = 4;
 /// Table meta: that an output was found damaged while it was read.
 inline constexpr const char* kToBeMended = "to_be_mended";
 
+/// Table meta: that nobody has compared the journal with others' records of acts since it was made.
+inline constexpr const char* kNewJournal = "new";
+
 struct Journal::Database {
   std::string name;  ///< connection string as errors show it, without a password
   std::string service;

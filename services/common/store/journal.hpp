@@ -165,6 +165,9 @@ class Journal {
   [[nodiscard]] Result<std::vector<AuditEntry>> acts();
   /// The last of them; number 0 where there is none.
   [[nodiscard]] Result<AuditAnchor> last_act();
+  /// Whether it was made where none was, or none that could be read, and nobody has compared it with others' since.
+  [[nodiscard]] Result<bool> is_new();
+  [[nodiscard]] Status no_longer_new();
   /// Keeps what another service told of its record; between begin and commit.
   [[nodiscard]] Status keep_anchor(const AuditAnchor& heard);
 

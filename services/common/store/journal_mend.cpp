@@ -274,7 +274,7 @@ void Journal::Database::tell_of_damage(const std::string& aside) {
   row.message_id = "journal/" + service;
   tell(sql, row,
        "the journal was damaged and is made again from the neighbours' messages; the old one is " + aside +
-           ": acknowledge and accept again what is in force");
+           ": retract, accept and acknowledge again what sealwatch audit shows to be in force");
 }
 
 /// Reads the stream again from there; what is known is passed over by its id.

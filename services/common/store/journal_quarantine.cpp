@@ -162,6 +162,17 @@ Result<AuditAnchor> Journal::last_act() {
   });
 }
 
+Result<bool> Journal::is_new() {
+  return database_->guard("looking whether the journal is new", [&] { return !database_->meta(kNewJournal).empty(); });
+}
+
+Status Journal::no_longer_new() {
+  return database_->guard("noting that the journal was compared", [&] {
+    database_->sql << std::string("DELETE FROM meta WHERE name = '") + kNewJournal + "'";
+    ++database_->batch_rows;
+  });
+}
+
 Status Journal::keep_anchor(const AuditAnchor& heard) {
   return database_->guard("keeping what was heard of acts", [&] {
     const long long sequence = heard.sequence;

@@ -96,6 +96,7 @@ void Journal::Database::create_schema() {
   set_meta("schema_version", "1");
   set_meta("service", service);
   set_meta("writer_id", make_writer_id(service));
+  set_meta(kNewJournal, "yes");
   transaction.commit();
 }
 

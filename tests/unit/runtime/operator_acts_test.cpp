@@ -4,13 +4,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "sealwatch/message/confirmation.hpp"
+#include "services/common/store/quarantine_desk.hpp"
 #include "tests/unit/runtime/harness.hpp"
 
 namespace sealwatch::testing {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 /// Concludes from what people say that it was said.
@@ -134,6 +140,84 @@ TEST_F(ActsTest, TheEndOfTheRecordIsToldAndThatOfOthersIsKept) {
   ASSERT_TRUE(step_until(is_kept, [&] { process->step(); }));
   EXPECT_EQ(heard[0], (AuditAnchor{"state_detection", 2, std::string(64, '2')}));
   EXPECT_EQ(heard[1], (AuditAnchor{"state_detection", 3, std::string(64, '3')}));
+}
+
+/// A neighbour whose record of acts has so many entries.
+ServiceStatus with_acts(std::uint64_t count) {
+  ServiceStatus status;
+  status.service = "state_detection";
+  status.writer_id = "state_detection-1";
+  status.state = "running";
+  if (count > 0) status.written = {{kActsTopic, std::string(64, '1'), count}};
+  return status;
+}
+
+class LostJournal : public ActsTest {
+ protected:
+  void SetUp() override { ASSERT_TRUE(operator_.subscribe_service_topics()); }
+  void hear(Process& process, const ServiceStatus& status) {
+    EXPECT_TRUE(operator_.publish(status));
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::milliseconds(1100);  // acts are looked at each second
+    while (std::chrono::steady_clock::now() < end) process.step();
+  }
+  /// Texts of the alarms of the last heartbeat.
+  std::vector<std::string> alarms() {
+    std::vector<std::string> texts;
+    for (const BusItem& item : operator_.receive(std::chrono::milliseconds(100), 1'000'000))
+      if (const auto* status = std::get_if<ServiceStatus>(&item);
+          status != nullptr && status->service == "advisory_generation") {
+        texts.clear();
+        for (const ServiceAlarm& alarm : status->alarms) texts.push_back(alarm.subject + ": " + alarm.text);
+      }
+    return texts;
+  }
+  void lose() {
+    for (const auto& entry : std::filesystem::directory_iterator(place_.directory()))
+      std::filesystem::remove_all(entry.path());
+  }
+};
+
+/// Who retracted a test has gone home: in this service alone it would count again, and nobody would know.
+TEST_F(LostJournal, IsAnAlarmWhereOthersHaveARecordOfActsUntilSomebodySaysThemAgain) {
+  auto process = start();
+  say(*process, seen("J. Silva"));
+  process.reset();
+  lose();
+  process = start();
+  hear(*process, with_acts(1));
+  const auto is_told = ElementsAre(AllOf(HasSubstr("journal/advisory_generation: the journal was lost"),
+                                         HasSubstr("state_detection has a record"), HasSubstr("retract")));
+  EXPECT_THAT(alarms(), is_told);
+  process.reset();
+  process = start();
+  hear(*process, with_acts(1));
+  EXPECT_THAT(alarms(), is_told) << "a restart ends nothing";
+  ASSERT_TRUE(QuarantineDesk::open(place_.connection(), "advisory_generation")
+                  ->ask_again("journal/advisory_generation", "J. Silva", process->clock().now())
+                  .value());
+  hear(*process, with_acts(1));
+  EXPECT_THAT(alarms(), IsEmpty());
+  process.reset();
+  process = start();
+  hear(*process, with_acts(2));
+  EXPECT_THAT(alarms(), IsEmpty());
+}
+
+TEST_F(LostJournal, ANewOneWhoseNeighboursAreNewTooIsNone) {
+  auto process = start();
+  hear(*process, with_acts(0));
+  hear(*process, with_acts(1));  // somebody speaks
+  EXPECT_THAT(alarms(), IsEmpty());
+}
+
+TEST_F(LostJournal, OneThatHasItsOwnRecordIsNone) {
+  auto process = start();
+  say(*process, seen("J. Silva"));
+  process.reset();
+  process = start();
+  hear(*process, with_acts(3));
+  EXPECT_THAT(alarms(), IsEmpty());
 }
 
 TEST_F(ActsTest, WhatIsRefusedIsRecordedWithTheReason) {
@@ -351,14 +435,14 @@ class DatesInAcquisition : public ActsTest {
     return process;
   }
   /// Whether a test of that date is taken.
-  bool takes(Process& process, const std::string& date) {
+  bool takes(Process& process, const std::string& date, bool is_replay = true) {
     RawSamples block;
     block.asset_id = "A";
     block.recording_id = "A-" + date;
     block.boundary = BlockBoundary::end;
     block.start_time_known = block.header.event_time_known = true;
     block.start_time_ns = block.header.event_time_ns = parse_utc(date).value().nanoseconds;
-    block.header.replay = true;
+    block.header.replay = is_replay;
     block.header.message_id = "raw_samples/" + date + "/" + std::to_string(++sent_);
     const std::size_t before = process.outputs().size();
     say(process, block);
@@ -404,6 +488,36 @@ TEST_F(DatesInAcquisition, AllSinceADateMeansTheTestsThatWereKnownThen) {
   const auto process = start();
   process->clock().set(now_);
   EXPECT_TRUE(takes(*process, "2046-11-01T00:00:00Z")) << "less than a year after it";
+}
+
+/// A slip in the year of the first recording that is played back: nothing live would change the advice any more.
+TEST_F(DatesInAcquisition, AFutureTestThatWasPlayedBackIsAnAlarmOnceTheAssetLivesUntilItIsRetracted) {
+  const std::string today = format_utc(TestClock().now());
+  const auto told = [this](const std::unique_ptr<Process>& process) {
+    EXPECT_TRUE(operator_.subscribe_service_topics());
+    process->step();
+    (void)operator_.receive(std::chrono::milliseconds(0), 1'000'000);
+    std::vector<std::string> texts;
+    for (const BusItem& item : operator_.receive(std::chrono::milliseconds(100), 1))
+      if (const auto* status = std::get_if<ServiceStatus>(&item))
+        for (const ServiceAlarm& alarm : status->alarms) texts.push_back(alarm.asset_id + ": " + alarm.text);
+    return texts;
+  };
+  auto process = start();
+  ASSERT_TRUE(takes(*process, "2200-01-01T00:00:00Z"));
+  EXPECT_THAT(told(process), IsEmpty()) << "it may be a simulated life";
+  ASSERT_TRUE(takes(*process, today, false));
+  const auto is_alarm = ElementsAre(AllOf(HasSubstr("A: a test of 2200-01-01T00:00:00Z was played back"),
+                                          HasSubstr("sealwatch retract A --since 2030-03-1")));
+  EXPECT_THAT(told(process), is_alarm);
+  process.reset();
+  process = start();
+  EXPECT_THAT(told(process), is_alarm) << "it is known after a restart";
+  retract(*process, kTestsRetracted, "2030-03-19T00:00:00Z");
+  EXPECT_THAT(told(process), IsEmpty());
+  process.reset();
+  process = start();
+  EXPECT_THAT(told(process), IsEmpty());
 }
 
 }  // namespace

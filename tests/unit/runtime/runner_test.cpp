@@ -259,6 +259,12 @@ TEST_F(TimeTest, PassesOnceASecondInLiveOperation) { EXPECT_EQ(ticks_after({feat
 
 TEST_F(TimeTest, StandsStillInAReplay) { EXPECT_EQ(ticks_after({features("p1", 1, true)}), 0U); }
 
+TEST_F(TimeTest, PassesInAReplayOfAnAssetWhoseTestsAreDue) {
+  RunnerOptions options = fast_options();
+  options.commissioned["A"] = UtcTime{0};
+  EXPECT_EQ(ticks_after({features("p1", 1, true)}, options), 2U);
+}
+
 TEST_F(TimeTest, PassesForALiveAssetOfWhichAHistoryIsPlayedBack) {
   Message live = features("p1", 1);
   header_of(live).event_time_known = true;

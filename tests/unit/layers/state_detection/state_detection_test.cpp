@@ -360,6 +360,34 @@ TEST(StateDetection, AnAssetThatWasNeverHeardIsOverdueFromItsCommissioning) {
   EXPECT_EQ(monitored_later.tick(synthetic::month(2)).outputs.size(), 1U);
 }
 
+/// Its live sender may never have worked.
+TEST(StateDetection, ACommissionedAssetWhoseHistoryWasPlayedBackIsOverdueFromItsLastTest) {
+  const std::vector<AssetConfig> assets = {synthetic::asset("A1")};
+  const auto make = [&assets] {
+    return StateDetection(assets, simulator(), {.commissioned = {{"A1", add_months(synthetic::month(0), -60.0)}}});
+  };
+  Journal journal;
+  StateDetection detection = make();
+  Circumstances played_back;
+  played_back.replay = true;
+  play(detection, journal, {}, played_back);
+  const UtcTime years_later = synthetic::month(17 * 12);
+  EXPECT_TRUE(detection.tick(years_later).outputs.empty()) << "its next test may come";
+  EXPECT_TRUE(detection.tick(add_seconds(years_later, 59.0)).outputs.empty());
+  const Conclusion overdue = detection.tick(add_seconds(years_later, 60.0));
+  ASSERT_EQ(overdue.outputs.size(), 1U);
+  EXPECT_EQ(header_of(overdue.outputs.front()).message_id, "state_report/A1/overdue/2031-02-09");
+  EXPECT_TRUE(detection.tick(add_seconds(years_later, 120.0)).outputs.empty()) << "once";
+  StateDetection restarted = make();
+  for (const Message& output : journal.concluded) restarted.restore(output);
+  static_cast<void>(restarted.tick(years_later));
+  EXPECT_EQ(restarted.tick(add_seconds(years_later, 60.0)).outputs, overdue.outputs);
+  Circumstances live;
+  live.number = 3;
+  play(detection, journal, {}, live);
+  EXPECT_TRUE(detection.tick(years_later).outputs.empty()) << "old recordings that are taken in live";
+}
+
 TEST(StateDetection, OldRecordingsThatAreTakenInLiveAreNotOverdue) {
   Journal journal;
   StateDetection detection = layer();

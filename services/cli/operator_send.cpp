@@ -19,7 +19,7 @@ constexpr std::chrono::seconds kPatience{10};
 /// Somebody speaks of an asset that there is.
 std::optional<Error> objection(const Configuration& configuration, const std::string& config,
                                const std::string& asset_id, const std::string& who) {
-  if (who.find_first_not_of(" \t") == std::string::npos)
+  if (without_blanks(who).empty())
     return Error{
         .file = {}, .place = "--by", .value = who, .rule = "must say who", .advice = "a name, or a position on shift"};
   if (asset_id == kNoAsset || configuration.find_asset(asset_id) != nullptr) return std::nullopt;

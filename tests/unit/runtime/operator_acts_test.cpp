@@ -232,6 +232,17 @@ TEST_F(SecondPerson, NothingComesOfAnActUntilAnotherPersonConfirmsIt) {
   EXPECT_THAT(acts()[3].act.outcome, HasSubstr("waits for a confirmation"));
 }
 
+TEST_F(SecondPerson, IsNoneByASpaceThatNobodySees) {
+  const auto process = start(asking());
+  say(*process, replaced_);
+  for (const char* const who :
+       {"J.\u00a0Silva", "J. Silva\u00a0", "\u200bJ. Silva", "J. Si\u00adlva", "J. Silva\ufeff", " \u3000"})
+    say(*process, confirmation(replaced_, who));
+  EXPECT_TRUE(process->outputs().empty());
+  say(*process, confirmation(replaced_, "M. Okoye"));
+  EXPECT_THAT(process->outputs(), SizeIs(1));
+}
+
 TEST_F(SecondPerson, ARestartChangesNothing) {
   {
     const auto process = start(asking());

@@ -193,6 +193,7 @@ Result<std::optional<std::string>> LayerRunner::identify_input(const Message& me
 }
 
 Status LayerRunner::take(Message message) {
+  name_replacement(message);
   const Header& header = header_of(message);
   StreamPosition stream;
   if (is_numbered(message)) {

@@ -231,6 +231,9 @@ std::optional<std::string> Admission::refusal_of_future_act(const Message& messa
 }
 
 std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw) const {
+  if (raw.asset_id.empty())
+    return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) +
+           ": its asset_id is empty; say of which asset it is";
   if (raw.block_number > kMostBlocks)
     return name_of_test(raw) + ": block " + std::to_string(raw.block_number) + " is none of a test: they count from 0";
   if (is_made_up(raw.source_id) && recorded_.contains(raw.asset_id))

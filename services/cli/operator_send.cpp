@@ -18,7 +18,7 @@ namespace {
 /// The reader's heartbeat confirms receipt; without it after this time the command says so and fails.
 constexpr std::chrono::seconds kPatience{10};
 /// Every service beats once a second.
-constexpr std::chrono::milliseconds kHeartbeat{1200};
+constexpr std::chrono::milliseconds kBeatOfReaders{1200};
 
 /// Somebody speaks of an asset that there is.
 std::optional<Error> objection(const Configuration& configuration, const std::string& config,
@@ -50,9 +50,9 @@ std::optional<Error> objection(const Message& message) {
 
 /// What the readers say of a message: that they have it, and in the same heartbeat, as their last error, why they
 /// refused it.
-class Readers {
+class ReadersOfAct {
  public:
-  Readers(const Header& header, Topic topic, std::vector<std::string> names)
+  ReadersOfAct(const Header& header, Topic topic, std::vector<std::string> names)
       : header_(header), refused_(std::string(name_of(topic)) + " refused: "), waiting_(std::move(names)) {}
 
   /// Before the message is sent: what they said of others.
@@ -89,8 +89,8 @@ class Readers {
 };
 
 /// Hears each of them once.
-void know_readers(Bus& bus, Readers& readers, const std::function<void(const Message&)>& look) {
-  for (const auto end = std::chrono::steady_clock::now() + kHeartbeat;
+void know_readers(Bus& bus, ReadersOfAct& readers, const std::function<void(const Message&)>& look) {
+  for (const auto end = std::chrono::steady_clock::now() + kBeatOfReaders;
        !readers.are_known() && std::chrono::steady_clock::now() < end;)
     for (const BusItem& item : bus.receive(std::chrono::milliseconds(50))) {
       if (const auto* status = std::get_if<ServiceStatus>(&item)) readers.know(*status);
@@ -133,7 +133,7 @@ int send(std::optional<Session>& session, Message message, std::vector<std::stri
   header.stream_sequence = 1;
   header.producer = "sealwatch command line " SEALWATCH_VERSION;
   stamp_clock(header, read_clock());
-  Readers heard(header, topic_of(message), std::move(readers));
+  ReadersOfAct heard(header, topic_of(message), std::move(readers));
   Status done = session->bus->subscribe_service_topics();
   if (done) know_readers(*session->bus, heard, look);
   if (done) done = publish_patiently(*session->bus, message);

@@ -1,6 +1,7 @@
 #include "services/cli/operator_send.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -20,19 +21,32 @@ constexpr std::chrono::seconds kPatience{10};
 /// Every service beats once a second.
 constexpr std::chrono::milliseconds kBeatOfReaders{1200};
 
+/// Whether a service took tests of it without a file: on a bus of its own, as the last messages are heard once.
+bool is_heard_of(const std::string& config, const std::string& asset_id) {
+  constexpr std::array kTold = {Topic::sample_block, Topic::state_report, Topic::remaining_life, Topic::advisory};
+  std::optional<Session> session = open_session(config);
+  if (!session || !session->bus->subscribe(kTold)) return false;
+  for (const auto end = std::chrono::steady_clock::now() + kBeatOfReaders; std::chrono::steady_clock::now() < end;)
+    for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(50)))
+      if (const auto* message = std::get_if<Message>(&item); message != nullptr && asset_of(*message) == asset_id)
+        return true;
+  return false;
+}
+
 /// Somebody speaks of an asset that there is.
 std::optional<Error> objection(const Configuration& configuration, const std::string& config,
                                const std::string& asset_id, const std::string& who) {
   if (without_blanks(who).empty())
     return Error{
         .file = {}, .place = "--by", .value = who, .rule = "must say who", .advice = "a name, or a position on shift"};
-  if (asset_id == kNoAsset || configuration.find_asset(asset_id) != nullptr) return std::nullopt;
+  if (asset_id == kNoAsset || configuration.find_asset(asset_id) != nullptr || is_heard_of(config, asset_id))
+    return std::nullopt;
   std::vector<std::string> known;
   for (const AssetConfig& asset : configuration.assets) known.push_back(asset.asset_id);
   return Error{.file = config,
                .place = "assets",
                .value = asset_id,
-               .rule = "is not a configured asset",
+               .rule = "is not a configured asset, and no service that runs tells of it",
                .advice = suggest(asset_id, known)};
 }
 

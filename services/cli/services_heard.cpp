@@ -32,7 +32,9 @@ ServicesHeard::Service ServicesHeard::service(const std::string& name, Clock::ti
   else if (heard.processes.size() > 1)
     service.trouble = "heard from " + std::to_string(heard.processes.size()) +
                       " processes: it starts again and again, or runs twice" +
-                      (heard.last_words.empty() ? "" : "; the last to end said: " + heard.last_words);
+                      (heard.last_words.empty() || heard.last_words == heard.last.last_error
+                           ? ""
+                           : "; the last to end said: " + heard.last_words);
   else if (heard.last.state != "running")
     service.trouble = heard.last.state;
   return service;

@@ -23,7 +23,7 @@ constexpr std::chrono::milliseconds kBeatOfReaders{1200};
 
 /// Whether a service took tests of it without a file: on a bus of its own, as the last messages are heard once.
 bool is_heard_of(const std::string& config, const std::string& asset_id) {
-  constexpr std::array kTold = {Topic::sample_block, Topic::state_report, Topic::remaining_life, Topic::advisory};
+  constexpr std::array kTold = {Topic::state_report, Topic::remaining_life, Topic::advisory};
   std::optional<Session> session = open_session(config);
   if (!session || !session->bus->subscribe(kTold)) return false;
   for (const auto end = std::chrono::steady_clock::now() + kBeatOfReaders; std::chrono::steady_clock::now() < end;)

@@ -36,7 +36,7 @@ void name_replacement(Message& message) {
   const std::string own = event->header.message_id;
   if (may_report(own, event->asset_id, event->kind) && time_of_replacement(own) == time) return;
   header_of(message).message_id =
-      replacement_id(event->asset_id, event->kind, own.size() > kLongestPart ? content_hash(own) : own, time);
+      replacement_id_of(own.size() > kLongestPart ? content_hash(own) : own, event->asset_id, event->kind, time);
 }
 
 bool is_numbered(const Message& message) {

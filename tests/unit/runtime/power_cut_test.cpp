@@ -31,7 +31,7 @@ class ListeningLayer final : public CuttingLayer {
 constexpr UtcTime kReplaced{1'800'000'000'000'000'000};
 
 std::string replacement_of_round(const std::string& round) {
-  return replacement_id("XT03-MV2", "seal_replaced", round, kReplaced);
+  return replacement_id_of(round, "XT03-MV2", "seal_replaced", kReplaced);
 }
 
 Message replacement(int round) {

@@ -25,8 +25,8 @@ inline const std::vector<std::string> kReadersOfMaintenance = {"data_acquisition
 [[nodiscard]] std::optional<Session> open_for(const std::string& config, const std::string& asset_id,
                                               const std::string& who);
 
-/// Publishes one message as a stream of its own and waits until every one of `readers` has journaled it. What else
-/// comes on the bus meanwhile goes to `look`. Returns the exit status.
+/// Publishes one message as a stream of its own and waits until every one of `readers` has journaled it, and says on
+/// standard error who refused it and why. What else comes on the bus meanwhile goes to `look`. Returns the exit status.
 [[nodiscard]] int send(std::optional<Session>& session, Message message, std::vector<std::string> readers,
                        const std::function<void(const Message&)>& look = {});
 

@@ -51,8 +51,25 @@ class Lines {
   std::size_t number_ = 0;
 };
 
+/// A value that some writers put out of quotes, though JSON has no such number; "" none.
+std::string no_number_in(const std::string& line) {
+  bool quoted = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    if (line[k] == '"' && (k == 0 || line[k - 1] != '\\')) quoted = !quoted;
+    for (const char* const word : {"NaN", "-Infinity", "Infinity"})
+      if (!quoted && line.compare(k, std::string_view(word).size(), word) == 0) return word;
+  }
+  return {};
+}
+
 Result<RawSamples> block_of(const std::string& line) {
   const auto whole = nlohmann::json::parse(line, nullptr, false);
+  if (const std::string word = whole.is_discarded() ? no_number_in(line) : std::string(); !word.empty())
+    return fail(Error{.file = {},
+                      .place = {},
+                      .value = word,
+                      .rule = "is no number in JSON",
+                      .advice = R"(write "nan", "inf" or "-inf", in quotes)"});
   if (!whole.is_object() || !whole.contains("topic") || !whole.contains("message"))
     return fail(Error{.file = {},
                       .place = {},

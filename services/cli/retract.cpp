@@ -1,13 +1,20 @@
 // `sealwatch retract`: tests that must not count, or count again.
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 #include "sealwatch/core/visible_text.hpp"
+#include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/retraction.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/operator_send.hpp"
+#include "services/cli/retraction_effect.hpp"
 
 namespace sealwatch::cli {
 namespace {
+
+/// Prognosis concludes anew as soon as it has received the act.
+constexpr std::chrono::seconds kPatienceForLife{3};
 
 /// Kind and what it says, or nothing after an objection.
 std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
@@ -50,6 +57,22 @@ std::optional<MaintenanceEvent> event_of(const RetractOptions& options) {
   return std::nullopt;
 }
 
+/// Sends it, and hears what prognosis, where it tells of this asset at all, answers.
+int send_and_hear(std::optional<Session>& session, const MaintenanceEvent& event, bool is_answered,
+                  std::optional<RemainingLife>& answer) {
+  const auto look = [&](const Message& message) {
+    const auto* life = std::get_if<RemainingLife>(&message);
+    if (life != nullptr && std::ranges::count(life->header.source_ids, event.header.message_id) > 0) answer = *life;
+  };
+  const int sent = send(session, event, kReadersOfMaintenance, look);
+  if (sent != kOk || !is_answered) return sent;
+  for (const auto end = std::chrono::steady_clock::now() + kPatienceForLife;
+       !answer && std::chrono::steady_clock::now() < end;)
+    for (const BusItem& item : session->bus->receive(std::chrono::milliseconds(100)))
+      if (const auto* message = std::get_if<Message>(&item)) look(*message);
+  return sent;
+}
+
 }  // namespace
 
 int run_retract(const RetractOptions& options) {
@@ -57,8 +80,20 @@ int run_retract(const RetractOptions& options) {
   if (!event) return kBadInput;
   std::optional<Session> session = open_for(options.config, options.asset_id, options.by);
   if (!session) return kBadInput;
-  const int sent = send(session, *event, kReadersOfMaintenance);
+  const KnownTests known = known_tests(*session, options);
+  if (const auto error = objection(known, options)) {
+    complain(*error);
+    return kAnswerIsNo;
+  }
+  const bool waits = session->configuration.acts_confirmed_by_second && may_lower_an_advisory(*event);
+  const AssetConfig* const asset = session->configuration.find_asset(options.asset_id);
+  std::optional<RemainingLife> answer;
+  const int sent = send_and_hear(session, *event, !waits && asset != nullptr && asset->condition, answer);
   if (sent != kOk || says_that_it_waits(*session, *event)) return sent;
+  if (const auto error = answer ? objection(known, *answer, options) : std::nullopt) {
+    complain(*error);
+    return kAnswerIsNo;
+  }
   const bool withdrawn = event->kind == kRetractionWithdrawn;
   const char* const what = !withdrawn                              ? "these tests no longer count"
                            : time_of_replacement(options.withdraw) ? "the tests before this replacement count again"

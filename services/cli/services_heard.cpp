@@ -9,6 +9,7 @@ namespace sealwatch::cli {
 void ServicesHeard::take(const ServiceStatus& status, Clock::time_point now) {
   Heard& heard = heard_[status.service];
   heard.last = status;
+  if (status.state == "stopping" && !status.last_error.empty()) heard.last_words = status.last_error;
   heard.at = now;
   heard.processes.insert(status.process_id);
 }
@@ -29,8 +30,11 @@ ServicesHeard::Service ServicesHeard::service(const std::string& name, Clock::ti
   if (now - heard.at > kSilence)
     service.trouble = "no heartbeat for " + std::to_string(silent) + " s";
   else if (heard.processes.size() > 1)
-    service.trouble =
-        "heard from " + std::to_string(heard.processes.size()) + " processes: it starts again and again, or runs twice";
+    service.trouble = "heard from " + std::to_string(heard.processes.size()) +
+                      " processes: it starts again and again, or runs twice" +
+                      (heard.last_words.empty() || heard.last_words == heard.last.last_error
+                           ? ""
+                           : "; the last to end said: " + heard.last_words);
   else if (heard.last.state != "running")
     service.trouble = heard.last.state;
   return service;

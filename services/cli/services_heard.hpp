@@ -41,6 +41,7 @@ class ServicesHeard {
     ServiceStatus last;
     Clock::time_point at;
     std::set<std::int32_t> processes;
+    std::string last_words;  ///< why a process ended: the last error of one that stopped
   };
   [[nodiscard]] Service service(const std::string& name, Clock::time_point now) const;
 

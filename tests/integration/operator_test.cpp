@@ -338,6 +338,27 @@ TEST_F(OperatorOfAlarms, RefusesWhatCannotBeDone) {
   EXPECT_EQ(say("out-of-service", {"XT09", "--reason", "x"}).status, 2);
 }
 
+/// What means nothing, or what every service would refuse, is not told as done.
+TEST_F(Operator, IsToldThatARetractionMeansNothing) {
+  const auto retract = [&](const std::string& what, const std::string& value, const std::string& why) {
+    return run(
+        {"sealwatch", "retract", "--config", config(), "XT03-MV2", what, value, "--by", "J. Silva", "--reason", why});
+  };
+  const auto is_told = [&](const std::string& what, const std::string& value, const std::string& says) {
+    const Finished vain = retract(what, value, "wrong valve");
+    EXPECT_EQ(vain.status, 1) << vain.output;
+    EXPECT_THAT(vain.output,
+                AllOf(HasSubstr(what + ": '" + value + "'"), HasSubstr(says), Not(HasSubstr("received:"))));
+  };
+  is_told("--test", "NOSUCH", "is no test of XT03-MV2");
+  is_told("--test", "XT03-MV2-20010101T000000Z-00000000", "changes nothing");
+  is_told("--since", "2031-01-01", "changes nothing");
+  is_told("--withdraw", "retraction/XT03-MV2/since/2031-01-01T00:00:00Z/2031-01-01T00:00:00Z", "changes nothing");
+  const Finished latin = retract("--since", "2001-01-01", "falsches Ger\xe4t");
+  EXPECT_EQ(latin.status, 2) << latin.output;
+  EXPECT_THAT(latin.output, HasSubstr("is not UTF-8"));
+}
+
 /// A retraction reaches every layer: what the status says of regions and health is said anew at once.
 TEST_F(Operator, ConcludesHealthAndStateAnewWithoutARetractedTest) {
   const std::string state = state_directory("state").string();

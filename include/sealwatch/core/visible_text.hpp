@@ -15,6 +15,8 @@ namespace sealwatch {
 [[nodiscard]] bool is_visible(std::string_view text, bool several_lines = false);
 /// The same text where it is visible; else with "\xHH" for every byte that is not.
 [[nodiscard]] std::string visible(std::string_view text, bool several_lines = true);
+/// The same text without what a reader does not see: white space, control and format characters of Unicode.
+[[nodiscard]] std::string without_blanks(std::string_view text);
 /// One word of a POSIX shell: as it stands where no character of it means anything to a shell, else in single quotes.
 [[nodiscard]] std::string shell_word(std::string_view text);
 

@@ -10,10 +10,14 @@
 
 namespace sealwatch {
 
+/// `report`: what tells one report from another.
+[[nodiscard]] inline std::string replacement_id_of(const std::string& report, const std::string& asset_id,
+                                                   std::string_view kind, UtcTime replaced) {
+  return "maintenance_event/" + asset_id + "/" + std::string(kind) + "/" + report + "/" + format_utc(replaced);
+}
 [[nodiscard]] inline std::string replacement_id(const std::string& asset_id, std::string_view kind, UtcTime reported,
                                                 UtcTime replaced) {
-  return "maintenance_event/" + asset_id + "/" + std::string(kind) + "/" + format_utc(reported) + "/" +
-         format_utc(replaced);
+  return replacement_id_of(format_utc(reported), asset_id, kind, replaced);
 }
 
 /// Whether a report of that id may be one of this kind: an id of before kinds stood in it tells none.

@@ -45,6 +45,21 @@ bool is_harmless(const Letter& letter, bool several_lines) {
   return letter.valid && !control && !line_break && !turns_direction(letter.code);
 }
 
+/// Unicode 15: White_Space, Cc, Cf and Default_Ignorable_Code_Point, and the empty Braille pattern.
+constexpr std::array<std::array<std::uint32_t, 2>, 30> kBlanks = {
+    {{0x0, 0x20},        {0x7F, 0xA0},       {0xAD, 0xAD},       {0x34F, 0x34F},     {0x600, 0x605},
+     {0x61C, 0x61C},     {0x6DD, 0x6DD},     {0x70F, 0x70F},     {0x890, 0x891},     {0x8E2, 0x8E2},
+     {0x115F, 0x1160},   {0x1680, 0x1680},   {0x17B4, 0x17B5},   {0x180B, 0x180F},   {0x2000, 0x200F},
+     {0x2028, 0x202F},   {0x205F, 0x206F},   {0x2800, 0x2800},   {0x3000, 0x3000},   {0x3164, 0x3164},
+     {0xFE00, 0xFE0F},   {0xFEFF, 0xFEFF},   {0xFFA0, 0xFFA0},   {0xFFF0, 0xFFFB},   {0x110BD, 0x110BD},
+     {0x110CD, 0x110CD}, {0x13430, 0x1343F}, {0x1BCA0, 0x1BCA3}, {0x1D173, 0x1D17A}, {0xE0000, 0xE0FFF}}};
+
+bool is_blank(const Letter& letter) {
+  return letter.valid && std::ranges::any_of(kBlanks, [&](const auto& range) {
+           return range[0] <= letter.code && letter.code <= range[1];
+         });
+}
+
 }  // namespace
 
 bool is_valid_utf8(std::string_view text) {
@@ -71,6 +86,13 @@ std::string visible(std::string_view text, bool several_lines) {
     for (const char byte : text.substr(0, letter.length))
       result += text::format("\\x{:02X}", static_cast<unsigned char>(byte));
   }
+  return result;
+}
+
+std::string without_blanks(std::string_view text) {
+  std::string result;
+  for (; !text.empty(); text.remove_prefix(first_letter(text).length))
+    if (const Letter letter = first_letter(text); !is_blank(letter)) result.append(text.substr(0, letter.length));
   return result;
 }
 

@@ -22,6 +22,8 @@ constexpr std::int64_t kLatest_ns = 290 * kYear_ns;
 /// A test has fewer rows.
 constexpr std::uint64_t kMostBlocks = kTestLimits.most_numbers;
 
+constexpr const char* kHasControls = "has control characters";
+
 bool is_report(const Message& message) {
   return topic_of(message) == Topic::maintenance_event || topic_of(message) == Topic::acknowledgement;
 }
@@ -38,28 +40,11 @@ std::optional<std::int64_t> time_of_test(const Message& message) {
 }
 
 std::optional<std::string> refusal_of_texts(const Message& message) {
-  std::optional<std::string> why;
-  const std::size_t longest_words = is_of_a_service(name_of(topic_of(message))) ? std::string::npos : kLongestRemark;
-  bool is_certain = false;  // of a message's id, which others are part of, they tell more
-  std::visit(
-      [&](const auto& content) {
-        for_each_text("", content, [&](std::string_view field, const std::string& text) {
-          if (is_certain) return;
-          const bool id = names_something(field);
-          if (!is_valid_utf8(text))
-            why = "its " + std::string(field) + " is not UTF-8";
-          else if (text.size() > (id ? kLongestId : longest_words))
-            why = "its " + std::string(field) + " is longer than " + std::to_string(id ? kLongestId : longest_words) +
-                  " bytes";
-          else if (id && !is_visible(text))
-            why = "its " + std::string(field) + ", '" + visible(text) + "', has control characters";
-          else
-            return;
-          is_certain = !field.ends_with("message_id");
-        });
-      },
-      message);
-  return why ? *why + "; send it with a plain name" : why;
+  const std::optional<TextFault> fault = fault_of_texts(message);
+  if (!fault) return std::nullopt;
+  const bool shown = fault->rule == kHasControls;
+  return "its " + fault->field + (shown ? ", '" + visible(fault->text) + "', " : " ") + fault->rule +
+         "; send it with a plain name";
 }
 
 std::optional<std::string> refusal_of_samples(const Message& message) {
@@ -126,6 +111,31 @@ std::string with_its_time(const Message& message, UtcTime time) {
 }
 
 }  // namespace
+
+std::optional<TextFault> fault_of_texts(const Message& message) {
+  std::optional<TextFault> fault;
+  const std::size_t longest_words = is_of_a_service(name_of(topic_of(message))) ? std::string::npos : kLongestRemark;
+  bool is_certain = false;  // of a message's id, which others are part of, they tell more
+  std::visit(
+      [&](const auto& content) {
+        for_each_text("", content, [&](std::string_view field, const std::string& text) {
+          if (is_certain) return;
+          const bool id = names_something(field);
+          const std::size_t longest = id ? kLongestId : longest_words;
+          if (!is_valid_utf8(text))
+            fault = {std::string(field), text, "is not UTF-8"};
+          else if (text.size() > longest)
+            fault = {std::string(field), text, "is longer than " + std::to_string(longest) + " bytes"};
+          else if (id && !is_visible(text))
+            fault = {std::string(field), text, kHasControls};
+          else
+            return;
+          is_certain = !field.ends_with("message_id");
+        });
+      },
+      message);
+  return fault;
+}
 
 void Admission::note(const Message& message, bool concluded) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
@@ -227,6 +237,9 @@ std::optional<std::string> Admission::refusal_of_future_act(const Message& messa
 }
 
 std::optional<std::string> Admission::refusal_of_test(const RawSamples& raw) const {
+  if (raw.asset_id.empty())
+    return (raw.recording_id.empty() ? "a test" : "recording " + raw.recording_id) +
+           ": its asset_id is empty; say of which asset it is";
   if (raw.block_number > kMostBlocks)
     return name_of_test(raw) + ": block " + std::to_string(raw.block_number) + " is none of a test: they count from 0";
   if (is_made_up(raw.source_id) && recorded_.contains(raw.asset_id))

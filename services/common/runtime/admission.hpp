@@ -37,6 +37,14 @@ inline constexpr std::size_t kLongestId = 500;  ///< bytes
 inline constexpr std::size_t kLongestRemark = 4000;
 inline constexpr std::size_t kMostUnknownAssets = 64;
 
+/// A text that no service takes: not UTF-8, too long, or an id that is not one visible line.
+struct TextFault {
+  std::string field;  ///< "remark"
+  std::string text;
+  std::string rule;  ///< "is not UTF-8"
+};
+[[nodiscard]] std::optional<TextFault> fault_of_texts(const Message& message);
+
 /// Which assets the configuration names, and whether it wants no others.
 struct ConfiguredAssets {
   std::set<std::string> names = {};

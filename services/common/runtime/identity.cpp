@@ -1,6 +1,8 @@
 #include "services/common/runtime/identity.hpp"
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/message/replacement_id.hpp"
+#include "sealwatch/message/retraction.hpp"
 #include "services/common/message/json.hpp"
 
 namespace sealwatch {
@@ -16,7 +18,26 @@ std::string content_of(const Message& message) {
   return content;
 }
 
+/// What is reported with its time, where that is a replacement.
+const MaintenanceEvent* as_replacement(const Message& message) {
+  const auto* event = std::get_if<MaintenanceEvent>(&message);
+  return event != nullptr && is_replacement(*event) && event->header.event_time_known ? event : nullptr;
+}
+
+/// An id of a stranger's that is part of ours stays well below the longest one.
+constexpr std::size_t kLongestPart = 200;
+
 }  // namespace
+
+void name_replacement(Message& message) {
+  const MaintenanceEvent* const event = as_replacement(message);
+  if (event == nullptr || event->header.message_id.empty()) return;
+  const UtcTime time{event->header.event_time_ns};
+  const std::string own = event->header.message_id;
+  if (may_report(own, event->asset_id, event->kind) && time_of_replacement(own) == time) return;
+  header_of(message).message_id =
+      replacement_id_of(own.size() > kLongestPart ? content_hash(own) : own, event->asset_id, event->kind, time);
+}
 
 bool is_numbered(const Message& message) {
   const Header& header = header_of(message);
@@ -38,12 +59,14 @@ std::optional<std::string> identify(const Message& message, const EarlierInputs&
     if (earlier.has(own)) return std::nullopt;
     return own;
   }
-  const std::string base =
-      std::string(name_of(topic_of(message))) + "/" + asset_of(message) + "/" + content_hash(content_of(message));
+  const MaintenanceEvent* const replacement = as_replacement(message);
+  const std::string end = replacement ? "/" + format_utc({replacement->header.event_time_ns}) : std::string();
+  const std::string base = std::string(name_of(topic_of(message))) + "/" + asset_of(message) + "/" +
+                           (replacement ? replacement->kind + "/" : std::string()) + content_hash(content_of(message));
   const std::string last = earlier.last_unnumbered(topic_of(message), asset_of(message));
-  if (last == base || last.starts_with(base + "#")) return std::nullopt;
-  std::string id = base;
-  for (int count = 2; earlier.has(id); ++count) id = base + "#" + std::to_string(count);
+  if (last == base + end || last.starts_with(base + "#")) return std::nullopt;
+  std::string id = base + end;
+  for (int count = 2; earlier.has(id); ++count) id = base + "#" + std::to_string(count) + end;
   return id;
 }
 

@@ -22,9 +22,14 @@ struct EarlierInputs {
   std::function<std::string(Topic topic, const std::string& asset_id)> last_unnumbered;
 };
 
-/// The id of an input: its own; else, for a sender that gives none, "<topic>/<asset>/<hash of content>", with "#2",
-/// "#3" behind it for later messages of equal content. Nothing when the message was received before: a sender's
-/// last message comes again whenever a service restarts.
+/// The layers know a replacement again, and it can be taken back, by an id as replacement_id.hpp makes it: that of a
+/// sender with ids of its own ("cmms-4711") becomes part of one.
+void name_replacement(Message& message);
+
+/// The id of an input: its own; else, for a sender that gives none, "<topic>/<asset>/<hash of content>", of a
+/// replacement with kind and time as name_replacement() has them, with "#2", "#3" behind the hash for later messages of
+/// equal content. Nothing when the message was received before: a sender's last message comes again whenever a service
+/// restarts.
 [[nodiscard]] std::optional<std::string> identify(const Message& message, const EarlierInputs& earlier);
 
 }  // namespace sealwatch

@@ -62,6 +62,7 @@ InProcessPipeline::~InProcessPipeline() = default;
 
 void InProcessPipeline::push(const Message& message) {
   waiting_.push_back(without_stamps(message));
+  name_replacement(waiting_.back());
   while (!waiting_.empty() && !is_over_()) {
     const Message next = std::move(waiting_.front());
     waiting_.pop_front();

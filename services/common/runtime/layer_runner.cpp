@@ -92,7 +92,12 @@ Status LayerRunner::run(const std::atomic<bool>& stop) {
     const auto until_next_second =
         std::chrono::duration_cast<std::chrono::milliseconds>(last_second_ + kSecond - steady_clock::now());
     const auto timeout = std::clamp(until_next_second, std::chrono::milliseconds(1), kSecond);
-    if (Status status = step(timeout); !status) return status;
+    if (Status status = step(timeout); !status) {
+      // The last heartbeat says why: who looks hears of a service that starts again and again.
+      note_error(status.error().describe());
+      if (heartbeat_) heartbeat_->update([this](ServiceStatus& last) { last.last_error = last_error_; });
+      return status;
+    }
   }
   return {};
 }
@@ -197,6 +202,7 @@ Result<std::optional<std::string>> LayerRunner::identify_input(const Message& me
 }
 
 Status LayerRunner::take(Message message) {
+  name_replacement(message);
   const Header& header = header_of(message);
   StreamPosition stream;
   if (is_numbered(message)) {

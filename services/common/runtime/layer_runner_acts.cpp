@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/confirmation.hpp"
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
@@ -24,12 +25,10 @@ std::string who_said(const Message& message) {
   return act ? act->who : std::string();
 }
 
-/// "J. Silva " and "j. silva" are one person.
+/// "J. Silva " and "j. silva" are one person, whatever kind of space it is.
 std::string plain(const std::string& who) {
-  std::string name;
-  for (const char letter : who)
-    if (std::isspace(static_cast<unsigned char>(letter)) == 0)
-      name += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  std::string name = without_blanks(who);
+  for (char& letter : name) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   return name;
 }
 
@@ -92,6 +91,7 @@ std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& m
   const auto waiting = awaiting_.find(*act_id);
   if (waiting == awaiting_.end() || asset_of(*waiting->second) != asset_of(message))
     return "nothing of the id '" + *act_id + "' waits for a confirmation";
+  if (plain(who_said(message)).empty()) return "it does not say who; give a name";
   if (!rejects(message) && plain(who_said(message)) == plain(who_said(*waiting->second)))
     return who_said(message) + " said so in the first place; it takes another person to confirm it";
   return std::nullopt;

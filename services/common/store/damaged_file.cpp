@@ -1,6 +1,7 @@
 #include "services/common/store/damaged_file.hpp"
 
-#include <array>
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -10,19 +11,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic("SQLite format 3\0", 16);
-/// A turned bit or two in the magic leave more of it than this.
-constexpr int kMagicLeft = 12;
+/// Where SQLite's header says who may read and write the file: 1 and 2 all that know its two kinds of log, more only a
+/// later SQLite.
+constexpr std::streamoff kVersions = 18;
 
 /// What stands beside a file that is to be moved aside when it is opened next.
 std::string mark_of(const std::string& file) { return file + ".damaged"; }
 
-bool was_a_database(const std::string& file) {
-  std::array<char, kMagic.size()> begin{};
-  std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
-  int same = 0;
-  for (std::size_t k = 0; k < kMagic.size(); ++k) same += begin[k] == kMagic[k] ? 1 : 0;
-  return same >= kMagicLeft;
+/// Whether this user may read, write and move it: what SQLite cannot do then lies in the file.
+bool is_in_our_hands(const std::string& file) {
+  const fs::path directory = fs::path(file).parent_path();
+  return ::access(file.c_str(), R_OK | W_OK) == 0 &&
+         ::access(directory.empty() ? "." : directory.c_str(), W_OK | X_OK) == 0;
+}
+
+/// SQLite takes such a file for one of its future, and writes nothing to it.
+bool is_of_no_version(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(kVersions);
+  const int write = stream.get(), read = stream.get();
+  return stream.good() && (write > 2 || read > 2);
 }
 
 }  // namespace
@@ -33,7 +41,8 @@ bool is_damage(const std::string& file, std::string_view complaint) {
   const bool damaged = says("malformed") || says("corrupt") || says("not a database") ||
                        says("unsupported file format") || says("no such table") || says("no such column") ||
                        says("Cannot convert") || says("Null value fetched");
-  return damaged && was_a_database(file);
+  const bool is_left_alone = says("readonly") && is_of_no_version(file);
+  return (damaged || is_left_alone) && is_in_our_hands(file);
 }
 
 void note_damage(const std::string& file) { std::ofstream(mark_of(file)) << "\n"; }

@@ -8,7 +8,8 @@
 
 namespace sealwatch {
 
-/// Whether the complaint says so of this file. One that never was a database is no damage: somebody named a wrong file.
+/// Whether the complaint says so of this file. One that this user may not write to is no damage. One that never was a
+/// database is: it cannot be told from a journal whose first page was lost, and moving it aside loses nothing.
 [[nodiscard]] bool is_damage(const std::string& file, std::string_view complaint);
 /// So that the next to open the file knows: damage may lie where nothing is read at the start.
 void note_damage(const std::string& file);

@@ -64,6 +64,15 @@ TEST_F(Listening, NamesAServiceThatStartsAgainAndAgainOrStops) {
   EXPECT_FALSE(heard_.all_well(now_));
 }
 
+TEST_F(Listening, TellsWhyAServiceStartsAgainAndAgain) {
+  heard_.take(beat("data_acquisition", 7), now_);
+  ServiceStatus last = beat("data_acquisition", 7, "stopping");
+  last.last_error = "database or disk is full";
+  heard_.take(last, now_);
+  heard_.take(beat("data_acquisition", 9), now_);
+  EXPECT_THAT(line(0), HasSubstr("runs twice; the last to end said: database or disk is full"));
+}
+
 TEST_F(Listening, ListsAServiceThatIsNotExpectedHereWithoutAskingForIt) {
   heard_.take(beat("data_acquisition", 7), now_);
   heard_.take(beat("health_assessment", 8), now_);

@@ -32,6 +32,13 @@ TEST(VisibleText, ShowsWhatATerminalWouldObey) {
   }
 }
 
+TEST(WithoutBlanks, LeavesWhatAReaderSees) {
+  EXPECT_EQ(without_blanks(" J.\t Silva\n"), "J.Silva");
+  EXPECT_EQ(without_blanks("J.\u00a0Si\u00adlva\u200b\u3000\ufeff\U000E0020"), "J.Silva");
+  EXPECT_EQ(without_blanks("Müller-Łoś \xFC"), "Müller-Łoś\xFC") << "what is no UTF-8 stays";
+  EXPECT_EQ(without_blanks("\u2060\u00a0"), "");
+}
+
 TEST(ShellWord, IsOneWordAndNothingIsObeyed) {
   EXPECT_EQ(shell_word("recommendation/XT03-MV2-20310412T030000Z-1a2b3c4d"),
             "recommendation/XT03-MV2-20310412T030000Z-1a2b3c4d");

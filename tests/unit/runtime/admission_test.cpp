@@ -207,6 +207,12 @@ TEST(AdmissionOfSamples, ABlockOrWindowOfAStrangerKeepsTheLimits) {
   EXPECT_THAT(refusal(window), HasSubstr("rows 5e-12 s apart"));
 }
 
+TEST(AdmissionOfSamples, ATestOfNoAssetIsRefusedByName) {
+  RawSamples block;
+  block.recording_id = "april";
+  EXPECT_EQ(refusal(block), "recording april: its asset_id is empty; say of which asset it is");
+}
+
 TEST(AdmissionOfSamples, BlocksOfATestCountFromZero) {
   RawSamples raw = live_test("2031-04-10T00:00:00Z");
   raw.block_number = std::numeric_limits<std::uint64_t>::max();

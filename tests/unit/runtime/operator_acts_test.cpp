@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "sealwatch/message/confirmation.hpp"
+#include "sealwatch/message/replacement_id.hpp"
 #include "services/common/store/quarantine_desk.hpp"
 #include "tests/unit/runtime/harness.hpp"
 
@@ -106,6 +107,30 @@ TEST_F(ActsTest, EachIsRecordedOnceWithWhoAndWhat) {
   EXPECT_EQ(acts()[2].act.kind, "model_revoked");
   EXPECT_THAT(acts()[2].act.text, HasSubstr("model_discrepancy/7"));
   EXPECT_FALSE(find_break("advisory_generation", acts()));
+}
+
+/// As a maintenance system reports it, by ids of its own or by none: what stands in the record can be taken back.
+TEST_F(ActsTest, AReplacementUnderAForeignIdIsKnownByItsKindAndTime) {
+  const auto process = start();
+  const UtcTime at = add_months(process->clock().now(), -1.0);
+  MaintenanceEvent event = replaced("CMMS", at);
+  for (const std::string own : {"cmms-4711", "", "maintenance_event/7"}) {
+    event.header.message_id = own;
+    say(*process, event);
+    say(*process, event);  // the same message again
+    ASSERT_FALSE(acts().empty());
+    const std::string id = acts().back().act.subject;
+    EXPECT_EQ(time_of_replacement(id), at) << id;
+    EXPECT_TRUE(may_report(id, "A", "seal_replaced")) << id;
+    EXPECT_THAT(id, HasSubstr(own));
+  }
+  EXPECT_THAT(acts(), SizeIs(3));
+  MaintenanceEvent withdrawn = replaced("J. Silva", process->clock().now());
+  withdrawn.kind = kRetractionWithdrawn;
+  withdrawn.header.message_id =
+      retraction_id("A", kRetractionWithdrawn, acts().front().act.subject, process->clock().now());
+  say(*process, withdrawn);
+  EXPECT_EQ(acts().back().act.outcome, "taken");
 }
 
 /// Each service tells its last entry, and keeps what others tell: who cuts off an end would have to cut all.
@@ -314,6 +339,17 @@ TEST_F(SecondPerson, NothingComesOfAnActUntilAnotherPersonConfirmsIt) {
   EXPECT_THAT(acts()[1].act.outcome, HasSubstr("it takes another person"));
   EXPECT_EQ(acts()[2].act.outcome, "taken");
   EXPECT_THAT(acts()[3].act.outcome, HasSubstr("waits for a confirmation"));
+}
+
+TEST_F(SecondPerson, IsNoneByASpaceThatNobodySees) {
+  const auto process = start(asking());
+  say(*process, replaced_);
+  for (const char* const who :
+       {"J.\u00a0Silva", "J. Silva\u00a0", "\u200bJ. Silva", "J. Si\u00adlva", "J. Silva\ufeff", " \u3000"})
+    say(*process, confirmation(replaced_, who));
+  EXPECT_TRUE(process->outputs().empty());
+  say(*process, confirmation(replaced_, "M. Okoye"));
+  EXPECT_THAT(process->outputs(), SizeIs(1));
 }
 
 TEST_F(SecondPerson, ARestartChangesNothing) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "sealwatch/message/replacement_id.hpp"
 #include "services/common/runtime/confirmed_positions.hpp"
 #include "tests/unit/runtime/harness.hpp"
 
@@ -27,13 +28,19 @@ class ListeningLayer final : public CuttingLayer {
   static constexpr std::array kAll = {Topic::raw_samples, Topic::maintenance_event};
 };
 
+constexpr UtcTime kReplaced{1'800'000'000'000'000'000};
+
+std::string replacement_of_round(const std::string& round) {
+  return replacement_id_of(round, "XT03-MV2", "seal_replaced", kReplaced);
+}
+
 Message replacement(int round) {
   MaintenanceEvent event;
   event.asset_id = "XT03-MV2";
   event.kind = "seal_replaced";
-  event.header = header("maintenance_event/" + std::to_string(round), "");
+  event.header = header(replacement_of_round(std::to_string(round)), "");
   event.header.event_time_known = true;
-  event.header.event_time_ns = 1'800'000'000'000'000'000 + round;
+  event.header.event_time_ns = kReplaced.nanoseconds;
   event.header.writer_id = "operator-" + std::to_string(round);
   event.header.stream_sequence = 1;
   return event;
@@ -86,7 +93,7 @@ class Listener {
     if (position.writer_id == "sender")
       note("raw_samples/numbered " + std::to_string(position.sequence - 1));
     else if (position.writer_id.starts_with("operator-"))
-      note("maintenance_event/" + position.writer_id.substr(9));
+      note(replacement_of_round(position.writer_id.substr(9)));
   }
   void note(const std::string& id) {
     if (confirmed_.insert(id).second) disk_.confirm(id);

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 
+#include "sealwatch/message/replacement_id.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "tests/unit/runtime/harness.hpp"
 
@@ -564,7 +565,9 @@ TEST_F(RunnerTest, RefusesAReplacementFromTheFutureUnlessTheTestsAreFromThereToo
   ASSERT_TRUE(sender.publish(Message(undated)));
   step(*process, 3);
   ASSERT_THAT(process->outputs(), SizeIs(1));
-  EXPECT_EQ(header_of(process->outputs()[0]).message_id, "state_report/maintenance_event/clock ahead");
+  EXPECT_EQ(header_of(process->outputs()[0]).message_id,
+            "state_report/" +
+                replacement_id_of("maintenance_event/clock ahead", "A", "seal_replaced", {now_ns + kDay_ns / 2}));
 
   TestFeatures simulated;
   simulated.asset_id = "A";

@@ -431,5 +431,58 @@ TEST_F(Mend, AFileThatIsNoDatabaseAnyMoreIsMadeAgain) {
   }
 }
 
+/// The file as it is closed, without its log; each time from the beginning.
+class Header100 : public Mend {
+ protected:
+  Header100() : file_(place_.directory() / "journal.db") {
+    static_cast<void>(open());  // closed again, with its log in the file
+    soci::session(place_.connection()) << "PRAGMA wal_checkpoint(TRUNCATE)";
+    std::ifstream stream(file_, std::ios::binary);
+    whole_.assign(std::istreambuf_iterator<char>(stream), {});
+  }
+  /// Whether the service starts, with its own rows or the file moved aside, and writes: at the latest after it found
+  /// while writing what it had not read before.
+  void expect_start(const std::string& bytes) const {
+    for (const auto& entry : std::filesystem::directory_iterator(place_.directory()))
+      std::filesystem::remove(entry.path());
+    std::ofstream(file_, std::ios::binary) << bytes;
+    for (int start = 0; start < 3; ++start) {
+      auto journal = Journal::open(place_.connection(), kService);
+      ASSERT_TRUE(journal.has_value()) << journal.error().describe();
+      const bool is_new = std::filesystem::exists(file_.string() + ".damaged-1");
+      EXPECT_THAT(outputs(*journal), SizeIs(is_new ? 0 : 2));
+      Status written = journal->begin();
+      if (written) written = journal->add_input(features(10 + start), UtcTime{}, false);
+      if (written) written = journal->commit();
+      EXPECT_TRUE(written || start == 0) << written.error().describe();
+    }
+    EXPECT_FALSE(std::filesystem::exists(file_.string() + ".damaged-2"));
+  }
+  std::filesystem::path file_;
+  std::string whole_;
+};
+
+TEST_F(Header100, EveryTurnedBitLeavesAServiceThatStarts) {
+  for (std::size_t byte = 0; byte < 100; ++byte)
+    for (int bit = 0; bit < 8; ++bit) {
+      SCOPED_TRACE(std::to_string(byte) + "." + std::to_string(bit));
+      std::string bytes = whole_;
+      bytes[byte] = static_cast<char>(bytes[byte] ^ (1 << bit));
+      expect_start(bytes);
+    }
+}
+
+TEST_F(Header100, NorDoesALostPageOrFileKeepItFromStarting) {
+  std::string bytes = whole_;
+  std::fill_n(bytes.begin(), 1024, '\0');
+  expect_start(bytes);
+  expect_start(std::string(whole_.size(), '\0'));
+  bytes = whole_;
+  bytes.replace(0, 16, "\x8d\x11\xfe\x03\x5a\xc7\x90\x2b\xee\x71\x04\xb8\x3f\xd2\x66\xa9");
+  expect_start(bytes);
+  bytes.replace(16, 84, 84, '\xa7');
+  expect_start(bytes);
+}
+
 }  // namespace
 }  // namespace sealwatch

@@ -63,15 +63,23 @@ TEST(JournalFile, APathWithSpacesIsOne) {
   EXPECT_TRUE(std::filesystem::exists(file));
 }
 
-TEST(JournalFile, ThatIsNoDatabaseIsRefusedAndLeftAlone) {
+TEST(JournalFile, ThatIsNoDatabaseIsMovedAsideWhole) {
   const Place place;
   const std::string text(5000, 'x');
   std::ofstream(place.directory() / "journal.db") << text;
   const auto journal = Journal::open(place.connection(), "state_detection");
-  ASSERT_FALSE(journal.has_value());
-  EXPECT_THAT(journal.error().describe(), HasSubstr("not a database"));
-  EXPECT_THAT(journal.error().advice, HasSubstr("restore a backup, or move the file aside"));
-  EXPECT_EQ(std::filesystem::file_size(place.directory() / "journal.db"), text.size());
+  ASSERT_TRUE(journal.has_value()) << journal.error().describe();
+  EXPECT_EQ(std::filesystem::file_size(place.directory() / "journal.db.damaged-1"), text.size());
+}
+
+TEST(JournalFile, ThatThisUserMayNotWriteToIsNoDamage) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const Place place;
+  const std::filesystem::path file = place.directory() / "journal.db";
+  std::ofstream(file) << std::string(5000, 'x');
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+  EXPECT_FALSE(Journal::open(place.connection(), "state_detection").has_value());
+  EXPECT_FALSE(std::filesystem::exists(file.string() + ".damaged-1"));
 }
 
 TEST(JournalFile, InNoDirectoryNamesThePlace) {

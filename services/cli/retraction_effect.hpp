@@ -1,0 +1,32 @@
+// What an act of `sealwatch retract` means, before it is sent, and whether it changed anything, after it: by what the
+// services tell on the bus, and by their journals where these lie on this machine.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "services/cli/commands.hpp"
+#include "services/cli/session.hpp"
+
+namespace sealwatch::cli {
+
+struct KnownTests {
+  bool complete = false;  ///< all are known: the journals are those of the services that run
+  std::map<std::string, std::optional<UtcTime>> tests = {};  ///< by PST id
+  std::set<std::string> in_force = {};                       ///< ids of retractions and replacements
+  std::optional<RemainingLife> life = {};                    ///< the last on the bus
+};
+
+/// Listens for about the time of a heartbeat, and reads the journals.
+[[nodiscard]] KnownTests known_tests(Session& session, const RetractOptions& options);
+
+/// Why the act means nothing: a test that is none of the asset, a date without tests since, nothing to withdraw.
+[[nodiscard]] std::optional<Error> objection(const KnownTests& known, const RetractOptions& options);
+
+/// The same, after prognosis answered it: it concludes from the same tests as before. Nothing where that cannot be told.
+[[nodiscard]] std::optional<Error> objection(const KnownTests& known, const RemainingLife& answer,
+                                             const RetractOptions& options);
+
+}  // namespace sealwatch::cli

@@ -21,7 +21,7 @@ constexpr const char* kProducer = "state_detection 0.1.0";
 /// An asset whose test has been overdue for longer is not in live operation: old recordings are being taken in.
 constexpr double kLongestSilence_months = 12.0;
 /// The tests of a history that is played back follow each other faster.
-constexpr double kReplayIsOver_s = 60.0;
+constexpr double kReplayIsOver_s = 600.0;
 
 void add_source(Header& header, const Header& source) {
   const auto add = [&header](const std::string& id) {

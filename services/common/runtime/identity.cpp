@@ -64,6 +64,10 @@ std::optional<std::string> identify(const Message& message, const EarlierInputs&
   const std::string base = std::string(name_of(topic_of(message))) + "/" + asset_of(message) + "/" +
                            (replacement ? replacement->kind + "/" : std::string()) + content_hash(content_of(message));
   const std::string last = earlier.last_unnumbered(topic_of(message), asset_of(message));
+  // Earlier versions kept a replacement without its kind and time.
+  if (replacement && earlier.has(std::string(name_of(topic_of(message))) + "/" + asset_of(message) + "/" +
+                                 content_hash(content_of(message))))
+    return std::nullopt;
   if (last == base + end || last.starts_with(base + "#")) return std::nullopt;
   std::string id = base + end;
   for (int count = 2; earlier.has(id); ++count) id = base + "#" + std::to_string(count) + end;

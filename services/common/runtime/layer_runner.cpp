@@ -78,6 +78,7 @@ Status LayerRunner::start() {
   status.started_ns = started_ns_;
   status.process_id = ::getpid();
   status.state = forgotten_.empty() ? "running" : kRestoring;
+  status.written = position_of_acts();  // the first heartbeat tells it, which others compare with their own record
   Heartbeat::Options beats = options_.heartbeat;
   const bool takes_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
   auto confirmed = std::make_shared<ConfirmedPositions>(journal_.to_disk(), takes_samples);
@@ -201,8 +202,17 @@ Result<std::optional<std::string>> LayerRunner::identify_input(const Message& me
   return id;
 }
 
+/// A replacement that an earlier version kept under the id that it came with has that id still.
+Status LayerRunner::name_as_kept(Message& message) {
+  if (topic_of(message) != Topic::maintenance_event) return {};
+  const auto known = journal_.has_input(header_of(message).message_id);
+  if (!known) return fail(known.error());
+  if (!*known) name_replacement(message);
+  return {};
+}
+
 Status LayerRunner::take(Message message) {
-  name_replacement(message);
+  if (Status named = name_as_kept(message); !named) return named;
   const Header& header = header_of(message);
   StreamPosition stream;
   if (is_numbered(message)) {
@@ -376,13 +386,17 @@ bool LayerRunner::may_be_on_its_way(const std::string& asset_id) {
 // With its time: it stays in the status until another one comes.
 void LayerRunner::note_error(const std::string& text) { last_error_ = format_utc(clock_.now()) + " " + text; }
 
+std::vector<StreamPosition> LayerRunner::position_of_acts() const {
+  if (last_act_.sequence == 0) return {};
+  return {{kActsTopic, last_act_.hash, static_cast<std::uint64_t>(last_act_.sequence)}};
+}
+
 void LayerRunner::report_progress() {
   if (!heartbeat_) return;  // the past is still being restored
   std::vector<StreamPosition> written;
   for (const auto& [topic, sequence] : journal_.written())
     written.push_back({std::string(name_of(topic)), journal_.writer_id(), sequence});
-  if (last_act_.sequence > 0)
-    written.push_back({kActsTopic, last_act_.hash, static_cast<std::uint64_t>(last_act_.sequence)});
+  std::ranges::copy(position_of_acts(), std::back_inserter(written));
   std::vector<StreamPosition> received;
   for (const Key& stream : reader_->active()) {
     const auto position = committed_.find(stream);

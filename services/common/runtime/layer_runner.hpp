@@ -127,12 +127,14 @@ class LayerRunner {
   void sort_in(Message message);
   void sort_in(const ServiceStatus& status);
   void sort_in(const ResendRequest& request);
+  [[nodiscard]] Result<KnownInput> known_as(const Message& message);
   void note_reused_number(const Message& message);
   void start_anew(const Key& stream);
   /// Runs `work` inside a transaction and publishes what it concluded.
   [[nodiscard]] Status in_batch(const std::function<Status()>& work, Survives survives = Survives::kills);
   [[nodiscard]] Survives batch_survives() const;
   [[nodiscard]] Status take_ready();
+  [[nodiscard]] Status name_as_kept(Message& message);
   [[nodiscard]] Status take(Message message);
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
   /// Gives the lanes a moment to conclude from what was taken.
@@ -151,6 +153,7 @@ class LayerRunner {
   bool publish(Message& message, std::string_view event);
   void send_outbox();
   void note_error(const std::string& text);
+  [[nodiscard]] std::vector<StreamPosition> position_of_acts() const;
   void report_progress();
 
   // The past (layer_runner_past.cpp).

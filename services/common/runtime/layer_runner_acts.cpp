@@ -169,7 +169,8 @@ void LayerRunner::hear_of_acts(const ServiceStatus& status) {
   const bool is_first = first_heard_.insert(status.service).second;
   for (const StreamPosition& told : status.written) {
     if (told.topic != kActsTopic || told.writer_id.size() != kHashLength) continue;
-    if (is_first && told.sequence > 0) has_older_acts_ = status.service;
+    const bool is_older = is_first && told.sequence > 0 && last_act_.sequence == 0;
+    if (is_older) has_older_acts_ = status.service;
     const AuditAnchor heard{status.service, static_cast<std::int64_t>(told.sequence), told.writer_id};
     AuditAnchor& last = heard_acts_[status.service];
     if (heard == last) continue;

@@ -50,6 +50,16 @@ void LayerRunner::sort_in(Message message) {
   for (Message& next : reader_->accept(std::move(message))) ready_.push_back(std::move(next));
 }
 
+/// A replacement that came under another system's id is kept under one of ours, and by earlier versions as it came.
+Result<KnownInput> LayerRunner::known_as(const Message& message) {
+  auto as_it_came = journal_.known_input(message);
+  Message named = message;
+  name_replacement(named);
+  const bool same_name = header_of(named).message_id == header_of(message).message_id;
+  if (!as_it_came || *as_it_came == KnownInput::same || same_name) return as_it_came;
+  return journal_.known_input(named);
+}
+
 /// A number that was read and committed, with another message: the writer's journal was restored from a
 /// backup, and its numbers count anew. (Of raw samples a refused one is not kept; who sends them is no journal.)
 void LayerRunner::note_reused_number(const Message& message) {
@@ -58,7 +68,7 @@ void LayerRunner::note_reused_number(const Message& message) {
   const auto committed = committed_.find(stream);
   if (topic_of(message) == Topic::raw_samples || committed == committed_.end()) return;
   if (header.stream_sequence > committed->second || header.message_id.empty()) return;
-  const auto known = journal_.known_input(message);
+  const auto known = known_as(message);
   if (!known) return;
   if (*known == KnownInput::same)
     reader_->note_known(message);

@@ -8,6 +8,8 @@
 
 #include "sealwatch/message/confirmation.hpp"
 #include "sealwatch/message/replacement_id.hpp"
+#include "services/common/runtime/identity.hpp"
+#include "services/common/store/journal.hpp"
 #include "services/common/store/quarantine_desk.hpp"
 #include "tests/unit/runtime/harness.hpp"
 
@@ -131,6 +133,33 @@ TEST_F(ActsTest, AReplacementUnderAForeignIdIsKnownByItsKindAndTime) {
       retraction_id("A", kRetractionWithdrawn, acts().front().act.subject, process->clock().now());
   say(*process, withdrawn);
   EXPECT_EQ(acts().back().act.outcome, "taken");
+}
+
+/// Earlier versions kept a replacement as it came. After the update its sender's last message comes again, as all that
+/// are retained do: it is the one that is known, and restarts no history.
+TEST_F(ActsTest, AReplacementThatAnEarlierVersionKeptIsNotTakenAgain) {
+  const UtcTime at = parse_utc("2020-05-01T00:00:00Z").value();
+  MaintenanceEvent event = replaced("CMMS", at);
+  event.header.message_id.clear();
+  const EarlierInputs none{.has = [](const std::string&) { return false; },
+                           .last_unnumbered = [](Topic, const std::string&) { return std::string(); }};
+  const std::string begin = "maintenance_event/A/seal_replaced/", now = identify(event, none).value();
+  ASSERT_TRUE(now.starts_with(begin));
+  const std::string hash = now.substr(begin.size(), now.find('/', begin.size()) - begin.size());
+  const std::string as_it_was_named = "maintenance_event/A/" + hash;
+  for (const std::string& id : {std::string("cmms-4711"), as_it_was_named}) {
+    auto journal = Journal::open(place_.connection(), "advisory_generation");
+    MaintenanceEvent kept = event;
+    kept.header.message_id = id;
+    ASSERT_TRUE(journal->begin());
+    ASSERT_TRUE(journal->add_input(kept, at, true));
+    ASSERT_TRUE(journal->commit());
+  }
+  const auto process = start();
+  say(*process, event);
+  event.header.message_id = "cmms-4711";
+  say(*process, event);
+  EXPECT_THAT(acts(), IsEmpty());
 }
 
 /// Each service tells its last entry, and keeps what others tell: who cuts off an end would have to cut all.

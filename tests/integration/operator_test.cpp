@@ -387,11 +387,10 @@ TEST_F(Operator, IsToldThatALostJournalForgotARetractionAndSaysItAgain) {
   const std::string pst_id = shown["message"]["header"]["pst_id"];
   const auto retract = [&] {
     return run({"sealwatch", "retract", "--config", config(), "XT03-MV2", "--test", pst_id, "--by", "J. Silva",
-                "--reason", "wrong valve"})
-        .status;
+                "--reason", "wrong valve"});
   };
   const auto status = [&] { return run({"sealwatch", "status", "--config", config()}); };
-  ASSERT_EQ(retract(), 0);
+  ASSERT_EQ(retract().status, 0);
   kill(up_, SIGTERM);
   waitpid(up_, nullptr, 0);
   for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(state + "/prognostic_assessment.db" + end);
@@ -404,7 +403,8 @@ TEST_F(Operator, IsToldThatALostJournalForgotARetractionAndSaysItAgain) {
                                  HasSubstr("sealwatch quarantine retry journal/prognostic_assessment --by NAME")));
   EXPECT_THAT(run({"sealwatch", "audit", "--state", state}).output, HasSubstr("retraction/XT03-MV2/test/" + pst_id))
       << "the neighbours know what is to be said again";
-  EXPECT_EQ(retract(), 0);
+  const Finished again = retract();
+  EXPECT_EQ(again.status, 0) << again.output;
   EXPECT_EQ(
       run({"sealwatch", "quarantine", "retry", "journal/prognostic_assessment", "--by", "J. Silva", "--state", state})
           .status,

@@ -179,10 +179,10 @@ TEST_F(DaemonTest, RefusesABadConfigurationBeforeAnythingStarts) {
 }
 
 TEST_F(DaemonTest, EndsWithInternalFailureWhenItsJournalIsNone) {
-  place_.write("state/data_acquisition.db", std::string(5000, 'x'));
+  std::filesystem::create_directories(place_.directory() + "/state/data_acquisition.db");
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(run(usual()), 3);
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("not a database"));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("data_acquisition.db"));
 }
 
 TEST_F(DaemonTest, AnswersQuestionsAndRefusesWhatItDoesNotKnow) {

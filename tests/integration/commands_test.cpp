@@ -632,11 +632,13 @@ class EndAtSigterm : public Commands {
 
 TEST_F(EndAtSigterm, EveryCommandThatComputesOrWaits) {
   const auto [recording, truth] = worn_test();
-  const std::string falling = history(60, 0.003), out = (folder_ / "out").string();
+  const std::string other = (folder_ / "other_life.csv").string(), out = (folder_ / "out").string();
+  std::filesystem::rename(history(60, 0.002), other);
+  const std::string falling = history(60, 0.003);
   const fmi::TestFolder fmus;
   const std::string hanging = fmus.build(fmi::spring_return("fmu_spring_hang2"));
   std::vector<std::string> fit = {"fit", "--asset", asset()};
-  fit.insert(fit.end(), 40, recording);
+  fit.insert(fit.end(), 400, recording);
   std::vector<std::string> explain = {"explain", "--asset", asset(), "--out", out + "5", "--fit"};
   std::ifstream recorded(recording);
   std::string rows{std::istreambuf_iterator<char>(recorded), {}};
@@ -659,7 +661,7 @@ TEST_F(EndAtSigterm, EveryCommandThatComputesOrWaits) {
       {{"plant", "import", hanging, "--out", out + "8.yaml"}},
       {{"replay", "--offline", "--config", config(), recording}, 200, false},
       {{"replay", "--with-services", "--config", config(), "--state", out + "9", "--speed", "1", recording}, 3000},
-      {{"fleet", "fit", falling, falling}, 100, false},
+      {{"fleet", "fit", falling, other}, 100, false},
       {{"forecast", "--history", falling}, 50, false},
       {{"show", "XT03-MV2", "--config", config(), "--state", out + "9"}, 20, false},
       {{"audit", "--state", out + "9"}, 20, false},

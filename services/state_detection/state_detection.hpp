@@ -35,8 +35,7 @@ struct StateDetectionOptions {
 /// maintenance_event starts the asset's history anew with the first test after it; it counts as consumed when a test
 /// after it has been judged. An asset of which nothing was ever heard is asked for its first test, where it is known when
 /// it was commissioned; one of which only recordings were played back, for the next after the last of them. After a
-/// retraction the asset's tests are judged anew from those that count (past_tests.hpp), and a report of no test says
-/// so.
+/// retraction the asset's tests are judged anew from those that count (past_tests.hpp), and a report of no test says so.
 /// While a model_acceptance is in force the accepted model is judged beside the nominal one.
 class StateDetection final : public Layer {
  public:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/dense/dense.hpp"
 #include "services/common/mismatch/balance_options.hpp"
 
@@ -35,8 +36,9 @@ struct Attempt {
 
 class Search {
  public:
-  Search(const AssetConfig& asset, const PlantDescription& plant, const SwitchedBalances& balances, int maximum_laws)
-      : maximum_laws_(maximum_laws), options_(balance_options(asset, plant)) {
+  Search(const AssetConfig& asset, const PlantDescription& plant, const SwitchedBalances& balances, int maximum_laws,
+         int threads)
+      : maximum_laws_(maximum_laws), threads_(threads), options_(balance_options(asset, plant)) {
     problem_.balances = &balances;
     problem_.unknowns = free_unknowns(asset, balances.recordings());
     fixed_ = problem_.unknowns.size();
@@ -130,8 +132,8 @@ class Search {
 
   bool add_best() {
     const auto order = ranked();
-    std::vector<Attempt> attempts;
-    for (const BalanceOption* option : order) attempts.push_back(attempt(*option, kFewIterations));
+    std::vector<Attempt> attempts =
+        in_parallel<Attempt>(order.size(), threads_, [&](std::size_t k) { return attempt(*order[k], kFewIterations); });
     const double now = criterion(problem_.errors(fit_.model), problem_.unknowns.size());
     std::erase_if(attempts, [&](Attempt& tried) {
       return std::any_of(tried.problem.unknowns.begin() + static_cast<std::ptrdiff_t>(fixed_),
@@ -180,8 +182,10 @@ class Search {
     for (bool dropped = true; dropped && !fit_.findings.empty();) {
       dropped = false;
       const double now = criterion(problem_.errors(fit_.model), problem_.unknowns.size());
+      std::vector<Attempt> all =
+          in_parallel<Attempt>(fit_.findings.size(), threads_, [&](std::size_t k) { return without(k); });
       for (std::size_t k = 0; k < fit_.findings.size() && !dropped; ++k) {
-        Attempt fewer = without(k);
+        Attempt& fewer = all[k];
         fit_.findings[k].weight = fewer.criterion - now;
         if (fewer.criterion > now + kWorthAnother) {
           fit_.findings[k].without = std::move(fewer.model);
@@ -231,7 +235,7 @@ class Search {
     }
   }
 
-  int maximum_laws_;
+  int maximum_laws_, threads_;
   std::vector<BalanceOption> options_;
   BalanceProblem problem_;
   std::size_t fixed_ = 0;
@@ -242,8 +246,8 @@ class Search {
 }  // namespace
 
 BalanceFit search_balances(const AssetConfig& asset, const PlantDescription& plant, const SwitchedBalances& balances,
-                           int maximum_laws) {
-  return Search(asset, plant, balances, maximum_laws).run();
+                           int maximum_laws, int threads) {
+  return Search(asset, plant, balances, maximum_laws, threads).run();
 }
 
 BalanceFit refit_balances(const AssetConfig& asset, const SwitchedBalances& balances, const BalanceFit& found) {

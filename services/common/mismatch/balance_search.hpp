@@ -46,7 +46,7 @@ struct BalanceFit {
 
 /// `maximum_laws`: beside any number of datasheet values up to eight.
 [[nodiscard]] BalanceFit search_balances(const AssetConfig& asset, const PlantDescription& plant,
-                                         const SwitchedBalances& balances, int maximum_laws);
+                                         const SwitchedBalances& balances, int maximum_laws, int threads);
 
 /// The same findings fitted to other recordings of the asset.
 [[nodiscard]] BalanceFit refit_balances(const AssetConfig& asset, const SwitchedBalances& balances,

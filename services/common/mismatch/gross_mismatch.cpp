@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
+#include "services/common/core/in_parallel.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 #include "services/common/mismatch/balance_words.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/error_floor.hpp"
 #include "services/common/mismatch/proof.hpp"
+#include "services/common/mismatch/recorded_units.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/why_none.hpp"
 
@@ -45,15 +49,19 @@ class GrossMismatch {
   std::optional<Explanation> run() {
     Result<SwitchedBalances> balances = SwitchedBalances::create(noise_fit_);
     if (!balances) return std::nullopt;
-    const Result<FittedModel> as_it_is = simulated(asset_, fit_);
+    const Result<FittedModel> as_it_is = simulated(asset_, fit_, options_.threads);
     if (as_it_is && rms_in_noise(*as_it_is, asset_, noise_fit_) < kGross) return std::nullopt;
     tell("what each balance leaves over", 0.05);
-    found_ = search_balances(asset_, plant_, *balances, options_.maximum_laws);
+    found_ = search_balances(asset_, plant_, *balances, options_.maximum_laws, options_.threads);
     take_back_what_does_not_hold(*balances);
     tell("simulating with it and without", 0.3);
-    if (!compare_fit()) return std::nullopt;
+    if (!baseline_is_far_off()) return std::nullopt;
+    simulate_with_findings();
     tell("proving on held-out recordings", 0.7);
+    apart_ = recordings_apart();
     compare_held_out();
+    while (take_back_what_makes_a_channel_worse(*balances)) {
+    }
     describe();
     tell("done", 1.0);
     return std::move(result_);
@@ -64,8 +72,8 @@ class GrossMismatch {
     if (progress_) progress_(step, share);
   }
 
-  [[nodiscard]] Result<FittedModel> simulated(const AssetConfig& asset, const Data& data) const {
-    return fit_model(with_fixed_parameters(asset), data, nullptr, options_.threads, kOwnIterations);
+  [[nodiscard]] Result<FittedModel> simulated(const AssetConfig& asset, const Data& data, int threads) const {
+    return fit_model(with_fixed_parameters(asset), data, nullptr, threads, kOwnIterations);
   }
 
   // The recordings in which most happens.
@@ -89,14 +97,14 @@ class GrossMismatch {
   // The balances see each equation alone, with what was recorded in it: what they found stands. The simulation sees all
   // of them together over time, and is fitted by the parameters that the asset file leaves open. Asked for what the
   // balances found too, it ends in minima that do not carry over: on the shared bench with nearly twice the misfit.
-  void polish(BalanceModel& model) const {
+  void polish(BalanceModel& model, int threads) const {
     const Data data = furthest();
-    const Result<FittedModel> start = simulated(model.asset, data);
+    const Result<FittedModel> start = simulated(model.asset, data, threads);
     if (!start) return;
     AssetConfig asset = model.asset;
     for (PhysicsTerm& term : asset.physics)
       for (auto& [name, setting] : term.parameters) setting.estimate = false;
-    const Result<FittedModel> polished = fit_model(asset, data, &*start, options_.threads, kPolishIterations);
+    const Result<FittedModel> polished = fit_model(asset, data, &*start, threads, kPolishIterations);
     if (!polished || polished->misfit >= start->misfit) return;
     for (auto& [name, setting] : model.asset.parameters) setting.value = polished->asset.parameters.at(name).value;
   }
@@ -112,18 +120,27 @@ class GrossMismatch {
   }
 
   // False where the model as it is follows the recordings, or cannot be simulated at all.
-  bool compare_fit() {
-    polish(found_.baseline);
-    const Result<FittedModel> before = simulated(found_.baseline.asset, fit_);
+  bool baseline_is_far_off() {
+    polish(found_.baseline, options_.threads);
+    Result<FittedModel> before = simulated(found_.baseline.asset, fit_, options_.threads);
     if (!before || rms_in_noise(*before, asset_, noise_fit_) < kGross) return false;
-    polish(found_.model);
-    take_over_values();
-    const Result<FittedModel> after = simulated(found_.model.asset, fit_);
     misfit_before_ = before->misfit / before->residuals;
-    misfit_after_ = after ? after->misfit / after->residuals : misfit_before_;
-    for (std::size_t k = 0; k < fit_.samples.size() && after; ++k)
-      add_comparison(*before, *after, fit_, noise_fit_, k, k);
+    before_.emplace(std::move(*before));
     return true;
+  }
+
+  void simulate_with_findings() {
+    polish(found_.model, options_.threads);
+    compare_fit();
+  }
+
+  void compare_fit() {
+    take_over_values();
+    const Result<FittedModel> after = simulated(found_.model.asset, fit_, options_.threads);
+    misfit_after_ = after ? after->misfit / after->residuals : misfit_before_;
+    fit_comparisons_.clear();
+    for (std::size_t k = 0; k < fit_.samples.size() && after; ++k)
+      fit_comparisons_.push_back(comparison(*before_, *after, fit_, noise_fit_, k));
   }
 
   // Held-out balances, their loads fitted, must be better with each finding than without it.
@@ -149,35 +166,109 @@ class GrossMismatch {
     if (fewer) found_.model = refit_balances(asset_, balances, found_).model;
   }
 
-  void compare_held_out() {
-    BlockGains blocks;
-    const auto add = [&](const AssetConfig& old_asset, const AssetConfig& new_asset, const Data& data,
-                         const Data& noise, std::size_t k, bool left_out) {
-      const Result<FittedModel> before = simulated(old_asset, one_of(data, k)),
-                                after = simulated(new_asset, one_of(data, k));
-      if (!before || !after) return;
-      const BlockGains own = block_gains(*before, *after, 0);
-      blocks.gain.insert(blocks.gain.end(), own.gain.begin(), own.gain.end());
-      add_comparison(*before, *after, data, noise, k, 0);
-      result_.recordings.back().left_out = left_out;
-      result_.recordings.back().holdout = !left_out;
+  // A recording that took no part, as the model is: one of those held out, or of those fitted, left out.
+  struct Apart {
+    Data data, noise;
+    std::optional<SwitchedBalances> rest;  // of one left out: what the others say
+    FittedModel before;
+  };
+
+  [[nodiscard]] std::vector<Apart> recordings_apart() const {
+    std::vector<Apart> apart;
+    const auto add = [&](const AssetConfig& asset, const Data& data, const Data& noise, std::size_t k,
+                         std::optional<SwitchedBalances> rest) {
+      Data one = one_of(data, k);
+      if (Result<FittedModel> before = simulated(asset, one, options_.threads))
+        apart.push_back({std::move(one), one_of(noise, k), std::move(rest), std::move(*before)});
     };
     for (std::size_t k = 0; k < holdout_.samples.size(); ++k)
-      add(found_.baseline.asset, found_.model.asset, holdout_, noise_holdout_, k, false);
-    for (std::size_t k = 0; holdout_.samples.empty() && fit_.samples.size() > 1 && k < fit_.samples.size(); ++k) {
-      const Result<SwitchedBalances> rest = SwitchedBalances::create(all_but(noise_fit_, k));
-      if (!rest) continue;
-      const BalanceFit refitted = refit_balances(asset_, *rest, found_);
-      add(refitted.baseline.asset, refitted.model.asset, fit_, noise_fit_, k, true);
+      add(found_.baseline.asset, holdout_, noise_holdout_, k, std::nullopt);
+    for (std::size_t k = 0; holdout_.samples.empty() && fit_.samples.size() > 1 && k < fit_.samples.size(); ++k)
+      if (Result<SwitchedBalances> rest = SwitchedBalances::create(all_but(noise_fit_, k)))
+        add(refit_balances(asset_, *rest, found_).baseline.asset, fit_, noise_fit_, k, std::move(*rest));
+    return apart;
+  }
+
+  // Those recordings with what was found and without.
+  struct HeldOut {
+    std::vector<RecordingComparison> comparisons;
+    BlockGains blocks;
+    [[nodiscard]] PooledFit pooled() const { return pool(comparisons, true); }
+  };
+
+  [[nodiscard]] HeldOut held_out(const BalanceFit& found, int threads) const {
+    HeldOut held_out;
+    for (const Apart& one : apart_) {
+      const AssetConfig& asset = one.rest ? refit_balances(asset_, *one.rest, found).model.asset : found.model.asset;
+      const Result<FittedModel> after = simulated(asset, one.data, threads);
+      if (!after) continue;
+      const BlockGains own = block_gains(one.before, *after, 0);
+      held_out.blocks.gain.insert(held_out.blocks.gain.end(), own.gain.begin(), own.gain.end());
+      held_out.comparisons.push_back(comparison(one.before, *after, one.data, one.noise, 0));
+      held_out.comparisons.back().left_out = one.rest.has_value();
+      held_out.comparisons.back().holdout = !one.rest;
     }
-    gain_ = gain_interval(blocks, std::max(1.0, misfit_after_), options_.seed);
-    proven_ = !blocks.gain.empty() && gain_.low > 0.0;
+    return held_out;
+  }
+
+  void compare_held_out() {
+    held_out_ = held_out(found_, options_.threads);
+    gain_ = gain_interval(held_out_.blocks, std::max(1.0, misfit_after_), options_.seed);
+    proven_ = !held_out_.blocks.gain.empty() && gain_.low > 0.0;
+  }
+
+  // Where a held-out channel gets worse, takes back the finding without which the channel that fares worst fares best.
+  // Whether it did so: each finding is fitted and simulated anew without the one taken back.
+  bool take_back_what_makes_a_channel_worse(const SwitchedBalances& balances) {
+    const PooledFit now = held_out_.pooled();
+    const ChannelComparison* worse = made_worse(now);
+    if (worse == nullptr || found_.findings.empty()) return false;
+    struct Fewer {
+      BalanceFit found;
+      double worst = 0.0;
+    };
+    std::vector<Fewer> tried =
+        in_parallel<Fewer>(found_.findings.size(), options_.threads, [&](std::size_t finding) -> Fewer {
+          Fewer fewer{.found = found_};
+          fewer.found.findings.erase(fewer.found.findings.begin() + static_cast<std::ptrdiff_t>(finding));
+          put_back(fewer.found.model, asset_, found_.findings[finding].what);
+          fewer.worst = worst_times(held_out(fewer.found, 1).pooled());
+          return fewer;
+        });
+    const auto best = std::ranges::min_element(tried, {}, &Fewer::worst);
+    const auto simulate = [this] {
+      compare_fit();
+      compare_held_out();
+    };
+    const BalanceFit all = std::exchange(found_, std::move(best->found));
+    found_.model = refit_balances(asset_, balances, found_).model;
+    polish(found_.model, options_.threads);
+    simulate();
+    if (worst_times(held_out_.pooled()) >= worst_times(now)) {
+      found_ = all;
+      simulate();
+      return false;
+    }
+    const BalanceFinding& out = all.findings[static_cast<std::size_t>(best - tried.begin())];
+    result_.notes.push_back("What fits better (" + finding_in_words(out) +
+                            ") does not carry over: on held-out recordings " + in_words(worse->channel) +
+                            " gets worse with it, from " + number(worse->rms_before) + " to " +
+                            number(worse->rms_after) + " times its noise. It is not claimed.");
+    return true;
+  }
+
+  // Misfit after over misfit before, in the channel that fares worst.
+  static double worst_times(const PooledFit& fit) {
+    double worst = 0.0;
+    for (const ChannelComparison& channel : fit.channels)
+      worst = std::max(worst, channel.rms_after / channel.rms_before);
+    return worst;
   }
 
   // Residuals in the sensors' noise.
-  void add_comparison(const FittedModel& before, const FittedModel& after, const Data& data, const Data& noise,
-                      std::size_t k, std::size_t in_model) {
-    RecordingComparison comparison = compare_in(before, after, data, k, in_model);
+  [[nodiscard]] RecordingComparison comparison(const FittedModel& before, const FittedModel& after, const Data& data,
+                                               const Data& noise, std::size_t k) const {
+    RecordingComparison comparison = compare(before, after, data, k);
     for (ChannelComparison& channel : comparison.channels) {
       const double sigma = noise_std_of(asset_, *noise.samples[k].find(channel.channel), noise.samples[k].time_s);
       const double floor = data.samples[k].find(channel.channel)->noise_std;
@@ -188,17 +279,11 @@ class GrossMismatch {
           if (series.name == channel.channel) series.noise_std = sigma;
     }
     const GainInterval interval =
-        gain_interval(block_gains(before, after, in_model), std::max(1.0, misfit_after_), options_.seed);
+        gain_interval(block_gains(before, after, k), std::max(1.0, misfit_after_), options_.seed);
     comparison.likelihood_gain = interval.gain;
     comparison.gain_low = interval.low;
     comparison.gain_high = interval.high;
-    result_.recordings.push_back(std::move(comparison));
-  }
-
-  static RecordingComparison compare_in(const FittedModel& before, const FittedModel& after, const Data& data,
-                                        std::size_t k, std::size_t in_model) {
-    if (in_model == k) return compare(before, after, data, k);
-    return compare(before, after, one_of(data, k), in_model);
+    return comparison;
   }
 
   void describe() {
@@ -208,6 +293,8 @@ class GrossMismatch {
     result_.holdout_recordings = holdout_.names;
     result_.p_value = 1e-300;
     result_.statistically_significant = true;
+    result_.recordings = std::move(fit_comparisons_);
+    std::ranges::move(held_out_.comparisons, std::back_inserter(result_.recordings));
     result_.fit = pool(result_.recordings, false);
     result_.holdout = pool(result_.recordings, true);
     result_.explained_share = typical_share(result_.holdout.channels.empty() ? result_.fit : result_.holdout);
@@ -271,7 +358,11 @@ class GrossMismatch {
   Data fit_, holdout_;
   BalanceFit found_;
   std::map<std::string, double> held_out_gain_;
+  std::optional<FittedModel> before_;  // the recordings that are fitted, as the model is
   double misfit_before_ = 0.0, misfit_after_ = 0.0;
+  std::vector<RecordingComparison> fit_comparisons_;
+  std::vector<Apart> apart_;
+  HeldOut held_out_;
   GainInterval gain_;
   bool proven_ = false;
   Explanation result_;

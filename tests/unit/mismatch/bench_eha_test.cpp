@@ -66,7 +66,7 @@ TEST(Balances, NameTheDatasheetValueThatIsWrongAndTheSensorThatIsOff) {
   truth.physics.push_back({"sensor_gain", "sensor:shaft_speed", {{"g", {.value = 0.1, .min = -0.5, .max = 0.5}}}});
   const auto balances = SwitchedBalances::create(simulated(truth));
   ASSERT_TRUE(balances);
-  const BalanceFit fit = search_balances(bench(), **find_plant("eha_switched"), *balances, 3);
+  const BalanceFit fit = search_balances(bench(), **find_plant("eha_switched"), *balances, 3, 1);
   const auto found = [&](const std::string& element, const std::string& name) {
     return std::ranges::find_if(
         fit.findings, [&](const BalanceFinding& one) { return one.what.element == element && one.what.name == name; });
@@ -104,26 +104,24 @@ const ChannelComparison& channel(const PooledFit& fit, const std::string& name) 
   return *std::ranges::find(fit.channels, name, &ChannelComparison::channel);
 }
 
-// Under load 3 the motor reaches the limit of its driver, which the lighter loads never show: what improves position
-// and angle makes the shaft's speed worse there. Then nothing is claimed, and the report says why and where.
+// Under load 3 the motor reaches the limit of its driver, which the lighter loads never show: beside what improves the
+// position, the error of the speed's sensor makes the speed worse there. It is not claimed, and the rest is.
 TEST(BenchEha, ClaimsNothingThatMakesAChannelWorseUnderALoadThatTookNoPart) {
   const auto fit = recordings({"load1_stroke2", "load1_stroke4", "load2_stroke2", "load2_stroke4"});
   const auto holdout = recordings({"load3_stroke2", "load3_stroke4"});
   if (fit.empty() || holdout.empty()) GTEST_SKIP() << "the recordings bench_eha are not here";
   const auto explanation = explain(bench(), fit, holdout);
   ASSERT_TRUE(explanation);
-  EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
-  EXPECT_TRUE(explanation->effects.empty());
-  EXPECT_TRUE(explanation->explained.physics.empty());
-  const ChannelComparison& speed = channel(explanation->holdout, "shaft_speed");
-  EXPECT_GT(speed.rms_after, 1.1 * speed.rms_before);
+  EXPECT_EQ(explanation->verdict, Verdict::mismatch) << explanation->summary;
+  for (const ChannelComparison& one : explanation->holdout.channels)
+    EXPECT_LT(one.rms_after, 1.1 * one.rms_before) << one.channel;
+  EXPECT_LT(channel(explanation->holdout, "position").rms_after,
+            0.6 * channel(explanation->holdout, "position").rms_before);
   EXPECT_TRUE(std::ranges::any_of(explanation->notes, [](const std::string& note) {
-    return note.find("does not carry over") != std::string::npos && note.find("shaft speed") != std::string::npos;
+    return note.find("shaft speed gets worse with it") != std::string::npos;
   }));
-  for (const char* name : {"position", "pressure_b", "pump_angle"})
-    EXPECT_LT(channel(explanation->holdout, name).rms_after, channel(explanation->holdout, name).rms_before) << name;
-  ASSERT_FALSE(explanation->location.empty());
-  EXPECT_EQ(explanation->location.front().element, "sensor:shaft_speed");  // against the shaft's encoder
+  EXPECT_TRUE(std::ranges::none_of(
+      explanation->effects, [](const FoundEffect& effect) { return effect.what.element == "sensor:shaft_speed"; }));
 }
 
 TEST(BenchEha, CarriesOverToAnotherDay) {

@@ -120,7 +120,7 @@ void print_elements(const ShownPlant& plant) {
                                 (site.laws.empty() ? "no law of the catalogue" : text::joined(site.laws, ", "))});
   }
   rows.push_back({"sensor:CHANNEL", "measurement of an output"});
-  rows.push_back({"", "sensor_bias, sensor_gain, sensor_lag, sensor_saturation"});
+  rows.push_back({"", "sensor_bias, sensor_gain, sensor_lag, sensor_drift, sensor_saturation"});
   rows.push_back({"input:CHANNEL", "record of an input"});
   rows.push_back({"", "input_bias, input_gain, input_delay, input_clock_rate"});
   rows.push_back({"clock", "the recording's clock"});

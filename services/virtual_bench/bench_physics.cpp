@@ -26,10 +26,9 @@ Result<BenchPhysics> BenchPhysics::create(const AssetConfig& asset, const PlantD
     if (term.hidden >= 0) physics.settled_.push_back(term.law->hidden->settled);
   }
   for (const sealwatch::SensorTerm& term : resolved->sensors)
-    physics.sensors_.push_back(
-        {.channel = term.channel,
-         .kind = term.kind,
-         .parameters = numbers(term.parameter, term.kind == SiteKind::sensor_saturation ? 2U : 1U)});
+    physics.sensors_.push_back({.channel = term.channel,
+                                .kind = term.kind,
+                                .parameters = numbers(term.parameter, term.kind >= SiteKind::sensor_drift ? 2U : 1U)});
   for (const RecordingTerm& term : resolved->recording)
     physics.recording_.push_back({.channel = term.input, .kind = term.kind, .parameters = numbers(term.parameter, 1U)});
   return physics;
@@ -66,6 +65,10 @@ SensorError BenchPhysics::error_of(const std::string& channel) const {
     if (term.kind == SiteKind::sensor_lag) error.lag_s = term.parameters[0];
     if (term.kind == SiteKind::sensor_gain) error.gain = term.parameters[0];
     if (term.kind == SiteKind::sensor_bias) error.bias = term.parameters[0];
+    if (term.kind == SiteKind::sensor_drift) {
+      error.drift = term.parameters[0];
+      error.drift_time_s = term.parameters[1];
+    }
     if (term.kind == SiteKind::sensor_saturation) {
       error.cut = term.parameters[0];
       error.end = term.parameters[1];

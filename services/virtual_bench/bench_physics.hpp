@@ -21,7 +21,9 @@ namespace sealwatch::bench {
 struct SensorError {
   double lag_s = 0.0;
   double gain = 0.0;
-  double bias = 0.0;  ///< channel's unit
+  double bias = 0.0;   ///< channel's unit
+  double drift = 0.0;  ///< channel's unit: where the zero goes to, in about drift_time_s
+  double drift_time_s = 1.0;
   double cut = 0.0, end = 0.0;
 };
 

@@ -62,11 +62,14 @@ Result<std::vector<Sensor>> find_sensors(const AssetConfig& asset, const PlantDe
   return sensors;
 }
 
-Series measure(const Sensor& sensor, std::vector<double> values, std::uint64_t seed) {
+Series measure(const Sensor& sensor, std::vector<double> values, std::uint64_t seed, std::span<const double> time_s) {
   NormalRandom normal(sub_seed(seed, sensor.channel));
   const double step = sensor.setting.quantisation;
-  for (double& value : values) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    double& value = values[k];
     value = (1.0 + sensor.error.gain) * value + sensor.error.bias;
+    if (!time_s.empty())
+      value += sensor.error.drift * (1.0 - std::exp((time_s.front() - time_s[k]) / sensor.error.drift_time_s));
     value -= sensor.error.cut * std::max(value - sensor.error.end, 0.0);
     value = (1.0 + sensor.setting.gain_error) * value + sensor.setting.offset_error;
     value += sensor.setting.noise_std * normal.next();

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,8 @@ struct Sensor {
                                                        const std::vector<std::string>& channels);
 
 /// Adds the sensor's errors, noise and quantisation to low-passed values. The noise depends on the seed and the
-/// channel's name alone, so a channel that is added or left out does not change the others.
-[[nodiscard]] Series measure(const Sensor& sensor, std::vector<double> values, std::uint64_t seed);
+/// channel's name alone, so a channel that is added or left out does not change the others. Without times no zero drifts.
+[[nodiscard]] Series measure(const Sensor& sensor, std::vector<double> values, std::uint64_t seed,
+                             std::span<const double> time_s = {});
 
 }  // namespace sealwatch::bench

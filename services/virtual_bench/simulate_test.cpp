@@ -129,8 +129,9 @@ Result<Recording> simulate_test(const AssetConfig& asset, const Profile& profile
   if (!values) return fail(values.error());
   for (std::size_t k = 0; k < loop.sensors.size(); ++k) {
     const RecordError error = loop.physics.record_error_of(loop.sensors[k].channel);
-    recording.samples.channels.push_back(
-        measure(loop.sensors[k], recorded_of((*values)[k], recording.samples.time_s, error), setting.seed));
+    recording.samples.channels.push_back(measure(loop.sensors[k],
+                                                 recorded_of((*values)[k], recording.samples.time_s, error),
+                                                 setting.seed, recording.samples.time_s));
   }
   for (double& time : recording.samples.time_s) time *= 1.0 + loop.physics.record_error_of({}).clock_rate;
   return recording;

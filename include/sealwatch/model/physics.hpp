@@ -50,8 +50,8 @@ namespace sealwatch {
 ///   clock_rate       1          none
 SEALWATCH_ENUM(SiteKind, voltage_command, winding_voltage, shaft_torque, pump_slip, line_drop, valve_crack, outflow,
                compliance, seal_leakage, piston_force, inverse_modulus, viscosity, tank_flow, own, sensor_bias,
-               sensor_gain, sensor_lag, sensor_saturation, input_gain, input_bias, input_delay, input_clock_rate,
-               clock_rate)
+               sensor_gain, sensor_lag, sensor_drift, sensor_saturation, input_gain, input_bias, input_delay,
+               input_clock_rate, clock_rate)
 
 /// Laws of one measurement, which the simulation applies itself to what it simulated.
 [[nodiscard]] constexpr bool is_sensor(SiteKind kind) {

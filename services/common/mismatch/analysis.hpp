@@ -96,6 +96,7 @@ class Analysis {
   void add_values_that_do_as_well(WrongDatasheet& wrong) const;
   // All values that do it alike, and several of them.
   void ask_what_values_do_alone(const Naming& laws);
+  void value_alone(WrongDatasheet wrong, const Naming& laws);
   // The search for laws goes on where it was left, without values.
   void look_on_from(const Naming& laws);
   static bool is_among(const Effect& effect, const std::vector<Effect>& effects);

@@ -61,6 +61,10 @@ void Analysis::take_values_found() {
   const bool beside =
       !best_.effects.empty() && !wrong.values.front().empty() && bears_out(wrong, *laws.best.model, compared);
   time_.allow(kSearchShare);
+  if (!beside && best_.effects.empty() && laws.best.effects.empty() && !wrong.values.front().empty()) {
+    value_alone(wrong, laws);
+    return;
+  }
   if (!beside && best_.effects.empty()) ask_what_values_do_alone(laws);
   if (!beside && !why_none_ && !beside_) look_on_from(laws);
   if (!beside) return;
@@ -71,6 +75,20 @@ void Analysis::take_values_found() {
   asked_values_ = trace_of(laws);
   asked_values_.push_back(asked(wrong, laws));
   beside_ = Beside{wrong, joined(replaced, " and "), joined(replaced, " and "), compared, laws};
+}
+
+// Values that were found before any law, and left nothing for one.
+void Analysis::value_alone(WrongDatasheet wrong, const Naming& laws) {
+  std::vector<RecordingComparison> compared;
+  time_.allow(1.0);  // a proof, whatever is searched further
+  if (bears_out(wrong, *baseline_, compared)) {
+    if (time_.in_time("other values in place of the one that is off")) add_values_that_do_as_well(wrong);
+    asked_values_.push_back(asked(wrong, laws));
+    blame_the_asset_file(wrong, "", compared);
+  }
+  time_.allow(kSearchShare);
+  naming_ = laws;
+  best_ = naming_.best;
 }
 
 void Analysis::add_values_that_do_as_well(WrongDatasheet& wrong) const {

@@ -132,7 +132,7 @@ std::vector<Candidate> find_candidates(const PlantSimulation& simulation, const 
   std::vector<Candidate> candidates;
   for (const Law& law : all_laws()) {
     if (law.closed_form != closed_forms || !is_of_plant(law, simulation.plant().name)) continue;
-    if (is_of_recording(law.kind) || (is_sensor(law.kind) && law.kind != SiteKind::sensor_saturation))
+    if (is_of_recording(law.kind) || (is_sensor(law.kind) && law.kind < SiteKind::sensor_drift))
       add_of_recording(law, simulation, present, candidates);
     if (is_of_recording(law.kind)) continue;
     if (is_sensor(law.kind))

@@ -29,7 +29,7 @@ struct Candidate {
 
 /// Whether usual sizes of its strength go by its channel's range.
 [[nodiscard]] constexpr bool is_bias(SiteKind kind) {
-  return kind == SiteKind::sensor_bias || kind == SiteKind::input_bias;
+  return kind == SiteKind::sensor_bias || kind == SiteKind::sensor_drift || kind == SiteKind::input_bias;
 }
 
 /// Size of its first strength from which an engineer of this plant would care.

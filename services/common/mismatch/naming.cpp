@@ -314,7 +314,8 @@ std::optional<Trial> with_given_values(const Trial& found, const Data& data) {
 // Where none of them does, sensors that are not exact; else the other laws, then pairs. Sensors that promise more than
 // the laws come first, and only laws that could do better are refitted. A parameter of which each recording has its own
 // competes with all of them. Beside a law that leaves no more than its exact form sensors alone are asked.
-std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options) {
+// `to_beat`: a misfit that laws have to come to.
+std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptions& options, double to_beat) {
   const std::size_t level = naming.best.effects.size();
   const bool gross = excess(*naming.best.model) > kGross;
   const Screening& asked = naming.last;
@@ -325,7 +326,7 @@ std::vector<Trial> try_laws(Naming& naming, const Data& data, const ExplainOptio
     for (LawStart& start : second_starts(asked)) singles.push_back({std::move(start)});
   std::vector<Trial> trials;
   const auto refit_from = [&](const Trial& from, const std::vector<std::vector<LawStart>>& starts) {
-    RefitOptions refits;
+    RefitOptions refits{.to_beat = to_beat};
     for (const Trial& trial : trials) refits.to_beat = std::min(refits.to_beat, trial.model->misfit);
     for (Trial& trial : refit(from, starts, data, options.threads, refits)) trials.push_back(std::move(trial));
   };
@@ -428,6 +429,24 @@ double behind_laws(const Naming& beside, const Trial& laws, const ValueSwap& swa
   return criterion_behind(best, *back.model);
 }
 
+// The search beside a value that takes the place of laws; nothing where these did better in the end.
+std::optional<Naming> search_beside(Naming& naming, const ValueSwap& swap, const Data& data,
+                                    const ExplainOptions& options, const Progress& progress) {
+  if (progress) progress("looking again, beside a value of the asset file", 0.5);
+  Result<Naming> beside = beside_values(naming, {swap.value}, swap.with, data, options, progress);
+  if (!beside) return std::nullopt;
+  const double behind = passed(data.deadline) ? criterion_behind(*swap.with.model, *naming.best.model)
+                                              : behind_laws(*beside, naming.best, swap, data, options.threads);
+  if (behind > 0.0) {
+    naming.refused.push_back(swap.value.name);
+    return std::nullopt;
+  }
+  beside->behind_laws = beside->freed.size() > 1 ? std::max(beside->behind_laws, behind) : behind;
+  for (const std::size_t slot : swap.out) beside->replaced.push_back(naming.best.effects[slot]);
+  beside->with_laws = std::make_shared<const Naming>(naming);
+  return std::move(*beside);
+}
+
 // A law that other shapes or forms of it could serve better than what was found first.
 bool has_shapes(const Effect& effect) {
   const bool of_its_own =
@@ -457,20 +476,22 @@ std::optional<Naming> value_in_place(Naming& naming, bool without_shapes, const 
   });
   const auto swaps = values_in_place_of({naming.best, out, values, data, options.threads, -kCannotTell});
   if (swaps.empty() || swaps.front().with.model->optimum.at_optimum.front().jacobian.size() == 0) return std::nullopt;
-  const ValueSwap& swap = swaps.front();
-  if (progress) progress("looking again, beside a value of the asset file", 0.5);
-  Result<Naming> beside = beside_values(naming, {swap.value}, swap.with, data, options, progress);
-  if (!beside) return std::nullopt;
-  const double behind = passed(data.deadline) ? criterion_behind(*swap.with.model, *naming.best.model)
-                                              : behind_laws(*beside, naming.best, swap, data, options.threads);
-  if (behind > 0.0) {
-    naming.refused.push_back(swap.value.name);
-    return std::nullopt;
-  }
-  beside->behind_laws = beside->freed.size() > 1 ? std::max(beside->behind_laws, behind) : behind;
-  for (const std::size_t slot : swap.out) beside->replaced.push_back(naming.best.effects[slot]);
-  beside->with_laws = std::make_shared<const Naming>(naming);
-  return std::move(*beside);
+  return search_beside(naming, swaps.front(), data, options, progress);
+}
+
+// In a gross misfit, before any law was found: a fixed value that ends it alone. Laws would be asked one after the other
+// to do what it does.
+std::optional<ValueSwap> value_that_ends_it(const Naming& naming, const Data& data, int threads) {
+  const FittedModel& found = *naming.best.model;
+  const bool begins = naming.best.effects.empty() && naming.refused.empty() && excess(found) > kGross;
+  const auto is_free = [&](const KnownValue& value) { return found.asset.parameters.at(value.name).estimate; };
+  if (!begins || data.fixed.empty() || std::ranges::any_of(data.fixed, is_free)) return std::nullopt;
+  const double phi = dispersion(found),
+               ends_it = (kGross * found.residuals - found.misfit) / phi + std::log(found.residuals / phi);
+  const std::vector<std::vector<std::size_t>> no_law(1);
+  auto swaps = values_in_place_of({naming.best, no_law, data.fixed, data, threads, std::min(ends_it, -kWorthAnother)});
+  if (swaps.empty() || excess(*swaps.front().with.model) > kGross) return std::nullopt;
+  return std::move(swaps.front());
 }
 
 }  // namespace
@@ -554,10 +575,14 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const std::size_t level = naming.best.effects.size();
     const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
-    const std::vector<Trial> trials = try_laws(naming, data, options);
+    const std::optional<ValueSwap> value = value_that_ends_it(naming, data, options.threads);
+    const double to_beat = value ? value->with.model->misfit : std::numeric_limits<double>::infinity();
+    const std::vector<Trial> trials = try_laws(naming, data, options, to_beat);
     if (naming.sensors_are_inexact) return naming;
     const double phi = smallest_dispersion(trials, *naming.best.model);
     const Trial* best = best_of(trials, phi);
+    if (value && (best == nullptr || criterion_behind(*value->with.model, *best->model) < -kCannotTell))
+      if (auto beside = search_beside(naming, *value, data, options, progress)) return std::move(*beside);
     // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;

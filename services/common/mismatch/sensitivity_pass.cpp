@@ -40,8 +40,8 @@ std::vector<LawColumn> law_columns(const std::vector<Candidate>& candidates, con
   return laws;
 }
 
-// d(channel)/d(strength) of a sensor's law: 1, the channel, minus its slope, or minus what exceeds the end of the
-// range.
+// d(channel)/d(strength) of a sensor's law: 1, the channel, minus its slope, the share of a drift that is done, or minus
+// what exceeds the end of the range.
 Eigen::VectorXd sensor_column(const Candidate& candidate, const PassColumn& column, const RowMatrix& simulated,
                               const std::vector<double>& time_s, Eigen::Index channel) {
   const Eigen::Index last = simulated.rows() - 1;
@@ -51,6 +51,10 @@ Eigen::VectorXd sensor_column(const Candidate& candidate, const PassColumn& colu
     if (candidate.law->kind == SiteKind::sensor_gain) slope = simulated(row, channel);
     if (candidate.law->kind == SiteKind::sensor_saturation)
       slope = -std::max(simulated(row, channel) - candidate.grid[column.point][1], 0.0);
+    if (candidate.law->kind == SiteKind::sensor_drift) {
+      const double age_s = time_s[static_cast<std::size_t>(row)] - time_s.front();
+      slope = -std::expm1(-age_s / candidate.grid[column.point][1]);
+    }
     if (candidate.law->kind == SiteKind::sensor_lag) {
       const Eigen::Index before = std::max<Eigen::Index>(row - 1, 0), after = std::min(row + 1, last);
       slope = -(simulated(after, channel) - simulated(before, channel)) /

@@ -80,6 +80,7 @@ const SiteWords& words_of(SiteKind kind) {
     case SiteKind::sensor_bias:
     case SiteKind::sensor_gain:
     case SiteKind::sensor_lag:
+    case SiteKind::sensor_drift:
     case SiteKind::sensor_saturation:
       break;
     case SiteKind::input_gain:

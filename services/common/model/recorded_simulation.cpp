@@ -89,7 +89,7 @@ RecordedSimulation::RecordedSimulation(const PlantDescription& plant, PhysicsTer
   std::erase_if(terms_.recording,
                 [&](const RecordingTerm& term) { return !term.input.empty() && !drives(term.input); });
   for (const SensorTerm& term : terms_.sensors)
-    if (drives(term.channel) && term.kind != SiteKind::sensor_saturation)
+    if (drives(term.channel) && term.kind < SiteKind::sensor_drift)
       terms_.recording.push_back({term.kind, term.channel, term.parameter});
 }
 

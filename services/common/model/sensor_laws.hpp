@@ -2,12 +2,15 @@
 //
 //   lag    tau dr/dt = s - r        d r/d tau = q,  tau dq/dt = -(s - r)/tau - q
 //   gain   z = (1 + g) r + b        d z/d g = r,    d z/d b = 1
+//   drift  z += D w, w = 1 - exp(-t / T)            d z/d D = w,    d z/d T = -D t exp(-t / T) / T^2
+//          (t from the first sample)
 //   end    y = z - k max(z - y_max, 0)   d y/d z = 1 - k, d y/d k = -(z - y_max), d y/d y_max = k beyond y_max
 //          (as sharp as the end of a converter's range; a search over y_max needs samples on both sides)
 //
 // All columns of sensitivities pass through the same linear operations.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +32,10 @@ class SensorLaws {
       if (term.kind == SiteKind::sensor_bias) bias_ = part;
       if (term.kind == SiteKind::sensor_gain) gain_ = part;
       if (term.kind == SiteKind::sensor_lag) lag_ = part;
+      if (term.kind == SiteKind::sensor_drift) {
+        drift_ = part;
+        drift_time_ = part_of(term.parameter + 1, values, free);
+      }
       if (term.kind == SiteKind::sensor_saturation) {
         saturation_ = part;
         end_ = part_of(term.parameter + 1, values, free);
@@ -54,6 +61,7 @@ class SensorLaws {
     output_[0] += bias_.value;
     if (gain_.column != 0) output_[gain_.column] += before;
     if (bias_.column != 0) output_[bias_.column] += 1.0;
+    drift(step_s);
     saturate();
   }
 
@@ -72,6 +80,15 @@ class SensorLaws {
     return part;
   }
 
+  void drift(double step_s) {
+    if (drift_.value == 0.0 && drift_.column == 0) return;
+    age_s_ += step_s;
+    const double T = drift_time_.value, left = std::exp(-age_s_ / T);
+    output_[0] += drift_.value * (1.0 - left);
+    if (drift_.column != 0) output_[drift_.column] += 1.0 - left;
+    if (drift_time_.column != 0) output_[drift_time_.column] -= drift_.value * age_s_ * left / (T * T);
+  }
+
   void saturate() {
     const bool absent = saturation_.value == 0.0 && saturation_.column == 0;
     const double beyond = output_[0] - end_.value;
@@ -82,7 +99,8 @@ class SensorLaws {
     if (end_.column != 0) output_[end_.column] += saturation_.value;
   }
 
-  Part bias_, gain_, lag_, saturation_, end_;
+  Part bias_, gain_, lag_, drift_, drift_time_, saturation_, end_;
+  double age_s_ = 0.0;  ///< since the first sample
   std::vector<SensorFilter> filters_;
   std::vector<double> output_;
 };

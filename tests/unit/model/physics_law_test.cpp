@@ -218,6 +218,7 @@ TEST(PhysicsLaws, HoldEveryIdThatUsersScriptAgainst) {
                                     "sensor_bias",
                                     "sensor_gain",
                                     "sensor_lag",
+                                    "sensor_drift",
                                     "sensor_saturation"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }

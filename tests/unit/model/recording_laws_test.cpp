@@ -229,6 +229,21 @@ TEST(RecordingLaws, ASensorThatDrivesIsPutRight) {
       {1e-3, 1e-8, 1e-3, 1e-4}, 0.02);
 }
 
+/// A zero that moves, with all else that a sensor may do: time counts from the first sample, wherever that is.
+TEST(RecordingLaws, SensitivitiesOfADriftingSensor) {
+  AssetConfig asset = with_error(nominal_asset("eha"), "sensor_gain", "sensor:shaft_speed", "g", 0.02);
+  asset = with_error(asset, "sensor_lag", "sensor:shaft_speed", "tau", 0.01);
+  asset.physics.push_back({.id = "sensor_drift",
+                           .element = "sensor:shaft_speed",
+                           .parameters = {{"D", {-3.0, -10.0, 10.0, true}}, {"T", {6.0, 0.5, 1e4, true}}}});
+  TimeSeries recorded = standard_pst(asset, 100.0);
+  for (double& time : recorded.time_s) time += 50.0;
+  expect_slopes(
+      **PlantSimulation::create(asset, recorded),
+      {"sensor:shaft_speed.sensor_gain.g", "sensor:shaft_speed.sensor_drift.D", "sensor:shaft_speed.sensor_drift.T"},
+      {1e-4, 1e-2, 1e-2}, 0.01);
+}
+
 TEST(RecordingLaws, AnElementThatIsNoneIsAnError) {
   const AssetConfig asset = nominal_asset("eha");
   const TimeSeries recorded = standard_pst(asset, 100.0);

@@ -19,6 +19,7 @@ PhysicsTerm usual(const Law& law, const std::string& element) {
     term.parameters[std::string(parameter.name)] = {parameter.start.front(), parameter.min, parameter.max, true};
   // Sizes for a velocity of 1.33 mm/s.
   if (law.kind == SiteKind::sensor_bias) term.parameters["b"].value = 1e-4;
+  if (law.kind == SiteKind::sensor_drift) term.parameters["D"].value = 1e-4;
   if (law.kind == SiteKind::sensor_saturation) term.parameters["y_max"].value = 1e-3;
   if (law.kind == SiteKind::input_bias) term.parameters["b"].value = 1.0;
   return term;

@@ -164,5 +164,24 @@ TEST(Search, GoesOnBesideAValueThatIsOff) {
   EXPECT_TRUE(name_effects(baseline, data, options, {}).value().freed.empty());
 }
 
+// A pump that sweeps 8 % more than its datasheet says: gains of half the sensors would be asked one by one.
+TEST(Search, AsksAValueThatEndsAGrossMisfitBeforeLaws) {
+  const AssetConfig asset = actuator();
+  AssetConfig truth = asset;
+  truth.parameters.at("alpha_P").value *= 1.08;
+  Data data = two_tests_of(truth);
+  data.fixed = fixed_values(asset);
+  const auto baseline = std::make_shared<const FittedModel>(fit_model(asset, data, nullptr, 2).value());
+  ASSERT_GT(excess(*baseline), kGross);
+  const Naming naming = name_effects(baseline, data, {.threads = 2}, {}).value();
+  EXPECT_EQ(naming.freed, std::vector<std::string>{"alpha_P"});
+  EXPECT_TRUE(naming.best.effects.empty());
+  EXPECT_TRUE(naming.replaced.empty()) << "no law stood in for it";
+  EXPECT_LE(naming.behind_laws, 0.0);
+  ASSERT_NE(naming.with_laws, nullptr);
+  EXPECT_TRUE(naming.with_laws->best.effects.empty());
+  EXPECT_NEAR(*estimate_of(*naming.best.model, "alpha_P") / asset.parameter("alpha_P"), 1.08, 0.005);
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

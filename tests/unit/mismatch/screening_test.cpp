@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "services/common/mismatch/linear_algebra.hpp"
 #include "services/common/mismatch/sensitivity_pass.hpp"
+#include "services/common/mismatch/windows.hpp"
 #include "tests/unit/mismatch/simulated_test.hpp"
 
 namespace sealwatch::mismatch {
@@ -124,6 +127,23 @@ TEST(Screening, TakesOffWhatTheUnknownsDo) {
       EXPECT_NEAR(screening->gram(j, k) / (size(j) * size(k)), gram(j, k) / (size(j) * size(k)), kRounding)
           << j << ' ' << k;
   }
+}
+
+// A drift counts from a recording's begin, which a window does not know.
+TEST(Screening, AsksForADriftInWholeRecordingsAlone) {
+  const AssetConfig asset = with_free_parameters();
+  Data whole = two_recordings(asset);
+  whole.colour.clear();
+  whole.weight.clear();
+  const auto asks = [&](const Data& data) {
+    const Result<FittedModel> model = fit_model(asset, data, nullptr, 2, 0);
+    EXPECT_TRUE(model) << model.error().describe();
+    return std::ranges::any_of(screen(*model, data, {}).value().candidates, [](const Candidate& candidate) {
+      return candidate.law->kind == SiteKind::sensor_drift;
+    });
+  };
+  EXPECT_TRUE(asks(whole));
+  EXPECT_FALSE(asks(cut_into_windows(whole, 10.0)));
 }
 
 }  // namespace

@@ -136,5 +136,19 @@ TEST(Tolerance, ASensorThatIsFurtherOffIsAFault) {
   EXPECT_EQ(found->effects[0].what.element, "sensor:flow");
 }
 
+TEST(Tolerance, ASensorWhoseZeroMovesDuringTheTestIsAFault) {
+  AssetConfig truth = actuator();
+  truth.physics.push_back({.id = "sensor_drift",
+                           .element = "sensor:shaft_speed",
+                           .parameters = {{"D", {.value = -4.0}}, {"T", {.value = 6.0, .min = 0.5, .max = 1e4}}}});
+  const auto found = explain(actuator(), tests_of(truth), {});
+  ASSERT_TRUE(found) << found.error().describe();
+  ASSERT_EQ(found->effects.size(), 1U) << found->summary;
+  EXPECT_EQ(found->effects[0].what.id, "sensor_drift");
+  EXPECT_EQ(found->effects[0].what.element, "sensor:shaft_speed");
+  EXPECT_THAT(found->effects[0].parameters, Contains(Field(&FoundParameter::value, testing::DoubleNear(-4.0, 0.3))));
+  EXPECT_THAT(found->effects[0].parameters, Contains(Field(&FoundParameter::value, testing::DoubleNear(6.0, 1.0))));
+}
+
 }  // namespace
 }  // namespace sealwatch::mismatch

@@ -77,16 +77,16 @@ void Analysis::take_values_found() {
   beside_ = Beside{wrong, joined(replaced, " and "), joined(replaced, " and "), compared, laws};
 }
 
-// Values that were found before any law, and left nothing for one.
+// Values that were found before any law, and left nothing for one. Where they are not borne out, laws are looked for.
 void Analysis::value_alone(WrongDatasheet wrong, const Naming& laws) {
   std::vector<RecordingComparison> compared;
   time_.allow(1.0);  // a proof, whatever is searched further
-  if (bears_out(wrong, *baseline_, compared)) {
-    if (time_.in_time("other values in place of the one that is off")) add_values_that_do_as_well(wrong);
-    asked_values_.push_back(asked(wrong, laws));
-    blame_the_asset_file(wrong, "", compared);
-  }
+  const bool borne_out = bears_out(wrong, *baseline_, compared);
   time_.allow(kSearchShare);
+  if (!borne_out) return look_on_from(laws);
+  if (time_.in_time("other values in place of the one that is off")) add_values_that_do_as_well(wrong);
+  asked_values_.push_back(asked(wrong, laws));
+  blame_the_asset_file(wrong, "", compared);
   naming_ = laws;
   best_ = naming_.best;
 }

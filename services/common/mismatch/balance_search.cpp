@@ -59,10 +59,24 @@ class Search {
     while (add_best()) {
     }
     polish();
-    const BalanceErrors after = problem_.errors(fit_.model);
-    fit_.error_after.assign(after.sigma.begin(), after.sigma.end());
     fit_.criterion_before = criterion(before, fixed_);
-    fit_.criterion_after = criterion(after, problem_.unknowns.size());
+    say_errors();
+    return std::move(fit_);
+  }
+
+  BalanceFit again(const BalanceFit& found) {
+    fit_ = found;
+    for (const BalanceFinding& finding : fit_.findings) problem_.unknowns.push_back(finding.what);
+    problem_.fit(fit_.model, kBalanceIterations);
+    const double now = criterion(problem_.errors(fit_.model), problem_.unknowns.size());
+    std::vector<Attempt> all =
+        in_parallel<Attempt>(fit_.findings.size(), threads_, [&](std::size_t k) { return without(k); });
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      fit_.findings[k].weight = all[k].criterion - now;
+      fit_.findings[k].without = std::move(all[k].model);
+    }
+    fill_values();
+    say_errors();
     return std::move(fit_);
   }
 
@@ -166,6 +180,12 @@ class Search {
     return true;
   }
 
+  void say_errors() {
+    const BalanceErrors after = problem_.errors(fit_.model);
+    fit_.error_after.assign(after.sigma.begin(), after.sigma.end());
+    fit_.criterion_after = criterion(after, problem_.unknowns.size());
+  }
+
   // The fit without one finding.
   [[nodiscard]] Attempt without(std::size_t finding) const {
     Attempt tried{.option = {}, .problem = problem_, .model = fit_.model};
@@ -248,6 +268,11 @@ class Search {
 BalanceFit search_balances(const AssetConfig& asset, const PlantDescription& plant, const SwitchedBalances& balances,
                            int maximum_laws, int threads) {
   return Search(asset, plant, balances, maximum_laws, threads).run();
+}
+
+BalanceFit refit_findings(const AssetConfig& asset, const PlantDescription& plant, const SwitchedBalances& balances,
+                          const BalanceFit& found, int threads) {
+  return Search(asset, plant, balances, static_cast<int>(found.findings.size()), threads).again(found);
 }
 
 BalanceFit refit_balances(const AssetConfig& asset, const SwitchedBalances& balances, const BalanceFit& found) {

@@ -48,6 +48,10 @@ struct BalanceFit {
 [[nodiscard]] BalanceFit search_balances(const AssetConfig& asset, const PlantDescription& plant,
                                          const SwitchedBalances& balances, int maximum_laws, int threads);
 
+/// The findings that are left of `found`, fitted anew to the same balances: values, errors and weights.
+[[nodiscard]] BalanceFit refit_findings(const AssetConfig& asset, const PlantDescription& plant,
+                                        const SwitchedBalances& balances, const BalanceFit& found, int threads);
+
 /// The same findings fitted to other recordings of the asset.
 [[nodiscard]] BalanceFit refit_balances(const AssetConfig& asset, const SwitchedBalances& balances,
                                         const BalanceFit& found);

@@ -41,8 +41,9 @@ Result<Explanation> explain(const AssetConfig& asset, std::span<const Recording>
   std::vector<Recording> fitted = thinned(fit, notes);
   std::vector<Recording> halves = halves_of_one(asset, fitted, kept_aside);
   if (!halves.empty()) fitted = halves;
-  Result<Explanation> found =
-      Analysis(asset, data_of(fitted, kept_aside), data_of(kept_aside, fitted), options, progress).run();
+  Data data = data_of(fitted, kept_aside);
+  data.are_parts = !halves.empty();
+  Result<Explanation> found = Analysis(asset, std::move(data), data_of(kept_aside, fitted), options, progress).run();
   if (!found) return found;
   std::ranges::move(notes, std::back_inserter(found->notes));
   if (!halves.empty())

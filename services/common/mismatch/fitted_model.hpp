@@ -20,6 +20,7 @@ struct Data {
   std::vector<NoiseColour> colour;  ///< per recording
   std::vector<int> groups = {};     ///< which recording a window was cut from; empty: whole recordings
   std::size_t window_step = 1;      ///< one window in so many counts
+  bool are_parts = false;           ///< windows or halves of recordings, which do not know when these began
   /// Share of a significant strength (model/physics.hpp) that the simulation's own errors (input between samples,
   /// integration, rounding) can feign, or those of a measured input: a law must want more than that to count.
   double resolution = 0.01;

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
-#include <utility>
+#include <tuple>
 
 #include "services/common/core/in_parallel.hpp"
 #include "services/common/estimation/channel_noise.hpp"
@@ -163,7 +164,7 @@ class GrossMismatch {
     }
     const bool fewer = kept.size() < found_.findings.size();
     found_.findings = std::move(kept);
-    if (fewer) found_.model = refit_balances(asset_, balances, found_).model;
+    if (fewer) found_ = refit_findings(asset_, plant_, balances, found_, options_.threads);
   }
 
   // A recording that took no part, as the model is: one of those held out, or of those fitted, left out.
@@ -184,8 +185,10 @@ class GrossMismatch {
     for (std::size_t k = 0; k < holdout_.samples.size(); ++k)
       add(found_.baseline.asset, holdout_, noise_holdout_, k, std::nullopt);
     for (std::size_t k = 0; holdout_.samples.empty() && fit_.samples.size() > 1 && k < fit_.samples.size(); ++k)
-      if (Result<SwitchedBalances> rest = SwitchedBalances::create(all_but(noise_fit_, k)))
-        add(refit_balances(asset_, *rest, found_).baseline.asset, fit_, noise_fit_, k, std::move(*rest));
+      if (Result<SwitchedBalances> rest = SwitchedBalances::create(all_but(noise_fit_, k))) {
+        const AssetConfig baseline = refit_balances(asset_, *rest, found_).baseline.asset;
+        add(baseline, fit_, noise_fit_, k, std::move(*rest));
+      }
     return apart;
   }
 
@@ -199,7 +202,7 @@ class GrossMismatch {
   [[nodiscard]] HeldOut held_out(const BalanceFit& found, int threads) const {
     HeldOut held_out;
     for (const Apart& one : apart_) {
-      const AssetConfig& asset = one.rest ? refit_balances(asset_, *one.rest, found).model.asset : found.model.asset;
+      const AssetConfig asset = one.rest ? refit_balances(asset_, *one.rest, found).model.asset : found.model.asset;
       const Result<FittedModel> after = simulated(asset, one.data, threads);
       if (!after) continue;
       const BlockGains own = block_gains(one.before, *after, 0);
@@ -218,51 +221,44 @@ class GrossMismatch {
   }
 
   // Where a held-out channel gets worse, takes back the finding without which the channel that fares worst fares best.
-  // Whether it did so: each finding is fitted and simulated anew without the one taken back.
+  // Whether it did so: all others are fitted, polished and simulated anew.
   bool take_back_what_makes_a_channel_worse(const SwitchedBalances& balances) {
     const PooledFit now = held_out_.pooled();
     const ChannelComparison* worse = made_worse(now);
-    if (worse == nullptr || found_.findings.empty()) return false;
-    struct Fewer {
-      BalanceFit found;
-      double worst = 0.0;
-    };
-    std::vector<Fewer> tried =
-        in_parallel<Fewer>(found_.findings.size(), options_.threads, [&](std::size_t finding) -> Fewer {
-          Fewer fewer{.found = found_};
-          fewer.found.findings.erase(fewer.found.findings.begin() + static_cast<std::ptrdiff_t>(finding));
-          put_back(fewer.found.model, asset_, found_.findings[finding].what);
-          fewer.worst = worst_times(held_out(fewer.found, 1).pooled());
-          return fewer;
+    if (worse == nullptr || found_.findings.empty() || passed(fit_.deadline)) return false;
+    const std::vector<double> worst =
+        in_parallel<double>(found_.findings.size(), options_.threads, [&](std::size_t finding) {
+          BalanceFit fewer = found_;
+          take_out(finding, fewer);
+          return fares_worst(held_out(fewer, 1));
         });
-    const auto best = std::ranges::min_element(tried, {}, &Fewer::worst);
-    const auto simulate = [this] {
-      compare_fit();
-      compare_held_out();
-    };
-    const BalanceFit all = std::exchange(found_, std::move(best->found));
-    found_.model = refit_balances(asset_, balances, found_).model;
-    polish(found_.model, options_.threads);
-    simulate();
-    if (worst_times(held_out_.pooled()) >= worst_times(now)) {
-      found_ = all;
-      simulate();
+    const auto out = static_cast<std::size_t>(std::ranges::min_element(worst) - worst.begin());
+    const BalanceFinding finding = found_.findings[out];
+    const auto before = std::tuple(found_, fit_comparisons_, misfit_after_, held_out_, gain_, proven_);
+    take_out(out, found_);
+    found_ = refit_findings(asset_, plant_, balances, found_, options_.threads);
+    simulate_with_findings();
+    compare_held_out();
+    if (passed(fit_.deadline) || fares_worst(held_out_) >= fares_worst(std::get<HeldOut>(before))) {
+      std::tie(found_, fit_comparisons_, misfit_after_, held_out_, gain_, proven_) = before;
       return false;
     }
-    const BalanceFinding& out = all.findings[static_cast<std::size_t>(best - tried.begin())];
-    result_.notes.push_back("What fits better (" + finding_in_words(out) +
+    result_.notes.push_back("What fits better (" + finding_in_words(finding) +
                             ") does not carry over: on held-out recordings " + in_words(worse->channel) +
                             " gets worse with it, from " + number(worse->rms_before) + " to " +
                             number(worse->rms_after) + " times its noise. It is not claimed.");
     return true;
   }
 
-  // Misfit after over misfit before, in the channel that fares worst.
-  static double worst_times(const PooledFit& fit) {
-    double worst = 0.0;
-    for (const ChannelComparison& channel : fit.channels)
-      worst = std::max(worst, channel.rms_after / channel.rms_before);
-    return worst;
+  void take_out(std::size_t finding, BalanceFit& found) const {
+    put_back(found.model, asset_, found.findings[finding].what);
+    found.findings.erase(found.findings.begin() + static_cast<std::ptrdiff_t>(finding));
+  }
+
+  // Misfit after over misfit before, of the channel that fares worst; a recording that cannot be simulated is worse.
+  [[nodiscard]] double fares_worst(const HeldOut& held_out) const {
+    if (held_out.comparisons.size() < apart_.size()) return std::numeric_limits<double>::infinity();
+    return times_worse(held_out.pooled());
   }
 
   // Residuals in the sensors' noise.

@@ -576,13 +576,18 @@ Result<Naming> name_effects(std::shared_ptr<const FittedModel> baseline, const D
     const bool gross = excess(*naming.best.model) > kGross;
     if (progress) progress("trying laws", 0.3 + 0.15 * static_cast<double>(level));
     const std::optional<ValueSwap> value = value_that_ends_it(naming, data, options.threads);
-    const double to_beat = value ? value->with.model->misfit : std::numeric_limits<double>::infinity();
-    const std::vector<Trial> trials = try_laws(naming, data, options, to_beat);
+    constexpr double kNothing = std::numeric_limits<double>::infinity();
+    const double to_beat = value ? value->with.model->misfit : kNothing;
+    std::vector<Trial> trials = try_laws(naming, data, options, to_beat);
     if (naming.sensors_are_inexact) return naming;
-    const double phi = smallest_dispersion(trials, *naming.best.model);
-    const Trial* best = best_of(trials, phi);
-    if (value && (best == nullptr || criterion_behind(*value->with.model, *best->model) < -kCannotTell))
+    const Trial* best = best_of(trials, smallest_dispersion(trials, *naming.best.model));
+    if (value && (best == nullptr || criterion_behind(*value->with.model, *best->model) < -kCannotTell)) {
       if (auto beside = search_beside(naming, *value, data, options, progress)) return std::move(*beside);
+      if (!passed(data.deadline)) trials = try_laws(naming, data, options, kNothing);  // some were cut beside the value
+      if (naming.sensors_are_inexact) return naming;
+    }
+    const double phi = smallest_dispersion(trials, *naming.best.model);
+    best = best_of(trials, phi);
     // Where much is missing the first law may bring little before the second is there: what is not needed in the end is
     // taken out again.
     const double worth = gross ? 0.0 : kWorthAnother;

@@ -183,16 +183,27 @@ PooledFit pool(const std::vector<RecordingComparison>& recordings, bool holdout)
   return pooled;
 }
 
+namespace {
+
+// Within its noise no channel fares badly.
+double times_worse(const ChannelComparison& channel) {
+  constexpr double kAboveNoise = 1.5;
+  return channel.rms_after < kAboveNoise ? 0.0 : channel.rms_after / channel.rms_before;
+}
+
+}  // namespace
+
+double times_worse(const PooledFit& fit) {
+  double worst = 0.0;
+  for (const ChannelComparison& channel : fit.channels) worst = std::max(worst, times_worse(channel));
+  return worst;
+}
+
 const ChannelComparison* made_worse(const PooledFit& fit) {
   constexpr double kWorse = 1.1;
-  constexpr double kAboveNoise = 1.5;
-  const ChannelComparison* worst = nullptr;
-  for (const ChannelComparison& channel : fit.channels) {
-    const double times = channel.rms_after / channel.rms_before;
-    if (times < kWorse || channel.rms_after < kAboveNoise) continue;
-    if (worst == nullptr || times > worst->rms_after / worst->rms_before) worst = &channel;
-  }
-  return worst;
+  const auto times = [](const ChannelComparison& channel) { return times_worse(channel); };
+  const auto worst = std::ranges::max_element(fit.channels, {}, times);
+  return worst == fit.channels.end() || times(*worst) < kWorse ? nullptr : &*worst;
 }
 
 const ChannelComparison* farthest_off(const PooledFit& fit) {

@@ -36,6 +36,9 @@ struct GainInterval {
 /// All recordings' channels as one: mean squares.
 [[nodiscard]] PooledFit pool(const std::vector<RecordingComparison>& recordings, bool holdout);
 
+/// Misfit after over misfit before, of the channel for which it is largest of those beyond their noise; 0: none is.
+[[nodiscard]] double times_worse(const PooledFit& fit);
+
 /// The channel that comes out worse after than before, by more than a tenth and beyond its noise, most of all; null
 /// where none does. What makes a channel of recordings that took no part worse does not carry over.
 [[nodiscard]] const ChannelComparison* made_worse(const PooledFit& fit);

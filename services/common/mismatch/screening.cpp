@@ -347,8 +347,7 @@ Result<Screening> screen_candidates(const FittedModel& model, const Data& data, 
 Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options) {
   Screening screening{.candidates = find_candidates(*model.problem.recordings.front().simulation, model.asset.physics,
                                                     options.closed_forms)};
-  // A window of a recording does not know when that one began.
-  if (!data.groups.empty())
+  if (data.are_parts)
     std::erase_if(screening.candidates,
                   [](const Candidate& candidate) { return candidate.law->kind == SiteKind::sensor_drift; });
   set_out_from_strongest_orders(screening.candidates, model, options.threads);

@@ -38,6 +38,7 @@ double window_of(const AssetConfig& asset, const TimeSeries& recorded) {
 Data cut_into_windows(const Data& data, double window_s) {
   Data windows;
   windows.resolution = data.resolution;
+  windows.are_parts = true;
   windows.known = data.known;
   windows.given = data.given;
   windows.deadline = data.deadline;

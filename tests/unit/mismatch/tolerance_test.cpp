@@ -136,18 +136,26 @@ TEST(Tolerance, ASensorThatIsFurtherOffIsAFault) {
   EXPECT_EQ(found->effects[0].what.element, "sensor:flow");
 }
 
-TEST(Tolerance, ASensorWhoseZeroMovesDuringTheTestIsAFault) {
+AssetConfig drifting(double towards, double time_s) {
   AssetConfig truth = actuator();
-  truth.physics.push_back({.id = "sensor_drift",
-                           .element = "sensor:shaft_speed",
-                           .parameters = {{"D", {.value = -4.0}}, {"T", {.value = 6.0, .min = 0.5, .max = 1e4}}}});
-  const auto found = explain(actuator(), tests_of(truth), {});
-  ASSERT_TRUE(found) << found.error().describe();
-  ASSERT_EQ(found->effects.size(), 1U) << found->summary;
-  EXPECT_EQ(found->effects[0].what.id, "sensor_drift");
-  EXPECT_EQ(found->effects[0].what.element, "sensor:shaft_speed");
-  EXPECT_THAT(found->effects[0].parameters, Contains(Field(&FoundParameter::value, testing::DoubleNear(-4.0, 0.3))));
-  EXPECT_THAT(found->effects[0].parameters, Contains(Field(&FoundParameter::value, testing::DoubleNear(6.0, 1.0))));
+  truth.physics.push_back(
+      {.id = "sensor_drift",
+       .element = "sensor:shaft_speed",
+       .parameters = {{"D", {.value = towards}}, {"T", {.value = time_s, .min = 0.5, .max = 1e4}}}});
+  return truth;
+}
+
+TEST(Tolerance, ASensorWhoseZeroMovesDuringTheTestIsAFault) {
+  for (const auto& [towards, time_s] : {std::pair{-4.0, 6.0}, {-130.0, 1000.0}}) {  // comes to rest; goes on
+    const auto found = explain(actuator(), tests_of(drifting(towards, time_s)), {});
+    ASSERT_TRUE(found) << found.error().describe();
+    ASSERT_EQ(found->effects.size(), 1U) << found->summary;
+    EXPECT_EQ(found->effects[0].what.id, "sensor_drift");
+    EXPECT_EQ(found->effects[0].what.element, "sensor:shaft_speed");
+    const std::vector<FoundParameter>& parameters = found->effects[0].parameters;
+    EXPECT_NEAR(parameters[0].value / parameters[1].value, towards / time_s, 0.2 * std::abs(towards / time_s));
+    EXPECT_TRUE(time_s > 10.0 || std::abs(parameters[1].value - time_s) < 1.0) << parameters[1].value;
+  }
 }
 
 }  // namespace

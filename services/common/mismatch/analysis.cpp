@@ -20,12 +20,13 @@ Result<Explanation> Analysis::run() {
 }
 
 Result<Explanation> Analysis::analyse() {
-  time_.allow(kSearchShare);
   result_.asset_id = asset_.asset_id;
   result_.model = asset_.model;
   result_.fit_recordings = fit_.names;
   result_.holdout_recordings = holdout_.names;
+  time_.allow(1.0);
   if (auto gross = explain_gross_mismatch(asset_, fit_, holdout_, options_, progress_)) return std::move(*gross);
+  time_.allow(kSearchShare);
   tell("fitting the model as it is", 0.02);
   Result<Baseline> baseline = fit_baseline(asset_, fit_, holdout_, options_, time_);
   if (!baseline) return fail(baseline.error());

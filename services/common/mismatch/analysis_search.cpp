@@ -15,6 +15,7 @@
 namespace sealwatch::mismatch {
 namespace {
 
+constexpr double kSettledBy = 0.9;  // of the time limit: what was found is proven after that
 constexpr const char* kSensorsAgain = "what was found beside sensors within their tolerances";
 
 }  // namespace
@@ -114,8 +115,8 @@ Result<Naming> Analysis::look_in_common(const Trial& from, const ExplainOptions&
     std::ranges::copy(data.sensors, std::back_inserter(fit_.known));
     baseline_ = as_it_began(*again).baseline;
   }
-  if (again || !time_.deadline().passed()) return again;
-  naming->not_asked.emplace_back(kSensorsAgain);
+  if (again) return again;
+  naming->not_asked.emplace_back(kSensorsAgain);  // time is up, or these models cannot be simulated
   return naming;
 }
 
@@ -165,8 +166,9 @@ bool Analysis::look_beside_own(OwnValues& own, const Trial& found, const Explain
 void Analysis::look_at_what_is_left() {
   const bool was_cut = !naming_.not_asked.empty() && !naming_.best.effects.empty();
   if (was_cut) {
-    time_.allow(1.0);
+    time_.allow(kSettledBy);
     if (!naming_.settled) settle(naming_, prepared(fit_), options_);
+    time_.allow_what_is_needed();  // without it what was found could not be told
     auto last = screen(*naming_.best.model, prepared(fit_), {.seed = options_.seed, .threads = options_.threads});
     if (last)
       naming_.last = std::move(*last);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "services/common/mismatch/criterion.hpp"
+#include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/other_shapes.hpp"
 #include "services/common/mismatch/proof.hpp"
 #include "services/common/mismatch/telling.hpp"

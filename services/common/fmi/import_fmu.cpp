@@ -38,7 +38,8 @@ struct Row {
   std::string unit;
   Conversion scale;
   std::string meaning;
-  std::optional<std::size_t> state = {};  ///< that an output shows, as it is
+  std::optional<std::size_t> state = {};  ///< that an output shows at the start
+  bool alias = false;                     ///< and always: both are one variable of the binary
 };
 
 class Writer {
@@ -94,7 +95,7 @@ class Writer {
     for (Row& row : inputs_) row.name = name_for(fmu_.name_of(row.element), {&quantities_, &channels_});
     for (Row& row : outputs_) {
       row.channel = name_for(fmu_.name_of(row.element), {&channels_});
-      row.name = state_shown_by(row) != nullptr ? "" : name_for(fmu_.name_of(row.element), {&quantities_});
+      row.name = row.alias ? "" : name_for(fmu_.name_of(row.element), {&quantities_});
     }
     for (Row& row : parameters_) row.name = name_for(fmu_.name_of(row.element), {&quantities_});
   }
@@ -134,7 +135,7 @@ class Writer {
     }
     for (Row& output : outputs_)
       for (std::size_t k = 0; k < states_.size(); ++k)
-        if (is_alias(output.element, states_[k].element)) output.state = k;
+        if (is_alias(output.element, states_[k].element)) output.state = k, output.alias = true;
   }
 
   [[nodiscard]] bool is_alias(const Element& output, const Element& state) const {
@@ -191,8 +192,9 @@ class Writer {
     return {};
   }
 
-  // Outputs that are states under other names: beside the start, with other parameters and inputs, their values are one
-  // as well. What fails here is no fault: then nothing is known of them.
+  // Outputs that have a state's value at the start, and beside it with other parameters and inputs: that state may begin
+  // at the output's first sample. Elsewhere they may differ (a sensor that saturates), so that they stay variables of
+  // their own. What fails here is no fault: then nothing is known of them.
   void find_shown_states() {
     Selection selection = driven();
     selection.outputs.clear();
@@ -386,13 +388,12 @@ class Writer {
       out_ << "  {}  # the FMU declares none: name variables of it in fmu.variables and use them here\n";
   }
 
-  // An output that is a state, under its own or another name, is taken as the state, which costs nothing.
   [[nodiscard]] const Row* state_shown_by(const Row& output) const {
     return output.state ? &states_[*output.state] : nullptr;
   }
+  // An output that is a state, under its own or another name, is taken as the state, which costs nothing.
   [[nodiscard]] std::string shown(const Row& output) const {
-    const Row* state = state_shown_by(output);
-    return state != nullptr ? state->name : output.name;
+    return output.alias ? state_shown_by(output)->name : output.name;
   }
 
   void parameter_rows() {

@@ -34,6 +34,32 @@ TEST(ImportedFmu, IsAPlantFileAsItIs) {
   }
 }
 
+/// Simulated with the input at `value` throughout, and nothing else recorded than zeros.
+Result<SimulatedOutputs> simulated(const std::string& plant, double value, const std::string& channel,
+                                   double first_time_s = 0.0) {
+  const auto loaded = load_plant(plant);
+  if (!loaded) return fail(loaded.error().front().describe());
+  TimeSeries samples;
+  samples.channels = {{"u", "1", 0.0, {}}, {channel, "1", 0.0, {}}};
+  for (int row = 0; row <= 100; ++row) {
+    samples.time_s.push_back(first_time_s + 0.02 * row);
+    samples.channels[0].values.push_back(value);
+    samples.channels[1].values.push_back(0.0);
+  }
+  const auto simulation = PlantSimulation::create(nominal_asset((*loaded)->name), samples);
+  if (!simulation) return fail(simulation.error());
+  return (*simulation)->run((*simulation)->start(), {});
+}
+
+TEST(ImportedFmu, ASensorThatSaturatesDoesSoInTheSimulation) {
+  const TestFolder folder;
+  const auto outputs =
+      simulated(imported(folder, spring_return("fmu_spring_saturates2"), "saturates"), 100.0, "position");
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  EXPECT_NEAR(outputs->values(5, 0), outputs->values.topRows(6).maxCoeff(), 1e-12) << "it rises";
+  EXPECT_DOUBLE_EQ(outputs->values(100, 0), 0.5) << "x is 1 there";
+}
+
 TEST(ImportedFmu, ACoSimulationUnitIsSimulatedAndFitted) {
   const TestFolder folder;
   const auto plant = load_plant(imported(folder, gain(), "co_simulated"));

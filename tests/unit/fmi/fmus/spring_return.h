@@ -1,4 +1,4 @@
-/* A valve positioner with a return spring: M dv/dt = k_F u - F_v v - k_s x, dx/dt = v. */
+/* A valve positioner with a return spring: M dv/dt = k_F u - F_v v - k_s x, dx/dt = v. SATURATES: the sensor of x at 0.5. */
 #define MODEL_TOKEN "{sealwatch-test-spring-return}"
 #define STATES 2
 #define INPUTS 1
@@ -20,5 +20,9 @@ static void model_derivatives(double t, const double* x, const double* u, const 
 }
 static void model_outputs(double t, const double* x, const double* u, const double* p, double* y) {
   (void)t, (void)u, (void)p;
+#ifdef SATURATES
+  y[0] = x[0] < 0.5 ? x[0] : 0.5;
+#else
   y[0] = x[0];
+#endif
 }

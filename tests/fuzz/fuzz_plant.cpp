@@ -63,8 +63,6 @@ void evaluate(const RuntimePlant& plant) {
     all.push_back(parameters.size());
     parameters.push_back(row.value);
   }
-  const auto evaluator = plant.equations->evaluator(parameters, all);
-  require(evaluator.has_value());
   const std::vector<double> states(plant.states.size(), 0.5), inputs(plant.inputs.size(), 0.5),
       added(description.sites.size(), 0.0);
   const RuntimePoint point{.time_s = 0.0,
@@ -73,6 +71,8 @@ void evaluate(const RuntimePlant& plant) {
                            .input_rates = inputs,
                            .parameters = parameters,
                            .added = added};
+  const auto evaluator = plant.equations->evaluator(point, all);
+  require(evaluator.has_value());
   for (const auto function : {RuntimeFunction::derivatives, RuntimeFunction::signals, RuntimeFunction::outputs})
     require((*evaluator)->linearise(function, point, {.states = true, .parameters = true, .added = true}) != nullptr);
 }

@@ -104,11 +104,11 @@ class RuntimeEvaluator {
 class RuntimeEquations {
  public:
   virtual ~RuntimeEquations() = default;
-  /// `parameters`: of one run, in the order of the table. `differentiated`: indices of those by which it will ask for
-  /// derivatives. An Error when the plant cannot be run (a unit that does not start).
+  /// `first`: where the run begins, without what laws add; its parameters are those of the run. `differentiated`: indices
+  /// of those by which it will ask for derivatives. An Error when the plant cannot be run (a unit that does not start).
   [[nodiscard]] virtual Result<std::unique_ptr<RuntimeEvaluator>> evaluator(
-      std::span<const double> parameters, std::span<const std::size_t> differentiated) const = 0;
-  /// All states at the first sample; those that settle only need a guess.
+      const RuntimePoint& first, std::span<const std::size_t> differentiated) const = 0;
+  /// All states at the first sample; those that settle only need a guess, and those that start by the equations any value.
   [[nodiscard]] virtual Result<std::vector<double>> initial_state(std::span<const double> parameters,
                                                                   const TimeSeries& recorded) const = 0;
   /// Whether signals of a site depend on what is added at sites before it (never on its own or on later ones).

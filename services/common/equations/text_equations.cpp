@@ -150,8 +150,8 @@ FunctionNodes differentiated(Expressions& expressions, std::vector<Node> values,
 }
 
 Result<std::unique_ptr<RuntimeEvaluator>> TextEquations::evaluator(
-    std::span<const double> parameters, std::span<const std::size_t> differentiated_by) const {
-  return std::make_unique<TextEvaluator>(parts_, parameters, differentiated_by);
+    const RuntimePoint& first, std::span<const std::size_t> differentiated_by) const {
+  return std::make_unique<TextEvaluator>(parts_, first.parameters, differentiated_by);
 }
 
 Result<std::vector<double>> TextEquations::initial_state(std::span<const double> parameters,

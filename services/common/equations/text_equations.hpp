@@ -49,7 +49,7 @@ class TextEquations final : public RuntimeEquations {
  public:
   explicit TextEquations(TextEquationsParts parts) : parts_(std::move(parts)) {}
   [[nodiscard]] Result<std::unique_ptr<RuntimeEvaluator>> evaluator(
-      std::span<const double> parameters, std::span<const std::size_t> differentiated_by) const override;
+      const RuntimePoint& first, std::span<const std::size_t> differentiated_by) const override;
   [[nodiscard]] Result<std::vector<double>> initial_state(std::span<const double> parameters,
                                                           const TimeSeries& recorded) const override;
   [[nodiscard]] bool signals_see_added() const override { return parts_.signals_see_added; }

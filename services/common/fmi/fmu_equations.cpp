@@ -20,55 +20,41 @@ bool FmuEquations::runs_elsewhere() const {
   return !block_.plant.file.empty() && block_.setup.once_per_process == 0 && !local_hosts();
 }
 
-Result<std::unique_ptr<RuntimeEvaluator>> FmuEquations::evaluator(std::span<const double> parameters,
+Result<std::unique_ptr<RuntimeEvaluator>> FmuEquations::evaluator(const RuntimePoint& first,
                                                                   std::span<const std::size_t> differentiated) const {
-  auto frame = frame_->evaluator(parameters, differentiated);
+  auto frame = frame_->evaluator(first, differentiated);
   if (!frame) return fail(frame.error());
-  // The FMU's parameters depend on the plant's alone: any point tells them.
-  const std::size_t z = block_.states.size() + block_.variables.size();
-  const std::vector<double> states(block_.states.size(), 0.0), inputs(counts_.inputs, 0.0),
-      added(z + counts_.sites, 0.0);
-  const RuntimePoint anywhere{.time_s = block_.start_time_s,
-                              .states = states,
-                              .inputs = inputs,
-                              .input_rates = inputs,
-                              .parameters = parameters,
-                              .added = added};
+  const std::vector<double> added(block_.states.size() + block_.variables.size() + counts_.sites, 0.0);
+  RuntimePoint inner = first;
+  inner.added = added;
   const RuntimeLinearisation* at =
-      (*frame)->linearise(RuntimeFunction::outputs, anywhere, {.states = false, .parameters = true, .added = false});
-  if (at == nullptr) return fail("the FMU's parameters have no values", (*frame)->trouble());
-  const std::size_t first = counts_.outputs + block_.inputs.size(), count = block_.parameters.size();
-  std::vector<std::vector<double>> values(1);
-  values[0].assign(at->values.begin() + static_cast<std::ptrdiff_t>(first),
-                   at->values.begin() + static_cast<std::ptrdiff_t>(first + count));
+      (*frame)->linearise(RuntimeFunction::outputs, inner, {.states = false, .parameters = true, .added = false});
+  if (at == nullptr) return fail("the FMU's inputs and parameters have no values", (*frame)->trouble());
   // Relative to the parameter: one-sided differences then err by some 1e-6 of themselves.
   constexpr double kStep = 1e-6;
   std::vector<double> steps;
+  std::vector<BlockStart> starts{start_of(*at, 0, 0.0)};
   for (std::size_t k = 0; k < differentiated.size(); ++k) {
-    const double size = std::abs(parameters[differentiated[k]]);
+    const double size = std::abs(first.parameters[differentiated[k]]);
     steps.push_back(kStep * (size > 0.0 ? size : 1.0));
-    std::vector<double> changed = values[0];
-    for (std::size_t row = 0; row < count; ++row) changed[row] += steps.back() * at->by_parameter.row(first + row)[k];
-    values.push_back(std::move(changed));
+    starts.push_back(start_of(*at, k, steps.back()));
   }
-  auto running = RunningBlock::begin(block_, pool_, values, std::move(steps));
+  auto running = RunningBlock::begin(block_, pool_, first.time_s, starts, std::move(steps));
   if (!running) return fail(running.error());
   return std::make_unique<FmuEvaluator>(block_, std::move(*frame), std::move(*running), counts_.outputs, counts_.sites,
                                         differentiated.size(), frame_->signals_see_added());
 }
 
-Result<std::vector<double>> FmuEquations::initial_state(std::span<const double> parameters,
-                                                        const TimeSeries& recorded) const {
-  Result<std::vector<double>> states = frame_->initial_state(parameters, recorded);
-  if (!states || std::ranges::count(counts_.starts_by_fmu, true) == 0) return states;
-  const auto at_start = evaluator(parameters, {});
-  if (!at_start) return fail(at_start.error());
-  std::vector<double> starts = *states;
-  RuntimeMatrix unused;
-  if (!(*at_start)->start(starts, unused)) return fail((*at_start)->trouble());
-  for (std::size_t k = 0; k < starts.size(); ++k)
-    if (counts_.starts_by_fmu[k]) (*states)[k] = starts[k];
-  return states;
+BlockStart FmuEquations::start_of(const RuntimeLinearisation& at, std::size_t direction, double step) const {
+  BlockStart start;
+  const auto put = [&](std::size_t row, std::vector<double>& values) {
+    values.push_back(at.values[row]);
+    if (step != 0.0) values.back() += step * at.by_parameter.row(row)[direction];
+  };
+  const std::size_t inputs = block_.inputs.size();
+  for (std::size_t k = 0; k < inputs; ++k) put(counts_.outputs + k, start.inputs);
+  for (std::size_t k = 0; k < block_.parameters.size(); ++k) put(counts_.outputs + inputs + k, start.parameters);
+  return start;
 }
 
 namespace {

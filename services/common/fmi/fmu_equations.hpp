@@ -8,7 +8,8 @@
 //
 //   df/dx = df_frame/dx + df_frame/dz (F_x + F_v dv/dx),  and so on for p and e by the chain rule
 //
-// What laws add goes to f behind the FMU, or to v before it: the user's model stays as it is. F_x and F_v are the
+// It begins with v at the first sample. What laws add goes to f behind the FMU, or to v before it, but for its beginning:
+// the user's model stays as it is. F_x and F_v are the
 // binary's directional derivatives or central differences on the instance; F_q one-sided differences on further
 // instances. The unit of every quantity of the FMU is converted: SI = factor * value + offset.
 #pragma once
@@ -42,6 +43,11 @@ struct FmuBlock {
   HostedPlant plant;  ///< for runs in the process that has the binary
 };
 
+/// With what an instance begins, in SI.
+struct BlockStart {
+  std::vector<double> inputs, parameters;
+};
+
 /// Processes that run the FMU, kept for the next run.
 class ProcessPool {
  public:
@@ -58,13 +64,14 @@ class FmuEquations final : public RuntimeEquations {
   /// How many of each the plant has; its outputs are the frame's first ones.
   struct Counts {
     std::size_t inputs = 0, outputs = 0, sites = 0;
-    std::vector<bool> starts_by_fmu = {};  ///< of each state
   };
   FmuEquations(FmuBlock block, std::shared_ptr<const RuntimeEquations> frame, Counts counts, bool outputs_see_added);
   [[nodiscard]] Result<std::unique_ptr<RuntimeEvaluator>> evaluator(
-      std::span<const double> parameters, std::span<const std::size_t> differentiated) const override;
+      const RuntimePoint& first, std::span<const std::size_t> differentiated) const override;
   [[nodiscard]] Result<std::vector<double>> initial_state(std::span<const double> parameters,
-                                                          const TimeSeries& recorded) const override;
+                                                          const TimeSeries& recorded) const override {
+    return frame_->initial_state(parameters, recorded);
+  }
   [[nodiscard]] bool signals_see_added() const override { return frame_->signals_see_added(); }
   [[nodiscard]] bool outputs_see_added() const override { return outputs_see_added_; }
   [[nodiscard]] bool runs_elsewhere() const override;
@@ -75,6 +82,8 @@ class FmuEquations final : public RuntimeEquations {
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
  private:
+  /// v and q, a step along one of the directions of differentiation.
+  [[nodiscard]] BlockStart start_of(const RuntimeLinearisation& at, std::size_t direction, double step) const;
   FmuBlock block_;
   std::shared_ptr<const RuntimeEquations> frame_;
   Counts counts_;

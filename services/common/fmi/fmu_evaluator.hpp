@@ -19,10 +19,10 @@ struct BlockValues {
 /// The FMU itself: begins, and gives z at points.
 class RunningBlock {
  public:
-  /// `parameters`: q of the run, then q of each direction of differentiation at a step `steps[k]` away.
+  /// `starts`: v and q of the run, then those of each direction of differentiation at a step `steps[k]` away.
   [[nodiscard]] static Result<std::unique_ptr<RunningBlock>> begin(const FmuBlock& block,
-                                                                   std::shared_ptr<ProcessPool> pool,
-                                                                   const std::vector<std::vector<double>>& parameters,
+                                                                   std::shared_ptr<ProcessPool> pool, double time_s,
+                                                                   const std::vector<BlockStart>& starts,
                                                                    std::vector<double> steps);
   ~RunningBlock();
   RunningBlock(const RunningBlock&) = delete;
@@ -47,10 +47,8 @@ class RunningBlock {
  private:
   RunningBlock(const FmuBlock& block, std::shared_ptr<ProcessPool> pool, std::vector<double> steps)
       : block_(block), pool_(std::move(pool)), steps_(std::move(steps)) {}
-  [[nodiscard]] Status begin_at(double time_s);
-  /// A unit's time is the recording's: where that begins elsewhere, what remembers time begins anew. Derivatives of one
-  /// without events are those of any beginning.
-  [[nodiscard]] bool follow(double first_time_s);
+  /// Another process, with these instances.
+  [[nodiscard]] Status begin_process(double time_s, std::span<const BlockStart> starts);
   void set_point(std::span<const double> states, std::span<const double> inputs);
   /// A Co-Simulation unit goes on to this time, with inputs that are linear from the last one or held since.
   [[nodiscard]] const BlockValues* step_to(double time_s);
@@ -78,9 +76,6 @@ class RunningBlock {
   double ended_s_ = std::numeric_limits<double>::infinity();  ///< when it asked to end: it has no values after that
   double step_s_ = 0.0;                                       ///< of a Co-Simulation unit with equal steps
   double stepped_to_s_ = std::numeric_limits<double>::quiet_NaN();  ///< by a Co-Simulation unit
-  std::vector<std::vector<double>> parameters_;                     ///< of each process's instances, in the FMU's units
-  double begun_at_s_ = 0.0;
-  bool met_ = false;  ///< the recording's first time
   BlockValues values_;
   std::string trouble_;
 };

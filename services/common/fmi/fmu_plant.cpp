@@ -310,12 +310,10 @@ class Builder {
                                   plant.description.sites.begin() + static_cast<std::ptrdiff_t>(sites));
     plant.description.hides_states = block_.file->co_simulation();
     for (std::size_t k = 0; k < starts_by_fmu_.size(); ++k) plant.states[k].by_equations = starts_by_fmu_[k];
-    plant.equations = std::make_shared<FmuEquations>(std::move(block_), plant.equations,
-                                                     FmuEquations::Counts{.inputs = plant.inputs.size(),
-                                                                          .outputs = outputs,
-                                                                          .sites = text_.sites.size(),
-                                                                          .starts_by_fmu = starts_by_fmu_},
-                                                     outputs_see_added());
+    plant.equations = std::make_shared<FmuEquations>(
+        std::move(block_), plant.equations,
+        FmuEquations::Counts{.inputs = plant.inputs.size(), .outputs = outputs, .sites = text_.sites.size()},
+        outputs_see_added());
   }
 
   const TextPlant& text_;

@@ -12,7 +12,7 @@ std::size_t heap_bytes(const Setup& setup, std::size_t most_slots) {
   const std::size_t states = elements(setup.states), inputs = elements(setup.inputs),
                     rows = states + elements(setup.outputs),
                     numbers = rows * (1 + states + inputs + most_slots) + setup.event_indicators +
-                              4 * (states + inputs) + most_slots * elements(setup.parameters);
+                              4 * (states + inputs) + most_slots * (inputs + elements(setup.parameters));
   std::size_t texts = setup.library.size() + setup.folder.size() + setup.resources.size() + setup.token.size() +
                       setup.constant_texts.size();
   for (const auto* handles :

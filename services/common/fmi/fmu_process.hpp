@@ -52,7 +52,7 @@ class FmuProcess : public HostProcess {
   struct Run {
     double start_time_s = 0.0;
     std::span<const double> state_steps, input_steps;  ///< of differences, or larger where a value is
-    std::span<const double> inputs;                    ///< at the start
+    std::span<const double> inputs;                    ///< at the start, of each slot in turn
     std::size_t slots = 1;
     std::span<const double> parameters;  ///< of each slot in turn
   };

@@ -169,7 +169,7 @@ class Writer {
     Selection selection = driven();
     const auto setup = file_.setup(selection);
     if (!setup) return fail(setup.error());
-    const std::vector<double> inputs = starts_of(selection.inputs);
+    std::vector<double> inputs = starts_of(selection.inputs);
     std::vector<double> parameters = starts_of(selection.parameters);
     auto process = FmuProcess::start(file_.name(), *setup, 1);
     if (!process) return fail(process.error());
@@ -187,7 +187,11 @@ class Writer {
     if (const Status read = read_starts(**process, selection.outputs, inputs); !read) return fail(read.error());
     linked_.assign(states_.size(), false);
     for (std::size_t k = 0; k < states_.size(); ++k) linked_[k] = is_linked(states_[k].element.variable);
-    try_parameters(parameters, begin, **process);
+    std::vector<double*> movable;
+    for (double& value : std::span(inputs).first(elements(std::span(setup->inputs).first(setup->continuous_inputs))))
+      movable.push_back(&value);
+    for (double& value : parameters) movable.push_back(&value);
+    try_changes(movable, begin, **process);
     find_shown_states();
     return {};
   }
@@ -245,20 +249,20 @@ class Writer {
     return kShare * (1.0 + 0.01 * static_cast<double>(k % 50)) * (value == 0.0 ? 1.0 : value);
   }
 
-  // The description may not say which states parameters move at the start: all parameters are changed at once, each by
+  // The description may not say which states parameters and inputs move at the start: all are changed at once, each by
   // another share, or one by one where the model does not start with all of them changed.
   template <class Begin>
-  void try_parameters(std::vector<double>& parameters, const Begin& begin, const FmuProcess& process) {
-    const std::vector<double> before = parameters;
-    const auto change = [&](std::size_t k) { parameters[k] += beside(k, before[k]); };
-    for (std::size_t k = 0; k < parameters.size(); ++k) change(k);
+  void try_changes(const std::vector<double*>& movable, const Begin& begin, const FmuProcess& process) {
+    std::vector<double> before;
+    for (const double* value : movable) before.push_back(*value);
+    for (std::size_t k = 0; k < movable.size(); ++k) *movable[k] += beside(k, before[k]);
     const auto all_moved = begin();
     if (all_moved) note_moved(all_moved->states);
-    parameters = before;
-    for (std::size_t k = 0; !all_moved && k < std::min(parameters.size(), kMostParameters) && process.alive(); ++k) {
-      change(k);
+    for (std::size_t k = 0; k < movable.size(); ++k) *movable[k] = before[k];
+    for (std::size_t k = 0; !all_moved && k < std::min(movable.size(), kMostParameters) && process.alive(); ++k) {
+      *movable[k] += beside(k, before[k]);
       if (const auto moved = begin()) note_moved(moved->states);
-      parameters[k] = before[k];
+      *movable[k] = before[k];
     }
   }
 
@@ -286,7 +290,8 @@ class Writer {
     const auto links = fmu_.start_links.find(state);
     return links != fmu_.start_links.end() && std::ranges::any_of(links->second, [&](std::size_t variable) {
              const FmiCausality causality = fmu_.variables[variable].causality;
-             return causality == FmiCausality::parameter || causality == FmiCausality::structuralParameter;
+             return causality == FmiCausality::parameter || causality == FmiCausality::structuralParameter ||
+                    causality == FmiCausality::input;
            });
   }
 
@@ -424,7 +429,7 @@ class Writer {
     if (states_.empty()) return;
     out_ << "\n# States. `start` may be a channel, whose first value is taken, or rate(channel); a list is tried in "
             "turn.\n"
-            "# start: fmu is the FMU's own, which its parameters move.\n"
+            "# start: fmu is the FMU's own, which its parameters or first inputs move.\n"
             "# size: how large it usually is (the integration keeps to a share of it).\n"
             "# own: true where each recording has a start of its own, which is estimated: here for the states that an "
             "output shows,\n"
@@ -480,7 +485,7 @@ class Writer {
   const std::string& path_;
   std::set<std::string> quantities_, channels_;
   std::map<std::size_t, std::vector<double>> starts_;  ///< of parameters that the description gives none
-  std::vector<bool> linked_;                           ///< of each state, whether a parameter moves its start
+  std::vector<bool> linked_;  ///< of each state, whether a parameter or an input moves its start
   std::vector<Row> inputs_, outputs_, parameters_, states_;
   Beginning beginning_;
   std::ostringstream out_;

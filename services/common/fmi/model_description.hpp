@@ -101,7 +101,7 @@ struct ModelDescription {
   std::vector<Element> derivatives;  ///< of the states
   std::size_t event_indicators = 0;
   std::optional<double> start_time_s, stop_time_s, step_s;
-  /// States and the parameters of which their starts depend, by the description (InitialUnknowns); indices of variables.
+  /// States and the variables of which their starts depend, by the description (InitialUnknowns); indices of variables.
   std::map<std::size_t, std::vector<std::size_t>> start_links;
 
   [[nodiscard]] const Variable* find(std::string_view variable) const;

@@ -43,54 +43,54 @@ void ProcessPool::give_back(std::unique_ptr<FmuProcess> process) {
 }
 
 Result<std::unique_ptr<RunningBlock>> RunningBlock::begin(const FmuBlock& block, std::shared_ptr<ProcessPool> pool,
-                                                          const std::vector<std::vector<double>>& parameters,
+                                                          double time_s, const std::vector<BlockStart>& starts,
                                                           std::vector<double> steps) {
   std::unique_ptr<RunningBlock> running(new RunningBlock(block, std::move(pool), std::move(steps)));
-  const std::size_t in_one = block.setup.once_per_process != 0 ? 1 : parameters.size();
-  for (std::size_t first = 0; first < parameters.size(); first += in_one) {
-    auto process = running->pool_->take(block, in_one);
-    if (!process) return fail(process.error());
-    running->processes_.push_back(std::move(*process));
-    std::vector<double>& values = running->parameters_.emplace_back();
-    for (std::size_t slot = first; slot < first + in_one; ++slot) {
-      std::vector<double> all = block.parameter_start;
-      for (std::size_t k = 0; k < block.parameters.size(); ++k)
-        all[block.parameters[k].place] = block.parameters[k].unit.from_si(parameters[slot][k]);
-      values.insert(values.end(), all.begin(), all.end());
-    }
-  }
-  if (const Status begun = running->begin_at(block.start_time_s); !begun) return fail(begun.error());
+  const std::size_t in_one = block.setup.once_per_process != 0 ? 1 : starts.size();
+  for (std::size_t first = 0; first < starts.size(); first += in_one)
+    if (const Status begun = running->begin_process(time_s, std::span(starts).subspan(first, in_one)); !begun)
+      return fail(begun.error());
+  if (running->beginning_.outcome.terminate) running->end_at(time_s);
   running->inputs_ = block.input_start;
   running->states_.resize(block.states.size());
   return running;
 }
 
-Status RunningBlock::begin_at(double time_s) {
-  const std::vector<double> differences = state_steps(block_);
-  const std::vector<double> input_differences(block_.input_start.size(), kDifference);
-  for (std::size_t k = 0; k < processes_.size(); ++k) {
-    auto beginning = processes_[k]->begin({.start_time_s = time_s,
-                                           .state_steps = differences,
-                                           .input_steps = input_differences,
-                                           .inputs = block_.input_start,
-                                           .slots = block_.setup.once_per_process != 0 ? 1 : steps_.size() + 1,
-                                           .parameters = parameters_[k]});
-    if (!beginning) return fail(beginning.error());
-    if (k == 0)
-      beginning_ = std::move(*beginning);
-    else
-      std::ranges::copy(beginning->states, std::back_inserter(beginning_.slot_states));
-  }
-  begun_at_s_ = time_s;
-  if (beginning_.outcome.terminate) end_at(time_s);
-  return {};
+namespace {
+
+/// The group's start values, with those of its elements that the plant sets, behind the values of other instances.
+void append(const std::vector<double>& start, const std::vector<Port>& ports, const std::vector<double>& values,
+            std::vector<double>& all) {
+  const std::size_t first = all.size();
+  all.insert(all.end(), start.begin(), start.end());
+  for (std::size_t k = 0; k < ports.size(); ++k) all[first + ports[k].place] = ports[k].unit.from_si(values[k]);
 }
 
-bool RunningBlock::follow(double first_time_s) {
-  if (std::exchange(met_, true) || first_time_s == begun_at_s_) return true;
-  ended_s_ = std::numeric_limits<double>::infinity();
-  const Status begun = begin_at(first_time_s);
-  return begun || (trouble_ = begun.error().describe(), false);
+}  // namespace
+
+Status RunningBlock::begin_process(double time_s, std::span<const BlockStart> starts) {
+  auto process = pool_->take(block_, starts.size());
+  if (!process) return fail(process.error());
+  processes_.push_back(std::move(*process));
+  const std::vector<double> differences = state_steps(block_);
+  const std::vector<double> input_differences(block_.input_start.size(), kDifference);
+  std::vector<double> inputs, parameters;
+  for (const BlockStart& start : starts) {
+    append(block_.input_start, block_.inputs, start.inputs, inputs);
+    append(block_.parameter_start, block_.parameters, start.parameters, parameters);
+  }
+  auto beginning = processes_.back()->begin({.start_time_s = time_s,
+                                             .state_steps = differences,
+                                             .input_steps = input_differences,
+                                             .inputs = inputs,
+                                             .slots = starts.size(),
+                                             .parameters = parameters});
+  if (!beginning) return fail(beginning.error());
+  if (processes_.size() == 1)
+    beginning_ = std::move(*beginning);
+  else
+    std::ranges::copy(beginning->states, std::back_inserter(beginning_.slot_states));
+  return {};
 }
 
 RunningBlock::~RunningBlock() {
@@ -126,7 +126,6 @@ const BlockValues* RunningBlock::at(double time_s, std::span<const double> state
 }
 
 const BlockValues* RunningBlock::step_to(double time_s) {
-  if (!follow(time_s)) return nullptr;
   const bool first = std::isnan(stepped_to_s_);
   if (first) stepped_to_s_ = time_s;
   const double step_s = is_jump(time_s - stepped_to_s_) ? 0.0 : time_s - stepped_to_s_;
@@ -224,7 +223,6 @@ bool RunningBlock::accept(double time_s, std::span<const double> states, std::sp
 
 bool RunningBlock::pass_event(double time_s, std::span<double> states, std::span<const double> inputs) {
   set_point(states, inputs);
-  if (!follow(time_s)) return false;
   for (std::size_t k = processes_.size(); k-- > 0;) {
     std::vector<double> after = states_;
     const auto outcome = processes_[k]->event(time_s, after, inputs_);

@@ -37,6 +37,35 @@ std::vector<InputChannel> input_channels(const RuntimePlant& plant, const TimeSe
   return channels;
 }
 
+/// Where a run begins, without what laws add there.
+class FirstPoint {
+ public:
+  FirstPoint(const RuntimePlant& plant, const PlantDescription& description, const RecordedInput& input,
+             const ModelValues& values)
+      : time_s_(input.times().front()),
+        states_(values.initial_state.begin(),
+                values.initial_state.begin() + static_cast<std::ptrdiff_t>(plant.states.size())),
+        parameters_(effective_parameters(description, values)),
+        added_(description.sites.size(), 0.0) {
+    for (std::size_t k = 0, cursor = 0; k < plant.inputs.size(); ++k) {
+      inputs_.push_back(input.value(k, time_s_, 0, cursor));
+      rates_.push_back(input.slope(k, time_s_, cursor));
+    }
+  }
+  [[nodiscard]] RuntimePoint point() const {
+    return {.time_s = time_s_,
+            .states = states_,
+            .inputs = inputs_,
+            .input_rates = rates_,
+            .parameters = parameters_,
+            .added = added_};
+  }
+
+ private:
+  double time_s_;
+  std::vector<double> states_, parameters_, added_, inputs_, rates_;
+};
+
 std::vector<std::string> input_names(const RuntimePlant& plant) {
   std::vector<std::string> names;
   for (const RuntimeInput& input : plant.inputs) names.push_back(input.channel);
@@ -75,6 +104,22 @@ tl::unexpected<Error> not_finite(const PlantSimulation& simulation, const Simula
   return fail(std::move(error));
 }
 
+/// Fills in the states that start where the equations say.
+Status start_by_equations(const RuntimePlant& plant, const PlantDescription& description, const TimeSeries& recorded,
+                          ModelValues& start) {
+  if (std::ranges::none_of(plant.states, &RuntimeState::by_equations)) return {};
+  const RecordedInput input(recorded.time_s, input_channels(plant, recorded));
+  const FirstPoint first(plant, description, input, start);
+  const auto evaluator = plant.equations->evaluator(first.point(), {});
+  if (!evaluator) return fail(evaluator.error());
+  std::vector<double> states = start.initial_state;
+  RuntimeMatrix unused;
+  if (!(*evaluator)->start(states, unused)) return fail((*evaluator)->trouble());
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (plant.states[k].by_equations) start.initial_state[k] = states[k];
+  return {};
+}
+
 }  // namespace
 
 RuntimePlantSimulation::RuntimePlantSimulation(std::shared_ptr<const RuntimePlant> plant,
@@ -98,6 +143,7 @@ Result<std::unique_ptr<PlantSimulation>> RuntimePlantSimulation::create(std::sha
   Result<std::vector<double>> state = plant->equations->initial_state(start.parameters, recorded);
   if (!state) return fail(state.error());
   start.initial_state = std::move(*state);
+  if (const Status known = start_by_equations(*plant, description, recorded, start); !known) return fail(known.error());
   std::vector<std::string> names, slow, at_rest;
   for (std::size_t k = 0; k < description.states.size(); ++k) {
     names.push_back(description.states[k].name);
@@ -133,7 +179,8 @@ Result<SimulatedOutputs> RuntimePlantSimulation::run_driven_by(const RecordedInp
                                      .injected = injected,
                                      .sites = plant().sites.size()});
   FreeColumns columns = free_columns(plant(), values, free);
-  auto evaluator = runtime_->equations->evaluator(effective_parameters(plant(), values), columns.differentiated);
+  const FirstPoint first(*runtime_, plant(), input, values);
+  auto evaluator = runtime_->equations->evaluator(first.point(), columns.differentiated);
   if (!evaluator) return fail(evaluator.error());
   RuntimeSystem system(*runtime_, std::move(*evaluator), input, terms(), values, std::move(columns), injected);
   // Laws in an output act between samples at once: the steps follow the samples.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "sealwatch/core/file.hpp"
 #include "sealwatch/model/simulation.hpp"
 #include "services/common/fmi/import_fmu.hpp"
 #include "services/common/runtime/plant_file.hpp"
@@ -36,7 +37,7 @@ TEST(ImportedFmu, IsAPlantFileAsItIs) {
 
 /// Simulated with the input at `value` throughout, and nothing else recorded than zeros.
 Result<SimulatedOutputs> simulated(const std::string& plant, double value, const std::string& channel,
-                                   double first_time_s = 0.0) {
+                                   double first_time_s = 0.0, const std::string& free = "") {
   const auto loaded = load_plant(plant);
   if (!loaded) return fail(loaded.error().front().describe());
   TimeSeries samples;
@@ -48,7 +49,9 @@ Result<SimulatedOutputs> simulated(const std::string& plant, double value, const
   }
   const auto simulation = PlantSimulation::create(nominal_asset((*loaded)->name), samples);
   if (!simulation) return fail(simulation.error());
-  return (*simulation)->run((*simulation)->start(), {});
+  std::vector<FreeQuantity> quantities;
+  if (!free.empty()) quantities.push_back(*(*simulation)->find(free));
+  return (*simulation)->run((*simulation)->start(), quantities);
 }
 
 TEST(ImportedFmu, ASensorThatSaturatesDoesSoInTheSimulation) {
@@ -58,6 +61,33 @@ TEST(ImportedFmu, ASensorThatSaturatesDoesSoInTheSimulation) {
   ASSERT_TRUE(outputs) << outputs.error().describe();
   EXPECT_NEAR(outputs->values(5, 0), outputs->values.topRows(6).maxCoeff(), 1e-12) << "it rises";
   EXPECT_DOUBLE_EQ(outputs->values(100, 0), 0.5) << "x is 1 there";
+}
+
+/// An initial equation: it rests where the first sample's input holds it, as it goes on to do.
+TEST(ImportedFmu, OneThatStartsAtRestDoesSoAtTheRecordedInput) {
+  const TestFolder folder;
+  TestUnit stepping = gain();
+  stepping.binary = "fmu_gain_steady_cs2";
+  const auto check = [](const Result<SimulatedOutputs>& outputs, double rest) {
+    ASSERT_TRUE(outputs) << outputs.error().describe();
+    constexpr double kIntegrated = 1e-6;
+    for (const Eigen::Index row : {0, 1, 50, 100}) EXPECT_NEAR(outputs->values(row, 0), rest, kIntegrated) << row;
+  };
+  check(simulated(imported(folder, spring_return("fmu_spring_steady2"), "steady"), 50.0, "position", 5.0), 0.5);
+  check(simulated(imported(folder, stepping, "steady_steps"), 5.0, "x", 5.0), 10.0);
+}
+
+/// x = k_F u / k_s at the start, and u = drive k_s / 1e4 here: k_s moves nothing.
+TEST(ImportedFmu, AStartChangesWithParametersThroughTheInputsToo) {
+  const TestFolder folder;
+  const std::string file = imported(folder, spring_return("fmu_spring_steady2"), "steady_by_parameter");
+  std::string text = read_file(file, kLongestYaml_bytes).value();
+  text.replace(text.find("\"u\": u\n"), 7, "\"u\": u * k_s / 1e4\n");
+  std::ofstream(file) << text;
+  const auto outputs = simulated(file, 50.0, "position", 0.0, "k_s");
+  ASSERT_TRUE(outputs) << outputs.error().describe();
+  constexpr double kDifferences = 1e-4;  // of the one-sided differences, relative to x / k_s
+  for (const Eigen::Index row : {0, 100}) EXPECT_NEAR(outputs->sensitivities(row, 0) * 1e4 / 0.5, 0.0, kDifferences);
 }
 
 TEST(ImportedFmu, ACoSimulationUnitIsSimulatedAndFitted) {

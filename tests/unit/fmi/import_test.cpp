@@ -75,6 +75,13 @@ TEST(ImportFmu, AnOutputInAnotherUnitThanTheStateIsAVariableOfItsOwn) {
                                             HasSubstr("start: \"0.0[m]\", size: 1.0, own: false")));
 }
 
+TEST(ImportFmu, AStateThatAnInputMovesStartsWhereTheUnitSays) {
+  const TestFolder folder;
+  EXPECT_THAT(imported(folder, spring_return("fmu_spring_steady2")),
+              AllOf(HasSubstr("x: {variable: \"x\", unit: \"m\", start: fmu, size: 1.0, own: false"),
+                    HasSubstr("v: {variable: \"v\", unit: \"1\", start: \"0.0[1]\"")));
+}
+
 TEST(ImportFmu, ElementsOfAnArrayMayBeOfEitherSignWithinItsSize) {
   const TestFolder folder;
   EXPECT_THAT(imported(folder, arrays()), AllOf(HasSubstr("x0_1: {unit: \"1\", value: 1.0, min: -20.0, max: 20.0"),

@@ -82,10 +82,10 @@ TEST_F(FmuProcessTest, ValuesAndDerivativesOfBothVersions) {
 TEST_F(FmuProcessTest, FurtherSlotsCarryOtherParameters) {
   const Running fmu = start(folder_.build(spring_return("fmu_spring_return3")), 2);
   static constexpr std::array kBoth = {20.0, 2e3, 1e4, 100.0, 40.0, 2e3, 1e4, 100.0};
-  static constexpr std::array kInput = {0.0};
+  static constexpr std::array kInputs = {0.0, 0.0};
   const auto beginning = fmu.process->begin({.state_steps = kSteps,
                                              .input_steps = std::span(kSteps).first(1),
-                                             .inputs = kInput,
+                                             .inputs = kInputs,
                                              .slots = 2,
                                              .parameters = kBoth});
   ASSERT_TRUE(beginning) << beginning.error().describe();

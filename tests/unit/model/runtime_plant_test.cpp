@@ -72,7 +72,7 @@ class HandWrittenEmps final : public RuntimeEquations {
     RuntimeLinearisation result_;
   };
 
-  Result<std::unique_ptr<RuntimeEvaluator>> evaluator(std::span<const double>,
+  Result<std::unique_ptr<RuntimeEvaluator>> evaluator(const RuntimePoint&,
                                                       std::span<const std::size_t> differentiated) const override {
     return std::make_unique<Evaluator>(std::vector(differentiated.begin(), differentiated.end()), broken_above_m_s_);
   }

@@ -1,4 +1,4 @@
-/* A Co-Simulation unit: dx/dt = k u - x, y = x, by small steps of Euler's method. */
+/* A Co-Simulation unit: dx/dt = k u - x, y = x, by small steps of Euler's method. STEADY: at the start dx/dt = 0. */
 #include <stdlib.h>
 #ifdef NEEDS_LIBRARY
 double gain_of_library(void);
@@ -21,7 +21,12 @@ int fmi2SetupExperiment(void* c, int defined, double tolerance, double start, in
   return (void)c, (void)defined, (void)tolerance, (void)start, (void)stop_defined, (void)stop, kOk;
 }
 int fmi2EnterInitializationMode(void* c) { return (void)c, kOk; }
-int fmi2ExitInitializationMode(void* c) { return (void)c, kOk; }
+int fmi2ExitInitializationMode(void* c) {
+#ifdef STEADY
+  ((Model*)c)->x = ((Model*)c)->k * ((Model*)c)->u;
+#endif
+  return (void)c, kOk;
+}
 int fmi2Terminate(void* c) { return (void)c, kOk; }
 static double* place(Model* m, unsigned reference) {
   return reference == 0U ? &m->x : reference == 1U ? &m->u : reference == 2U ? &m->k : NULL;

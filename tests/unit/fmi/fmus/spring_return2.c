@@ -1,5 +1,5 @@
 /* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs.
- * BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
+ * STEADY: its initial equation is that it rests, wherever its input holds it. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
 #include <stddef.h>
 #include "spring_return.h"
 #ifdef DIRECTIONAL
@@ -27,7 +27,18 @@ static volatile int for_ever = 1;
 #ifdef BREAKS
 #define fmi2GetDerivatives sound_derivatives
 #endif
+#ifdef STEADY
+#define fmi2ExitInitializationMode plain_exit
+#endif
 #include "services/common/fmi/export/fmi2_shell.c"
+#ifdef STEADY
+#undef fmi2ExitInitializationMode
+API int fmi2ExitInitializationMode(void* c);
+API int fmi2ExitInitializationMode(void* c) {
+  Model* m = c;
+  return m->x[0] = m->p[K_F] * m->u[0] / m->p[K_S], m->x[1] = 0.0, plain_exit(c);
+}
+#endif
 #ifdef BREAKS
 #undef fmi2GetDerivatives
 API int fmi2GetDerivatives(void* c, double* x, size_t n);

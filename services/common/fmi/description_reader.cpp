@@ -119,6 +119,7 @@ std::vector<double> usual_start(const std::vector<Item>& items) {
 
 DeclaredType read_type(const DescriptionReader& reader, const pugi::xml_node& node) {
   return {.unit = reader.text(node, "unit"),
+          .relative = reader.flag(node, "relativeQuantity"),
           .min = reader.bound(node, "min"),
           .max = reader.bound(node, "max"),
           .nominal = reader.bound(node, "nominal"),
@@ -132,12 +133,14 @@ void read_number_attributes(const DescriptionReader& reader, const pugi::xml_nod
   // A type that is not there tells nothing; some tools leave theirs out.
   if (const auto type = types.find(reader.text(node, "declaredType")); type != types.end()) {
     if (own.unit.empty()) own.unit = type->second.unit;
+    if (!node.attribute("relativeQuantity")) own.relative = type->second.relative;
     if (!node.attribute("min")) own.min = type->second.min;
     if (!node.attribute("max")) own.max = type->second.max;
     if (!node.attribute("nominal")) own.nominal = type->second.nominal;
     own.items = type->second.items;
   }
   variable.unit = std::move(own.unit);
+  variable.relative = own.relative;
   variable.min = own.min, variable.max = own.max, variable.nominal = own.nominal;
   variable.start = reader.numbers(node, "start");
   variable.items = std::move(own.items);

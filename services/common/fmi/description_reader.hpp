@@ -49,6 +49,7 @@ class DescriptionReader {
 /// Attributes that a variable without them takes from its type.
 struct DeclaredType {
   std::string unit;
+  bool relative = false;  ///< a difference: without the unit's offset
   std::optional<double> min, max, nominal;
   std::vector<Item> items;  ///< of an enumeration
 };

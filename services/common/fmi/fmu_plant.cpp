@@ -118,13 +118,13 @@ class Builder {
 
   // From the unit that the FMU declares to SI; where it declares none it counts in the plant file's.
   Conversion conversion(const std::string& key, const Variable& variable, const std::string& unit) {
-    const Unit* declared = description_->find_unit(variable.unit);
-    if (declared == nullptr || !declared->has_base) return {};
-    const auto here = equations::find_dimension(unit), there = equations::find_dimension(si_name(*declared));
+    const auto declared = description_->si_unit_of(variable);
+    if (!declared) return {};
+    const auto here = equations::find_dimension(unit), there = equations::find_dimension(declared->name);
     if (here && there && !(*here == *there))
       complain(key, fault(unit, "is another quantity than the FMU's unit " + variable.unit,
-                          "the FMU says that this is in " + si_name(*declared)));
-    return {declared->factor, declared->offset};
+                          "the FMU says that this is in " + declared->name));
+    return declared->conversion;
   }
 
   void choose_variables() {
@@ -232,9 +232,9 @@ class Builder {
 
   void units_of(const std::vector<Element>& elements, std::vector<std::string>& units, std::vector<Port>& to) const {
     for (std::size_t k = 0; k < elements.size(); ++k) {
-      const Unit* unit = description_->find_unit(description_->variables[elements[k].variable].unit);
-      units.push_back(unit != nullptr && unit->has_base ? si_name(*unit) : "");
-      if (unit != nullptr && unit->has_base) to[k].unit = {unit->factor, unit->offset};
+      const auto si = description_->si_unit_of(description_->variables[elements[k].variable]);
+      units.push_back(si ? si->name : "");
+      if (si) to[k].unit = si->conversion;
     }
   }
 

@@ -103,10 +103,7 @@ class Writer {
   [[nodiscard]] Row row_of(const Element& element) const {
     const Variable& variable = fmu_.variables[element.variable];
     Row row{.element = element, .name = {}, .channel = {}, .unit = "1", .scale = {}, .meaning = variable.description};
-    if (const Unit* unit = fmu_.find_unit(variable.unit); unit != nullptr && unit->has_base) {
-      row.unit = si_name(*unit);
-      row.scale = {unit->factor, unit->offset};
-    }
+    if (const auto si = fmu_.si_unit_of(variable)) row.unit = si->name, row.scale = si->conversion;
     if (row.meaning.empty()) row.meaning = fmu_.name_of(element);
     if (variable.unit.empty() || row.unit == "1")
       row.meaning += variable.unit.empty() ? "" : " [" + variable.unit + "]";

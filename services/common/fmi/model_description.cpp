@@ -155,6 +155,12 @@ const Unit* ModelDescription::find_unit(std::string_view unit) const {
   return found == units.end() ? nullptr : &*found;
 }
 
+std::optional<SiUnit> ModelDescription::si_unit_of(const Variable& variable) const {
+  const Unit* unit = find_unit(variable.unit);
+  if (unit == nullptr || !unit->has_base) return std::nullopt;
+  return SiUnit{si_name(*unit), {unit->factor, variable.relative ? 0.0 : unit->offset}};
+}
+
 std::string ModelDescription::name_of(const Element& element) const {
   const Variable& variable = variables[element.variable];
   if (variable.size == 1) return variable.name;

@@ -1,7 +1,7 @@
 // What an FMU says about itself in modelDescription.xml (FMI 2.0.4 section 2.2, FMI 3.0.1 section 2.4), in one form
 // for both versions. Variables of FMI 3 may be arrays; states, derivatives and channels are named by their elements.
 //
-//   y_SI = factor y + offset        for a variable y in one of its own units
+//   y_SI = factor y + offset        for a variable y in one of its own units; a difference has no offset
 #pragma once
 
 #include <array>
@@ -45,6 +45,12 @@ struct Unit {
   double offset = 0.0;
 };
 
+/// By its usual name, and the way to it.
+struct SiUnit {
+  std::string name;
+  Conversion conversion;
+};
+
 /// Of an enumeration.
 struct Item {
   std::string name;
@@ -57,7 +63,8 @@ struct Variable {
   FmiType type = FmiType::float64;
   FmiCausality causality = FmiCausality::local;
   FmiVariability variability = FmiVariability::continuous;
-  std::string unit;  ///< name of a Unit, or ""
+  std::string unit;       ///< name of a Unit, or ""
+  bool relative = false;  ///< a difference of two values: 10 degC are 10 K
   std::string description;
   std::size_t size = 1;                   ///< number of elements, row by row
   std::vector<std::size_t> extents = {};  ///< of an array, in each dimension
@@ -106,6 +113,8 @@ struct ModelDescription {
 
   [[nodiscard]] const Variable* find(std::string_view variable) const;
   [[nodiscard]] const Unit* find_unit(std::string_view unit) const;
+  /// The SI unit of what the variable counts in; nothing where the description does not say.
+  [[nodiscard]] std::optional<SiUnit> si_unit_of(const Variable& variable) const;
   /// "x", "x[2]" of an array, "A[2,1]" of a matrix, counted from 1.
   [[nodiscard]] std::string name_of(const Element& element) const;
   /// The element that name_of() names; an Error with the nearest name otherwise.

@@ -58,6 +58,7 @@ std::string description_of(const TestUnit& unit) {
                                   : unit.interfaces;
   text +=
       "<UnitDefinitions><Unit name=\"mm\"><BaseUnit m=\"1\" factor=\"0.001\"/></Unit>"
+      "<Unit name=\"degC\"><BaseUnit K=\"1\" offset=\"273.15\"/></Unit>"
       "<Unit name=\"N\"><BaseUnit kg=\"1\" m=\"1\" s=\"-2\"/></Unit>"
       "<Unit name=\"m\"><BaseUnit m=\"1\"/></Unit></UnitDefinitions>\n";
   text += "<DefaultExperiment startTime=\"0\" stopTime=\"3\"/>\n";

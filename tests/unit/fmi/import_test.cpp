@@ -45,6 +45,19 @@ TEST(ImportFmu, NamesBecomeNamesOfExpressionsAndUnitsSi) {
                                             HasSubstr("body_parts_2_M: {unit: \"m\", value: 0.02")));
 }
 
+/// Simulated and recorded in kelvin: 10 degC more are 10 K.
+TEST(ImportFmu, ADifferenceIsConvertedWithoutAnOffset) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  const auto put = [&](const std::string& text) {
+    unit.variables.insert(unit.variables.find("start=\"20\""), text + " ");
+  };
+  put("unit=\"degC\"");
+  EXPECT_THAT(imported(folder, unit), HasSubstr("M: {unit: \"K\", value: 293.15,"));
+  put("relativeQuantity=\"true\"");
+  EXPECT_THAT(imported(folder, unit), HasSubstr("M: {unit: \"K\", value: 20.0,"));
+}
+
 TEST(ImportFmu, AnOutputThatIsAStateIsTakenAsTheState) {
   const TestFolder folder;
   TestUnit unit = spring_return("fmu_spring_return2");

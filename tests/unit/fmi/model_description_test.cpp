@@ -57,6 +57,25 @@ TEST(ModelDescription, TypesGiveWhatVariablesLeaveOut) {
   EXPECT_EQ(mass->nominal, 20.0);
 }
 
+/// relativeQuantity: 10 degC more are 10 K. A variable may differ from its type.
+TEST(ModelDescription, ADifferenceHasNoOffset) {
+  for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
+    const bool fmi2 = std::string(binary).ends_with('2');
+    std::string text = description_of(spring_return(binary));
+    text = replaced(text, "<ModelVariables>",
+                    fmi2 ? "<TypeDefinitions><SimpleType name=\"Rise\"><Real unit=\"degC\" relativeQuantity=\"true\"/>"
+                           "</SimpleType></TypeDefinitions><ModelVariables>"
+                         : "<TypeDefinitions><Float64Type name=\"Rise\" unit=\"degC\" relativeQuantity=\"true\"/>"
+                           "</TypeDefinitions><ModelVariables>");
+    text = replaced(text, "start=\"20\"", "start=\"20\" declaredType=\"Rise\"");
+    text = replaced(text, "start=\"2e3\"", "start=\"2e3\" declaredType=\"Rise\" relativeQuantity=\"false\"");
+    const auto description = read_model_description("m.fmu", text);
+    ASSERT_TRUE(description) << description.error().describe();
+    EXPECT_EQ(description->si_unit_of(*description->find("M"))->conversion.to_si(10.0), 10.0);
+    EXPECT_EQ(description->si_unit_of(*description->find("F_v"))->conversion.to_si(10.0), 283.15);
+  }
+}
+
 TEST(ModelDescription, TextsOfEightBitsAreUtf8Inside) {
   const std::string text = replaced(description_of(spring_return("fmu_spring_return2")), "<fmiModelDescription",
                                     "<fmiModelDescription description=\"W\xE4rme \x93q\x94\"");

@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -22,13 +23,32 @@ namespace {
 
 /// Ends the process with sealwatch, also in the middle of a call, and takes the unpacked FMU along where sealwatch
 /// was killed and could not.
-void end_with_sealwatch(const std::string& folder) {
-  char nothing = 0;
-  while (read(kLifeDescriptor, &nothing, 1) > 0) {
+class Cleaner {
+ public:
+  void watch() {
+    std::thread([this] { end_with_sealwatch(); }).detach();
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
-  _exit(0);
+  void take_along(std::string folder) {
+    const std::scoped_lock lock(mutex_);
+    folder_ = std::move(folder);
+  }
+
+ private:
+  [[noreturn]] void end_with_sealwatch() {
+    char nothing = 0;
+    while (read(kLifeDescriptor, &nothing, 1) > 0) {
+    }
+    const std::scoped_lock lock(mutex_);
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+    _exit(0);
+  }
+  std::mutex mutex_;
+  std::string folder_;
+};
+Cleaner& cleaner() {
+  static Cleaner one;
+  return one;
 }
 
 std::string words_of(const Failure& failure) {
@@ -125,13 +145,13 @@ class Server final : public Conversation {
     switch (operation) {
       case Operation::load: {
         Setup setup = get_setup(request);
-        std::thread(end_with_sealwatch, setup.folder).detach();
+        cleaner().take_along(setup.folder);
         host_ = std::make_unique<FmuHost>(std::move(setup));
         return;
       }
       case Operation::load_plant: {
         Unpacker look = request;
-        std::thread(end_with_sealwatch, get_plant(look).fmu_folder).detach();
+        cleaner().take_along(get_plant(look).fmu_folder);
         return plant_.load(request);
       }
       case Operation::simulation:
@@ -191,6 +211,7 @@ int run() {
   if (memory == MAP_FAILED) return 3;
   auto& header = *static_cast<SharedHeader*>(memory);
   const std::span<std::byte> heap(static_cast<std::byte*>(memory) + sizeof(SharedHeader), size - sizeof(SharedHeader));
+  cleaner().watch();
   static Server server(header, heap);
   server.serve();
 }

@@ -34,9 +34,11 @@ void limit(int resource, rlim_t most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// Between fork and exec: only calls that are allowed there. Sanitizers reserve terabytes of addresses, which the limit
-/// on memory would count.
+/// Between fork and exec: only calls that are allowed there. In a session of its own, what a terminal sends to sealwatch
+/// does not end it: it clears up after sealwatch. Sanitizers reserve terabytes of addresses, which the limit on memory
+/// would count.
 [[noreturn]] void become_host(const char* program, std::array<int, 3> ends, std::uint64_t memory_bytes) {
+  setsid();
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGCHLD})
     std::signal(signal, SIG_DFL);
   sigset_t none;

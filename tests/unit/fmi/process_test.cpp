@@ -6,6 +6,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
 #include <thread>
 
 #include "services/common/fmi/fmu_file.hpp"
@@ -202,6 +208,61 @@ TEST_F(FmuProcessTest, AFunctionThatFailsIsNamed) {
   ASSERT_TRUE(begin_spring(*fmu.process));
   EXPECT_THAT(fmu.process->evaluate(0.0, std::array{0.0, 0.0}, std::array{0.0}, {}).error().describe(),
               HasSubstr("fmi2GetReal answered Error"));
+}
+
+/// Processes that were started with this word in their environment, zombies left out.
+int marked(const std::string& mark) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ostringstream environment;
+    environment << std::ifstream(entry.path() / "environ", std::ios::binary).rdbuf();
+    count += environment.str().find("SEALWATCH_TEST_MARK=" + mark) != std::string::npos ? 1 : 0;
+  }
+  return count;
+}
+
+bool comes_true(const std::function<bool()>& condition) {
+  constexpr int kMost_s = 20;
+  for (int look = 0; look < kMost_s * 50 && !condition(); ++look)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  return condition();
+}
+
+/// A process group that runs a unit until it is ended by a signal, with its temporary files in `temporary`.
+void end_in_the_middle(const std::string& path, const std::string& temporary, int signal) {
+  std::array<int, 2> loaded{};
+  ASSERT_EQ(pipe(loaded.data()), 0);
+  const pid_t sealwatch = fork();
+  if (sealwatch == 0) {
+    setpgid(0, 0);
+    setenv("TMPDIR", temporary.c_str(), 1);
+    const Running fmu = start(path);
+    static_cast<void>(!write(loaded[1], "1", 1));
+    static_cast<void>(begin_spring(*fmu.process));
+    pause();
+  }
+  close(loaded[1]);
+  char one = 0;
+  ASSERT_EQ(read(loaded[0], &one, 1), 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // it is at the start of the model
+  EXPECT_FALSE(std::filesystem::is_empty(temporary));
+  EXPECT_EQ(kill(-sealwatch, signal), 0);
+  EXPECT_EQ(waitpid(sealwatch, nullptr, 0), sealwatch);
+  close(loaded[0]);
+}
+
+/// As Ctrl-C, `timeout` and a closed terminal do, which signal all processes of a group.
+TEST_F(FmuProcessTest, ASignalToTheGroupLeavesNeitherProcessesNorFiles) {
+  const std::string path = folder_.build(spring_return("fmu_spring_hang2"));
+  const std::string temporary = (folder_ / "temporary").string();
+  std::filesystem::create_directory(temporary);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
+    const std::string mark = std::to_string(getpid()) + "_" + std::to_string(signal);
+    setenv("SEALWATCH_TEST_MARK", mark.c_str(), 1);
+    end_in_the_middle(path, temporary, signal);
+    EXPECT_TRUE(comes_true([&] { return std::filesystem::is_empty(temporary); })) << "signal " << signal;
+    EXPECT_TRUE(comes_true([&] { return marked(mark) == 0; })) << "signal " << signal;
+  }
 }
 
 TEST_F(FmuProcessTest, AMissingHostIsNamed) {

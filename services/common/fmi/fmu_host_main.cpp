@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -21,7 +22,7 @@
 namespace sealwatch::fmi {
 namespace {
 
-/// Ends the process with sealwatch, also in the middle of a call, and takes the unpacked FMU along where sealwatch
+/// Ends the process and its group with sealwatch, also in the middle of a call, and takes the unpacked FMU along where sealwatch
 /// was killed and could not.
 class Cleaner {
  public:
@@ -41,6 +42,7 @@ class Cleaner {
     const std::scoped_lock lock(mutex_);
     std::error_code ignored;
     if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+    if (getpgrp() == getpid()) kill(0, SIGKILL);  // with what the binary has started
     _exit(0);
   }
   std::mutex mutex_;

@@ -63,22 +63,30 @@ void HostProcess::end() {
   if (alive_) {
     constexpr double kPatience_s = 2.0;  // a licence is given back, and the like
     static_cast<void>(request(Operation::end, "ending", kPatience_s));
-    for (int look = 0; alive_ && look < 200 && waitpid(child_, nullptr, WNOHANG) == 0; ++look) usleep(1000);
+    for (int look = 0; alive_ && look < 200 && !has_ended(); ++look) usleep(1000);
   }
-  int status = 0;
-  if (child_ > 0) kill_and_reap(&status);
+  if (child_ > 0) kill_and_reap();
   if (header_ != nullptr) munmap(header_, memory_bytes_);
   header_ = nullptr;
   for (int* descriptor : {&life_, &output_})
     if (*descriptor >= 0) close(std::exchange(*descriptor, -1));
 }
 
-void HostProcess::kill_and_reap(int* status) {
+bool HostProcess::has_ended() const {
+  siginfo_t about{};
+  return waitid(P_PID, static_cast<id_t>(child_), &about, WEXITED | WNOHANG | WNOWAIT) == 0 && about.si_pid == child_;
+}
+
+// Its group has its number, which nobody else gets until it is reaped.
+int HostProcess::kill_and_reap() {
   alive_ = false;
   kill(child_, SIGKILL);
-  while (waitpid(child_, status, 0) < 0 && errno == EINTR) {
+  kill(-child_, SIGKILL);
+  int status = 0;
+  while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
+  return status;
 }
 
 std::span<std::byte> HostProcess::heap() const {
@@ -99,10 +107,8 @@ Status HostProcess::request(Operation operation, const char* what, double second
   std::uint32_t calls = header_->calls.load();
   for (std::uint32_t last = number - 1; !wait_while(header_->answers, last, kLook_s);) {
     if (look) look();
-    int status = 0;
-    const pid_t gone = waitpid(child_, &status, WNOHANG);
-    if (gone == child_) {
-      alive_ = false, child_ = -1;
+    if (has_ended()) {
+      const int status = kill_and_reap();
       if (header_->answers.load() == number) break;
       return fail(ended(place(what, time_s), status));
     }
@@ -110,7 +116,7 @@ Status HostProcess::request(Operation operation, const char* what, double second
     const double most = header_->inside == Operation::begin ? limits_.start_s : seconds;
     if (std::chrono::duration<double>(Clock::now() - begin).count() < most) continue;
     const std::string where = place(what, time_s);
-    kill_and_reap(&status);
+    kill_and_reap();
     return fail(failure(where,
                         "the FMU did not answer within " + std::to_string(std::lround(most)) + " s and was ended",
                         "its binary hangs: try it in the tool that made it" + said() + printed()));

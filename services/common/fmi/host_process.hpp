@@ -75,7 +75,9 @@ class HostProcess {
   [[nodiscard]] std::string place(const char* what, double time_s) const;
   [[nodiscard]] std::string printed() const;
   [[nodiscard]] std::string said() const;
-  void kill_and_reap(int* status);
+  [[nodiscard]] bool has_ended() const;
+  /// Its status, which it may have ended with by itself; with it end the processes that the binary has started.
+  int kill_and_reap();
 
   std::string file_;
   ProcessLimits limits_;

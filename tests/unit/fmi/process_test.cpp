@@ -265,6 +265,20 @@ TEST_F(FmuProcessTest, ASignalToTheGroupLeavesNeitherProcessesNorFiles) {
   }
 }
 
+/// A licence's helper and the like, in whatever way the run ends.
+TEST_F(FmuProcessTest, ProcessesThatTheBinaryStartsEndWithIt) {
+  const std::string path = folder_.build(spring_return("fmu_spring_forks2"));
+  const std::string mark = std::to_string(getpid()) + "_forks";
+  setenv("SEALWATCH_TEST_MARK", mark.c_str(), 1);
+  Running fmu = start(path);
+  ASSERT_TRUE(begin_spring(*fmu.process));
+  EXPECT_EQ(marked(mark), 2);
+  fmu.process.reset();
+  EXPECT_TRUE(comes_true([&] { return marked(mark) == 0; })) << "after its end";
+  end_in_the_middle(path, folder_.path(), SIGKILL);
+  EXPECT_TRUE(comes_true([&] { return marked(mark) == 0; })) << "after sealwatch was killed";
+}
+
 TEST_F(FmuProcessTest, AMissingHostIsNamed) {
   const std::string path = folder_.build(spring_return("fmu_spring_return2"));
   setenv("SEALWATCH_FMU_HOST", "/nowhere/host", 1);

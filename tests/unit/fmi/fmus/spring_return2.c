@@ -1,5 +1,6 @@
 /* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs.
- * STEADY: its initial equation is that it rests, wherever its input holds it. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
+ * STEADY: its initial equation is that it rests, wherever its input holds it.
+ * FORKS: starts a process that stays. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
 #include <stddef.h>
 #include "spring_return.h"
 #ifdef DIRECTIONAL
@@ -16,6 +17,14 @@ static int instances;
   if (instances++ > 0) {                                                                         \
     callbacks->logger(callbacks->environment, "test", 3, "instances", "only once in a process"); \
     return NULL;                                                                                 \
+  }
+#endif
+#ifdef FORKS
+#include <unistd.h>
+#define MODEL_BEFORE_INSTANTIATE(callbacks) \
+  if (fork() == 0) {                        \
+    sleep(300);                             \
+    _exit(0);                               \
   }
 #endif
 #ifdef HANGS

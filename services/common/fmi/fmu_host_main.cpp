@@ -221,4 +221,7 @@ int run() {
 }  // namespace
 }  // namespace sealwatch::fmi
 
-int main() { return sealwatch::fmi::run(); }
+int main() {
+  std::setvbuf(stdout, nullptr, _IONBF, 0);  // a binary's last words are there, however it ends
+  return sealwatch::fmi::run();
+}

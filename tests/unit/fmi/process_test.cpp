@@ -172,6 +172,11 @@ TEST_F(FmuProcessTest, AnEndedProgramIsAnErrorWithItsLastWords) {
   EXPECT_THAT(trouble(folder_, "fmu_leaves2"), AllOf(HasSubstr("status 7"), HasSubstr("tired of this")));
 }
 
+TEST_F(FmuProcessTest, WhatAnAbortedBinaryPrintedLastIsThere) {
+  EXPECT_THAT(trouble(folder_, "fmu_aborts2"), AllOf(HasSubstr("crashed: Aborted"), HasSubstr("tired of this")));
+  EXPECT_THAT(trouble(folder_, "fmu_spring_mutters2"), AllOf(HasSubstr("gave no instance"), HasSubstr("no key")));
+}
+
 TEST_F(FmuProcessTest, AMissingLicenceIsAnErrorWithTheFmusWords) {
   EXPECT_THAT(trouble(folder_, "fmu_spring_licence2"),
               AllOf(HasSubstr("gave no instance"), HasSubstr("licence: no licence for 30 days"),

@@ -1,6 +1,6 @@
 /* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs.
  * STEADY: its initial equation is that it rests, wherever its input holds it.
- * FORKS: starts a process that stays. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
+ * FORKS: starts a process that stays. MUTTERS: prints why it gives no instance. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
 #include <stddef.h>
 #include "spring_return.h"
 #ifdef DIRECTIONAL
@@ -26,6 +26,12 @@ static int instances;
     sleep(300);                             \
     _exit(0);                               \
   }
+#endif
+#ifdef MUTTERS
+#include <stdio.h>
+#define MODEL_BEFORE_INSTANTIATE(callbacks) \
+  printf("no key");                         \
+  return NULL;
 #endif
 #ifdef HANGS
 static volatile int for_ever = 1;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/common/fmi/import_fmu.hpp"
@@ -58,7 +59,10 @@ int run_plant_import(const PlantImportOptions& options) {
     choice = options.interface == "cs" ? fmi::Choice::co_simulation : fmi::Choice::model_exchange;
   const auto fmu = fmi::FmuFile::open(options.fmu, settings, choice);
   if (!fmu) return complain(fmu.error()), kBadInput;
-  const auto text = fmi::plant_file_of(**fmu, path_from(options.file, options.fmu));
+  const auto tell = [&](const std::string& words) {
+    std::fprintf(stderr, "sealwatch: %s: %s\n", options.fmu.c_str(), visible(words, false).c_str());
+  };
+  const auto text = fmi::plant_file_of(**fmu, path_from(options.file, options.fmu), {.tell = tell});
   if (!text) return complain(text.error()), kBadInput;
   if (const Status written = write_new(options.file, *text); !written) return complain(written.error()), kBadInput;
   const fmi::ModelDescription& description = (*fmu)->description();

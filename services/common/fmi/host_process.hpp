@@ -44,6 +44,8 @@ class HostProcess {
   HostProcess& operator=(const HostProcess&) = delete;
   /// Not in a copy of the process that started it: two who ask at once would get each other's answers.
   [[nodiscard]] bool alive() const;
+  /// For a start that is only tried.
+  void limit_start(double seconds) { limits_.start_s = seconds; }
 
  protected:
   static constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,7 @@
 #include "services/common/fmi/import_fmu.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
@@ -15,6 +16,8 @@
 
 namespace sealwatch::fmi {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostParameters = 200;  ///< in force; further ones come as comments,
 constexpr std::size_t kMostListed = 600;      ///< and so many in all: a plant file has a largest size (core/file.hpp)
@@ -44,7 +47,8 @@ struct Row {
 
 class Writer {
  public:
-  Writer(const FmuFile& file, const std::string& path) : file_(file), fmu_(file.description()), path_(path) {}
+  Writer(const FmuFile& file, const std::string& path, const ImportOptions& options)
+      : file_(file), fmu_(file.description()), path_(path), options_(options), trial_s_(options.trial_s) {}
 
   Result<std::string> write() {
     collect();
@@ -178,22 +182,28 @@ class Writer {
                                 .inputs = inputs,
                                 .parameters = parameters});
     };
+    const auto before = Clock::now();
     auto beginning = begin();
     if (!beginning) return fail(beginning.error());
+    constexpr double kSlower = 3.0;  // than the first start
+    trial_s_ = std::max(trial_s_, kSlower * std::chrono::duration<double>(Clock::now() - before).count());
     beginning_ = std::move(*beginning);
     if (const Status read = read_starts(**process, selection.outputs, inputs); !read) return fail(read.error());
     linked_.assign(states_.size(), false);
     for (std::size_t k = 0; k < states_.size(); ++k) linked_[k] = is_linked(states_[k].element.variable);
-    std::vector<double*> movable;
-    for (double& value : std::span(inputs).first(elements(std::span(setup->inputs).first(setup->continuous_inputs))))
-      movable.push_back(&value);
-    for (double& value : parameters) movable.push_back(&value);
+    if (states_.empty()) return {};
+    std::vector<Movable> movable;
+    add_movable(selection.inputs, inputs, movable);
+    std::erase_if(movable,
+                  [&](const Movable& one) { return !changes_between_events(fmu_.variables[one.of.variable]); });
+    add_movable(selection.parameters, parameters, movable);
+    (*process)->limit_start(trial_s_);
     try_changes(movable, begin, **process);
     find_shown_states();
     return {};
   }
 
-  // Outputs that have a state's value at the start, and beside it with other parameters and inputs: that state may begin
+  // Outputs that have a state's value at the start, and beside it with other values of what it starts with: that state may begin
   // at the output's first sample. Elsewhere they may differ (a sensor that saturates), so that they stay variables of
   // their own. What fails here is no fault: then nothing is known of them.
   void find_shown_states() {
@@ -203,13 +213,13 @@ class Writer {
       if (row.element.element == 0 && !row.state && fmu_.variables[row.element.variable].type == FmiType::float64)
         selection.outputs.push_back(row.element.variable);
     const auto setup = file_.setup(selection);
-    if (file_.co_simulation() || states_.empty() || selection.outputs.empty() || !setup) return;
+    if (selection.outputs.empty() || !setup) return;
     if (setup->continuous_inputs < setup->inputs.size()) return;  // those that events alone change stay as they are
-    auto process = FmuProcess::start(file_.name(), *setup, 1);
+    auto process = FmuProcess::start(file_.name(), *setup, 1, {.start_s = trial_s_, .call_s = trial_s_});
     if (!process) return;
     std::vector<double> inputs = starts_of(selection.inputs), parameters = starts_of(selection.parameters);
-    for (std::size_t k = 0; k < inputs.size(); ++k) inputs[k] += beside(k, inputs[k]);
-    for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] += beside(k, parameters[k]);
+    for (std::size_t k = 0; k < inputs.size() && others_start_; ++k) inputs[k] += beside(k, inputs[k]);
+    for (std::size_t k = 0; k < parameters.size() && others_start_; ++k) parameters[k] += beside(k, parameters[k]);
     const std::vector<double> steps(states_.size(), 1e-7), input_steps(inputs.size(), 1e-7);
     const double time_s = fmu_.start_time_s.value_or(0.0);
     const auto begun = (*process)->begin({.start_time_s = time_s,
@@ -246,21 +256,54 @@ class Writer {
     return kShare * (1.0 + 0.01 * static_cast<double>(k % 50)) * (value == 0.0 ? 1.0 : value);
   }
 
+  /// What may move a state at the start.
+  struct Movable {
+    Element of;
+    double* value;
+  };
+  void add_movable(const std::vector<std::size_t>& variables, std::vector<double>& values,
+                   std::vector<Movable>& movable) const {
+    std::size_t place = 0;
+    for (const std::size_t variable : variables)
+      for (std::size_t k = 0; k < fmu_.variables[variable].size; ++k)
+        movable.push_back({{variable, k}, &values[place++]});
+  }
+
   // The description may not say which states parameters and inputs move at the start: all are changed at once, each by
   // another share, or one by one where the model does not start with all of them changed.
   template <class Begin>
-  void try_changes(const std::vector<double*>& movable, const Begin& begin, const FmuProcess& process) {
+  void try_changes(const std::vector<Movable>& movable, const Begin& begin, const FmuProcess& process) {
+    if (movable.empty()) return;
     std::vector<double> before;
-    for (const double* value : movable) before.push_back(*value);
-    for (std::size_t k = 0; k < movable.size(); ++k) *movable[k] += beside(k, before[k]);
+    for (const Movable& one : movable) before.push_back(*one.value);
+    for (std::size_t k = 0; k < movable.size(); ++k) *movable[k].value += beside(k, before[k]);
     const auto all_moved = begin();
-    if (all_moved) note_moved(all_moved->states);
-    for (std::size_t k = 0; k < movable.size(); ++k) *movable[k] = before[k];
-    for (std::size_t k = 0; !all_moved && k < std::min(movable.size(), kMostParameters) && process.alive(); ++k) {
-      *movable[k] += beside(k, before[k]);
+    for (std::size_t k = 0; k < movable.size(); ++k) *movable[k].value = before[k];
+    if (all_moved) return note_moved(all_moved->states);
+    others_start_ = false;
+    options_.tell("it does not start with all of its parameters and inputs changed a little (" +
+                  all_moved.error().rule + ")" +
+                  (process.alive() ? "; each is changed alone, for at most " + text::exact(options_.trials_s) + " s"
+                                   : std::string()));
+    const auto end = Clock::now() + std::chrono::duration<double>(options_.trials_s);
+    std::size_t k = 0;
+    for (; k < movable.size() && process.alive() && Clock::now() < end; ++k) {
+      *movable[k].value += beside(k, before[k]);
       if (const auto moved = begin()) note_moved(moved->states);
-      *movable[k] = before[k];
+      *movable[k].value = before[k];
     }
+    tell_untried(std::span(movable).subspan(k));
+  }
+
+  void tell_untried(std::span<const Movable> untried) const {
+    if (untried.empty()) return;
+    constexpr std::size_t kMostNamed = 10;
+    std::string names;
+    for (const Movable& one : untried.first(std::min(untried.size(), kMostNamed)))
+      names += (names.empty() ? "" : ", ") + fmu_.name_of(one.of);
+    if (untried.size() > kMostNamed) names += " and " + std::to_string(untried.size() - kMostNamed) + " more";
+    options_.tell("whether these move the start of a state was not tried: " + names +
+                  "; write `start: fmu` for a state that they move");
   }
 
   Status read_starts(FmuProcess& process, const std::vector<std::size_t>& variables, std::span<const double> inputs) {
@@ -480,6 +523,9 @@ class Writer {
   const FmuFile& file_;
   const ModelDescription& fmu_;
   const std::string& path_;
+  const ImportOptions& options_;
+  double trial_s_;            ///< of one start that is only tried
+  bool others_start_ = true;  ///< it starts with other parameters and inputs, too
   std::set<std::string> quantities_, channels_;
   std::map<std::size_t, std::vector<double>> starts_;  ///< of parameters that the description gives none
   std::vector<bool> linked_;  ///< of each state, whether a parameter or an input moves its start
@@ -490,6 +536,8 @@ class Writer {
 
 }  // namespace
 
-Result<std::string> plant_file_of(const FmuFile& file, const std::string& path) { return Writer(file, path).write(); }
+Result<std::string> plant_file_of(const FmuFile& file, const std::string& path, const ImportOptions& options) {
+  return Writer(file, path, options).write();
+}
 
 }  // namespace sealwatch::fmi

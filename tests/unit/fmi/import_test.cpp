@@ -1,6 +1,8 @@
 // What `sealwatch plant import` writes of an FMU.
 #include <gmock/gmock.h>
 
+#include <chrono>
+
 #include "sealwatch/core/file.hpp"
 #include "services/common/fmi/import_fmu.hpp"
 #include "tests/unit/fmi/fmu_builder.hpp"
@@ -119,6 +121,36 @@ TEST(ImportFmu, OneWithBothInterfacesSaysThatItHasASolverOfItsOwn) {
   EXPECT_THAT(imported(folder, mixed("fmu_mixed2")), HasSubstr("interface: me  # it has Co-Simulation too"));
   EXPECT_THAT(imported(folder, gain()), HasSubstr("interface: cs\n"));
   EXPECT_THAT(imported(folder, bouncing("fmu_bouncing2")), HasSubstr("interface: me\n"));
+}
+
+/// The seconds that it takes; what it tells is put to `told`.
+double seconds_of_import(const TestFolder& folder, const TestUnit& unit, const ImportOptions& given,
+                         std::string& told) {
+  const auto file = FmuFile::open(folder.build(unit));
+  EXPECT_TRUE(file);
+  ImportOptions options = given;
+  options.tell = [&](const std::string& words) { told += words + "\n"; };
+  const auto begin = std::chrono::steady_clock::now();
+  const auto text = plant_file_of(**file, "model.fmu", options);
+  EXPECT_TRUE(text) << text.error().describe();
+  EXPECT_THAT(*text, HasSubstr("start: [position, \"0.0[m]\"]")) << "what shows a state needs no other parameters";
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+TEST(ImportFmu, OneThatHangsAtOtherParametersIsNotWaitedForLong) {
+  const TestFolder folder;
+  std::string told;
+  constexpr double kSoon_s = 20.0;  // the first start has 120 s
+  EXPECT_LT(seconds_of_import(folder, spring_return("fmu_spring_stubborn2"), {.trial_s = 0.5}, told), kSoon_s);
+  EXPECT_THAT(told, AllOf(HasSubstr("did not answer within"), HasSubstr("was not tried: u, M, F_v, k_s, k_F;")));
+}
+
+TEST(ImportFmu, OneThatRefusesOtherParametersSlowlyIsTriedForAWhile) {
+  const TestFolder folder;
+  std::string told;
+  static_cast<void>(seconds_of_import(folder, spring_return("fmu_spring_refuses2"), {.trials_s = 0.3}, told));
+  EXPECT_THAT(told, AllOf(HasSubstr("each is changed alone, for at most 0.3 s"), HasSubstr("k_F; write `start: fmu`"),
+                          Not(HasSubstr("tried: u"))));
 }
 
 TEST(ImportFmu, OneThatDoesNotStartIsRefusedByName) {

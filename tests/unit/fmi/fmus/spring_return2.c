@@ -1,6 +1,7 @@
 /* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs.
  * STEADY: its initial equation is that it rests, wherever its input holds it.
- * FORKS: starts a process that stays. MUTTERS: prints why it gives no instance. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
+ * STUBBORN: hangs at other
+ * parameters. SLOW_TO_REFUSE: refuses them, after 0.2 s. FORKS: starts a process that stays. MUTTERS: prints why it gives no instance. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
 #include <stddef.h>
 #include "spring_return.h"
 #ifdef DIRECTIONAL
@@ -42,13 +43,25 @@ static volatile int for_ever = 1;
 #ifdef BREAKS
 #define fmi2GetDerivatives sound_derivatives
 #endif
-#ifdef STEADY
+#if defined(STEADY) || defined(STUBBORN) || defined(SLOW_TO_REFUSE)
 #define fmi2ExitInitializationMode plain_exit
 #endif
 #include "services/common/fmi/export/fmi2_shell.c"
-#ifdef STEADY
 #undef fmi2ExitInitializationMode
 API int fmi2ExitInitializationMode(void* c);
+#if defined(STUBBORN) || defined(SLOW_TO_REFUSE)
+#include <unistd.h>
+API int fmi2ExitInitializationMode(void* c) {
+  Model* m = c;
+  if (memcmp(m->p, start_parameters, sizeof start_parameters) == 0) return plain_exit(c);
+#ifdef STUBBORN
+  for (;;) sleep(100);
+#endif
+  usleep(200000);
+  return kError;
+}
+#endif
+#ifdef STEADY
 API int fmi2ExitInitializationMode(void* c) {
   Model* m = c;
   return m->x[0] = m->p[K_F] * m->u[0] / m->p[K_S], m->x[1] = 0.0, plain_exit(c);

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "sealwatch/core/file.hpp"
 #include "services/common/fmi/fmu_plant.hpp"
 #include "services/common/fmi/fmu_process.hpp"
 #include "services/common/text/numbers.hpp"
@@ -19,8 +20,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostParameters = 200;  ///< in force; further ones come as comments,
-constexpr std::size_t kMostListed = 600;      ///< and so many in all: a plant file has a largest size (core/file.hpp)
+// Of inputs, outputs and parameters alike; a plant file has a largest size (core/file.hpp).
+constexpr std::size_t kMostInForce = 200;  ///< further ones come as comments,
+constexpr std::size_t kMostListed = 600;   ///< and so many in all; where that is too long, none
 
 std::string number(double value) {
   std::string result = text::exact(value);
@@ -54,6 +56,20 @@ class Writer {
     collect();
     if (const Status started = start(); !started) return fail(started.error());
     name_rows();
+    for (const std::size_t most : {kMostListed, kMostInForce})
+      if (std::string text = written(most); text.size() <= kLongestYaml_bytes) return text;
+    return fail(Error{.file = file_.name(),
+                      .place = {},
+                      .value = std::to_string(states_.size()) + " states",
+                      .rule = "make a plant file longer than " + std::to_string(kLongestYaml_bytes) + " bytes",
+                      .advice = "export the model with fewer states, or with shorter names"});
+  }
+
+ private:
+  // `most`: rows of each group, comments among them.
+  std::string written(std::size_t most) {
+    out_ = {};
+    listed_ = most;
     head();
     fmu_section();
     channels();
@@ -71,7 +87,6 @@ class Writer {
     return out_.str();
   }
 
- private:
   // Names of expressions: letters, digits and _; each once among the names of `taken`.
   static std::string name_for(const std::string& name, std::initializer_list<std::set<std::string>*> taken) {
     static const std::set<std::string> kTaken = {"t",    "pi",   "sqrt",  "exp",  "log",  "sin", "cos", "tan",
@@ -377,20 +392,34 @@ class Writer {
     if (!file_.settings().empty()) out_ << "  settings:      # of the FMU, set once before a run\n";
     for (const auto& [name, text] : file_.settings())
       out_ << "    " << text::quoted(name) << ": " << text::quoted(text) << "\n";
-    bool first = true;
+    std::size_t count = 0;
     for (const Variable& variable : fmu_.variables) {
       const bool real = variable.type == FmiType::float64 || variable.type == FmiType::float32;
       const bool structural = variable.causality == FmiCausality::structuralParameter;
       if (!(structural || (variable.causality == FmiCausality::parameter && !real)) ||
           variable.variability == FmiVariability::constant || file_.settings().contains(variable.name))
         continue;
-      if (first)
+      if (++count > listed_) continue;
+      if (count == 1)
         out_ << "  # Parameters that can be set once, under `settings` (sizes of arrays: import with --set):\n";
-      first = false;
       out_ << "  #   " << in_comment(text::quoted(variable.name)) << ":";
       for (const double value : variable.start) out_ << " " << number(value);
       out_ << "\n";
     }
+  }
+
+  template <class Write>
+  void list(const std::vector<Row>& rows, const char* indent, const Write& write) {
+    for (std::size_t k = 0; k < std::min(rows.size(), listed_); ++k) {
+      out_ << indent << (k < kMostInForce ? "" : "# ");
+      write(rows[k]);
+      out_ << "\n";
+    }
+  }
+  void count_rest(const std::vector<Row>& rows, const char* other_place) {
+    if (rows.size() > listed_)
+      out_ << "  # ... and " << rows.size() - listed_
+           << " more: add those of modelDescription.xml that you need, here and in " << other_place << "\n";
   }
 
   void fmu_section() {
@@ -400,17 +429,16 @@ class Writer {
     out_ << "\n";
     settings();
     if (!inputs_.empty()) out_ << "  inputs:        # of the FMU, each an expression of the recorded inputs below\n";
-    for (const Row& row : inputs_)
-      out_ << "    " << text::quoted(fmu_.name_of(row.element)) << ": " << row.name << "\n";
+    const auto name = [&](const Row& row) { out_ << text::quoted(fmu_.name_of(row.element)) << ": " << row.name; };
+    list(inputs_, "    ", name);
     if (!parameters_.empty()) out_ << "  parameters:    # of the FMU, each an expression of the parameters below\n";
-    for (std::size_t k = 0; k < std::min(parameters_.size(), kMostListed); ++k)
-      out_ << (k < kMostParameters ? "    " : "    # ") << text::quoted(fmu_.name_of(parameters_[k].element)) << ": "
-           << parameters_[k].name << "\n";
+    list(parameters_, "    ", name);
     out_ << "  variables:     # of the FMU, by the names that expressions use; any of its variables may be added\n";
-    for (const Row& row : outputs_)
-      if (!row.name.empty())
-        out_ << "    " << row.name << ": {variable: " << text::quoted(fmu_.name_of(row.element))
-             << ", unit: " << text::quoted(row.unit) << "}\n";
+    for (std::size_t k = 0; k < std::min(outputs_.size(), listed_); ++k)
+      if (const Row& row = outputs_[k]; !row.alias)
+        out_ << (k < kMostInForce ? "    " : "    # ") << row.name
+             << ": {variable: " << text::quoted(fmu_.name_of(row.element)) << ", unit: " << text::quoted(row.unit)
+             << "}\n";
   }
 
   void channels() {
@@ -419,16 +447,20 @@ class Writer {
               "are not\n"
               "# recorded: the FMU then keeps its own start value.\n"
               "inputs:\n";
-    for (const Row& row : inputs_)
-      out_ << "  " << row.name << ": {unit: " << text::quoted(row.unit)
+    list(inputs_, "  ", [&](const Row& row) {
+      out_ << row.name << ": {unit: " << text::quoted(row.unit)
            << (changes_between_events(fmu_.variables[row.element.variable]) ? "" : ", course: held")
-           << ", meaning: " << text::quoted(row.meaning) << "}\n";
+           << ", meaning: " << text::quoted(row.meaning) << "}";
+    });
+    count_rest(inputs_, "fmu.inputs");
     out_ << "\n# Recorded outputs. Rename them to the recording's columns, delete those that are not recorded.\n"
             "# noise_std: what the sensor's noise is; without it the recordings tell.\n"
             "outputs:\n";
-    for (const Row& row : outputs_)
-      out_ << "  " << row.channel << ": {unit: " << text::quoted(row.unit) << ", value: " << shown(row)
-           << ", meaning: " << text::quoted(row.meaning) << "}\n";
+    list(outputs_, "  ", [&](const Row& row) {
+      out_ << row.channel << ": {unit: " << text::quoted(row.unit) << ", value: " << shown(row)
+           << ", meaning: " << text::quoted(row.meaning) << "}";
+    });
+    count_rest(outputs_, "fmu.variables");
     if (outputs_.empty())
       out_ << "  {}  # the FMU declares none: name variables of it in fmu.variables and use them here\n";
   }
@@ -445,8 +477,7 @@ class Writer {
     if (parameters_.empty()) return;
     out_ << "\n# Parameters. Set `estimate: true` for those that fit may change, with bounds that you believe in.\n"
             "parameters:\n";
-    for (std::size_t k = 0; k < std::min(parameters_.size(), kMostListed); ++k) {
-      const Row& row = parameters_[k];
+    list(parameters_, "  ", [&](const Row& row) {
       const Variable& variable = fmu_.variables[row.element.variable];
       const double value = row.scale.to_si(start_of_parameter(row.element));
       const double reach = value == 0.0 ? 1.0 : 9.0 * std::abs(value);
@@ -456,13 +487,11 @@ class Writer {
       if (variable.max) max = std::min(max, row.scale.to_si(*variable.max));
       const bool sound = min <= value && value <= max && min < max;
       if (!sound) min = value - reach, max = value + reach;
-      out_ << (k < kMostParameters ? "  " : "  # ") << row.name << ": {unit: " << text::quoted(row.unit)
-           << ", value: " << number(value) << ", min: " << number(min) << ", max: " << number(max)
-           << ", estimate: false, meaning: " << text::quoted(row.meaning) << "}\n";
-    }
-    if (parameters_.size() > kMostListed)
-      out_ << "  # ... and " << parameters_.size() - kMostListed
-           << " more: add those of modelDescription.xml that you need, here and in fmu.parameters\n";
+      out_ << row.name << ": {unit: " << text::quoted(row.unit) << ", value: " << number(value)
+           << ", min: " << number(min) << ", max: " << number(max)
+           << ", estimate: false, meaning: " << text::quoted(row.meaning) << "}";
+    });
+    count_rest(parameters_, "fmu.parameters");
   }
 
   void state_rows() {
@@ -488,13 +517,16 @@ class Writer {
     }
   }
 
+  [[nodiscard]] std::span<const Row> recorded() const {
+    return std::span(outputs_).first(std::min(outputs_.size(), kMostInForce));
+  }
   [[nodiscard]] bool shown_by_output(const Row& state) const {
-    return std::ranges::any_of(outputs_, [&](const Row& output) { return state_shown_by(output) == &state; });
+    return std::ranges::any_of(recorded(), [&](const Row& output) { return state_shown_by(output) == &state; });
   }
 
   [[nodiscard]] std::string start_of(const Row& state, double value) const {
     std::string here = text::quoted(number(value) + "[" + state.unit + "]");
-    for (const Row& output : outputs_)
+    for (const Row& output : recorded())
       if (state_shown_by(output) == &state) return "[" + output.channel + ", " + here + "]";
     return here;
   }
@@ -524,6 +556,7 @@ class Writer {
   const ModelDescription& fmu_;
   const std::string& path_;
   const ImportOptions& options_;
+  std::size_t listed_ = 0;    ///< rows of each group, at most
   double trial_s_;            ///< of one start that is only tried
   bool others_start_ = true;  ///< it starts with other parameters and inputs, too
   std::set<std::string> quantities_, channels_;

@@ -170,7 +170,8 @@ Checked<ReadPlant> read_plant_file(const std::string& file) {
   std::vector<Error> errors;
   const auto node = load_yaml(file, errors);
   for (Error& error : errors)
-    if (error.advice.empty()) error.advice = "within {...} an expression with commas or square brackets needs quotes";
+    if (error.advice.empty() && error.rule.starts_with("is not YAML"))
+      error.advice = "within {...} an expression with commas or square brackets needs quotes";
   if (!node) return tl::unexpected(errors);
   YamlMap root(file, *node, {}, errors);
   ReadPlant read;

@@ -14,6 +14,10 @@
 namespace sealwatch::fmi {
 namespace {
 
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
 std::string imported(const TestFolder& folder, const TestUnit& unit, const std::string& name) {
   const auto fmu = FmuFile::open(folder.build(unit));
   EXPECT_TRUE(fmu) << fmu.error().describe();
@@ -52,6 +56,25 @@ Result<SimulatedOutputs> simulated(const std::string& plant, double value, const
   std::vector<FreeQuantity> quantities;
   if (!free.empty()) quantities.push_back(*(*simulation)->find(free));
   return (*simulation)->run((*simulation)->start(), quantities);
+}
+
+TEST(ImportedFmu, OneOfThousandsOfOutputsIsAPlantFileToo) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  for (int k = 0; k < 1500; ++k)
+    unit.variables += "<ScalarVariable name=\"system.hydraulicCircuit.pump[3].chamber.medium.y" + std::to_string(k) +
+                      "\" valueReference=\"5000\" causality=\"output\"><Real/></ScalarVariable>\n";
+  const auto plant = read_plant_file(imported(folder, unit, "many_outputs"));
+  EXPECT_TRUE(plant) << plant.error().front().describe();
+}
+
+TEST(ImportedFmu, APlantFileThatIsTooLongIsNotToldOfCommas) {
+  const TestFolder folder;
+  const std::string file = (folder / "long.yaml").string();
+  std::ofstream(file) << std::string(kLongestYaml_bytes + 1, '#');
+  const auto plant = read_plant_file(file);
+  ASSERT_FALSE(plant);
+  EXPECT_THAT(plant.error().front().describe(), AllOf(HasSubstr("is longer than"), Not(HasSubstr("commas"))));
 }
 
 TEST(ImportedFmu, ASensorThatSaturatesDoesSoInTheSimulation) {

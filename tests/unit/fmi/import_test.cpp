@@ -116,6 +116,20 @@ TEST(ImportFmu, OfThousandsOfParametersSomeAreListedAndTheRestCounted) {
                           HasSubstr("  # ... and 4404 more: add those of modelDescription.xml")));
 }
 
+TEST(ImportFmu, OfThousandsOfInputsAndOutputsSomeAreListedAndTheRestCounted) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_return2");
+  for (const std::string causality : {"output", "input"})
+    for (int k = 0; k < 3000; ++k)
+      unit.variables += "<ScalarVariable name=\"system.hydraulicCircuit.pump[3].chamber.medium." + causality +
+                        std::to_string(k) + "\" valueReference=\"" + (causality == "input" ? "3000" : "5000") +
+                        "\" causality=\"" + causality + "\"><Real start=\"0\"/></ScalarVariable>\n";
+  const std::string text = imported(folder, unit);
+  EXPECT_LT(text.size(), kLongestYaml_bytes) << "else the plant's file is refused";
+  EXPECT_THAT(text, AllOf(HasSubstr("medium_output100: {variable:"), HasSubstr("\n    \"u\": u\n"),
+                          HasSubstr("here and in fmu.inputs"), HasSubstr("here and in fmu.variables")));
+}
+
 TEST(ImportFmu, OneWithBothInterfacesSaysThatItHasASolverOfItsOwn) {
   const TestFolder folder;
   EXPECT_THAT(imported(folder, mixed("fmu_mixed2")), HasSubstr("interface: me  # it has Co-Simulation too"));

@@ -153,9 +153,15 @@ Status FmuFile::take_settings() {
   return {};
 }
 
-// Without states in its structure a unit would stand still.
+// Without states in its structure a unit would stand still. An input has a derivative too, and so has an output that is no
+// state: it has no start, and a structure that names other things.
 Status FmuFile::check_states() const {
-  const auto rate = std::ranges::find_if(description_.variables, [](const auto& one) { return !!one.derivative_of; });
+  const auto is_of_state = [&](const Variable& rate) {
+    if (!rate.derivative_of || rate.size == 0) return false;
+    const Variable& of = description_.variables[*rate.derivative_of];
+    return of.causality != FmiCausality::input && (description_.structure_is_empty || !of.start.empty());
+  };
+  const auto rate = std::ranges::find_if(description_.variables, is_of_state);
   if (co_simulation() || !description_.states.empty() || rate == description_.variables.end()) return {};
   return fail(refusal("is a derivative, but ModelStructure names no state's: it alone tells their order in the binary",
                       std::string("export it with its ModelStructure") +

@@ -115,6 +115,7 @@ ModelDescription read_root(const DescriptionReader& reader, const pugi::xml_node
   description.units = read_units(reader, root);
   read_experiment(reader, root.child("DefaultExperiment"), description);
   fmi2 ? read_fmi2(reader, root, description) : read_fmi3(reader, root, description, settings);
+  description.structure_is_empty = root.child("ModelStructure").first_child().empty();
   check(reader, root, description);
   return description;
 }

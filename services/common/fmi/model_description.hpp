@@ -106,6 +106,7 @@ struct ModelDescription {
   std::vector<Variable> variables;
   std::vector<Element> states;       ///< elements, in the binary's order
   std::vector<Element> derivatives;  ///< of the states
+  bool structure_is_empty = false;   ///< it names no variable at all
   std::size_t event_indicators = 0;
   std::optional<double> start_time_s, stop_time_s, step_s;
   /// States and the variables of which their starts depend, by the description (InitialUnknowns); indices of variables.

@@ -213,6 +213,35 @@ TEST(FmuEnd, OneAtTheLastSampleIsNoFault) {
 }
 
 // In which order the binary has its states, only the structure tells.
+/// Derivatives of what is no state: of an input, of an algebraic output beside others that the structure names, of an
+/// array without elements.
+TEST(FmuStates, AUnitWithoutStatesMayHaveDerivatives) {
+  const TestFolder folder;
+  TestUnit old = spring_return("fmu_spring_return2");
+  old.variables =
+      "<ScalarVariable name=\"u\" valueReference=\"3000\" causality=\"input\"><Real start=\"0\"/></ScalarVariable>"
+      "<ScalarVariable name=\"y\" valueReference=\"5000\" causality=\"output\"><Real/></ScalarVariable>"
+      "<ScalarVariable name=\"dy\" valueReference=\"1001\" causality=\"output\"><Real "
+      "derivative=\"2\"/></ScalarVariable>";
+  old.structure = "<Outputs><Unknown index=\"2\"/><Unknown index=\"3\"/></Outputs>";
+  TestUnit of_input = spring_return("fmu_spring_return3");
+  of_input.variables =
+      "<Float64 name=\"u\" valueReference=\"3000\" causality=\"input\" start=\"0\"/>"
+      "<Float64 name=\"du\" valueReference=\"2000\" causality=\"output\" derivative=\"3000\"/>";
+  of_input.structure = "";
+  TestUnit empty = of_input;
+  empty.variables =
+      "<Float64 name=\"x\" valueReference=\"1000\"><Dimension start=\"0\"/></Float64>"
+      "<Float64 name=\"dx\" valueReference=\"2000\" derivative=\"1000\"><Dimension start=\"0\"/></Float64>";
+  for (const TestUnit& unit : {old, of_input, empty}) {
+    const auto file = FmuFile::open(folder.build(unit));
+    EXPECT_TRUE(file) << file.error().describe();
+  }
+  // One that has a start is a state, which the structure should name.
+  old.variables.replace(old.variables.find("<Real/>"), 7, "<Real start=\"1\"/>");
+  EXPECT_FALSE(FmuFile::open(folder.build(old)));
+}
+
 TEST(FmuStates, ThoseThatTheStructureLeavesOutAreMissedByName) {
   for (const char* binary : kBinaries) {
     TestUnit unit = mixed(binary);

@@ -1,29 +1,30 @@
 #include "services/common/fmi/description_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace sealwatch::fmi {
 namespace {
 
+/// An xs:double, which may be too large for a double, too small, or none: infinite, 0, NaN.
 std::optional<double> to_number(std::string_view text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) text.remove_prefix(1);
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  if (error == std::errc::invalid_argument || end != text.data() + text.size()) return std::nullopt;
+  if (error != std::errc::result_out_of_range) return value;
+  const auto exponent = text.find_first_of("eE");
+  const bool large =
+      exponent != std::string_view::npos && text.substr(exponent + 1).find('-') == std::string_view::npos;
+  return large ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
-/// xs:double has words for what is not finite.
-bool is_not_finite(std::string_view text) {
-  constexpr std::array kWords = {"INF", "+INF", "-INF", "NaN"};
-  return std::ranges::find(kWords, text) != kWords.end();
-}
+bool is_finite(std::optional<double> value) { return value && std::isfinite(*value); }
 
 }  // namespace
 
@@ -60,7 +61,7 @@ std::optional<double> DescriptionReader::number(const pugi::xml_node& node, cons
   const pugi::xml_attribute attribute = node.attribute(name);
   if (!attribute) return std::nullopt;
   const std::optional<double> value = to_number(attribute.value());
-  if (!value) refuse(node, attribute.value(), std::string(name) + " must be a number");
+  if (!is_finite(value)) refuse(node, attribute.value(), std::string(name) + " must be a number");
   return value;
 }
 
@@ -92,11 +93,13 @@ std::vector<double> DescriptionReader::numbers(const pugi::xml_node& node, const
     if (!value) refuse(node, part, std::string(name) + " must be a number");
     values.push_back(*value);
   }
-  return values;
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); }) ? values
+                                                                                        : std::vector<double>();
 }
 
 std::optional<double> DescriptionReader::bound(const pugi::xml_node& node, const char* name) const {
-  return is_not_finite(node.attribute(name).value()) ? std::nullopt : number(node, name);
+  const std::optional<double> value = to_number(node.attribute(name).value());
+  return value && !std::isfinite(*value) ? std::nullopt : number(node, name);
 }
 
 namespace {

@@ -25,12 +25,12 @@ class DescriptionReader {
   [[nodiscard]] std::string required(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] bool flag(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] std::optional<double> number(const pugi::xml_node& node, const char* name) const;
-  /// A number that bounds or scales: INF and NaN, which xs:double has too, bound nothing.
+  /// A number that bounds or scales: INF, NaN and what is too large, which xs:double has too, bound nothing.
   [[nodiscard]] std::optional<double> bound(const pugi::xml_node& node, const char* name) const;
   [[nodiscard]] std::uint64_t whole(const pugi::xml_node& node, const char* name, std::uint64_t most) const;
   /// Whole numbers with spaces between them; what is none is left out.
   [[nodiscard]] std::vector<std::uint64_t> wholes(const pugi::xml_node& node, const char* name) const;
-  /// Numbers with spaces between them; true and false are 1 and 0.
+  /// Numbers with spaces between them; true and false are 1 and 0. None where one is not finite: then nothing is known.
   [[nodiscard]] std::vector<double> numbers(const pugi::xml_node& node, const char* name) const;
   template <class Enum>
   [[nodiscard]] Enum one_of(const pugi::xml_node& node, const char* name, Enum otherwise) const {

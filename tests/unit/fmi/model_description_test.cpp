@@ -198,7 +198,7 @@ TEST(ModelDescription, UnitsGetTheirUsualNames) {
   EXPECT_EQ(si_name(Unit{}), "1");
 }
 
-TEST(ModelDescription, BoundsThatAreNotFiniteBoundNothingAndATypeThatIsMissingTellsNothing) {
+TEST(ModelDescription, NumbersThatAreNotFiniteSayNothingAndATypeThatIsMissingTellsNothing) {
   for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
     TestUnit unit = spring_return(binary);
     const auto at = unit.variables.find("start=\"20\"");
@@ -209,8 +209,14 @@ TEST(ModelDescription, BoundsThatAreNotFiniteBoundNothingAndATypeThatIsMissingTe
     ASSERT_TRUE(description) << description.error().describe();
     EXPECT_FALSE(description->find("M")->max || description->find("M")->min || description->find("M")->nominal);
     EXPECT_EQ(description->find("M")->start, std::vector{20.0});
-    unit.variables.replace(unit.variables.find("start=\"20\""), 10, "start=\"INF\"");
-    EXPECT_FALSE(read_model_description("m.fmu", description_of(unit)));
+    std::string last = "20";
+    for (const std::string start : {"INF", "-INF", "NaN", "1E400", "1E-400"}) {
+      unit.variables = replaced(unit.variables, "start=\"" + last + "\"", "start=\"" + start + "\"");
+      last = start;
+      const auto without = read_model_description("m.fmu", description_of(unit));
+      ASSERT_TRUE(without) << without.error().describe();
+      EXPECT_EQ(without->find("M")->start, start == "1E-400" ? std::vector{0.0} : std::vector<double>()) << start;
+    }
   }
 }
 

@@ -98,8 +98,7 @@ void resolve(const DescriptionReader& reader, const std::vector<pugi::xml_node>&
                     "start must have a value for each of the " + std::to_string(variable.size) + " elements");
     if (variable.start.size() == 1) variable.start.assign(variable.size, variable.start[0]);
     if (variable.size == 0) variable.start.clear();
-    if (variable.type == FmiType::float64 && nodes[k].attribute("derivative"))
-      variable.derivative_of = place_of(reader, nodes[k], "derivative", places);
+    if (nodes[k].attribute("derivative")) variable.derivative_of = place_of(reader, nodes[k], "derivative", places);
   }
 }
 

@@ -143,6 +143,15 @@ TEST(ModelDescription, FaultsNameLineValueAndRule) {
   EXPECT_THAT(refused(good.substr(0, begin) + good.substr(end)), HasSubstr("neither Model Exchange"));
 }
 
+TEST(ModelDescription, AStateOfAnotherTypeIsRefusedForItsType) {
+  TestUnit unit = spring_return("fmu_spring_return3");
+  for (const char* name : {"name=\"x\"", "name=\"der(x)\""}) {
+    const std::size_t row = unit.variables.rfind("Float64", unit.variables.find(name));
+    unit.variables.replace(row, 7, "Float32");
+  }
+  EXPECT_THAT(refused(description_of(unit)), AllOf(HasSubstr("'x'"), HasSubstr("is a state that is no Float64")));
+}
+
 TEST(ModelDescription, OnlyClocksThatTickByThemselvesAreTaken) {
   const std::string good = description_of(spring_return("fmu_spring_return3"));
   const auto with_clock = [&](const std::string& attributes) {

@@ -90,8 +90,10 @@ Result<std::vector<Entry>> checked_entries(zip_t* archive, const std::string& fi
     if (fault.empty()) fault = fault_of_kind(archive, index);
     if (fault.empty() && (about.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && about.encryption_method != ZIP_EM_NONE)
       fault = "is encrypted";
-    if (fault.empty() && !names.insert(name).second) fault = "is there twice";
+    const bool again = !names.insert(name).second, is_folder = name.ends_with('/');
+    if (fault.empty() && again && !is_folder) fault = "is there twice";
     if (!fault.empty()) return refuse(file, name, fault);
+    if (again) continue;
     entries.push_back({index, std::move(name)});
   }
   return entries;

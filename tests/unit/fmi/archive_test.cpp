@@ -63,6 +63,13 @@ TEST_F(FmuArchive, NamesMayBeginWithTheFolderThatTheyAreIn) {
   EXPECT_THAT(refused({description_, {"./modelDescription.xml", "x"}}), HasSubstr("twice"));
 }
 
+TEST_F(FmuArchive, AFolderMayBeNamedAgain) {
+  write_archive(folder_ / "a.fmu", {description_, {"resources/", ""}, {"./resources/", ""}, {"resources/a", "1"}});
+  const Result<UnpackedFmu> unpacked = unpack_fmu((folder_ / "a.fmu").string());
+  ASSERT_TRUE(unpacked) << unpacked.error().describe();
+  EXPECT_TRUE(unpacked->has("resources/a"));
+}
+
 TEST_F(FmuArchive, NamesThatLeadOutAreRefused) {
   for (const char* name : {"../evil", "resources/../../evil", "/etc/evil", "resources/..", "C:/evil", "..\\evil"})
     EXPECT_THAT(refused({description_, {name, "x"}}), HasSubstr("path")) << name;

@@ -89,9 +89,10 @@ class Writer {
 
   // Names of expressions: letters, digits and _; each once among the names of `taken`.
   static std::string name_for(const std::string& name, std::initializer_list<std::set<std::string>*> taken) {
-    static const std::set<std::string> kTaken = {"t",    "pi",   "sqrt",  "exp",  "log",  "sin", "cos", "tan",
-                                                 "asin", "acos", "atan",  "tanh", "abs",  "min", "max", "sign",
-                                                 "step", "root", "hypot", "rate", "mean", "time"};
+    static const std::set<std::string> kTaken = {"t",    "pi",   "sqrt", "exp",  "log",   "sin",  "cos",
+                                                 "tan",  "asin", "acos", "atan", "tanh",  "abs",  "min",
+                                                 "max",  "sign", "step", "root", "hypot", "rate", "mean",
+                                                 "time", "null", "Null", "NULL"};  // the last are no text in YAML
     std::string result;
     for (const unsigned char c : name)
       if (std::isalnum(c) != 0 || c == '_')

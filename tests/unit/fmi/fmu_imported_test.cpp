@@ -77,6 +77,21 @@ TEST(ImportedFmu, APlantFileThatIsTooLongIsNotToldOfCommas) {
   EXPECT_THAT(plant.error().front().describe(), AllOf(HasSubstr("is longer than"), Not(HasSubstr("commas"))));
 }
 
+TEST(ImportedFmu, AVariableMayBeNamedLikeAWordOfYaml) {
+  const TestFolder folder;
+  for (const std::string name : {"null", "Null", "NULL", "true", "no"}) {
+    TestUnit unit = spring_return("fmu_spring_return2");
+    for (const std::string original : {"\"position\"", "\"M\"", "\"u\""})
+      unit.variables.replace(unit.variables.find("name=" + original), 5 + original.size(),
+                             "name=\"" + name + (original == "\"u\"" ? "" : "." + original.substr(1, 1)) + "\"");
+    unit.variables.replace(unit.variables.find("name=\"v\""), 8, "name=\"" + name + "\"");
+    unit.variables.replace(unit.variables.find("name=\"" + name + "\" valueReference=\"1001\""), 7 + name.size(),
+                           "name=\"" + name + ".v\"");
+    const auto plant = read_plant_file(imported(folder, unit, "words_" + name));
+    EXPECT_TRUE(plant) << name << ": " << plant.error().front().describe();
+  }
+}
+
 TEST(ImportedFmu, ASensorThatSaturatesDoesSoInTheSimulation) {
   const TestFolder folder;
   const auto outputs =

@@ -54,15 +54,14 @@ class Writer {
 
   Result<std::string> write() {
     collect();
+    if (const Status named = check_names(); !named) return fail(named.error());
     if (const Status started = start(); !started) return fail(started.error());
     name_rows();
     for (const std::size_t most : {kMostListed, kMostInForce})
       if (std::string text = written(most); text.size() <= kLongestYaml_bytes) return text;
-    return fail(Error{.file = file_.name(),
-                      .place = {},
-                      .value = std::to_string(states_.size()) + " states",
-                      .rule = "make a plant file longer than " + std::to_string(kLongestYaml_bytes) + " bytes",
-                      .advice = "export the model with fewer states, or with shorter names"});
+    return fail(refusal(std::to_string(states_.size()) + " states",
+                        "make a plant file longer than " + std::to_string(kLongestYaml_bytes) + " bytes",
+                        "export the model with fewer states, or with shorter names"));
   }
 
  private:
@@ -153,6 +152,24 @@ class Writer {
     for (Row& output : outputs_)
       for (std::size_t k = 0; k < states_.size(); ++k)
         if (is_alias(output.element, states_[k].element)) output.state = k, output.alias = true;
+  }
+
+  // The file names variables: of two with one name it would take the first.
+  [[nodiscard]] Status check_names() const {
+    std::map<std::string_view, int> count;
+    for (const Variable& variable : fmu_.variables) ++count[variable.name];
+    for (const auto* rows : {&states_, &inputs_, &outputs_, &parameters_})
+      for (const Row& row : *rows)
+        if (const std::string& name = fmu_.variables[row.element.variable].name; count[name] > 1)
+          return fail(refusal(name, "is the name of two variables", "give each a name of its own, and export again"));
+    return {};
+  }
+  [[nodiscard]] Error refusal(std::string value, std::string rule, std::string advice) const {
+    return {.file = file_.name(),
+            .place = {},
+            .value = std::move(value),
+            .rule = std::move(rule),
+            .advice = std::move(advice)};
   }
 
   [[nodiscard]] bool is_alias(const Element& output, const Element& state) const {

@@ -130,6 +130,16 @@ TEST(ImportFmu, OfThousandsOfInputsAndOutputsSomeAreListedAndTheRestCounted) {
                           HasSubstr("here and in fmu.inputs"), HasSubstr("here and in fmu.variables")));
 }
 
+TEST(ImportFmu, ANameOfTwoVariablesIsRefused) {
+  const TestFolder folder;
+  for (const std::string name : {"M", "position", "x"}) {
+    TestUnit unit = spring_return("fmu_spring_return2");
+    unit.variables +=
+        "<ScalarVariable name=\"" + name + "\" valueReference=\"4001\"><Real start=\"1\"/></ScalarVariable>\n";
+    EXPECT_THAT(imported(folder, unit), AllOf(HasSubstr("'" + name + "'"), HasSubstr("is the name of two variables")));
+  }
+}
+
 TEST(ImportFmu, OneWithBothInterfacesSaysThatItHasASolverOfItsOwn) {
   const TestFolder folder;
   EXPECT_THAT(imported(folder, mixed("fmu_mixed2")), HasSubstr("interface: me  # it has Co-Simulation too"));

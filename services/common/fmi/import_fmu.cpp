@@ -222,6 +222,7 @@ class Writer {
     trial_s_ = std::max(trial_s_, kSlower * std::chrono::duration<double>(Clock::now() - before).count());
     beginning_ = std::move(*beginning);
     if (const Status read = read_starts(**process, selection.outputs, inputs); !read) return fail(read.error());
+    if (const Status finite = check_starts(); !finite) return fail(finite.error());
     linked_.assign(states_.size(), false);
     for (std::size_t k = 0; k < states_.size(); ++k) linked_[k] = is_linked(states_[k].element.variable);
     if (states_.empty()) return {};
@@ -233,6 +234,24 @@ class Writer {
     (*process)->limit_start(trial_s_);
     try_changes(movable, begin, **process);
     find_shown_states();
+    return {};
+  }
+
+  // What is no number cannot be written: a state needs one, a parameter that has none is left to the unit.
+  Status check_starts() {
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      if (!std::isfinite(beginning_.states[k])) {
+        Error error = refusal(std::isnan(beginning_.states[k]) ? "nan" : "infinite", "is no finite number",
+                              "give the state a start in the tool that made the unit, and export again");
+        error.place = "start of state " + fmu_.name_of(states_[k].element);
+        return fail(std::move(error));
+      }
+    std::set<std::size_t> without;
+    for (const Row& row : parameters_)
+      if (!std::isfinite(start_of_parameter(row.element)) && without.insert(row.element.variable).second)
+        options_.tell("the parameter " + fmu_.variables[row.element.variable].name +
+                      " has no finite value: it is left out, and the unit keeps its own");
+    std::erase_if(parameters_, [&](const Row& row) { return without.contains(row.element.variable); });
     return {};
   }
 

@@ -177,6 +177,26 @@ TEST(ImportFmu, OneThatRefusesOtherParametersSlowlyIsTriedForAWhile) {
                           Not(HasSubstr("tried: u"))));
 }
 
+TEST(ImportFmu, AStateThatStartsNowhereIsRefusedByName) {
+  const TestFolder folder;
+  EXPECT_THAT(imported(folder, spring_return("fmu_spring_nowhere2")),
+              AllOf(HasSubstr("'nan'"), HasSubstr("state x"), HasSubstr("is no finite number")));
+}
+
+TEST(ImportFmu, AParameterWithoutANumberIsLeftOutByName) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_unset2");
+  unit.variables.replace(unit.variables.find("start=\"2e3\""), 11, "");  // F_v: as the unit has it
+  const auto file = FmuFile::open(folder.build(unit));
+  ASSERT_TRUE(file);
+  std::string told;
+  const auto text =
+      plant_file_of(**file, "model.fmu", {.tell = [&](const std::string& words) { told += words + "\n"; }});
+  ASSERT_TRUE(text) << text.error().describe();
+  EXPECT_THAT(*text, AllOf(HasSubstr("  k_s: {unit"), Not(HasSubstr("nan")), Not(HasSubstr("F_v"))));
+  EXPECT_THAT(told, HasSubstr("F_v has no finite value"));
+}
+
 TEST(ImportFmu, OneThatDoesNotStartIsRefusedByName) {
   const TestFolder folder;
   EXPECT_THAT(imported(folder, spring_return("fmu_spring_licence2")), HasSubstr("licence"));

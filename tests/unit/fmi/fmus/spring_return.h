@@ -1,13 +1,21 @@
-/* A valve positioner with a return spring: M dv/dt = k_F u - F_v v - k_s x, dx/dt = v. SATURATES: the sensor of x at 0.5. */
+/* A valve positioner with a return spring: M dv/dt = k_F u - F_v v - k_s x, dx/dt = v. NOWHERE: x begins as no number. UNSET: so does F_v. SATURATES: the sensor of x at 0.5. */
 #define MODEL_TOKEN "{sealwatch-test-spring-return}"
 #define STATES 2
 #define INPUTS 1
 #define PARAMETERS 4
 #define OUTPUTS 1
 enum { M_, F_V, K_S, K_F };
+#ifdef NOWHERE
+static const double start_states[] = {0.0 / 0.0, 0.0};
+#else
 static const double start_states[] = {0.0, 0.0};
+#endif
 static const double start_inputs[] = {0.0};
+#ifdef UNSET
+static const double start_parameters[] = {20.0, 0.0 / 0.0, 1e4, 100.0};
+#else
 static const double start_parameters[] = {20.0, 2e3, 1e4, 100.0};
+#endif
 
 #ifndef DERIVATIVES_BEGIN
 #define DERIVATIVES_BEGIN

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "services/common/fmi/model_description.hpp"
+#include "services/common/units/unit_conversion.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -45,10 +48,22 @@ std::string product(const BaseExponents& exponents, int sign) {
   return text.str();
 }
 
+/// Some tools leave the radian out of the base units of angles. The unit's own name tells; nothing where it is no angle.
+const char* angular_name(const Unit& unit) {
+  BaseExponents with_radian = unit.exponents;
+  if (unit.name.empty() || unit.offset != 0.0 || std::exchange(with_radian.back(), 1) != 0) return nullptr;
+  const auto known = std::ranges::find(kKnown, with_radian, &KnownUnit::exponents);
+  if (known == kKnown.end()) return nullptr;
+  constexpr double kRounding = 1e-6;  // of a factor that was written down
+  const Result<UnitConversion> angular = convert_unit(unit.name, known->name);
+  return angular && std::abs(angular->scale / unit.factor - 1.0) < kRounding ? known->name : nullptr;
+}
+
 }  // namespace
 
 std::string si_name(const Unit& unit) {
   if (!unit.has_base) return "1";
+  if (const char* angular = angular_name(unit)) return angular;
   const auto known = std::ranges::find(kKnown, unit.exponents, &KnownUnit::exponents);
   if (known != kKnown.end()) return known->name;
   const std::string above = product(unit.exponents, 1), below = product(unit.exponents, -1);

@@ -207,6 +207,23 @@ TEST(ModelDescription, UnitsGetTheirUsualNames) {
   EXPECT_EQ(si_name(Unit{}), "1");
 }
 
+/// As OpenModelica and others write angles: without their radian.
+TEST(ModelDescription, AnAngularUnitHasItsRadianThoughItsBaseUnitHasNone) {
+  const auto name = [](const std::string& unit, int seconds, double factor, double offset = 0.0) {
+    return si_name(
+        Unit{.name = unit, .has_base = true, .exponents = {0, 0, seconds}, .factor = factor, .offset = offset});
+  };
+  constexpr double kDegree = 0.017453292519943295;
+  EXPECT_EQ(name("rad/s", -1, 1.0), "rad/s");
+  EXPECT_EQ(name("rpm", -1, 6.0 * kDegree), "rad/s");
+  EXPECT_EQ(name("deg", 0, kDegree), "rad");
+  EXPECT_EQ(name("rad/s2", -2, 1.0), "rad/s2");
+  EXPECT_EQ(name("Hz", -1, 1.0), "1/s");
+  EXPECT_EQ(name("1/s", -1, 1.0), "1/s");
+  EXPECT_EQ(name("1/min", -1, 1.0 / 60.0), "1/s");
+  for (const char* plain : {"", "1", "-", "%"}) EXPECT_EQ(name(plain, 0, plain[0] == '%' ? 0.01 : 1.0), "1") << plain;
+}
+
 TEST(ModelDescription, NumbersThatAreNotFiniteSayNothingAndATypeThatIsMissingTellsNothing) {
   for (const char* binary : {"fmu_spring_return2", "fmu_spring_return3"}) {
     TestUnit unit = spring_return(binary);

@@ -173,17 +173,18 @@ std::string ModelDescription::name_of(const Element& element) const {
 }
 
 Result<Element> ModelDescription::find_element(std::string_view name) const {
-  std::vector<std::string> names;
   for (std::size_t k = 0; k < variables.size(); ++k) {
     const Variable& variable = variables[k];
     if (variable.size == 0) continue;
-    names.push_back(name_of({k, 0}));
     if (variable.name == name && variable.size == 1) return Element{k, 0};
     if (variable.size == 1 || !name.starts_with(variable.name + "[") || !name.ends_with(']')) continue;
     std::string_view indices = name.substr(variable.name.size() + 1);
     indices.remove_suffix(1);
     if (const auto element = element_at(indices, variable.extents)) return Element{k, *element};
   }
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < variables.size(); ++k)
+    if (variables[k].size > 0) names.push_back(name_of({k, 0}));
   return fail(Error{.file = file,
                     .place = {},
                     .value = std::string(name),

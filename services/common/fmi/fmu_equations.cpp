@@ -11,7 +11,7 @@ FmuEquations::FmuEquations(FmuBlock block, std::shared_ptr<const RuntimeEquation
                            bool outputs_see_added)
     : block_(std::move(block)),
       frame_(std::move(frame)),
-      counts_(std::move(counts)),
+      counts_(counts),
       outputs_see_added_(outputs_see_added),
       runs_(std::make_unique<HostedRuns>(block_.file->name(), block_.plant)) {}
 

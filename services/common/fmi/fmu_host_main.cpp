@@ -22,8 +22,8 @@
 namespace sealwatch::fmi {
 namespace {
 
-/// Ends the process and its group with sealwatch, also in the middle of a call, and takes the unpacked FMU along where sealwatch
-/// was killed and could not.
+/// Ends the process and its group with sealwatch, also in the middle of a call, and takes the unpacked FMU along where
+/// sealwatch was killed and could not.
 class Cleaner {
  public:
   void watch() {

@@ -222,9 +222,9 @@ class Writer {
     trial_s_ = std::max(trial_s_, kSlower * std::chrono::duration<double>(Clock::now() - before).count());
     beginning_ = std::move(*beginning);
     if (const Status read = read_starts(**process, selection.outputs, inputs); !read) return fail(read.error());
-    if (const Status finite = check_starts(); !finite) return fail(finite.error());
     linked_.assign(states_.size(), false);
     for (std::size_t k = 0; k < states_.size(); ++k) linked_[k] = is_linked(states_[k].element.variable);
+    leave_to_unit();
     if (states_.empty()) return {};
     std::vector<Movable> movable;
     add_movable(selection.inputs, inputs, movable);
@@ -237,27 +237,25 @@ class Writer {
     return {};
   }
 
-  // What is no number cannot be written: a state needs one, a parameter that has none is left to the unit.
-  Status check_starts() {
-    for (std::size_t k = 0; k < states_.size(); ++k)
-      if (!std::isfinite(beginning_.states[k])) {
-        Error error = refusal(std::isnan(beginning_.states[k]) ? "nan" : "infinite", "is no finite number",
-                              "give the state a start in the tool that made the unit, and export again");
-        error.place = "start of state " + fmu_.name_of(states_[k].element);
-        return fail(std::move(error));
-      }
+  // What is no number cannot be written, and is left to the unit.
+  void leave_to_unit() {
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      if (std::isfinite(beginning_.states[k])) continue;
+      linked_[k] = true;
+      options_.tell("the state " + fmu_.name_of(states_[k].element) +
+                    " starts at no finite number: the file leaves its start to the unit (start: fmu)");
+    }
     std::set<std::size_t> without;
     for (const Row& row : parameters_)
       if (!std::isfinite(start_of_parameter(row.element)) && without.insert(row.element.variable).second)
         options_.tell("the parameter " + fmu_.variables[row.element.variable].name +
                       " has no finite value: it is left out, and the unit keeps its own");
     std::erase_if(parameters_, [&](const Row& row) { return without.contains(row.element.variable); });
-    return {};
   }
 
-  // Outputs that have a state's value at the start, and beside it with other values of what it starts with: that state may begin
-  // at the output's first sample. Elsewhere they may differ (a sensor that saturates), so that they stay variables of
-  // their own. What fails here is no fault: then nothing is known of them.
+  // Outputs that have a state's value at the start, and beside it with other values of what it starts with: that state
+  // may begin at the output's first sample. Elsewhere they may differ (a sensor that saturates), so that they stay
+  // variables of their own. What fails here is no fault: then nothing is known of them.
   void find_shown_states() {
     Selection selection = driven();
     selection.outputs.clear();

@@ -28,9 +28,8 @@ class BaselineFit {
     const auto simulation = PlantSimulation::create(asset_, fit_.samples.front());
     if (!simulation) return fail(simulation.error());
     const std::vector<std::string> channels((*simulation)->channels().begin(), (*simulation)->channels().end());
-    baseline_.notes = find_noise(asset_, fit_, channels);
-    static_cast<void>(
-        find_noise(asset_, holdout_, channels));  // its standard deviations; its colour is that of the others
+    baseline_.notes = find_noise(fit_, channels);
+    static_cast<void>(find_noise(holdout_, channels));  // its standard deviations; its colour is that of the others
     holdout_.colour.assign(holdout_.samples.size(), fit_.colour.front());
     baseline_.window_s = window_of(asset_, fit_.samples.front());
     if (windowed() && by_measurements(asset_, fit_)) fit_.resolution = holdout_.resolution = kMeasuredInputResolution;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "sealwatch/signal/noise_floor.hpp"
 #include "services/common/dense/dense.hpp"
@@ -15,41 +16,40 @@ namespace {
 
 constexpr Eigen::Index kPiece = 64;
 constexpr Eigen::Index kOrder = 3;
-constexpr Eigen::Index kPolynomials = 8;  // taken off each piece
-constexpr Eigen::Index kStraight = 3;     // of them, those that a steady motion fills as well
+constexpr Eigen::Index kPolynomials = 8;           // taken off each piece
+constexpr Eigen::Index kTwice = 2 * kPolynomials;  // to see whether that was enough
+constexpr Eigen::Index kStraight = 3;              // of them, those that a steady motion fills as well
 constexpr double kQuietShare = 0.25;
 constexpr double kLeastCorrelation = 0.05;  // below it whitening would change no variance by more than 0.3 %
 constexpr double kSignificant = 3.0;        // standard errors of a correlation
 
 using Covariances = std::array<double, kOrder + 1>;
 
-// Orthonormal polynomials of degree 0..7 over a piece.
+// Orthonormal polynomials of degree 0..15 over a piece: each made of the last one, so that none is lost to rounding.
 const Eigen::MatrixXd& polynomials() {
   static const Eigen::MatrixXd matrix = [] {
-    Eigen::MatrixXd powers(kPiece, kPolynomials);
-    for (Eigen::Index row = 0; row < kPiece; ++row)
-      for (Eigen::Index k = 0; k < kPolynomials; ++k)
-        powers(row, k) = std::pow(2.0 * static_cast<double>(row) / (kPiece - 1) - 1.0, static_cast<double>(k));
-    for (Eigen::Index k = 0; k < kPolynomials; ++k) {
+    const Eigen::VectorXd place = Eigen::VectorXd::LinSpaced(kPiece, -1.0, 1.0);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(kPiece, kTwice);
+    for (Eigen::Index k = 0; k < kTwice; ++k) {
+      if (k > 0) columns.col(k) = place.cwiseProduct(columns.col(k - 1));
       for (Eigen::Index lower = 0; lower < k; ++lower)
-        powers.col(k) -= powers.col(lower).dot(powers.col(k)) * powers.col(lower);
-      powers.col(k).normalize();
+        columns.col(k) -= columns.col(lower).dot(columns.col(k)) * columns.col(lower);
+      columns.col(k).normalize();
     }
-    return powers;
+    return columns;
   }();
   return matrix;
 }
 
-// Takes them off a piece.
-const Eigen::MatrixXd& detrending() {
-  static const Eigen::MatrixXd matrix =
-      Eigen::MatrixXd::Identity(kPiece, kPiece) - dense::product_transposed(polynomials(), polynomials());
-  return matrix;
+// Takes the first of them off a piece.
+Eigen::MatrixXd detrending_by(Eigen::Index count) {
+  const Eigen::MatrixXd first = polynomials().leftCols(count);
+  return Eigen::MatrixXd::Identity(kPiece, kPiece) - dense::product_transposed(first, first);
 }
 
 // The quietest pieces, detrended. What moves shows in the upper polynomials; what is left of a piece has no part in
 // the choice, so that quiet noise is not preferred to loud noise.
-std::vector<Eigen::VectorXd> quiet_pieces_of(const std::vector<double>& values) {
+std::vector<Eigen::VectorXd> quiet_pieces_of(const std::vector<double>& values, const Eigen::MatrixXd& detrending) {
   struct Piece {
     Eigen::VectorXd rest;
     double motion;
@@ -57,8 +57,8 @@ std::vector<Eigen::VectorXd> quiet_pieces_of(const std::vector<double>& values) 
   std::vector<Piece> pieces;
   for (std::size_t begin = 0; begin + kPiece <= values.size(); begin += kPiece) {
     const Eigen::Map<const Eigen::VectorXd> piece(values.data() + begin, kPiece);
-    pieces.push_back(
-        {detrending() * piece, (polynomials().rightCols(kPolynomials - kStraight).transpose() * piece).squaredNorm()});
+    const auto moving = polynomials().middleCols(kStraight, kPolynomials - kStraight);
+    pieces.push_back({detrending * piece, (moving.transpose() * piece).squaredNorm()});
   }
   std::ranges::stable_sort(pieces, {}, &Piece::motion);
   pieces.resize(static_cast<std::size_t>(std::ceil(kQuietShare * static_cast<double>(pieces.size()))));
@@ -90,7 +90,7 @@ ChannelColour autoregression(const Covariances& covariance) {
 }
 
 // Mean products at each lag that detrended pieces of such noise would have: E r r' = M C M, C the noise's covariances.
-Covariances after_detrending(const Covariances& covariance) {
+Covariances after_detrending(const Covariances& covariance, const Eigen::MatrixXd& detrending) {
   const ChannelColour colour = autoregression(covariance);
   std::vector<double> all(static_cast<std::size_t>(kPiece), 0.0);
   for (std::size_t lag = 0; lag < all.size(); ++lag) {
@@ -100,7 +100,7 @@ Covariances after_detrending(const Covariances& covariance) {
   Eigen::MatrixXd c(kPiece, kPiece);
   for (Eigen::Index j = 0; j < kPiece; ++j)
     for (Eigen::Index k = 0; k < kPiece; ++k) c(j, k) = all[static_cast<std::size_t>(std::abs(j - k))];
-  const Eigen::MatrixXd left = dense::product(dense::product(detrending(), c), detrending());
+  const Eigen::MatrixXd left = dense::product(dense::product(detrending, c), detrending);
   Covariances seen{};
   for (Eigen::Index lag = 0; lag <= kOrder; ++lag)
     seen[static_cast<std::size_t>(lag)] = left.diagonal(lag).sum() / static_cast<double>(kPiece - lag);
@@ -109,11 +109,11 @@ Covariances after_detrending(const Covariances& covariance) {
 
 // The noise's covariances from those of the detrended pieces: polynomials take slow noise along and make white noise
 // look correlated.
-Covariances undo_detrending(const Covariances& seen) {
+Covariances undo_detrending(const Covariances& seen, const Eigen::MatrixXd& detrending) {
   constexpr int kIterations = 30;
   Covariances covariance = seen;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const Covariances now = after_detrending(covariance);
+    const Covariances now = after_detrending(covariance, detrending);
     for (std::size_t lag = 0; lag <= kOrder; ++lag) covariance[lag] += seen[lag] - now[lag];
     for (std::size_t lag = 1; lag <= kOrder; ++lag)
       covariance[lag] = std::clamp(covariance[lag], -0.98 * covariance[0], 0.98 * covariance[0]);
@@ -146,42 +146,40 @@ bool is_of_all_samples(const Covariances& covariance, double floor) {
   return are_alike(ratio, 1.0);
 }
 
-// Root mean square over the recordings of the noise that sidecar or asset declare for a channel; 0: none does.
-double declared_noise(const AssetConfig& asset, const Data& data, const std::string& channel) {
-  const auto sensor = asset.sensors.find(channel);
-  const double usual = sensor == asset.sensors.end() ? 0.0 : sensor->second.noise_std;
-  double squares = 0.0, count = 0.0;
+// The noise's covariances from the quiet pieces of all recordings, freed of so many polynomials; none of too few samples.
+std::optional<Covariances> covariances_of(const Data& data, const std::string& channel, Eigen::Index count,
+                                          double& samples) {
+  const Eigen::MatrixXd detrending = detrending_by(count);
+  Covariances covariance{};
+  samples = 0.0;
   for (const TimeSeries& recorded : data.samples)
-    if (const Series* series = recorded.find(channel)) {
-      squares += std::pow(series->noise_std > 0.0 ? series->noise_std : usual, 2);
-      count += 1.0;
-    }
-  return std::sqrt(squares / std::max(count, 1.0));
+    if (const Series* series = recorded.find(channel))
+      add_covariances(quiet_pieces_of(series->values, detrending), covariance, samples);
+  if (!(covariance[0] > 0.0) || samples < 4.0 * kPiece) return std::nullopt;
+  covariance = undo_detrending(covariance, detrending);
+  for (double& one : covariance) one *= static_cast<double>(kPiece) / samples;
+  return covariance;
 }
 
-// Where differences bear out the noise that is declared, what is slow in the pieces beside it is motion that their
-// polynomials do not follow: a kink, a fast stroke.
-bool shows_motion(const Covariances& covariance, double floor, double declared) {
-  return declared > 0.0 && are_alike(floor, declared) && !are_alike(std::sqrt(covariance[0]), declared);
+// What twice as many polynomials take off as well is motion that the first do not follow: a kink, a fast stroke, a mass
+// that rings. Of noise, whatever its colour, both tell the same.
+bool shows_motion(const Covariances& covariance, const Covariances& by_twice) {
+  return !are_alike(std::sqrt(covariance[0]), std::sqrt(by_twice[0]));
 }
 
 }  // namespace
 
-std::vector<std::string> find_noise(const AssetConfig& asset, Data& data, const std::vector<std::string>& channels) {
+std::vector<std::string> find_noise(Data& data, const std::vector<std::string>& channels) {
   std::vector<std::string> sentences;
   data.colour.assign(data.samples.size(), NoiseColour(channels.size()));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const double floor = pooled_floor(data, channels[c]);
-    Covariances covariance{};
     double samples = 0.0;
-    for (const TimeSeries& recorded : data.samples)
-      if (const Series* series = recorded.find(channels[c]))
-        add_covariances(quiet_pieces_of(series->values), covariance, samples);
-    if (!(covariance[0] > 0.0) || samples < 4.0 * kPiece) continue;
-    covariance = undo_detrending(covariance);
-    for (double& one : covariance) one *= static_cast<double>(kPiece) / samples;
-    if (!is_of_all_samples(covariance, floor)) continue;
-    if (shows_motion(covariance, floor, declared_noise(asset, data, channels[c]))) continue;
+    const auto found = covariances_of(data, channels[c], kPolynomials, samples);
+    const auto by_twice = covariances_of(data, channels[c], kTwice, samples);
+    if (!found || !by_twice) continue;
+    const Covariances& covariance = *found;
+    if (!is_of_all_samples(covariance, floor) || shows_motion(covariance, *by_twice)) continue;
     const double correlation = covariance[1] / covariance[0];
     if (std::abs(correlation) < std::max(kLeastCorrelation, kSignificant / std::sqrt(samples))) continue;
     const ChannelColour colour = autoregression(covariance);

@@ -1,15 +1,20 @@
 #include "services/common/fmi/host_launch.hpp"
 
 #include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -34,11 +39,24 @@ void limit(int resource, rlim_t most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
+/// Neither the binary nor what it starts leaves the process group, which ends as one: whoever asks for a session or a group
+/// of his own is refused, as if he had no right to it. Where the kernel has no filters, nothing is refused.
+void stay_in_group() {
+  std::array<sock_filter, 5> rules = {sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                                      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_setsid, 1, 0),
+                                      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_setpgid, 0, 1),
+                                      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
+                                      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+  sock_fprog filter{.len = rules.size(), .filter = rules.data()};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter);
+}
+
 /// Between fork and exec: only calls that are allowed there. In a session of its own, what a terminal sends to sealwatch
 /// does not end it: it clears up after sealwatch. Sanitizers reserve terabytes of addresses, which the limit on memory
 /// would count.
 [[noreturn]] void become_host(const char* program, std::array<int, 3> ends, std::uint64_t memory_bytes) {
   setsid();
+  stay_in_group();
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGCHLD})
     std::signal(signal, SIG_DFL);
   sigset_t none;

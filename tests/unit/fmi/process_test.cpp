@@ -270,7 +270,7 @@ TEST_F(FmuProcessTest, ASignalToTheGroupLeavesNeitherProcessesNorFiles) {
   }
 }
 
-/// A licence's helper and the like, in whatever way the run ends.
+/// A licence's helper and the like, one that asks for a session of its own too, in whatever way the run ends.
 TEST_F(FmuProcessTest, ProcessesThatTheBinaryStartsEndWithIt) {
   const std::string path = folder_.build(spring_return("fmu_spring_forks2"));
   const std::string mark = std::to_string(getpid()) + "_forks";

@@ -24,6 +24,7 @@ static int instances;
 #include <unistd.h>
 #define MODEL_BEFORE_INSTANTIATE(callbacks) \
   if (fork() == 0) {                        \
+    setsid();                               \
     sleep(300);                             \
     _exit(0);                               \
   }

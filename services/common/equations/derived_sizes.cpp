@@ -34,6 +34,9 @@ constexpr std::array kRules = {
     Rule{"ohm/A2", {{{"V", 1}, {"A", -3}}}},
     Rule{"1/s", {{{"V/s", 1}, {"V", -1}}}},
     Rule{"V^0.5/s", {{{"V/s", 1}, {"V", -0.5}}}},
+    // What only widths of corners are measured in, and so may not be given.
+    Rule{"Pa", {{{"m3/s", 1}, {"m3/(s Pa)", -1}}}},
+    Rule{"Pa", {{{"N", 1}, {"m2", -1}}}},
 };
 
 }  // namespace

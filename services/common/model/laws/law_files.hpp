@@ -48,6 +48,9 @@ struct StrengthSize {
 /// Width of |v| at standstill in laws that remember a deflection: creep below it relaxes them. [m/s]
 inline constexpr double kStandstill_m_s = 1e-9;
 
+/// Pressure below which a turbulent flow is laminar, in the sizes of `eha`. [Pa]
+inline constexpr double kLaminar_Pa = 1e3;
+
 [[nodiscard]] inline LawScalar sine(const LawScalar& a) { return a.chain(std::sin(a.value), std::cos(a.value)); }
 
 /// exp(-a^2)

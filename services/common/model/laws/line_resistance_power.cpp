@@ -6,7 +6,7 @@ namespace sealwatch::laws {
 static LawOutput evaluate_line_resistance_power(const LawInput& in) {
   constexpr double kLag_s = 1e-3;
   const auto& q_f = in.hidden;
-  return {.contribution = in.parameter[0] * signed_power(q_f, kFlow_m3_s, in.parameter[1]),
+  return {.contribution = in.parameter[0] * signed_power(q_f, kFlow_m3_s, in.parameter[1], in.rounding[0]),
           .rate = (in.signal[0] - q_f) / kLag_s};
 }
 
@@ -22,7 +22,8 @@ Law line_resistance_power() {
           .parameters = {strength("D_q", "Pa", "drop at 1e-5 m3/s", {.usual = 2e5, .significant = 1e5, .max = 1e8}),
                          exponent("a_q", {1.5, 3.0}, 0.5, 5.0)},
           .hidden = HiddenState{.name = "line_flow", .unit = "m3/s", .scale = 8e-6, .settled = true},
-          .evaluate = &evaluate_line_resistance_power};
+          .evaluate = &evaluate_line_resistance_power,
+          .roundings = {{"m3/s", kCorner * kFlow_m3_s}}};
 }
 
 }  // namespace sealwatch::laws

@@ -3,11 +3,12 @@
 // a listed id bears that id (a leak of the pump by any power of its speed is a speed-dependent slip); the others share
 // the id `unlisted`. Their grids start away from the exponents of the other laws.
 //
-//   signed power     sgn(s) |s / S|^a  ~  (s / S) ((s / S)^2 + w^2)^((a - 1) / 2)
-//   even power       |s / S|^b         ~          ((s / S)^2 + w^2)^(b / 2)
+//   signed power     sgn(s) |s / S|^a  ~  (s / S) ((s / S)^2 + (w / S)^2)^((a - 1) / 2)
+//   even power       |s / S|^b         ~          ((s / S)^2 + (w / S)^2)^(b / 2)
 //
-// S: reference size of the signal s; w: share of it over which the corner at 0 is rounded, so that both are finite and
-// differentiable there for any exponent.
+// S: reference size of the signal s, the same for every plant; w: width over which the corner at 0 is rounded, so that
+// both are finite and differentiable there for any exponent. It goes with the plant's sizes: rounded over 0.2 MPa, a
+// tank's leak would be laminar at any exponent.
 #pragma once
 
 #include <string_view>
@@ -29,16 +30,19 @@ inline constexpr double kFlow_m3_s = 1e-5;
 inline constexpr double kCommand_V = 10.0;
 inline constexpr double kCurrent_A = 1.0;
 
-/// Share of the reference size over which corners are rounded, w.
+/// Share of the reference size, in the sizes of `eha`, over which corners are rounded.
 inline constexpr double kCorner = 0.02;
 
-[[nodiscard]] inline LawScalar even_power(const LawScalar& signal, double reference, const LawScalar& exponent) {
+[[nodiscard]] inline LawScalar even_power(const LawScalar& signal, double reference, const LawScalar& exponent,
+                                          double width) {
   const LawScalar ratio = signal / reference;
-  return exp(0.5 * exponent * log(ratio * ratio + kCorner * kCorner));
+  const double corner = width / reference;
+  return exp(0.5 * exponent * log(ratio * ratio + corner * corner));
 }
 
-[[nodiscard]] inline LawScalar signed_power(const LawScalar& signal, double reference, const LawScalar& exponent) {
-  return signal / reference * even_power(signal, reference, exponent - 1.0);
+[[nodiscard]] inline LawScalar signed_power(const LawScalar& signal, double reference, const LawScalar& exponent,
+                                            double width) {
+  return signal / reference * even_power(signal, reference, exponent - 1.0, width);
 }
 
 /// Dry friction's change of direction with any sharpness m: v / (|v|^m + w^m)^(1/m), about v / w at rest, 1 far away. m

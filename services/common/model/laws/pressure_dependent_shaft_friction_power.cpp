@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // T = c_w omega |(p_1 - p_2) / 10 MPa|^b_t
 static LawOutput evaluate_pressure_dependent_shaft_friction_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[1], kPressure_Pa, in.parameter[1]),
+  return {.contribution =
+              in.parameter[0] * in.signal[0] * even_power(in.signal[1], kPressure_Pa, in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -20,7 +21,8 @@ Law pressure_dependent_shaft_friction_power() {
           .parameters = {strength("c_w", "N m s/rad", "torque per speed at 10 MPa",
                                   {.usual = 1e-4, .significant = 2.5e-5, .max = 0.05}),
                          exponent("b_t", {1.0, 2.0, 0.5}, 0.1, 4.0)},
-          .evaluate = &evaluate_pressure_dependent_shaft_friction_power};
+          .evaluate = &evaluate_pressure_dependent_shaft_friction_power,
+          .roundings = {{"Pa", kCorner * kPressure_Pa}}};
 }
 
 }  // namespace sealwatch::laws

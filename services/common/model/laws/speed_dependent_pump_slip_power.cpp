@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // q = G_w (p_1 - p_2) |omega / 100 rad/s|^b_w
 static LawOutput evaluate_speed_dependent_pump_slip_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[1], kShaftSpeed_rad_s, in.parameter[1]),
+  return {.contribution = in.parameter[0] * in.signal[0] *
+                          even_power(in.signal[1], kShaftSpeed_rad_s, in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -20,7 +21,8 @@ Law speed_dependent_pump_slip_power() {
           .parameters = {strength("G_w", "m3/(s Pa)", "flow per pressure at 100 rad/s",
                                   {.usual = 2e-14, .significant = 8e-15, .max = 1e-10}),
                          exponent("b_w", {2.0, 0.5, -0.5}, -1.0, 4.0)},
-          .evaluate = &evaluate_speed_dependent_pump_slip_power};
+          .evaluate = &evaluate_speed_dependent_pump_slip_power,
+          .roundings = {{"rad/s", kCorner * kShaftSpeed_rad_s}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // F = F_x sgn(x) |x / 50 mm|^a_x
 static LawOutput evaluate_spring_load_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * signed_power(in.signal[1], kPosition_m, in.parameter[1]), .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[1], kPosition_m, in.parameter[1], in.rounding[0]),
+          .rate = {}};
 }
 
 Law spring_load_power() {
@@ -19,7 +20,8 @@ Law spring_load_power() {
           .parameters = {strength("F_x", "N", "force at 50 mm",
                                   {.usual = 2.5e3, .significant = 1.5e3, .max = 1e6, .either_sign = true}),
                          exponent("a_x", {3.0, 2.0}, 1.2, 7.0)},
-          .evaluate = &evaluate_spring_load_power};
+          .evaluate = &evaluate_spring_load_power,
+          .roundings = {{"m", kCorner * kPosition_m}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // T = T_i sgn(i) |i / 1 A|^n: torque that the iron does not give any more.
 static LawOutput evaluate_torque_saturation_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * signed_power(in.signal[2], kCurrent_A, in.parameter[1]), .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[2], kCurrent_A, in.parameter[1], in.rounding[0]),
+          .rate = {}};
 }
 
 Law torque_saturation_power() {
@@ -18,7 +19,8 @@ Law torque_saturation_power() {
           .closed_form = true,
           .parameters = {strength("T_i", "N m", "torque lost at 1 A", {.usual = 4e-4, .significant = 8e-5, .max = 0.1}),
                          exponent("n", {2.0, 4.0}, 1.2, 8.0)},
-          .evaluate = &evaluate_torque_saturation_power};
+          .evaluate = &evaluate_torque_saturation_power,
+          .roundings = {{"A", kCorner * kCurrent_A}}};
 }
 
 }  // namespace sealwatch::laws

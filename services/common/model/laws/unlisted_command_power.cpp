@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // V = g_u u |u / 10 V|^a_u
 static LawOutput evaluate_unlisted_command_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * in.signal[1] * even_power(in.signal[1], kCommand_V, in.parameter[1]),
+  return {.contribution =
+              in.parameter[0] * in.signal[1] * even_power(in.signal[1], kCommand_V, in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -20,7 +21,8 @@ Law unlisted_command_power() {
           .parameters = {strength("g_u", "1", "share of the command that is lost at 10 V",
                                   {.usual = 0.02, .significant = 3e-3, .max = 0.9}),
                          exponent("a_u", {1.0, 2.0, 0.0}, -0.5, 4.0)},
-          .evaluate = &evaluate_unlisted_command_power};
+          .evaluate = &evaluate_unlisted_command_power,
+          .roundings = {{"V", kCorner * kCommand_V}}};
 }
 
 }  // namespace sealwatch::laws

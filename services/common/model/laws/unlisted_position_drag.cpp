@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // F = c_x v |x / 50 mm|^b_x
 static LawOutput evaluate_unlisted_position_drag(const LawInput& in) {
-  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[1], kPosition_m, in.parameter[1]),
+  return {.contribution =
+              in.parameter[0] * in.signal[0] * even_power(in.signal[1], kPosition_m, in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -20,7 +21,8 @@ Law unlisted_position_drag() {
       .closed_form = true,
       .parameters = {strength("c_x", "N s/m", "friction at 50 mm", {.usual = 1e6, .significant = 4.5e5, .max = 1e8}),
                      exponent("b_x", {4.0, -2.0}, -3.0, 8.0)},
-      .evaluate = &evaluate_unlisted_position_drag};
+      .evaluate = &evaluate_unlisted_position_drag,
+      .roundings = {{"m", kCorner * kPosition_m}}};
 }
 
 }  // namespace sealwatch::laws

@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // V = R_i i |i / 1 A|^a_i
 static LawOutput evaluate_unlisted_resistance_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * in.signal[0] * even_power(in.signal[0], kCurrent_A, in.parameter[1]),
+  return {.contribution =
+              in.parameter[0] * in.signal[0] * even_power(in.signal[0], kCurrent_A, in.parameter[1], in.rounding[0]),
           .rate = {}};
 }
 
@@ -20,7 +21,8 @@ Law unlisted_resistance_power() {
       .closed_form = true,
       .parameters = {strength("R_i", "ohm", "resistance at 1 A", {.usual = 0.05, .significant = 0.012, .max = 10.0}),
                      exponent("a_i", {1.0, 2.0, -0.5}, -0.9, 4.0)},
-      .evaluate = &evaluate_unlisted_resistance_power};
+      .evaluate = &evaluate_unlisted_resistance_power,
+      .roundings = {{"A", kCorner * kCurrent_A}}};
 }
 
 }  // namespace sealwatch::laws

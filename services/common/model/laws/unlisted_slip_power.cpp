@@ -4,7 +4,8 @@ namespace sealwatch::laws {
 
 // q = q_p sgn(D) |D / 10 MPa|^a_p, D = p_1 - p_2
 static LawOutput evaluate_unlisted_slip_power(const LawInput& in) {
-  return {.contribution = in.parameter[0] * signed_power(in.signal[0], kPressure_Pa, in.parameter[1]), .rate = {}};
+  return {.contribution = in.parameter[0] * signed_power(in.signal[0], kPressure_Pa, in.parameter[1], in.rounding[0]),
+          .rate = {}};
 }
 
 Law unlisted_slip_power() {
@@ -18,7 +19,8 @@ Law unlisted_slip_power() {
           .closed_form = true,
           .parameters = {strength("q_p", "m3/s", "flow at 10 MPa", {.usual = 2e-7, .significant = 8e-8, .max = 1e-4}),
                          exponent("a_p", {1.5, 2.0, 3.0}, 0.2, 5.0)},
-          .evaluate = &evaluate_unlisted_slip_power};
+          .evaluate = &evaluate_unlisted_slip_power,
+          .roundings = {{"Pa", kCorner * kPressure_Pa}}};
 }
 
 }  // namespace sealwatch::laws

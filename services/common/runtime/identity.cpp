@@ -39,6 +39,11 @@ void name_replacement(Message& message) {
       replacement_id_of(own.size() > kLongestPart ? content_hash(own) : own, event->asset_id, event->kind, time);
 }
 
+std::string id_beside_another_asset(const Message& message) {
+  const std::string& own = header_of(message).message_id;
+  return (own.size() > kLongestPart ? content_hash(own) : own) + "@" + asset_of(message);
+}
+
 bool is_numbered(const Message& message) {
   const Header& header = header_of(message);
   return !header.writer_id.empty() && header.stream_sequence != 0;

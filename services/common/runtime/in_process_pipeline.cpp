@@ -46,7 +46,7 @@ struct InProcessPipeline::Reader {
   }
 
   std::unique_ptr<Layer> kind;
-  std::set<std::string> received;
+  std::map<std::string, std::string> received;                           ///< asset by message id
   std::map<std::pair<Topic, std::string>, std::string> last_unnumbered;  ///< message id by topic and asset
   std::map<std::string, OfAsset> assets;
   AssetLanes lanes;
@@ -75,6 +75,12 @@ void InProcessPipeline::push(const Message& message) {
 
 void InProcessPipeline::deliver(Reader& reader, const Message& message) {
   const std::string asset_id = asset_of(message);
+  if (const auto known = reader.received.find(header_of(message).message_id);
+      known != reader.received.end() && known->second != asset_id) {
+    Message renamed = message;
+    header_of(renamed).message_id = id_beside_another_asset(message);
+    return deliver(reader, renamed);
+  }
   const auto last = std::pair{topic_of(message), asset_id};
   const auto id = identify(message, {.has = [&](const std::string& known) { return reader.received.contains(known); },
                                      .last_unnumbered =
@@ -83,7 +89,7 @@ void InProcessPipeline::deliver(Reader& reader, const Message& message) {
                                            return found == reader.last_unnumbered.end() ? std::string() : found->second;
                                          }});
   if (!id) return;
-  reader.received.insert(*id);
+  reader.received[*id] = asset_id;
   reader.last_unnumbered[last] = *id;
   Reader::OfAsset& of_asset = reader.assets[asset_id];
   if (of_asset.set_aside.contains(header_of(message).pst_id)) return;

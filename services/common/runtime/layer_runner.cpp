@@ -202,12 +202,23 @@ Result<std::optional<std::string>> LayerRunner::identify_input(const Message& me
   return id;
 }
 
-/// A replacement that an earlier version kept under the id that it came with has that id still.
+Result<std::optional<std::string>> LayerRunner::asset_of_input(const std::string& message_id) {
+  if (const auto taken = taken_ids_.find(message_id); taken != taken_ids_.end())
+    return asset_of(*taken_[taken->second].message);
+  return journal_.asset_of_input(message_id);
+}
+
+/// A replacement that an earlier version kept under the id that it came with has that id still. An id that is another
+/// asset's is no sign that this message came before.
 Status LayerRunner::name_as_kept(Message& message) {
-  if (topic_of(message) != Topic::maintenance_event) return {};
-  const auto known = journal_.has_input(header_of(message).message_id);
+  if (header_of(message).message_id.empty()) return {};
+  auto known = asset_of_input(header_of(message).message_id);
+  if (known && !*known && topic_of(message) == Topic::maintenance_event) {
+    name_replacement(message);
+    known = asset_of_input(header_of(message).message_id);
+  }
   if (!known) return fail(known.error());
-  if (!*known) name_replacement(message);
+  if (*known && **known != asset_of(message)) header_of(message).message_id = id_beside_another_asset(message);
   return {};
 }
 

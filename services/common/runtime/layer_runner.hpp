@@ -134,6 +134,8 @@ class LayerRunner {
   [[nodiscard]] Status in_batch(const std::function<Status()>& work, Survives survives = Survives::kills);
   [[nodiscard]] Survives batch_survives() const;
   [[nodiscard]] Status take_ready();
+  /// Also of what is taken and not yet committed; none where it is not known.
+  [[nodiscard]] Result<std::optional<std::string>> asset_of_input(const std::string& message_id);
   [[nodiscard]] Status name_as_kept(Message& message);
   [[nodiscard]] Status take(Message message);
   [[nodiscard]] Result<std::optional<std::string>> identify_input(const Message& message);
@@ -181,6 +183,7 @@ class LayerRunner {
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);
   void tell_of_floods();
+  void tell_of_missing_blocks();
   /// Live tests that change no advice, as one that was played back is of the future.
   void look_for_future_test(const std::string& asset_id);
   void note_unknown_asset(const Message& message, const std::string& refused);
@@ -210,6 +213,7 @@ class LayerRunner {
   [[nodiscard]] Status record_acts();
   /// What another service tells of its record of acts.
   void hear_of_acts(const ServiceStatus& status);
+  void hear_of_own_outputs(const ServiceStatus& status);
   /// Keeps it, and looks how far the own record goes.
   [[nodiscard]] Status note_acts();
   [[nodiscard]] Status look_at_own_acts();
@@ -269,6 +273,7 @@ class LayerRunner {
   bool is_new_ = false;                                   ///< the journal, and not yet compared with others' records
   std::set<std::string> first_heard_;                     ///< services that were heard since the start
   std::string has_older_acts_;                            ///< of them, one whose record began before the own journal
+  std::string has_read_more_;                             ///< one that read samples of a journal before the own one
   std::vector<LaneResult> results_;                       ///< not yet in the journal
   Outbox outbox_;
   std::map<Key, std::uint64_t> committed_;    ///< positions in the journal

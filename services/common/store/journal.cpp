@@ -101,7 +101,12 @@ Result<std::vector<Message>> Journal::outputs(Topic topic, std::uint64_t first, 
 }
 
 Result<bool> Journal::has_input(const std::string& message_id) {
-  return database_->guard("looking for an input", [&] { return database_->statements->has_input(message_id); });
+  const auto asset = asset_of_input(message_id);
+  return asset ? Result<bool>(asset->has_value()) : fail(asset.error());
+}
+
+Result<std::optional<std::string>> Journal::asset_of_input(const std::string& message_id) {
+  return database_->guard("looking for an input", [&] { return database_->statements->asset_of_input(message_id); });
 }
 
 Result<std::string> Journal::last_unnumbered_input(Topic topic, const std::string& asset_id) {

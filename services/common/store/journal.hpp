@@ -110,6 +110,8 @@ class Journal {
   [[nodiscard]] Result<std::vector<Message>> outputs(Topic topic, std::uint64_t first, std::uint64_t last,
                                                      std::size_t most);
   [[nodiscard]] Result<bool> has_input(const std::string& message_id);
+  /// None where there is no input of that id.
+  [[nodiscard]] Result<std::optional<std::string>> asset_of_input(const std::string& message_id);
   [[nodiscard]] Result<KnownInput> known_input(const Message& message);
   /// Message id of the last input of this asset that belonged to no stream; "" if there is none.
   [[nodiscard]] Result<std::string> last_unnumbered_input(Topic topic, const std::string& asset_id);

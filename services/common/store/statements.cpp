@@ -21,7 +21,7 @@ bool read_row(soci::statement& query) {
 }  // namespace
 
 JournalStatements::JournalStatements(soci::session& sql)
-    : find_input_((sql.prepare << "SELECT count(*) FROM inputs WHERE message_id = :message", into(count_),
+    : find_input_((sql.prepare << "SELECT asset_id FROM inputs WHERE message_id = :message", into(asset_id_),
                    use(message_id_, "message"))),
       find_unnumbered_((sql.prepare << "SELECT message_id FROM inputs WHERE topic = :topic AND asset_id = :asset"
                                        " AND sequence = 0 ORDER BY receipt DESC LIMIT 1",
@@ -50,10 +50,9 @@ JournalStatements::JournalStatements(soci::session& sql)
                         use(topic_, "topic"), use(writer_id_, "writer"), use(sequence_, "sequence"),
                         use(checksum_, "checksum"))) {}
 
-bool JournalStatements::has_input(const std::string& message_id) {
+std::optional<std::string> JournalStatements::asset_of_input(const std::string& message_id) {
   message_id_ = message_id;
-  read_row(find_input_);
-  return count_ != 0;
+  return read_row(find_input_) ? std::optional(asset_id_) : std::nullopt;
 }
 
 std::string JournalStatements::last_unnumbered_input(Topic topic, const std::string& asset_id) {

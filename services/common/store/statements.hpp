@@ -17,7 +17,8 @@ class JournalStatements {
   JournalStatements(const JournalStatements&) = delete;
   JournalStatements& operator=(const JournalStatements&) = delete;
 
-  [[nodiscard]] bool has_input(const std::string& message_id);
+  /// None where there is no input of that id.
+  [[nodiscard]] std::optional<std::string> asset_of_input(const std::string& message_id);
   [[nodiscard]] std::string last_unnumbered_input(Topic topic, const std::string& asset_id);
   void add_input(long long receipt, const Message& message, const StreamPosition& stream, UtcTime received,
                  InputState state);
@@ -43,7 +44,6 @@ class JournalStatements {
   std::string payload_;
   std::string checksum_;
   soci::indicator payload_there_ = soci::i_ok;
-  long long count_ = 0;
 
   soci::statement find_input_;
   soci::statement find_unnumbered_;

@@ -207,6 +207,26 @@ TEST_F(RunnerTest, AMessageThatComesFromTwoWritersIsTakenOnce) {
   EXPECT_THAT(positions, ::testing::Contains(StreamPosition{"test_features", "writer after", 2}));
 }
 
+/// A sender that names blocks by recording and number alone gives those of two assets the same ids.
+TEST_F(RunnerTest, AnIdThatIsAnotherAssetsHidesNothing) {
+  auto process = cutter();
+  const auto named = [](const std::string& asset) {
+    Message block = foreign_block(1.0);
+    std::get<RawSamples>(block).asset_id = asset;
+    header_of(block).message_id = "april/0";
+    return block;
+  };
+  send(named("A"));
+  step(*process, 2);
+  send(named("B"));
+  send(named("A"));
+  send(named("B"));
+  step(*process, 2);
+  EXPECT_EQ(process->journal().asset_of_input("april/0").value(), "A");
+  EXPECT_EQ(process->journal().asset_of_input("april/0@B").value(), "B");
+  EXPECT_EQ(process->journal().asset_of_input("april/0@A").value(), std::nullopt);
+}
+
 TEST_F(RunnerTest, AForeignSendersMessagesGetIdsAndTheLastOneMayComeAgain) {
   {
     auto process = cutter();

@@ -33,6 +33,7 @@ constexpr std::array kTable = {
     Row{"awaits_confirmation", Ne107::maintenance_required, "an act waits for a second person"},
     Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},
     Row{"flood", Ne107::out_of_specification, "messages dropped"},
+    Row{"missing_blocks", Ne107::failure, "samples do not come"},
     Row{"unknown_asset", Ne107::out_of_specification, "messages about assets that are not configured"},
     Row{"refused_right", Ne107::out_of_specification, "connection refused"},
     Row{kAdviceAlarm, Ne107::maintenance_required, "asked for"},

@@ -44,6 +44,7 @@ Status Sender::add(RawSamples block) {
                       .value = {},
                       .rule = "must not be empty",
                       .advice = "the same text whenever this block is sent: source, recording and block number"});
+  if (waiting_.empty()) confirmed_at_ = Clock::now();
   block.header.writer_id = writer_id_;
   block.header.stream_sequence = ++added_;
   stamp_clock(block.header, read_clock());
@@ -76,6 +77,25 @@ void Sender::repeat_unanswered() {
   send_again(0, sent_);
 }
 
+void Sender::answer(const ResendRequest& request) {
+  if (request.writer_id != writer_id_ || request.topic != "raw_samples" || waiting_.empty()) return;
+  const bool asks_for_forgotten = request.first_sequence < waiting_.front().header.stream_sequence;
+  // A request that crossed a confirmation asks for what is there.
+  if (asks_for_forgotten && Clock::now() - confirmed_at_ >= kUnanswered) return start_anew();
+  send_again(request.first_sequence, request.last_sequence);
+}
+
+/// What is known already, data_acquisition knows by its message_id.
+void Sender::start_anew() {
+  writer_id_ = unique_writer_id(options_.name);
+  added_ = sent_ = 0;
+  for (RawSamples& block : waiting_) {
+    block.header.writer_id = writer_id_;
+    block.header.stream_sequence = ++added_;
+  }
+  moved_ = confirmed_at_ = Clock::now();
+}
+
 void Sender::take(const ServiceStatus& status) {
   if (status.service != "data_acquisition") return;
   for (const StreamPosition& received : status.received) {
@@ -83,7 +103,7 @@ void Sender::take(const ServiceStatus& status) {
     while (!waiting_.empty() && waiting_.front().header.stream_sequence <= received.sequence) {
       confirmed_.push_back(waiting_.front().header.message_id);
       waiting_.pop_front();
-      moved_ = Clock::now();
+      moved_ = confirmed_at_ = Clock::now();
     }
   }
 }
@@ -96,9 +116,7 @@ Status Sender::run_for(std::chrono::milliseconds duration) {
     repeat_unanswered();
     for (const BusItem& item : bus_->receive(kLook)) {
       if (const auto* status = std::get_if<ServiceStatus>(&item)) take(*status);
-      if (const auto* request = std::get_if<ResendRequest>(&item);
-          request != nullptr && request->writer_id == writer_id_ && request->topic == "raw_samples")
-        send_again(request->first_sequence, request->last_sequence);
+      if (const auto* request = std::get_if<ResendRequest>(&item)) answer(*request);
     }
   } while (Clock::now() < end && !waiting_.empty());
   return {};

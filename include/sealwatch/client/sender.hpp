@@ -5,8 +5,9 @@
 //   while (sender.unconfirmed() > 0) sender.run_for(std::chrono::milliseconds(100));
 //
 // A message counts as delivered when data_acquisition has it in its journal, not when it was sent: until then it is kept
-// here, sent again when it is asked for or nobody answers, and never more than a window is on its way. Who may be killed
-// keeps what is unconfirmed on a disk and adds it again: a message that comes twice is taken once, by its message_id.
+// here, sent again when it is asked for or nobody answers, and never more than a window is on its way. Where
+// data_acquisition asks for what it had confirmed (its journal was lost, or restored from a backup), what is kept goes
+// on as a stream of a new name, as the old one would wait for ever for what is forgotten here. Who may be killed keeps what is unconfirmed on a disk and adds it again: a message that comes twice is taken once, by its message_id.
 #pragma once
 
 #include <chrono>
@@ -56,15 +57,18 @@ class Sender {
   void send_next();
   void send_again(std::uint64_t first, std::uint64_t last);
   void repeat_unanswered();
+  void answer(const ResendRequest& request);
+  void start_anew();
   void take(const ServiceStatus& status);
 
   Options options_;
   std::string writer_id_;
   std::unique_ptr<DdsBus> bus_;
-  std::deque<RawSamples> waiting_;  ///< not yet confirmed, by number without a gap
-  std::uint64_t added_ = 0;         ///< number of the last one added
-  std::uint64_t sent_ = 0;          ///< number of the last one sent
-  Clock::time_point moved_ = Clock::now();
+  std::deque<RawSamples> waiting_;                 ///< not yet confirmed, by number without a gap
+  std::uint64_t added_ = 0;                        ///< number of the last one added
+  std::uint64_t sent_ = 0;                         ///< number of the last one sent
+  Clock::time_point moved_ = Clock::now();         ///< last confirmed or repeated
+  Clock::time_point confirmed_at_ = Clock::now();  ///< or nothing waited
   std::vector<std::string> confirmed_;
 };
 

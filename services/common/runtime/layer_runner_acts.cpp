@@ -47,6 +47,18 @@ SetAside acts_lost(std::string_view service, const std::string& other, UtcTime n
               "in force"};
 }
 
+/// That a new journal has not got the samples that another service has read from one before.
+SetAside samples_lost(std::string_view service, const std::string& other, UtcTime now) {
+  return {.message_id = "journal/" + std::string(service),
+          .topic = {},
+          .asset_id = {},
+          .pst_id = {},
+          .since_ns = now.nanoseconds,
+          .reason = "the journal was lost, with the samples of earlier tests and what people said: " + other +
+                    " has read more of them than there is; restore a backup, or retract and acknowledge again what "
+                    "sealwatch audit shows to be in force"};
+}
+
 /// Whether it rejects what it speaks of.
 bool rejects(const Message& message) {
   const auto* event = std::get_if<MaintenanceEvent>(&message);
@@ -179,6 +191,17 @@ void LayerRunner::hear_of_acts(const ServiceStatus& status) {
   }
 }
 
+/// Samples come from outside, and nobody sends them again: others make what they lost from their neighbours' messages.
+void LayerRunner::hear_of_own_outputs(const ServiceStatus& status) {
+  const bool reads_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
+  if (!is_new_ || !reads_samples || !strangers_.knows(status.writer_id)) return;
+  for (const StreamPosition& read : status.received) {
+    const auto topic = value_of<Topic>(read.topic);
+    const bool is_own = topic && std::ranges::find(kind_->outputs(), *topic) != kind_->outputs().end();
+    if (is_own && read.writer_id != journal_.writer_id() && read.sequence > 0) has_read_more_ = status.service;
+  }
+}
+
 /// Before the first heartbeat, which others compare with their own record where that is new.
 Status LayerRunner::look_at_own_acts() {
   auto last = journal_.last_act();
@@ -192,11 +215,12 @@ Status LayerRunner::look_at_own_acts() {
 Status LayerRunner::compare_acts() {
   if (!is_new_) return {};
   const bool takes_acts = std::ranges::find(kind_->inputs(), Topic::maintenance_event) != kind_->inputs().end();
-  const bool is_lost = takes_acts && !has_older_acts_.empty();
+  const bool is_lost = (takes_acts && !has_older_acts_.empty()) || !has_read_more_.empty();
   const bool all_heard = !first_heard_.empty() && std::chrono::steady_clock::now() - started_ > kAllHeard;
   if (!is_lost && !all_heard) return {};
   is_new_ = false;
-  const SetAside lost = acts_lost(kind_->name(), has_older_acts_, clock_.now());
+  const SetAside lost = has_read_more_.empty() ? acts_lost(kind_->name(), has_older_acts_, clock_.now())
+                                               : samples_lost(kind_->name(), has_read_more_, clock_.now());
   const bool is_known = std::ranges::find(set_aside_, lost.message_id, &SetAside::message_id) != set_aside_.end();
   const bool tells = is_lost && !is_known;  // a damaged one that was made again says so itself
   Status kept = in_batch(
@@ -209,7 +233,7 @@ Status LayerRunner::compare_acts() {
   set_aside_.push_back(lost);
   raise_alarm(lost);
   note_error(lost.reason);
-  log_event(LogLevel::error, "acts lost", {{"error", lost.reason}});
+  log_event(LogLevel::error, "journal lost", {{"error", lost.reason}});
   return {};
 }
 

@@ -21,7 +21,10 @@ constexpr const char* kFutureTest = "future_test";
 constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
 constexpr const char* kFlood = "flood";
+constexpr const char* kMissingBlocks = "missing_blocks";
 constexpr std::chrono::seconds kFloodIsOver{60};
+/// It is raised every second while they are missing.
+constexpr std::chrono::seconds kBlocksCame{5};
 constexpr std::size_t kMostActsOnUnknownAssets = 64;
 /// A service beats once a second.
 constexpr std::chrono::seconds kRivalIsSilent{10};
@@ -185,9 +188,27 @@ void LayerRunner::tell_of_floods() {
   }
 }
 
+/// Nothing that a sender sends behind a gap counts, and it may not know (docs/topics.md, the contract of a sender).
+void LayerRunner::tell_of_missing_blocks() {
+  for (const StreamReader::Missing& gap : reader_->missing_of_senders()) {
+    const std::string text = "blocks " + std::to_string(gap.first) + " to " + std::to_string(gap.last) +
+                             " of this sender do not come, and what it sends after them is not taken: restart it " +
+                             "under a new writer_id, with the tests that are not concluded";
+    const bool is_new = alarms_.raise({.kind = kMissingBlocks,
+                                       .asset_id = {},
+                                       .subject = gap.writer_id,
+                                       .pst_id = {},
+                                       .text = text,
+                                       .since_ns = clock_.now().nanoseconds},
+                                      steady_now() + kBlocksCame);
+    if (is_new) log_event(LogLevel::warn, "blocks are missing", {{"writer", gap.writer_id}, {"error", text}});
+  }
+}
+
 /// About once a second.
 void LayerRunner::look_for_trouble() {
   tell_of_floods();
+  tell_of_missing_blocks();
   look_at_clock();
   note_strangers(strangers_.look(steady_now()));
   const auto refused = options_.refused_by_bus ? options_.refused_by_bus() : std::nullopt;

@@ -83,6 +83,7 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
   note_set_aside_elsewhere(status);
   retention_.hear(status, journal_.writer_id());
   hear_of_acts(status);
+  hear_of_own_outputs(status);
   if (desk_) desk_->hear(status, std::chrono::steady_clock::now().time_since_epoch(), clock_.now());
   for (Message& next : reader_->note_start(status.writer_id, status.started_ns, steady_seconds()))
     ready_.push_back(std::move(next));

@@ -258,6 +258,16 @@ bool StreamReader::is_behind(const std::string& asset_id) const {
   });
 }
 
+std::vector<StreamReader::Missing> StreamReader::missing_of_senders() const {
+  constexpr double kSenderIsSilent_s = 10.0;  // one that goes on repeats what is not confirmed every 3 s
+  std::vector<Missing> missing;
+  for (const auto& [key, stream] : streams_)
+    if (!is_of_a_service(key.first) && is_given_up(stream) && !stream.held.empty() &&
+        now_s_ - stream.heard_s.value_or(0.0) < kSenderIsSilent_s)
+      missing.push_back({key.second, stream.position + 1, stream.held.begin()->first - 1});
+  return missing;
+}
+
 std::vector<StreamReader::Key> StreamReader::active() const {
   std::vector<Key> keys;
   for (const auto& [key, stream] : streams_)

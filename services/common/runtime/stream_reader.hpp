@@ -71,6 +71,12 @@ class StreamReader {
   [[nodiscard]] bool is_behind(const std::string& asset_id) const;
   /// Whether any stream is.
   [[nodiscard]] bool is_behind() const;
+  /// A sender's blocks that it was asked for in vain, while later ones of it wait.
+  struct Missing {
+    std::string writer_id;
+    std::uint64_t first = 0, last = 0;
+  };
+  [[nodiscard]] std::vector<Missing> missing_of_senders() const;
   /// Streams of which something was read and that were heard of lately.
   [[nodiscard]] std::vector<Key> active() const;
 

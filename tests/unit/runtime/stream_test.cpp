@@ -204,6 +204,33 @@ TEST_F(StreamReaderTest, AWriterThatDiedInAGapIsAskedForButNotWaitedFor) {
   EXPECT_THAT(accept(4), ElementsAre(4, 5)) << "nothing was lost";
 }
 
+/// A sender whose confirmed blocks were lost with the journal: it has them no more, and does not know.
+TEST_F(StreamReaderTest, WhatASenderDoesNotAnswerForIsToldWhileLaterBlocksWait) {
+  const auto block = [](std::uint64_t sequence) {
+    RawSamples samples;
+    samples.header.writer_id = "mcs";
+    samples.header.stream_sequence = sequence;
+    return Message(samples);
+  };
+  const auto repeats_until = [&, now_s = 0.0](double end_s) mutable {
+    for (; now_s < end_s; now_s += 1.0) {
+      EXPECT_THAT(reader_.accept(block(4)), IsEmpty());
+      (void)reader_.requests(now_s);
+    }
+  };
+  repeats_until(59.0);
+  EXPECT_THAT(reader_.missing_of_senders(), IsEmpty());
+  repeats_until(62.0);
+  ASSERT_EQ(reader_.missing_of_senders().size(), 1U);
+  EXPECT_EQ(reader_.missing_of_senders()[0].writer_id, "mcs");
+  EXPECT_EQ(reader_.missing_of_senders()[0].first, 1U);
+  EXPECT_EQ(reader_.missing_of_senders()[0].last, 3U);
+  (void)reader_.requests(80.0);
+  EXPECT_THAT(reader_.missing_of_senders(), IsEmpty()) << "it goes on under another name";
+  for (const std::uint64_t sequence : {1, 2, 3, 4}) (void)reader_.accept(block(sequence));
+  EXPECT_THAT(reader_.missing_of_senders(), IsEmpty()) << "they came";
+}
+
 TEST_F(StreamReaderTest, ANumberedSourceThatDiesAfterItsLastBlockLeavesNothingOpen) {
   EXPECT_THAT(accept(3), ElementsAre(3));
   EXPECT_FALSE(reader_.is_behind());

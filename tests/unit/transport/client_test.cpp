@@ -1,4 +1,4 @@
-// The subscriber library for other people's programs, against a bus that plays the services.
+// The libraries for other people's programs, subscriber and sender, against a bus that plays the services.
 #include "sealwatch/client/subscriber.hpp"
 
 #include <gmock/gmock.h>
@@ -6,6 +6,7 @@
 #include <array>
 #include <thread>
 
+#include "sealwatch/client/sender.hpp"
 #include "tests/unit/transport/kits.hpp"
 
 namespace sealwatch::test {
@@ -113,6 +114,66 @@ TEST(Subscriber, SaysSoWhenNobodyHearsAnAcknowledgement) {
   const Status sent = subscriber.acknowledge({}, "J. Operator");
   ASSERT_FALSE(sent);
   EXPECT_THAT(sent.error().describe(), testing::HasSubstr("acknowledgement"));
+}
+
+/// What data_acquisition says of the stream, and asks for.
+class PlayedAcquisition {
+ public:
+  PlayedAcquisition() {
+    constexpr std::array kRaw = {Topic::raw_samples};
+    EXPECT_TRUE(bus_->subscribe(kRaw));
+  }
+  void receive() {
+    for (const BusItem& item : bus_->receive(milliseconds(20)))
+      if (const auto* message = std::get_if<Message>(&item)) came_.push_back(header_of(*message));
+  }
+  void confirm(std::uint64_t sequence) {
+    ServiceStatus status;
+    status.service = "data_acquisition";
+    status.received.push_back({"raw_samples", came_.back().writer_id, sequence});
+    ASSERT_TRUE(bus_->publish(status));
+  }
+  void ask_from_the_start() {
+    ASSERT_TRUE(bus_->publish(ResendRequest{came_.front().writer_id, "raw_samples", 1, 2, "data_acquisition"}));
+  }
+  [[nodiscard]] const std::vector<Header>& came() const { return came_; }
+
+ private:
+  std::unique_ptr<DdsBus> bus_ = services();
+  std::vector<Header> came_;
+};
+
+RawSamples block(const std::string& id) {
+  RawSamples samples;
+  samples.asset_id = "A";
+  samples.header.message_id = id;
+  return samples;
+}
+
+/// After a restore data_acquisition lacks what it had confirmed, and what the sender has forgotten.
+TEST(Sender, GoesOnUnderANewNameWhereItIsAskedForWhatWasConfirmed) {
+  PlayedAcquisition acquisition;
+  client::Sender sender({.domain = 2, .cyclonedds_uri = isolated_settings(), .name = "test"});
+  const auto until = [&](const auto& is_so, const auto& act) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!is_so() && std::chrono::steady_clock::now() < end) {
+      ASSERT_TRUE(sender.run_for(milliseconds(20)));
+      acquisition.receive();
+      act();
+    }
+    ASSERT_TRUE(is_so());
+  };
+  for (const char* id : {"r/1", "r/2"}) ASSERT_TRUE(sender.add(block(id)));
+  until([&] { return sender.unconfirmed() == 0; },
+        [&] {
+          if (acquisition.came().size() >= 2) acquisition.confirm(2);
+        });
+  const std::string first_name = acquisition.came().front().writer_id;
+  ASSERT_TRUE(sender.add(block("r/3")));
+  until([&] { return acquisition.came().back().writer_id != first_name; }, [&] { acquisition.ask_from_the_start(); });
+  EXPECT_EQ(acquisition.came().back().stream_sequence, 1U);
+  EXPECT_EQ(acquisition.came().back().message_id, "r/3");
+  until([&] { return sender.unconfirmed() == 0; }, [&] { acquisition.confirm(1); });
 }
 
 }  // namespace

@@ -124,6 +124,9 @@ TEST(PlantFile, SizesOfLawsThatFollowFromOthersNeedNotBeGiven) {
   EXPECT_NEAR(sizes.at("N/m"), 0.1 / 4.0, 1e-12);
   EXPECT_NEAR(sizes.at("N/m2"), 0.1 / 16.0, 1e-12);
   EXPECT_NEAR(sizes.at("N s2/m2"), 1e-3, 1e-12) << "as given";
+  const auto tank = read_plant_file(written("tank", with(kSound, "{N: 1e-3,", "{m3/s: 100, m3/(s Pa): 1e5, N: 1e-3,")));
+  ASSERT_TRUE(tank) << tank.error().front().describe();
+  EXPECT_NEAR(tank->text.law_sizes.at("Pa"), 1e-3, 1e-15) << "over which turbulent leaks are rounded";
   const auto hydraulic = faults_of(
       with(with(kSound, "signals: {speed: v,", "signals: {pressure_a: \"k*x/1[m2]\", pressure_b: \"0[Pa]\", speed: v,"),
            "N/m: 1e-3, N/m2: 1e-3, ", ""));

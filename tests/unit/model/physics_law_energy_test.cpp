@@ -77,6 +77,9 @@ const std::set<std::string> kOfPositionAlone = {"spring_load",
                                                 "unlisted (periodic_load)",
                                                 "unlisted (decaying_load)"};
 
+/// Forces of speed that take towards one side what they return towards the other.
+const std::set<std::string> kEvenInSpeed = {"directional_drag"};
+
 void expect_energy_condition(const Law& law, const Point& point) {
   const std::string name = name_of(law);
   const LawScalar contribution = output_at(law, point).contribution;
@@ -86,6 +89,11 @@ void expect_energy_condition(const Law& law, const Point& point) {
     Point wet = point;
     if (law.kind == SiteKind::tank_flow) wet.signal = {std::abs(point.signal[0]), std::abs(point.signal[1]), 0.0, 0.0};
     EXPECT_GE(output_at(law, wet).contribution.value * sign->second, 0.0) << name;
+  } else if (kEvenInSpeed.contains(name)) {
+    Point back = point;
+    back.signal[0] = -point.signal[0];
+    EXPECT_EQ(output_at(law, back).contribution.value, contribution.value) << name;
+    for (const std::size_t other : {1, 2, 3}) EXPECT_EQ(contribution.derivative[other], 0.0) << name;
   } else {
     EXPECT_TRUE(kOfPositionAlone.contains(name)) << name << ": say in this test which energy condition it keeps";
     for (const std::size_t other : {0, 2, 3}) EXPECT_EQ(contribution.derivative[other], 0.0) << name;

@@ -253,6 +253,21 @@ TEST(LawSizes, NumbersOfALawGrowWithItsUnit) {
   EXPECT_EQ(law_bounds(large, own).max, force.max) << "a plant's own law has its numbers already";
 }
 
+/// In a tank of a few kPa a turbulent leak is one, and a leak by any power has its exponent.
+TEST(LawSizes, CornersGoWithTheSizeOfWhatTheyRound) {
+  PlantDescription tank;
+  tank.law_sizes = {{"Pa", 1e-3}};
+  const auto ratio = [&](const Law& law, std::vector<double> parameters) {
+    const auto at = [&](double pressure) {
+      const std::array<double, kSiteSignals> signals{pressure, 0.0, 0.0, 0.0};
+      return law.evaluate(law_input(signals, 0.0, parameters, roundings_of(tank, law))).contribution.value;
+    };
+    return at(4e3) / at(1e3);
+  };
+  EXPECT_NEAR(ratio(**find_law("external_leakage", {"G_t"}), {1e-7}), 2.0, 0.01);
+  EXPECT_NEAR(ratio(**find_law("external_leakage", {"q_o", "a_o"}), {1e-3, 2.0}), 16.0, 0.5);
+}
+
 /// Sizes in a plant's file are orders of magnitude: a friction of 6 times the largest of the catalogue's is still found.
 TEST(LawSizes, AStrengthHasRoomWhereAPlantsFileGivesItsSize) {
   const Law& dry = **find_law("coulomb_friction", {"F_c", "v_s"});

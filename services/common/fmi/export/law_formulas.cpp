@@ -17,6 +17,7 @@ constexpr std::array kFormulas = {
     LawFormula{"constant_force", "", "p1"},
     LawFormula{"coulomb_friction", "", "p1 * tanh(s1 / p2)"},
     LawFormula{"coulomb_friction", "rounded", "p1 * rounded_sign(s1, p2, p3)"},
+    LawFormula{"directional_drag", "", "p1 * magnitude(s1, r1)"},
     LawFormula{"driver_dead_time", "voltage_loss", "p1 * tanh(s1 / p2)"},
     LawFormula{"driver_dead_time", "delay", "p1 * s3"},
     LawFormula{"driver_dead_time", "dead_zone", "p1 * tanh(s2 / p2)"},

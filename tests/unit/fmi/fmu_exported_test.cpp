@@ -345,6 +345,13 @@ TEST(ExplainedFmu, AnOutputTakesTheNameOfItsAlias) {
   expect_same(exported, "height", "height", 2e-8);
 }
 
+TEST(ExplainedFmu, AMissingFolderIsNamed) {
+  const ExportedModel model{
+      .version = Version::fmi2, .identifier = "m", .source = {}, .description = {}, .left_out = {}, .carried = {}};
+  EXPECT_THAT(write_fmu("/nowhere/at/all/m.fmu", model).error().describe(),
+              AllOf(HasSubstr("no folder /nowhere/at/all"), HasSubstr("create it")));
+}
+
 // The site of the driver has the rate of its command among its signals, which only some laws see.
 TEST(ExplainedFmu, AsksForARateOnlyWhereALawNeedsIt) {
   const Exported without(spring_return("fmu_spring_return2"), spring("drive_voltage - u_lost", "k_s"),

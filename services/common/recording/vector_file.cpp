@@ -78,7 +78,8 @@ Result<Log> log_of_vectors(std::vector<MatVariable> vectors, const PlantDescript
   if (rows == 0) return fail(error_at("channel time", {}, "holds no samples"));
   test.start_time = format->utc(test.read.samples.time_s.front());
   test.clock = format->clock(test.read.samples.time_s.front());
-  return Log{.tests = {std::move(test)}, .left_aside = std::move(mapped->left_aside)};
+  return Log{
+      .tests = {std::move(test)}, .left_aside = std::move(mapped->left_aside), .warnings = std::move(mapped->warnings)};
 }
 
 }  // namespace sealwatch

@@ -46,6 +46,7 @@ Result<Offer> offer_of_vectors(const std::string& file) {
   Offer offer;
   offer.text = false;
   for (const MatVariable& vector : *vectors) {
+    if (vector.is_complex) continue;
     offer.columns.push_back({vector.name.substr(vector.name.rfind('/') + 1), vector.unit});
     offer.cells.emplace_back();  // numbers all
   }

@@ -16,10 +16,15 @@ void tell_left_aside(const Recording& recording, const std::string& plant) {
                plant.c_str(), columns.c_str());
 }
 
+void tell_warnings(const Recording& recording) {
+  for (const std::string& warning : recording.warnings)
+    std::fprintf(stderr, "sealwatch: warning: %s: %s\n", recording.file.c_str(), warning.c_str());
+}
+
 std::optional<std::vector<Recording>> read_recordings(const std::vector<std::string>& files, const AssetConfig& asset,
                                                       const PlantDescription& plant) {
   std::vector<Recording> recordings;
-  std::vector<std::string> told;  // of recordings of one kind once
+  std::vector<std::string> told, warned;  // of recordings of one kind once
   for (const std::string& file : files) {
     Result<std::vector<Recording>> read = read_recordings(file, plant, asset.channel_map);
     if (!read) {
@@ -39,6 +44,8 @@ std::optional<std::vector<Recording>> read_recordings(const std::vector<std::str
           asset.asset_id;  // without a sidecar too: cutting and aligning a test takes the asset's settings
       if (!recording.left_aside.empty() && recording.left_aside != told) tell_left_aside(recording, plant.name);
       told = recording.left_aside;
+      if (recording.warnings != warned) tell_warnings(recording);
+      warned = recording.warnings;
       recordings.push_back(std::move(recording));
     }
   }

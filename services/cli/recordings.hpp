@@ -14,6 +14,9 @@ namespace sealwatch::cli {
 /// Says on standard error which columns the plant does not know; nothing where it knows all.
 void tell_left_aside(const Recording& recording, const std::string& plant);
 
+/// Says on standard error where the units of the map are not the log's.
+void tell_warnings(const Recording& recording);
+
 /// The recordings in `files`, each with the asset's id. A file that cannot be read, or that is of another asset, is
 /// told on standard error.
 [[nodiscard]] std::optional<std::vector<Recording>> read_recordings(const std::vector<std::string>& files,

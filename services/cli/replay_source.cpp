@@ -97,7 +97,7 @@ Result<Recording> ReplaySource::read(const std::string& file) const {
   const Result<const PlantDescription*> plant = find_plant(asset->model);
   if (!plant) return fail(plant.error());
   Result<Recording> recording = read_recording(file, **plant, map_.value_or(asset->channel_map));
-  if (recording) tell_left_aside(*recording, (*plant)->name);
+  if (recording) tell_left_aside(*recording, (*plant)->name), tell_warnings(*recording);
   if (recording) recording->asset_id = *asset_id;
   return recording;
 }

@@ -42,7 +42,7 @@ double noise_of(const AssetConfig& asset, const ChannelDescription& channel) {
 Recording simulated_recording(const Recording& input, const PlantSimulation& simulation, const RowMatrix& outputs,
                               const AssetConfig& asset, std::mt19937_64* noise) {
   Recording result = input;
-  result.left_aside.clear();
+  result.left_aside.clear(), result.warnings.clear();
   std::erase_if(result.samples.channels, [&](const Series& channel) {
     const ChannelDescription* known = simulation.plant().find_channel(channel.name);
     return known == nullptr || !known->input;

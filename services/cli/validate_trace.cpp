@@ -5,6 +5,7 @@
 #include "sealwatch/model/plant_description.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/foreign_file.hpp"
+#include "services/cli/recordings.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/cli/trace_page.hpp"
@@ -108,6 +109,7 @@ int run_validate_trace(const ValidateOptions& options) {
   const Result<Recording> recorded = read_any_channels(options.recordings.front(), known->map);
   const Result<Recording> simulated = recorded ? read_any_channels(options.simulated, known->map) : recorded;
   if (!simulated) return complain(simulated.error()), kBadInput;
+  tell_warnings(*recorded), tell_warnings(*simulated);
   Progress progress("comparing", 1 + recorded->samples.channels.size());
   trace::Options asked;
   asked.inputs = known->inputs;

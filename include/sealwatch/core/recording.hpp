@@ -22,6 +22,7 @@ struct Recording {
   std::string content_hash;           ///< of the file's bytes (16 hex digits)
   std::string note;
   std::vector<std::string> left_aside = {};  ///< header cells of columns that the plant does not know
+  std::vector<std::string> warnings = {};    ///< of units that the file says otherwise than its map
   TimeSeries samples;                        ///< channel noise_std set where the sidecar gives it
 };
 

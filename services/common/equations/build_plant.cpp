@@ -140,6 +140,10 @@ class Builder {
   void read_outputs() {
     for (const TextOutput& output : text_.outputs) {
       const std::string key = "outputs." + output.channel.name;
+      const std::string& name = output.channel.name;
+      if (std::ranges::any_of(text_.inputs, [&](const TextInput& input) { return input.channel.name == name; }))
+        faults_(key, fault(name, "is the name of an input too, and a recording has one column for it",
+                           "give one of them another name"));
       outputs_.push_back(understood(key + ".value", output.value, names_.unit_at(key + ".unit", output.channel.unit)));
     }
     if (text_.outputs.empty()) faults_("outputs", fault("", "must be given: what is recorded and simulated"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "sealwatch/core/text.hpp"
@@ -66,7 +67,10 @@ class Reader {
  public:
   Reader(Expressions& expressions, Names& names) : e_(expressions), names_(names) {}
 
-  Result<Formula> read(const Syntax& syntax) {
+  Result<Formula> read(const Syntax& syntax) { return finite(syntax, meaning(syntax)); }
+
+ private:
+  Result<Formula> meaning(const Syntax& syntax) {
     switch (syntax.kind) {
       case Syntax::Kind::number:
         return number(syntax);
@@ -79,7 +83,14 @@ class Reader {
     }
   }
 
- private:
+  // No equation can be solved with an infinite number in it, or with none.
+  Result<Formula> finite(const Syntax& syntax, Result<Formula> formula) const {
+    if (!formula) return formula;
+    const Expressions::Entry& entry = e_.entries()[formula->node];
+    if (entry.operation != Operation::constant || std::isfinite(entry.number)) return formula;
+    return wrong(written(syntax), "is a constant that is not finite", "give one that a double can hold, up to 1e308");
+  }
+
   Result<Formula> number(const Syntax& syntax) {
     if (syntax.unit.empty()) return Formula{e_.constant(syntax.number), kPlain, syntax.number == 0.0};
     const Result<Dimension> unit = find_dimension(syntax.unit);
@@ -128,7 +139,7 @@ class Reader {
         if (!one) return fail(one.error());
         parts.push_back(*one);
       }
-      left = joined(**part, parts);
+      left = finite(**part, joined(**part, parts));
     }
     return left;
   }

@@ -1,6 +1,7 @@
 #include "services/common/fmi/host_process.hpp"
 
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,11 +13,13 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <new>
 #include <utility>
 
 #include "sealwatch/core/visible_text.hpp"
 #include "services/common/fmi/host_launch.hpp"
+#include "services/common/text/numbers.hpp"
 
 namespace sealwatch::fmi {
 namespace {
@@ -27,6 +30,12 @@ std::string place_of(const char* what, double time_s) {
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return std::string(what) + " at t = " + text + " s";
+}
+
+std::string share_of_memory(double bytes, double most) {
+  constexpr double kGigabyte = 1024.0 * 1024.0 * 1024.0;
+  return "has taken " + text::significant(bytes / kGigabyte, 2) + " of the " + text::significant(most / kGigabyte, 2) +
+         " GiB of memory that it may have";
 }
 
 }  // namespace
@@ -77,14 +86,30 @@ bool HostProcess::has_ended() const {
   return waitid(P_PID, static_cast<id_t>(child_), &about, WEXITED | WNOHANG | WNOWAIT) == 0 && about.si_pid == child_;
 }
 
+// Where allocations fail, a binary may crash, or wait for ever; the limit is none where sanitizers are at work.
+std::string HostProcess::exhausted_memory() const {
+  rlimit limit{};
+  if (prlimit(child_, RLIMIT_AS, nullptr, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
+  constexpr double kAll = 15.0 / 16.0;
+  std::ifstream status("/proc/" + std::to_string(child_) + "/status");
+  double peak_kB = 0.0;
+  for (std::string word; status >> word && peak_kB == 0.0;)
+    if (word == "VmPeak:") status >> peak_kB;
+  const auto most = static_cast<double>(limit.rlim_cur);
+  if (1024.0 * peak_kB < kAll * most) return "";
+  return share_of_memory(1024.0 * peak_kB, most);
+}
+
 // Its group has its number, which nobody else gets until it is reaped.
 int HostProcess::kill_and_reap() {
   alive_ = false;
   kill(child_, SIGKILL);
   kill(-child_, SIGKILL);
   int status = 0;
-  while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+  rusage use{};
+  while (wait4(child_, &status, 0, &use) < 0 && errno == EINTR) {
   }
+  peak_bytes_ = 1024.0 * static_cast<double>(use.ru_maxrss);
   child_ = -1;
   return status;
 }
@@ -115,11 +140,12 @@ Status HostProcess::request(Operation operation, const char* what, double second
     if (const std::uint32_t now = header_->calls.load(); now != calls) calls = now, begin = Clock::now();
     const double most = header_->inside == Operation::begin ? limits_.start_s : seconds;
     if (std::chrono::duration<double>(Clock::now() - begin).count() < most) continue;
-    const std::string where = place(what, time_s);
+    const std::string where = place(what, time_s), memory = exhausted_memory();
     kill_and_reap();
-    return fail(failure(where,
-                        "the FMU did not answer within " + std::to_string(std::lround(most)) + " s and was ended",
-                        "its binary hangs: try it in the tool that made it" + said() + printed()));
+    const std::string silent = "did not answer within " + std::to_string(std::lround(most)) + " s and was ended";
+    return fail(failure(where, "the FMU " + (memory.empty() ? "" : "ran out of memory: it " + memory + ", ") + silent,
+                        (memory.empty() ? "its binary hangs: " : "its binary takes memory without end: ") +
+                            ("try it in the tool that made it" + said() + printed())));
   }
   if (header_->status != AnswerStatus::failed) return {};
   std::array<char, kTextBytes> text{};
@@ -170,10 +196,13 @@ Error HostProcess::failure(const std::string& what, std::string rule, std::strin
 }
 
 Error HostProcess::ended(const std::string& what, int status) const {
+  constexpr double kMuch = 0.75;  // addresses count to the limit that never were memory
+  const auto most = static_cast<double>(limits_.memory_bytes);
+  const std::string memory = peak_bytes_ > kMuch * most ? "; it " + share_of_memory(peak_bytes_, most) : "";
   if (WIFSIGNALED(status))
-    return failure(what, std::string("the FMU's binary crashed: ") + strsignal(WTERMSIG(status)),
+    return failure(what, std::string("the FMU's binary crashed: ") + strsignal(WTERMSIG(status)) + memory,
                    "try it in the tool that made it" + said() + printed());
-  return failure(what, "the FMU's binary ended its process with status " + std::to_string(WEXITSTATUS(status)),
+  return failure(what, "the FMU's binary ended its process with status " + std::to_string(WEXITSTATUS(status)) + memory,
                  "try it in the tool that made it" + said() + printed());
 }
 

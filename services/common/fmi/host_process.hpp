@@ -78,6 +78,8 @@ class HostProcess {
   [[nodiscard]] std::string printed() const;
   [[nodiscard]] std::string said() const;
   [[nodiscard]] bool has_ended() const;
+  /// How much memory it has taken, where that is nearly all that it may have; "" elsewhere.
+  [[nodiscard]] std::string exhausted_memory() const;
   /// Its status, which it may have ended with by itself; with it end the processes that the binary has started.
   int kill_and_reap();
 
@@ -89,6 +91,7 @@ class HostProcess {
   pid_t child_ = -1;
   int life_ = -1, output_ = -1;
   bool alive_ = false;
+  double peak_bytes_ = 0.0;  ///< of memory, of the one that was reaped last
   std::unique_ptr<LocalHost> local_;
   std::vector<std::byte> local_heap_;
 };

@@ -50,11 +50,16 @@ Result<Explanation> explain(const AssetConfig& asset, std::span<const Recording>
     found->notes.push_back(
         "The one recording is long enough to be two, a correlation time apart: each half is left out "
         "in turn.");
+  std::vector<std::string> told;  // of recordings of one kind once
   for (const auto& list : {fit, holdout})
-    for (const Recording& recording : list)
+    for (const Recording& recording : list) {
       if (!recording.left_aside.empty())
         found->notes.push_back(recording.file + ": columns that the plant does not know were left aside: " +
                                joined(recording.left_aside, " and ") + ".");
+      for (const std::string& warning : recording.warnings)
+        if (recording.warnings != told) found->notes.push_back(recording.file + ": " + warning + ".");
+      told = recording.warnings;
+    }
   return found;
 }
 

@@ -61,7 +61,8 @@ void put_answer(std::FILE* to, const Result<Variables>& answer) {
   if (answer) {
     put(to, static_cast<std::uint64_t>(answer->size()));
     for (const MatVariable& variable : *answer)
-      put(to, variable.name), put(to, variable.values), put(to, variable.unit);
+      put(to, variable.name), put(to, variable.values), put(to, variable.unit),
+          put(to, static_cast<std::uint64_t>(variable.is_complex));
   } else {
     const Error& error = answer.error();
     for (const std::string* text : {&error.file, &error.place, &error.value, &error.rule, &error.advice})
@@ -82,7 +83,10 @@ std::optional<Result<Variables>> get_answer(std::FILE* from) {
   Variables variables;
   for (std::uint64_t k = 0; k < count; ++k) {
     MatVariable& variable = variables.emplace_back();
-    if (!get(from, variable.name) || !get(from, variable.values) || !get(from, variable.unit)) return std::nullopt;
+    std::uint64_t is_complex = 0;
+    if (!get(from, variable.name) || !get(from, variable.values) || !get(from, variable.unit) || !get(from, is_complex))
+      return std::nullopt;
+    variable.is_complex = is_complex != 0;
   }
   return variables;
 }

@@ -14,7 +14,8 @@ namespace sealwatch {
 struct MatVariable {
   std::string name;
   std::vector<double> values;
-  std::string unit = {};  ///< an attribute of HDF5; MATLAB has none
+  std::string unit = {};    ///< an attribute of HDF5; MATLAB has none
+  bool is_complex = false;  ///< of MATLAB: then it has no values here
 };
 
 /// What `read` returns, called in a child process of 4 GiB more memory than this one has and two minutes of processor

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <functional>
 #include <set>
 
@@ -32,6 +33,20 @@ Result<Column> mapped(const std::string& channel, const std::string& si_unit, co
                 .to_si = {.scale = conversion->scale * mapping.scale,
                           .offset = conversion->scale * mapping.offset + conversion->offset,
                           .si_unit = {}}};
+}
+
+bool is_same(const UnitConversion& a, const UnitConversion& b) {
+  constexpr double kClose = 1e-6;  // of two spellings, each with digits of its own
+  return std::abs(a.scale - b.scale) <= kClose * std::abs(a.scale) &&
+         std::abs(a.offset - b.offset) <= kClose * std::max(std::abs(a.offset), std::abs(a.scale));
+}
+
+/// Whether what stands behind a column's name without square brackets may go on with it: chamber "(A)", "(rod)", which
+/// is a length, or a minimum.
+bool may_be_a_name(std::string_view text, std::string_view said) {
+  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
+  if (trim(text).ends_with(']') || !std::ranges::all_of(said, is_letter)) return false;
+  return said.size() == 1 || said == "min" || !find_unit(said);
 }
 
 class Mapper {
@@ -66,7 +81,33 @@ class Mapper {
       return fail(error_at("channel " + channel, mapping.column,
                            "is the column of channel " + same->column.name + " too",
                            "give each channel a column of its own"));
+    if (const Status units = compare_units(channel, offered_[*index], mapping); !units) return units;
     return take(channel, *index, unit_for(channel, offered_[*index], mapping), mapping);
+  }
+
+  /// The map's unit against the log's. With a scale or an offset the map's is that of what they make of the numbers.
+  Status compare_units(const std::string& channel, const OfferedColumn& column, const ColumnMapping& mapping) {
+    if (mapping.unit.empty() || mapping.scale != 1.0 || mapping.offset != 0.0) return {};
+    const std::string si_unit = channel == "time" ? "s" : si_unit_of(channel);
+    const Result<UnitConversion> wanted = convert_unit(mapping.unit, si_unit);
+    if (!wanted) return {};  // a clock, or refused where it is converted
+    std::set<std::string> all = {column.unit, split_header_cell(column.text).unit};
+    if (unit_of(column).empty() && column.text != channel) all.insert(unit_at_the_end(column.text, si_unit));
+    for (const std::string& said : all) {
+      if (said.empty() || said == "1") continue;  // which stands for no unit as well
+      const Result<UnitConversion> own = convert_unit(said, si_unit);
+      const bool doubtful = said != column.unit && may_be_a_name(column.text, said);
+      if (!own && is_unit(said) && !doubtful)
+        return fail(error_at("channel " + channel, column.text,
+                             "is in " + printable(said) + " by the log and in " + mapping.unit +
+                                 " by the map, which is another quantity",
+                             "correct the unit in the map; with a scale it is the unit of the scaled number"));
+      if (own && !is_same(*own, *wanted) && !(doubtful && said.size() > 1))
+        out_.warnings.push_back("column '" + printable(column.text) + "', channel " + channel + ": the log's unit is " +
+                                printable(said) + " and the map's " + mapping.unit +
+                                ": the map is followed; correct it where the log is right");
+    }
+    return {};
   }
 
   /// A channel's own name is no unit, whatever it ends in.

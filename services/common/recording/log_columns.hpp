@@ -27,6 +27,7 @@ struct MappedColumns {
   std::vector<MappedColumn> columns;  ///< each channel once, `time` among them
   std::string time_unit;              ///< for TimeFormat
   std::vector<std::string> left_aside;
+  std::vector<std::string> warnings = {};  ///< of columns whose unit is another in the map than in the log
 };
 
 /// What a column's unit is: said beside it, or in its text by split_header_cell(); "" where neither.

@@ -40,6 +40,7 @@ class LogReader {
     if (const Status ended = end_test(); !ended) return fail(ended.error());
     name_contents();
     out_.left_aside = mapped_.left_aside;
+    out_.warnings = mapped_.warnings;
     return std::move(out_);
   }
 

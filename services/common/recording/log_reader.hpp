@@ -26,7 +26,8 @@ struct LogTest {
 
 struct Log {
   std::vector<LogTest> tests;
-  std::vector<std::string> left_aside;  ///< header cells
+  std::vector<std::string> left_aside;     ///< header cells
+  std::vector<std::string> warnings = {};  ///< see MappedColumns
 };
 
 /// The header cells of a log, after its layout; `in` is left where it was.

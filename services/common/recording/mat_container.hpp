@@ -16,6 +16,7 @@ enum class MatFormat { version_5, version_7_3 };
 [[nodiscard]] Result<MatFormat> check_mat_container(const std::string& path);
 
 /// What to do about a variable that is no measurement.
+inline constexpr const char* kIsComplex = "is complex, where one real number for each sample is needed";
 inline constexpr const char* kTakeOutOrStore = "take it out, or store one real number for each sample";
 
 }  // namespace sealwatch

@@ -75,8 +75,8 @@ Error no_channel(const std::string& name, const Error& why) { return variable_er
 Result<std::size_t> vector_length(const matvar_t& variable, const std::string& name) {
   const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
   const bool vector = variable.rank == 2 && (variable.dims[0] == 1 || variable.dims[1] == 1);
-  if (!numeric || variable.isComplex != 0 || !vector)
-    return fail(variable_error(name, "must be one vector of real numbers", kTakeOutOrStore));
+  if (numeric && variable.isComplex != 0) return fail(variable_error(name, kIsComplex, kTakeOutOrStore));
+  if (!numeric || !vector) return fail(variable_error(name, "must be one vector of real numbers", kTakeOutOrStore));
   const std::size_t length = variable.dims[0] * variable.dims[1];
   if (length == 0) return fail(variable_error(name, "holds no samples"));
   if (length > kMostNumbers) return fail(variable_error(name, kTooMany));
@@ -123,6 +123,7 @@ Result<std::vector<MatVariable>> read_all_vectors(const std::string& path) {
   std::size_t total = 0;
   while (const Variable variable{Mat_VarReadNextInfo(file.get())}) {
     const std::string name = variable->name != nullptr ? variable->name : "";
+    if (variable->isComplex != 0) vectors.push_back({.name = name, .values = {}, .is_complex = true});
     if (!vector_length(*variable, name)) continue;
     Result<std::vector<double>> samples = read_vector(file.get(), variable.get(), name);
     if (!samples) return fail(samples.error());

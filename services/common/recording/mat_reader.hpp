@@ -14,7 +14,7 @@ namespace sealwatch {
 /// Debian builds it allows no more.
 [[nodiscard]] Result<ColumnarSamples> read_mat(const std::string& path, const PlantDescription& plant);
 
-/// All vectors of real numbers in `path`; other variables are passed over.
+/// All vectors of real numbers in `path`, and the names of those of complex ones; other variables are passed over.
 [[nodiscard]] Result<std::vector<MatVariable>> read_mat_vectors(const std::string& path);
 
 }  // namespace sealwatch

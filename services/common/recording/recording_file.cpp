@@ -144,7 +144,7 @@ std::optional<UtcTime> recorded_start_time(const std::string& path) {
 namespace {
 
 Result<Recording> recording_of(const std::string& path, LogTest test, const Sidecar& sidecar,
-                               const PlantDescription& plant, std::vector<std::string> left_aside) {
+                               const PlantDescription& plant) {
   if (const Status checked = check_plausible(test.read.samples, plant, test.first_row); !checked)
     return fail_in(path, checked.error());
   Recording recording;
@@ -152,7 +152,6 @@ Result<Recording> recording_of(const std::string& path, LogTest test, const Side
   recording.recording_id = fs::path(path).stem().string();
   if (!is_visible(recording.recording_id)) recording.recording_id = printable(recording.recording_id);
   recording.content_hash = std::move(test.read.content_hash);
-  recording.left_aside = std::move(left_aside);
   recording.samples = std::move(test.read.samples);
   if (const Status applied = apply_sidecar(sidecar, test.read.columns, recording); !applied)
     return fail_in(sidecar_path(path), applied.error());
@@ -166,11 +165,13 @@ Result<std::vector<Recording>> read_recordings(const std::string& path, const Pl
                                                const ChannelMap& map) {
   const std::vector<std::string> parts = parts_of(path);
   JoinedTests joined(map.log.time_resets);
-  std::vector<std::string> left_aside;
+  std::vector<std::string> left_aside, warnings;
   for (const std::string& part : parts) {
     Result<Log> log = read_file(part, plant, map);
     if (!log) return fail_in(part, log.error());
     if (left_aside.empty()) left_aside = std::move(log->left_aside);
+    for (std::string& warning : log->warnings)
+      if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
     if (const Status appended = joined.append(part, std::move(log->tests)); !appended)
       return fail_in(part, appended.error());
   }
@@ -184,8 +185,10 @@ Result<std::vector<Recording>> read_recordings(const std::string& path, const Pl
   if (!sidecar) return fail(sidecar.error());
   std::vector<Recording> recordings;
   for (LogTest& test : tests) {
-    Result<Recording> recording = recording_of(parts.front(), std::move(test), *sidecar, plant, left_aside);
+    Result<Recording> recording = recording_of(parts.front(), std::move(test), *sidecar, plant);
     if (!recording) return fail(recording.error());
+    recording->left_aside = left_aside;
+    recording->warnings = warnings;
     if (tests.size() > 1) recording->recording_id.append("#").append(std::to_string(recordings.size() + 1));
     recordings.push_back(std::move(*recording));
   }

@@ -5,6 +5,7 @@
 
 #include "services/common/recording/cells.hpp"
 #include "services/common/recording/log_columns.hpp"
+#include "services/common/recording/mat_container.hpp"
 #include "services/common/text/numbers.hpp"
 
 namespace sealwatch {
@@ -57,6 +58,9 @@ Result<Log> log_of_vectors(std::vector<MatVariable> vectors, const PlantDescript
   std::vector<Column> columns;
   std::vector<std::vector<double>> values;
   for (const MappedColumn& found : mapped->columns) {
+    if (vectors[found.index].is_complex)
+      return fail(error_at("channel " + found.column.name, printable(vectors[found.index].name), kIsComplex,
+                           "store its real part, or its magnitude, under a name of its own"));
     const std::vector<double>& numbers = vectors[found.index].values;
     Result<std::vector<double>> converted =
         found.column.name == "time" ? in_seconds(numbers, *format) : in_si(numbers, found.column);
@@ -74,7 +78,8 @@ Result<Log> log_of_vectors(std::vector<MatVariable> vectors, const PlantDescript
   if (rows == 0) return fail(error_at("channel time", {}, "holds no samples"));
   test.start_time = format->utc(test.read.samples.time_s.front());
   test.clock = format->clock(test.read.samples.time_s.front());
-  return Log{.tests = {std::move(test)}, .left_aside = std::move(mapped->left_aside)};
+  return Log{
+      .tests = {std::move(test)}, .left_aside = std::move(mapped->left_aside), .warnings = std::move(mapped->warnings)};
 }
 
 }  // namespace sealwatch

@@ -99,6 +99,16 @@ TEST_F(SimulateInput, AUnitWithoutInputsNeedsTimesAlone) {
   for (const auto& row : rows()) EXPECT_NEAR(row[1], 1.0 - 0.5 * 9.81 * row[0] * row[0], 1e-5);
 }
 
+TEST_F(SimulateInput, AUnitThatIsNotTheMapsIsAWarning) {
+  const std::string asset = prepare(fmi::bouncing("fmu_bouncing3"), "simulated_ball_units",
+                                    "t [ms],h [m]\n0,1\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n");
+  write(asset, "asset_id: V-7\nmodel: plant.yaml\nchannels:\n  time: {column: t, unit: s}\n");
+  ASSERT_EQ(run(options(asset)), kOk) << said_;
+  EXPECT_THAT(said_, HasSubstr("warning: "));
+  EXPECT_THAT(said_, HasSubstr("inputs.csv: column 't [ms]', channel time: the log's unit is ms and the map's s"));
+  EXPECT_NEAR(rows().back()[0], 0.4, 1e-12);
+}
+
 TEST_F(SimulateInput, StartsAtTheFirstSampleOfWhatMoves) {
   const std::string asset = prepare(fmi::mixed("fmu_mixed2"), "simulated_moving",
                                     "time[s],u_real[1],u_discrete[1],u_integer[1],u_boolean[1],x[1]\n"

@@ -196,6 +196,9 @@ TEST(Faults, NameThePlaceAndWhatWouldMendIt) {
       {"2[m", "unit without its end"},
       {"sqrt(a, p)", "one argument"},
       {"1e999", "is not a number"},
+      {"a^(2^2^2^2^2^2^2)", "is a constant that is not finite"},
+      {"x + 1e300[m]*1e300", "is a constant that is not finite"},
+      {"log(0)", "is a constant that is not finite"},
   };
   for (const auto& [text, expected] : cases) {
     const auto formula = understand(text, e, names);

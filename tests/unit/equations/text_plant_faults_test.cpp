@@ -83,6 +83,8 @@ TEST(PlantFile, NamesEachFaultWithItsLine) {
       {"der: v,", "der: x,", {"line 14, key states.x.der", "has the unit m where m/s is needed"}},
       {"value: x,", "value: v,", {"key outputs.position.value", "has the unit m/s where m is needed"}},
       {"value: x,", "value: position,", {"is an output"}},
+      {"u - k*x - c*v", "u - k*x*2^2^2^2^2^2^2 - c*v", {"line 12", "2^2^2^2", "a constant that is not finite"}},
+      {"  position: {value", "  u: {value", {"line 6, key outputs.u", "is the name of an input too"}},
       {"unit: N s/m", "unit: N s/mm", {"line 10, key parameters.c", "is not the SI unit"}},
       {"unit: N s/m", "unit: N q/m", {"line 10", "'q'"}},
       {"c*v\n", "k*v*1[s]\n", {"line 10, key parameters.c", "stands in no equation"}},

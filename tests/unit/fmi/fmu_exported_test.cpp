@@ -328,6 +328,30 @@ TEST(ExplainedFmu, OfFmi3IsHandedBackAsFmi3) {
               1e-7);
 }
 
+// An alias may have the name of the plant's output, and there is one variable of a name.
+TEST(ExplainedFmu, AnOutputTakesTheNameOfItsAlias) {
+  TestUnit unit = spring_return("fmu_spring_return3");
+  const std::string state = "<Float64 name=\"x\" valueReference=\"1000\"";
+  const std::size_t begin = unit.variables.find(state), end = unit.variables.find("/>", begin);
+  ASSERT_NE(begin, std::string::npos) << unit.variables;
+  unit.variables.replace(end, 2, "><Alias name=\"stroke\"/><Alias name=\"height\"/></Float64>");
+  const Exported exported(unit, replaced(spring("drive_voltage - u_lost", "k_s"), "  position: {", "  stroke: {"),
+                          [](AssetConfig& asset) {
+                            asset.physics = {term("coulomb_friction", "piston", {{"F_c", 60.0}, {"v_s", 1e-3}})};
+                          });
+  ASSERT_EQ(exported.refusal(), "");
+  EXPECT_THAT(exported.text(), AllOf(HasSubstr("  stroke: {unit: \"m\", value: "), HasSubstr("variable: \"height_\"")));
+  expect_same(exported, "stroke", "stroke", 1e-8);
+  expect_same(exported, "height", "height", 2e-8);
+}
+
+TEST(ExplainedFmu, AMissingFolderIsNamed) {
+  const ExportedModel model{
+      .version = Version::fmi2, .identifier = "m", .source = {}, .description = {}, .left_out = {}, .carried = {}};
+  EXPECT_THAT(write_fmu("/nowhere/at/all/m.fmu", model).error().describe(),
+              AllOf(HasSubstr("no folder /nowhere/at/all"), HasSubstr("create it")));
+}
+
 // The site of the driver has the rate of its command among its signals, which only some laws see.
 TEST(ExplainedFmu, AsksForARateOnlyWhereALawNeedsIt) {
   const Exported without(spring_return("fmu_spring_return2"), spring("drive_voltage - u_lost", "k_s"),

@@ -164,9 +164,22 @@ TEST_F(FmuProcessTest, ACrashIsAnError) {
 TEST_F(FmuProcessTest, AHangIsAnError) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_THAT(trouble(folder_, "fmu_hang2", {.call_s = 1.0}),
-              AllOf(HasSubstr("did not answer within 1 s"), HasSubstr("; it said: waiting for a licence server")));
+              AllOf(HasSubstr("did not answer within 1 s"), HasSubstr("its binary hangs"),
+                    HasSubstr("; it said: waiting for a licence server")));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
 }
+
+// Sanitizers reserve more addresses than a process may have: then it has no limit.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(FmuProcessTest, MemoryThatIsUsedUpIsToldAsThat) {
+  constexpr std::uint64_t kLittle = 512ULL << 20U;
+  EXPECT_THAT(trouble(folder_, "fmu_hoards2", {.memory_bytes = kLittle, .call_s = 3.0}),
+              AllOf(HasSubstr("ran out of memory: it has taken 0."), HasSubstr("t = 0.6 s"),
+                    HasSubstr("did not answer within 3 s"), Not(HasSubstr("hangs"))));
+  EXPECT_THAT(trouble(folder_, "fmu_hoards_crashes2", {.memory_bytes = kLittle}),
+              AllOf(HasSubstr("crashed: Segmentation fault; it has taken 0."), HasSubstr("of the 0.5 GiB of memory")));
+}
+#endif
 
 TEST_F(FmuProcessTest, AnEndedProgramIsAnErrorWithItsLastWords) {
   EXPECT_THAT(trouble(folder_, "fmu_leaves2"), AllOf(HasSubstr("status 7"), HasSubstr("tired of this")));

@@ -15,6 +15,7 @@
 namespace sealwatch {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -91,6 +92,60 @@ TEST_F(ForeignLog, TabsAndLatin1AndUnitsInTheHeader) {
       read("t\t\xDC"
            "berdruck\tWeg (mm)\n0\t1.0\t60\n500\t1.5\t59\n",
            map));
+}
+
+ChannelMap plain_map(const std::string& time, const std::string& pressure, const std::string& position) {
+  return map_of({{"time", {.column = "t", .unit = time}},
+                 {"pressure_a", {.column = "P1", .unit = pressure}},
+                 {"position", {.column = "x", .unit = position}}});
+}
+
+TEST_F(ForeignLog, AUnitOfAnotherQuantityThanTheMapsIsRefused) {
+  const std::string rows = "0.0;1.0;60.0\n0.5;1.5;59.0\n";
+  const ChannelMap map = plain_map("s", "barg", "mm");
+  EXPECT_THAT(
+      error_of("t;P1;x [psig]\n" + rows, map),
+      AllOf(HasSubstr("log.csv: row 1, channel position: 'x [psig]'"), HasSubstr("in psig by the log"),
+            HasSubstr("mm by the map"), HasSubstr("another quantity"), HasSubstr("correct the unit in the map")));
+  EXPECT_THAT(error_of("t;P1;x\ns;bar;V\n" + rows, map), AllOf(HasSubstr("'x'"), HasSubstr("in V by the log")));
+  EXPECT_THAT(error_of("t [N];P1;x\n" + rows, map), AllOf(HasSubstr("channel time"), HasSubstr("N by the log")));
+}
+
+TEST_F(ForeignLog, TheMapsUnitIsFollowedWithAWarning) {
+  const std::string rows = "0.0;1.0;60.0\n0.5;1.5;59.0\n";
+  const ChannelMap map = plain_map("s", "barg", "mm");
+  const Recording header = read("t [ms];P1 [barg];x [m]\n" + rows, map);
+  expect_two_rows(header);
+  EXPECT_THAT(header.warnings, ElementsAre(AllOf(HasSubstr("'x [m]'"), HasSubstr("channel position"),
+                                                 HasSubstr("log's unit is m "), HasSubstr("the map's mm")),
+                                           HasSubstr("log's unit is ms and the map's s")));
+  const Recording row = read("t;P1;x\ns;kPa;mm\n" + rows, map);
+  expect_two_rows(row);
+  EXPECT_THAT(row.warnings, ElementsAre(HasSubstr("log's unit is kPa and the map's barg")));
+  EXPECT_THAT(read("t_ms;P1;x\n" + rows, map_of({{"time", {.column = "t_ms", .unit = "s"}},
+                                                 {"pressure_a", {.column = "P1", .unit = "barg"}},
+                                                 {"position", {.column = "x", .unit = "mm"}}}))
+                  .warnings,
+              SizeIs(1));
+}
+
+TEST_F(ForeignLog, AUnitThatIsTheMapsOrNoneIsSilent) {
+  const std::string rows = "0.0;1.0;60.0\n0.5;1.5;59.0\n";
+  const ChannelMap map = plain_map("s", "barg", "mm");
+  for (const char* head : {"t [sec];P1 [bar(g)];x [millimeter]", "t;P1;x\ns;bar g;mm", "t [raw];P1 [-];x [1]",
+                           "t;P1 (A);x (rod)", "t;P1 (min);x"}) {
+    const Recording recording = read(std::string(head) + "\n" + rows, map);
+    expect_two_rows(recording);
+    EXPECT_THAT(recording.warnings, testing::IsEmpty()) << head;
+  }
+  // With a scale the map's unit is that of the scaled number, and a clock has none.
+  ChannelMap scaled = map;
+  scaled.columns["position"].scale = 1000.0;
+  EXPECT_THAT(read("t;P1;x [V]\n0.0;1.0;0.06\n0.5;1.5;0.059\n", scaled).warnings, testing::IsEmpty());
+  EXPECT_THAT(
+      read("t [s];P1;x\n2031-04-01 00:00:00;1;60\n2031-04-01 00:00:01;1;59\n", plain_map("iso8601", "barg", "mm"))
+          .warnings,
+      testing::IsEmpty());
 }
 
 TEST(HeaderCell, AnIndexInBracketsIsNoUnit) {

@@ -43,6 +43,13 @@ class MatWriter {
   void column(const char* name, std::vector<double> values) {
     put(name, MAT_C_DOUBLE, MAT_T_DOUBLE, {values.size(), 1}, values.data());
   }
+  void complex_column(const char* name, std::vector<double> values) {
+    std::array<std::size_t, 2> size = {values.size(), 1};
+    mat_complex_split_t both{values.data(), values.data()};
+    matvar_t* variable = Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), &both, MAT_F_COMPLEX);
+    Mat_VarWrite(file_, variable, compression_);
+    Mat_VarFree(variable);
+  }
   void put(const char* name, matio_classes kind, matio_types type, std::array<std::size_t, 2> size, void* data) {
     matvar_t* variable = Mat_VarCreate(name, kind, type, 2, size.data(), data, 0);
     Mat_VarWrite(file_, variable, compression_);
@@ -127,6 +134,21 @@ TEST_P(MatRecording, BadVectorsAreErrors) {
                 w.put("time", MAT_C_CHAR, MAT_T_UTF8, {1, 3}, text.data());
               }),
               HasSubstr("must be one vector"));
+}
+
+TEST_P(MatRecording, AComplexVectorIsToldAsThat) {
+  {
+    MatWriter writer(path("complex.mat"), GetParam());
+    writer.column("time", {0.0, 1.0});
+    writer.complex_column("position", {0.1, 0.2});
+  }
+  EXPECT_THAT(error_of(path("complex.mat")), HasSubstr("column position: is complex"));
+  ChannelMap map;
+  map.columns = {{"time", {.column = "time", .unit = "s"}}, {"position", {.column = "position", .unit = "mm"}}};
+  const Result<Recording> mapped = read_recording(path("complex.mat"), test_plant(), map);
+  ASSERT_FALSE(mapped);
+  EXPECT_THAT(mapped.error().describe(),
+              AllOf(HasSubstr("complex.mat"), HasSubstr("channel position: 'position': is complex")));
 }
 
 TEST_P(MatRecording, VariablesThatThePlantDoesNotKnowAreLeftAside) {

@@ -115,7 +115,11 @@ class WrapperExporter {
       const Variable* same = shown ? block_.file->description().find(channel->name) : nullptr;
       if (shown && block_.file->description().variables[*shown].causality == FmiCausality::output) continue;
       if (same != nullptr && same->causality == FmiCausality::output) continue;
-      add(description_.outputs, {channel->name, channel->unit, channel->meaning});
+      // What runs the unit looks for the plant's channel: an alias that is the same gives its name up for it.
+      const bool alias = same != nullptr && shown && block_.file->description().version == Version::fmi3 &&
+                         block_.file->description().variables[*shown].reference == same->reference;
+      add(description_.outputs,
+          {.name = channel->name, .unit = channel->unit, .meaning = channel->meaning, .takes_alias = alias});
       outputs_.push_back(parts_.outputs.values[k]);
     }
     for (const DrivenVariable& input : ports_.inputs)

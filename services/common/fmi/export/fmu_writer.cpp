@@ -68,6 +68,9 @@ std::string build_description(const ExportedModel& model) {
 }  // namespace
 
 Result<WrittenFmu> write_fmu(const std::string& file, const ExportedModel& model) {
+  const std::filesystem::path into = std::filesystem::path(file).parent_path();
+  if (std::error_code unknown; !into.empty() && !std::filesystem::is_directory(into, unknown))
+    return refuse(file, "cannot be written: there is no folder " + into.string(), "create it, or name another");
   auto folder = TemporaryFolder::create();
   if (!folder) return fail(folder.error());
   const std::filesystem::path source = folder->path() / "model.c", binary = folder->path() / "model.so";
@@ -93,8 +96,10 @@ Result<WrittenFmu> write_fmu(const std::string& file, const ExportedModel& model
   const Archive carried(model.carried.empty() ? nullptr : zip_open(model.carried.c_str(), ZIP_RDONLY, &code));
   if (!model.carried.empty()) sound = sound && carried && carry(carried.get(), archive);
   if (sound && zip_close(archive) == 0) return written;
+  const std::string why = zip_strerror(archive);
   zip_discard(archive);
-  return refuse(file, "cannot be written", "look whether the disk is full");
+  return refuse(file, "cannot be written: " + why,
+                "look whether the disk is full, and whether the folder may be written to");
 }
 
 }  // namespace sealwatch::fmi

@@ -40,7 +40,10 @@ class Rewriter {
           Error{.file = inner_.name(), .place = kDescriptionName, .value = {}, .rule = "is no XML", .advice = {}});
     root_ = document.child("fmiModelDescription");
     for (xml_node& node : variables_of(root_)) variables_.push_back(node);
-    for (const xml_node& node : variables_) names_.insert(node.attribute("name").value());
+    for (const xml_node& node : variables_) {
+      names_.insert(node.attribute("name").value());
+      for (const xml_node& alias : node.children("Alias")) names_.insert(alias.attribute("name").value());
+    }
     head();
     units();
     change_variables();
@@ -121,10 +124,17 @@ class Rewriter {
     }
   }
 
+  // FMI 3.0: a name is one variable's, an alias's too.
+  void remove_alias(const std::string& name) {
+    for (xml_node& variable : variables_)
+      if (variable.remove_child(variable.find_child_by_attribute("Alias", "name", name.c_str()))) names_.erase(name);
+  }
+
   /// Returns its index, which counts from 1.
   std::size_t add(const OwnVariable& row, const char* causality, const char* variability, const char* initial,
                   bool with_start) {
     std::string name = row.name;
+    if (row.takes_alias) remove_alias(name);
     while (!names_.insert(name).second) name += "_";
     xml_node variable = root_.child("ModelVariables").append_child(third_ ? "Float64" : "ScalarVariable");
     variable.append_attribute("name").set_value(name.c_str());

@@ -212,7 +212,7 @@ TEST_F(StreamReaderTest, WhatASenderDoesNotAnswerForIsToldWhileLaterBlocksWait) 
     samples.header.stream_sequence = sequence;
     return Message(samples);
   };
-  const auto repeats_until = [&, now_s = 0.0](double end_s) mutable {
+  auto repeats_until = [&, now_s = 0.0](double end_s) mutable {
     for (; now_s < end_s; now_s += 1.0) {
       EXPECT_THAT(reader_.accept(block(4)), IsEmpty());
       (void)reader_.requests(now_s);

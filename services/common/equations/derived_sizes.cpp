@@ -37,6 +37,9 @@ constexpr std::array kRules = {
     // What only widths of corners are measured in, and so may not be given.
     Rule{"Pa", {{{"m3/s", 1}, {"m3/(s Pa)", -1}}}},
     Rule{"Pa", {{{"N", 1}, {"m2", -1}}}},
+    Rule{"Pa", {{{"N m", 1}, {"m3/rad", -1}}}},
+    Rule{"m3/s", {{{"Pa", 1}, {"Pa s/m3", -1}}}},
+    Rule{"A", {{{"ohm", 0.5}, {"ohm/A2", -0.5}}}},
 };
 
 }  // namespace

@@ -213,7 +213,7 @@ Result<std::optional<std::string>> LayerRunner::asset_of_input(const std::string
 Status LayerRunner::name_as_kept(Message& message) {
   if (header_of(message).message_id.empty()) return {};
   auto known = asset_of_input(header_of(message).message_id);
-  if (known && !*known && topic_of(message) == Topic::maintenance_event) {
+  if (known && *known != asset_of(message) && topic_of(message) == Topic::maintenance_event) {
     name_replacement(message);
     known = asset_of_input(header_of(message).message_id);
   }

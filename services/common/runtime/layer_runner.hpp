@@ -214,6 +214,7 @@ class LayerRunner {
   /// What another service tells of its record of acts.
   void hear_of_acts(const ServiceStatus& status);
   void hear_of_own_outputs(const ServiceStatus& status);
+  [[nodiscard]] bool reads_samples() const;
   /// Keeps it, and looks how far the own record goes.
   [[nodiscard]] Status note_acts();
   [[nodiscard]] Status look_at_own_acts();

@@ -54,9 +54,9 @@ SetAside samples_lost(std::string_view service, const std::string& other, UtcTim
           .asset_id = {},
           .pst_id = {},
           .since_ns = now.nanoseconds,
-          .reason = "the journal was lost, with the samples of earlier tests and what people said: " + other +
-                    " has read more of them than there is; restore a backup, or retract and acknowledge again what "
-                    "sealwatch audit shows to be in force"};
+          .reason = "the journal was lost, with the samples of earlier tests and what people said, of which " + other +
+                    " has a record: restore a backup, or retract and acknowledge again what sealwatch audit shows to "
+                    "be in force"};
 }
 
 /// Whether it rejects what it speaks of.
@@ -191,10 +191,13 @@ void LayerRunner::hear_of_acts(const ServiceStatus& status) {
   }
 }
 
+bool LayerRunner::reads_samples() const {
+  return std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
+}
+
 /// Samples come from outside, and nobody sends them again: others make what they lost from their neighbours' messages.
 void LayerRunner::hear_of_own_outputs(const ServiceStatus& status) {
-  const bool reads_samples = std::ranges::find(kind_->inputs(), Topic::raw_samples) != kind_->inputs().end();
-  if (!is_new_ || !reads_samples || !strangers_.knows(status.writer_id)) return;
+  if (!is_new_ || !reads_samples() || !strangers_.knows(status.writer_id)) return;
   for (const StreamPosition& read : status.received) {
     const auto topic = value_of<Topic>(read.topic);
     const bool is_own = topic && std::ranges::find(kind_->outputs(), *topic) != kind_->outputs().end();
@@ -219,8 +222,9 @@ Status LayerRunner::compare_acts() {
   const bool all_heard = !first_heard_.empty() && std::chrono::steady_clock::now() - started_ > kAllHeard;
   if (!is_lost && !all_heard) return {};
   is_new_ = false;
-  const SetAside lost = has_read_more_.empty() ? acts_lost(kind_->name(), has_older_acts_, clock_.now())
-                                               : samples_lost(kind_->name(), has_read_more_, clock_.now());
+  const std::string& other = has_read_more_.empty() ? has_older_acts_ : has_read_more_;
+  const SetAside lost = reads_samples() ? samples_lost(kind_->name(), other, clock_.now())
+                                        : acts_lost(kind_->name(), other, clock_.now());
   const bool is_known = std::ranges::find(set_aside_, lost.message_id, &SetAside::message_id) != set_aside_.end();
   const bool tells = is_lost && !is_known;  // a damaged one that was made again says so itself
   Status kept = in_batch(

@@ -52,8 +52,14 @@ void LayerRunner::sort_in(Message message) {
 
 /// A replacement that came under another system's id is kept under one of ours, and by earlier versions as it came.
 Result<KnownInput> LayerRunner::known_as(const Message& message) {
-  auto as_it_came = journal_.known_input(message);
   Message named = message;
+  const auto asset = asset_of_input(header_of(message).message_id);
+  if (!asset) return fail(asset.error());
+  if (*asset && **asset != asset_of(message)) {
+    if (Status kept = name_as_kept(named); !kept) return fail(kept.error());
+    return journal_.known_input(named);
+  }
+  auto as_it_came = journal_.known_input(message);
   name_replacement(named);
   const bool same_name = header_of(named).message_id == header_of(message).message_id;
   if (!as_it_came || *as_it_came == KnownInput::same || same_name) return as_it_came;

@@ -47,7 +47,10 @@ std::vector<Message> StreamReader::accept(Message message) {
   if (sequence <= stream->position) return hand_out(key, *stream);  // what waited until this one was compared
   stream->seen = std::max(stream->seen, sequence);
   const std::uint64_t most = std::min<std::uint64_t>(limits_.held, stream_window(key.first));
-  if (sequence - stream->position > most + 1) return {};
+  if (sequence - stream->position > most + 1) {
+    stream->beyond = stream->beyond == 0 ? sequence : std::min(stream->beyond, sequence);
+    return {};
+  }
   stream->held.insert_or_assign(sequence, std::move(message));
   return hand_out(key, *stream);
 }
@@ -65,6 +68,7 @@ std::vector<Message> StreamReader::hand_out(const Key& key, Stream& stream) {
     if (stream.position == 0) unread_waited_s_ = 0.0;
     in_order.push_back(std::move(stream.held.begin()->second));
     stream.held.erase(stream.held.begin());
+    stream.beyond = 0;
     ++stream.position;
     if (!is_of_a_service(key.first) && stream.assets.size() < limits_.streams)
       stream.assets.insert(asset_of(in_order.back()));
@@ -261,10 +265,12 @@ bool StreamReader::is_behind(const std::string& asset_id) const {
 std::vector<StreamReader::Missing> StreamReader::missing_of_senders() const {
   constexpr double kSenderIsSilent_s = 10.0;  // one that goes on repeats what is not confirmed every 3 s
   std::vector<Missing> missing;
-  for (const auto& [key, stream] : streams_)
-    if (!is_of_a_service(key.first) && is_given_up(stream) && !stream.held.empty() &&
+  for (const auto& [key, stream] : streams_) {
+    const std::uint64_t next = stream.held.empty() ? stream.beyond : stream.held.begin()->first;
+    if (!is_of_a_service(key.first) && is_given_up(stream) && next > 0 &&
         now_s_ - stream.heard_s.value_or(0.0) < kSenderIsSilent_s)
-      missing.push_back({key.second, stream.position + 1, stream.held.begin()->first - 1});
+      missing.push_back({key.second, stream.position + 1, next - 1});
+  }
   return missing;
 }
 

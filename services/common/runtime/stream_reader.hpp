@@ -85,6 +85,7 @@ class StreamReader {
     std::uint64_t position = 0;  ///< last one handed out
     std::uint64_t claimed = 0;   ///< how far it goes by its writer's last word
     std::uint64_t seen = 0;      ///< the highest number that came
+    std::uint64_t beyond = 0;    ///< the lowest that was too far ahead to be held, since the last progress; 0: none
     std::map<std::uint64_t, Message> held;
     std::optional<double> heard_s;    ///< since the start
     std::uint64_t last_position = 0;  ///< at the last look, to notice progress

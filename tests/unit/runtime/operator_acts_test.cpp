@@ -135,6 +135,22 @@ TEST_F(ActsTest, AReplacementUnderAForeignIdIsKnownByItsKindAndTime) {
   EXPECT_EQ(acts().back().act.outcome, "taken");
 }
 
+TEST_F(ActsTest, ReplacementsUnderAnIdThatIsAnotherAssetsAreTakenEach) {
+  const auto process = start();
+  Acknowledgement other = seen("J. Silva");
+  other.header.message_id = "cmms-1";
+  say(*process, other);
+  for (const double months : {-2.0, -1.0}) {
+    const UtcTime at = add_months(process->clock().now(), months);
+    MaintenanceEvent event = replaced("CMMS", at);
+    event.asset_id = "B";
+    event.header.message_id = "cmms-1";
+    say(*process, event);
+    EXPECT_EQ(time_of_replacement(acts().back().act.subject), at) << acts().back().act.subject;
+  }
+  EXPECT_THAT(acts(), SizeIs(3));
+}
+
 /// Earlier versions kept a replacement as it came. After the update its sender's last message comes again, as all that
 /// are retained do: it is the one that is known, and restarts no history.
 TEST_F(ActsTest, AReplacementThatAnEarlierVersionKeptIsNotTakenAgain) {

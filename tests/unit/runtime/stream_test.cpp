@@ -231,6 +231,19 @@ TEST_F(StreamReaderTest, WhatASenderDoesNotAnswerForIsToldWhileLaterBlocksWait) 
   EXPECT_THAT(reader_.missing_of_senders(), IsEmpty()) << "they came";
 }
 
+/// So many are missing that not even the later ones are held.
+TEST_F(StreamReaderTest, AGapOfAnySizeIsTold) {
+  RawSamples samples;
+  samples.header.writer_id = "mcs";
+  samples.header.stream_sequence = 5000;
+  for (double now_s = 0.0; now_s < 62.0; now_s += 1.0) {
+    EXPECT_THAT(reader_.accept(samples), IsEmpty());
+    (void)reader_.requests(now_s);
+  }
+  ASSERT_EQ(reader_.missing_of_senders().size(), 1U);
+  EXPECT_EQ(reader_.missing_of_senders()[0].last, 4999U);
+}
+
 TEST_F(StreamReaderTest, ANumberedSourceThatDiesAfterItsLastBlockLeavesNothingOpen) {
   EXPECT_THAT(accept(3), ElementsAre(3));
   EXPECT_FALSE(reader_.is_behind());

@@ -77,7 +77,7 @@ TEST(SparseRegression, IsFooledWhereNothingIsHidden) {
 }
 
 TEST(SparseRegression, IsFooledByNoiseWhereFrictionIsSmall) {
-  constexpr double kForce_N = 100.0;  // ten times what such tests begin to show
+  constexpr double kForce_N = 50.0;  // five times what such tests begin to show
   const auto terms = regressed([](bench::TrialPlan& plan) { add_dry_friction(plan, kForce_N); });
   ASSERT_FALSE(terms.empty());
   EXPECT_EQ(terms.front().id.find("friction"), std::string::npos) << told(terms);

@@ -11,7 +11,8 @@
 
 namespace sealwatch {
 
-inline constexpr std::size_t kSamplesPerBlock = 200;  // a second at 200 Hz
+inline constexpr const char* kFolderSource = "recordings_folder";  // source_id of what was dropped there
+inline constexpr std::size_t kSamplesPerBlock = 200;               // a second at 200 Hz
 
 /// Blocks 0, 1, 2, ... of at most `samples_per_block` rows, the last one marked as the end; message ids
 /// "raw_samples/<asset>/<recording_id>/<content hash>/<number>", with "/no-time" before the number where the start time

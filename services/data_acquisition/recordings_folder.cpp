@@ -1,6 +1,8 @@
 #include "services/data_acquisition/recordings_folder.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "sealwatch/core/text.hpp"
@@ -14,9 +16,6 @@ namespace sealwatch {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostFilesPerLook = 16;  // so that a full folder does not fill the memory
-constexpr const char* kSourceId = "recordings_folder";
 
 }  // namespace
 
@@ -37,23 +36,34 @@ RecordingsFolder::RecordingsFolder(fs::path directory, std::vector<AssetConfig> 
                   .advice = "make it, or let the service write there"});
 }
 
-std::vector<Message> RecordingsFolder::look() {
+void RecordingsFolder::look() {
   put_away_concluded();
-  std::vector<Message> messages;
-  std::size_t taken = 0;
   const std::vector<fs::path> there = recordings();
   std::erase_if(files_, [&](const auto& file) { return !std::ranges::binary_search(there, file.first); });
+  to_read_.clear();
   for (const fs::path& path : there) {
-    if (taken == kMostFilesPerLook) break;
     const bool settled = is_settled(path);
     File& file = files_[path];
     // Refused after it was read (its start time lay in the future), and mended since: another recording.
     if (file.taken && file.unchanged_looks == 0) file.taken = file.stuck = false;
-    if (file.taken || !settled) continue;
-    take(path, messages);
-    ++taken;
+    if (!file.taken && settled) to_read_.push_back(path);
   }
-  return messages;
+}
+
+std::optional<std::vector<RawSamples>> RecordingsFolder::read_next() {
+  if (to_read_.empty()) return std::nullopt;
+  const fs::path path = std::move(to_read_.front());
+  to_read_.pop_front();
+  // Others may have taken long to read: it may have changed, or gone, since it was looked at.
+  if (stamp_of(path) != files_[path].stamp) return std::vector<RawSamples>();
+  return take(path);
+}
+
+std::vector<RawSamples> RecordingsFolder::awaiting() const {
+  std::vector<RawSamples> first_blocks;
+  for (const auto& [path, file] : files_)
+    if (file.taken && !file.stuck) first_blocks.push_back(file.first_block);
+  return first_blocks;
 }
 
 /// CSV, MAT and HDF5 files right in the folder, by name.
@@ -86,33 +96,58 @@ void RecordingsFolder::put_away_concluded() {
   }
 }
 
-bool RecordingsFolder::is_settled(const fs::path& path) {
+std::optional<RecordingsFolder::Stamp> RecordingsFolder::stamp_of(const fs::path& path) {
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);  // none of a pipe or a device, which is refused in its turn
-  const fs::file_time_type changed = fs::last_write_time(path, error);
-  if (error) return fs::is_symlink(fs::symlink_status(path, error));  // which leads nowhere, and is refused in its turn
-  const fs::file_time_type sidecar_changed = fs::last_write_time(fs::path(path).replace_extension(".yaml"), error);
-  File& file = files_[path];
-  const bool same = file.size == size && file.changed == changed && file.sidecar_changed == sidecar_changed;
-  file.size = size;
-  file.changed = changed;
-  file.sidecar_changed = sidecar_changed;
-  file.unchanged_looks = same ? file.unchanged_looks + 1 : 0;
-  return file.unchanged_looks >= looks_until_settled_;
+  Stamp stamp;
+  stamp.size = fs::file_size(path, error);  // none of a pipe or a device, which is refused in its turn
+  stamp.changed = fs::last_write_time(path, error);
+  if (error) {
+    Stamp link;
+    link.leads_nowhere = fs::is_symlink(fs::symlink_status(path, error));
+    return link.leads_nowhere ? std::optional(link) : std::nullopt;
+  }
+  stamp.sidecar_changed = fs::last_write_time(fs::path(path).replace_extension(".yaml"), error);
+  return stamp;
 }
 
-void RecordingsFolder::take(const fs::path& path, std::vector<Message>& messages) {
-  if (const auto link = not_a_file_of_its_own(path)) return reject(path, *link);
-  Result<Recording> recording = read(path);
-  if (!recording) return reject(path, recording.error());
-  std::vector<RawSamples> blocks = blocks_of(*recording, kSamplesPerBlock, kSourceId, false);
-  if (blocks.empty())
-    return reject(path, Error{.file = path.string(), .place = {}, .value = {}, .rule = "has no samples", .advice = {}});
+bool RecordingsFolder::is_settled(const fs::path& path) {
+  const std::optional<Stamp> stamp = stamp_of(path);
+  if (!stamp) return false;
   File& file = files_[path];
+  const bool same = file.stamp == stamp;
+  file.stamp = stamp;
+  file.unchanged_looks = same ? file.unchanged_looks + 1 : 0;
+  return file.unchanged_looks >= looks_until_settled_ || stamp->leads_nowhere;
+}
+
+std::vector<RawSamples> RecordingsFolder::take(const fs::path& path) {
+  Result<std::vector<RawSamples>> read = blocks(path);
+  File& file = files_[path];
+  if (stamp_of(path) != file.stamp) return {};  // it changed meanwhile: half of it may be of one, half of another
+  if (!read) return reject(path, read.error()), std::vector<RawSamples>();
   file.taken = true;
-  file.first_block = blocks.front();
+  file.first_block = read->front();
   file.first_block.samples = {};
-  for (RawSamples& block : blocks) messages.emplace_back(std::move(block));
+  return std::move(*read);
+}
+
+/// A file that hides more than there is memory for is refused like any other that cannot be read.
+Result<std::vector<RawSamples>> RecordingsFolder::blocks(const fs::path& path) const {
+  const auto wrong = [&](std::string rule) {
+    return fail(Error{.file = path.string(), .place = {}, .value = {}, .rule = std::move(rule), .advice = {}});
+  };
+  if (const auto link = not_a_file_of_its_own(path)) return fail(*link);
+  try {
+    const Result<Recording> recording = read(path);
+    if (!recording) return fail(recording.error());
+    std::vector<RawSamples> all = blocks_of(*recording, kSamplesPerBlock, kFolderSource, false);
+    if (all.empty()) return wrong("has no samples");
+    return all;
+  } catch (const std::bad_alloc&) {
+    return wrong("takes more memory than there is");
+  } catch (const std::exception& raised) {
+    return wrong(std::string("cannot be read: ") + raised.what());
+  }
 }
 
 Result<Recording> RecordingsFolder::read(const fs::path& path) const {

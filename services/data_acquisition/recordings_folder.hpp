@@ -1,13 +1,14 @@
 // The folder where recordings are dropped (ServiceConfig::recordings_directory).
 //
 // A file is read when it and its sidecar have not changed for ten looks, one a second: a copy in progress is left
-// alone. When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
+// alone, and one that changes while it is read is read again. When its test is concluded it moves to done/, when it cannot be read to rejected/ with the reason beside it as
 // NAME.error.txt (NAME.2 where that name is taken: nothing is overwritten); its sidecar, which must be there when the recording is read, moves along. Until then it stays, and a
 // change of file or sidecar or a restart reads it again: nothing is lost, and what comes twice is taken once, by its
 // message id.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -30,13 +31,24 @@ class RecordingsFolder {
   RecordingsFolder(std::filesystem::path directory, std::vector<AssetConfig> assets, IsConcluded is_concluded,
                    Report report, int looks_until_settled = 10);
 
-  /// One look: puts away what is done, returns the blocks of what is new.
-  [[nodiscard]] std::vector<Message> look();
+  /// One look, about once a second: puts away what is done, and notes what may be read.
+  void look();
+  /// Reads one recording of those that the last look found: its blocks, or none where it was rejected or has changed
+  /// since. Nothing where all are read.
+  [[nodiscard]] std::optional<std::vector<RawSamples>> read_next();
+  /// The first blocks of the recordings that were read and are still there.
+  [[nodiscard]] std::vector<RawSamples> awaiting() const;
 
  private:
-  struct File {
+  /// What changes when a recording or its sidecar does.
+  struct Stamp {
     std::uintmax_t size = 0;
     std::filesystem::file_time_type changed, sidecar_changed;
+    bool leads_nowhere = false;  ///< a link, which is refused in its turn
+    bool operator==(const Stamp&) const = default;
+  };
+  struct File {
+    std::optional<Stamp> stamp;
     int unchanged_looks = 0;
     bool taken = false;
     bool stuck = false;      ///< could not be moved away: reported once, then left alone
@@ -45,7 +57,9 @@ class RecordingsFolder {
   [[nodiscard]] std::vector<std::filesystem::path> recordings();
   void put_away_concluded();
   [[nodiscard]] bool is_settled(const std::filesystem::path& path);
-  void take(const std::filesystem::path& path, std::vector<Message>& messages);
+  [[nodiscard]] static std::optional<Stamp> stamp_of(const std::filesystem::path& path);
+  [[nodiscard]] std::vector<RawSamples> take(const std::filesystem::path& path);
+  [[nodiscard]] Result<std::vector<RawSamples>> blocks(const std::filesystem::path& path) const;
   [[nodiscard]] Result<Recording> read(const std::filesystem::path& path) const;
   /// Where the recording is now; nothing where it could not be moved, which is reported.
   std::optional<std::filesystem::path> move_to(const std::string& folder, const std::filesystem::path& path);
@@ -57,6 +71,7 @@ class RecordingsFolder {
   Report report_;
   int looks_until_settled_;
   std::map<std::filesystem::path, File> files_;
+  std::deque<std::filesystem::path> to_read_;
   bool is_readable_ = true;  ///< at the last look
 };
 

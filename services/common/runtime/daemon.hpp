@@ -32,7 +32,7 @@ struct DaemonParts {
   std::function<std::unique_ptr<Layer>(const Configuration&, const Clock&)> make_layer;
   std::function<Result<std::unique_ptr<Bus>>(const Configuration&)> make_bus;
   /// Optional: inputs that come from no bus, see RunnerOptions::local_inputs.
-  std::function<decltype(RunnerOptions::local_inputs)(const Configuration&)> make_local_inputs = {};
+  std::function<std::shared_ptr<LocalInputs>(const Configuration&)> make_local_inputs = {};
   /// Optional: see RunnerOptions.
   std::function<std::optional<std::string>()> refused_by_bus = {};
   std::function<AlarmsOfOutput()> make_alarms_of_output = {};

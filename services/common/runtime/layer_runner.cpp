@@ -9,6 +9,7 @@
 #include "services/common/runtime/confirmed_positions.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"
+#include "services/common/runtime/stream_window.hpp"
 
 namespace sealwatch {
 namespace {
@@ -20,6 +21,8 @@ constexpr std::size_t kBatch = 64;
 constexpr std::chrono::milliseconds kSecond{1000};
 /// How often a trial in another process is looked at.
 constexpr std::chrono::milliseconds kTrialLook{20};
+/// A service beats once a second: one that is not heard for so long holds up nothing.
+constexpr std::chrono::seconds kReaderIsGone{10};
 
 }  // namespace
 
@@ -109,7 +112,8 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   if (lanes_.on_trial()) timeout = std::min(timeout, kTrialLook);
   if (!outbox_.empty() || !resends_.empty()) timeout = std::min(timeout, Outbox::kShortestPause);
   const bool may_resend = !resends_.empty() && resends_.may_send(steady_clock::now());
-  const bool work_waits = !ready_.empty() || may_resend;
+  const bool takes_local = may_take_local();
+  const bool work_waits = !ready_.empty() || may_resend || takes_local;
   std::vector<BusItem> items = bus_.receive(work_waits ? std::chrono::milliseconds(0) : timeout, kBatch);
   if (items.size() < kBatch && !bus_.has_more())
     full_since_.reset();
@@ -117,6 +121,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
     full_since_ = steady_clock::now();
   const bool is_idle = items.empty() && ready_.empty();
   for (BusItem& item : items) sort_in(std::move(item));
+  if (takes_local) take_local();
   if (Status status = take_ready(); !status) return status;
   send_outbox();
   if (Status status = serve_resends(); !status) return status;
@@ -298,6 +303,47 @@ Status LayerRunner::let_lanes_work() {
   }
 }
 
+/// A recording of an hour gives more blocks than the layers behind read in a minute. What is live goes through the same
+/// streams: it must not find them full (docs/decisions/flow-control.md).
+bool LayerRunner::may_take_local() {
+  return options_.local_inputs && outbox_.empty() && lanes_.open() <= options_.most_open_beside_local &&
+         options_.local_inputs->has_some() && !is_a_reader_behind();
+}
+
+void LayerRunner::hear_reader(const ServiceStatus& status) {
+  const auto& services = options_.strangers.services;
+  if (!services.empty() && std::ranges::find(services, status.service) == services.end()) return;
+  for (const StreamPosition& position : status.received)
+    if (const auto topic = value_of<Topic>(position.topic); topic && position.writer_id == journal_.writer_id())
+      readers_[status.service].read[*topic] = position.sequence;
+  if (const auto known = readers_.find(status.service); known != readers_.end())
+    known->second.heard = steady_clock::now();
+}
+
+bool LayerRunner::is_a_reader_behind() const {
+  const auto now = steady_clock::now();
+  return std::ranges::any_of(readers_, [&](const auto& known) {
+    const Reader& reader = known.second;
+    return now - reader.heard < kReaderIsGone && std::ranges::any_of(reader.read, [&](const auto& stream) {
+             const auto written = journal_.written().find(stream.first);
+             return written != journal_.written().end() &&
+                    written->second > stream.second + stream_window(name_of(stream.first));
+           });
+  });
+}
+
+void LayerRunner::take_local() {
+  for (Message& message : options_.local_inputs->take()) {
+    ready_.push_back(std::move(message));
+    took_local_ = true;
+  }
+}
+
+bool LayerRunner::stop(std::chrono::milliseconds patience) {
+  const bool is_over = !options_.local_inputs || options_.local_inputs->stop(patience);
+  return lanes_.stop(patience) && is_over;
+}
+
 Status LayerRunner::store_batch() {
   for (const LaneResult& result : results_)
     for (const std::string& id : result.conclusion.consumed)
@@ -360,11 +406,7 @@ Status LayerRunner::let_time_pass() {
     if (woken && asleep_.contains(asset_id)) woken = recall(asset_id);
     return woken ? at_rest(asset_id) : nullptr;
   };
-  if (options_.local_inputs)
-    for (Message& message : options_.local_inputs(woken_at_rest)) {
-      ready_.push_back(std::move(message));
-      took_local_ = true;
-    }
+  if (options_.local_inputs) options_.local_inputs->look(woken_at_rest);
   if (!woken) return woken;
   const auto now = steady_clock::now();
   if (now - started_ < options_.settling || (full_since_ && now - *full_since_ < options_.longest_wait)) return {};

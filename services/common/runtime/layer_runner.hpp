@@ -26,6 +26,7 @@
 
 #include "sealwatch/port/bus.hpp"
 #include "sealwatch/port/layer.hpp"
+#include "sealwatch/port/local_inputs.hpp"
 #include "sealwatch/port/standing_alarms.hpp"
 #include "services/common/runtime/admission.hpp"
 #include "services/common/runtime/alarm_desk.hpp"
@@ -63,17 +64,16 @@ struct RunnerOptions {
   std::chrono::milliseconds least_awake{120'000};
   /// After so long an asset is recalled all the same: time passes for it too, and its tests become overdue.
   std::chrono::milliseconds longest_sleep{3'600'000};
-  /// The layer of an asset, where nothing is under way in it.
-  using LayerAtRest = std::function<const Layer*(const std::string& asset_id)>;
   /// Nor while the bus is not emptied, but for no longer than this: what then still waits is a flood's, as a bus gives
   /// each sender its turn.
   std::chrono::milliseconds longest_wait{5000};
   /// Nor while more is known to come about an asset, but for no longer than this: a test is overdue by days, and a stream
   /// that goes on for ever is a forger's.
   std::chrono::milliseconds longest_behind{std::chrono::hours(1)};
-  /// Inputs that come from no bus (recordings dropped into a directory), asked for about once a second. A message that
-  /// comes twice is taken once, by its id.
-  std::function<std::vector<Message>(const LayerAtRest&)> local_inputs = {};
+  std::shared_ptr<LocalInputs> local_inputs = {};
+  /// A piece of them is taken when no more than so many inputs wait to be concluded from, and no reader that is heard is
+  /// further behind than a stream's window: what is live goes first, here and in the layers behind.
+  std::size_t most_open_beside_local = 64;
   /// Assets for which time passes also where nothing has been heard of them.
   std::vector<std::string> assets = {};
   AssetLanes::Options lanes = {};
@@ -112,7 +112,7 @@ class LayerRunner {
   /// Steps until `stop` is set (then wake the bus).
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
   /// Stops all computing. False when some of it goes on after `patience`: then only the end of the process stops it.
-  [[nodiscard]] bool stop(std::chrono::milliseconds patience) { return lanes_.stop(patience); }
+  [[nodiscard]] bool stop(std::chrono::milliseconds patience);
 
  private:
   using Key = std::pair<std::string, std::string>;  // topic, writer id
@@ -142,6 +142,10 @@ class LayerRunner {
   /// Gives the lanes a moment to conclude from what was taken.
   [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
   [[nodiscard]] Status let_lanes_work();
+  [[nodiscard]] bool may_take_local();
+  void hear_reader(const ServiceStatus& status);
+  [[nodiscard]] bool is_a_reader_behind() const;
+  void take_local();
   [[nodiscard]] Status store_batch();
   void give_memory_back();
   [[nodiscard]] Status keep(Conclusion conclusion);
@@ -296,7 +300,12 @@ class LayerRunner {
   std::chrono::steady_clock::time_point look_back_next_{};  ///< under load, not before
   ResendQueue resends_;
   Admission admission_;
-  bool took_local_ = false;  ///< of the running batch: inputs that came from no bus
+  struct Reader {
+    std::map<Topic, std::uint64_t> read;  ///< of the own streams
+    std::chrono::steady_clock::time_point heard{};
+  };
+  std::map<std::string, Reader> readers_;  ///< by service
+  bool took_local_ = false;                ///< of the running batch: inputs that came from no bus
   std::optional<std::chrono::steady_clock::time_point> full_since_;            ///< the bus had more after each take
   std::chrono::steady_clock::time_point asked_{};                              ///< last look at what is missing
   std::map<std::string, std::chrono::steady_clock::time_point> behind_since_;  ///< assets of which more is to come

@@ -88,6 +88,7 @@ void LayerRunner::sort_in(const ServiceStatus& status) {
   if (status.service == kind_->name()) note_rival(status);
   note_set_aside_elsewhere(status);
   retention_.hear(status, journal_.writer_id());
+  hear_reader(status);
   hear_of_acts(status);
   hear_of_own_outputs(status);
   if (desk_) desk_->hear(status, std::chrono::steady_clock::now().time_since_epoch(), clock_.now());

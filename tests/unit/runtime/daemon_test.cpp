@@ -134,17 +134,24 @@ class EndlessLayer final : public Layer {
   bool later_;
 };
 
+/// One block without end, by a reader that cannot be stopped.
+class LocalBlocks final : public LocalInputs {
+ public:
+  void look(const LayerAtRest&) override {}
+  bool has_some() override { return true; }
+  std::vector<Message> take() override { return {RawSamples()}; }
+  bool stop(std::chrono::milliseconds) override { return false; }
+};
+
 TEST_F(DaemonTest, EndsAtSigtermWhateverItComputes) {
   ServiceManager manager(place_.directory());
   for (const bool later : {false, true}) {
     parts_.make_layer = [later](const Configuration&, const Clock&) { return std::make_unique<EndlessLayer>(later); };
-    parts_.make_local_inputs = [](const Configuration&) {
-      return [](const RunnerOptions::LayerAtRest&) { return std::vector<Message>{RawSamples()}; };
-    };
+    parts_.make_local_inputs = [](const Configuration&) { return std::make_shared<LocalBlocks>(); };
     const pid_t daemon = ::fork();
     if (daemon == 0) _exit(run(usual()));
     EXPECT_TRUE(manager.heard("READY=1"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // it looks for local inputs once a second
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     const auto begin = std::chrono::steady_clock::now();
     ::kill(daemon, SIGTERM);
     int status = -1;

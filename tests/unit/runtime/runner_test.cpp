@@ -6,21 +6,26 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <map>
 
 #include "sealwatch/message/replacement_id.hpp"
 #include "services/common/runtime/identity.hpp"
+#include "services/common/runtime/stream_window.hpp"
 #include "tests/unit/runtime/harness.hpp"
 
 namespace sealwatch::testing {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::ResultOf;
 using ::testing::SizeIs;
 using ::testing::UnorderedElementsAreArray;
 
@@ -456,21 +461,74 @@ TEST(Identity, OfAMessageThatGivesNoneIsThatOfBeforeHeadersSaidHowClocksAreKept)
   EXPECT_EQ(identify(Message(message), none), "acknowledgement/A/" + content_hash(before));
 }
 
-TEST_F(RunnerTest, TakesLocalInputsOnce) {
+/// Blocks that are ready, one a piece.
+class FakeLocalInputs final : public LocalInputs {
+ public:
+  explicit FakeLocalInputs(std::vector<RawSamples> blocks) : blocks_(blocks.begin(), blocks.end()) {}
+  void look(const LayerAtRest&) override { ++looks; }
+  bool has_some() override { return !blocks_.empty(); }
+  std::vector<Message> take() override {
+    std::vector<Message> piece = {blocks_.front()};
+    blocks_.pop_front();
+    return piece;
+  }
+  bool stop(std::chrono::milliseconds) override { return true; }
+  int looks = 0;
+
+ private:
+  std::deque<RawSamples> blocks_;
+};
+
+TEST_F(RunnerTest, TakesLocalInputsOnceAndLooksForThemEverySecond) {
+  std::vector<RawSamples> twice = blocks_of_tests(1, {"A"});
+  twice.insert(twice.end(), twice.begin(), twice.end());
+  const auto local = std::make_shared<FakeLocalInputs>(twice);
   RunnerOptions options = fast_options();
-  int asked = 0;
-  options.local_inputs = [&asked](const RunnerOptions::LayerAtRest&) {
-    ++asked;
-    std::vector<Message> found;
-    for (const RawSamples& block : blocks_of_tests(1, {"A"})) found.emplace_back(block);
-    return found;
-  };
+  options.local_inputs = local;
   auto process = cutter(options);
-  step(*process, 3);
+  step(*process, 20);
   std::this_thread::sleep_for(milliseconds(1050));
   step(*process, 3);
-  EXPECT_EQ(asked, 2);
+  EXPECT_EQ(local->looks, 2);
+  EXPECT_FALSE(local->has_some());
   EXPECT_THAT(process->outputs(), SizeIs(2));
+}
+
+/// Forty recordings of the largest size held up a live test for half a minute.
+TEST_F(RunnerTest, WhatIsLiveGoesAmongLocalInputs) {
+  const auto local = std::make_shared<FakeLocalInputs>(blocks_of_tests(500, {"A"}));
+  RunnerOptions options = fast_options();
+  options.local_inputs = local;
+  auto process = cutter(options);
+  step(*process, 3);
+  for (const RawSamples& block : blocks_of_tests(1, {"B"})) send(block);
+  step(*process, 10);
+  EXPECT_TRUE(local->has_some());
+  EXPECT_THAT(process->outputs(), Contains(ResultOf([](const Message& m) { return asset_of(m); }, "B")));
+}
+
+/// A sender that outruns the flow watches positions; what is dropped into a directory does, too.
+TEST_F(RunnerTest, LocalInputsWaitForAReaderThatIsFarBehind) {
+  const auto local = std::make_shared<FakeLocalInputs>(blocks_of_tests(500, {"A"}));
+  RunnerOptions options = fast_options();
+  options.local_inputs = local;
+  auto process = cutter(options);
+  const auto beat = [&](std::uint64_t position) {
+    ServiceStatus status;
+    status.service = status.writer_id = "reader";
+    status.received = {{"test_features", process->journal().writer_id(), position}};
+    EXPECT_TRUE(sender_.publish(status));
+  };
+  constexpr std::uint64_t kWindow = stream_window("test_features");
+  beat(0);
+  step(*process, 800);
+  const auto written = [&] { return process->journal().written().at(Topic::test_features); };
+  const std::uint64_t at_first = written();
+  EXPECT_GT(at_first, kWindow);
+  EXPECT_LT(at_first, kWindow + 20);
+  beat(at_first);
+  step(*process, 800);
+  EXPECT_GT(written(), at_first + 100);
 }
 
 /// Computes for a while and reports when it has done so, before anything of it can have been committed.

@@ -4,11 +4,14 @@
 #include <malloc.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <fstream>
 #include <set>
+#include <thread>
 
 #include "services/common/recording/recording_file.hpp"
 #include "services/data_acquisition/data_acquisition.hpp"
+#include "services/data_acquisition/folder_reader.hpp"
 #include "tests/unit/signal/synthetic_pst.hpp"
 
 namespace sealwatch {
@@ -33,9 +36,21 @@ class RecordingsFolderTest : public testing::Test {
     recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = 6.0}.record();
     ASSERT_TRUE(write_recording_csv(recording, (directory_ / (name + ".csv")).string()));
   }
-  RecordingsFolder folder(DataAcquisition& layer, int looks_until_settled = 1) {
-    return {directory_, assets_, [&layer](const RawSamples& first) { return layer.is_closed(first); },
-            [this](const Error& error) { errors_.push_back(error.describe()); }, looks_until_settled};
+  struct Watched {
+    RecordingsFolder folder;
+    /// A second of it: a look, and what can be read then.
+    std::vector<Message> look() {
+      folder.look();
+      std::vector<Message> messages;
+      while (const auto blocks = folder.read_next())
+        for (const RawSamples& block : *blocks) messages.emplace_back(block);
+      return messages;
+    }
+  };
+  Watched folder(DataAcquisition& layer, int looks_until_settled = 1) {
+    return {RecordingsFolder(
+        directory_, assets_, [&layer](const RawSamples& first) { return layer.is_closed(first); },
+        [this](const Error& error) { errors_.push_back(error.describe()); }, looks_until_settled)};
   }
   /// Names in the folder and, with a slash, below it.
   std::set<std::string> files() const {
@@ -52,7 +67,7 @@ class RecordingsFolderTest : public testing::Test {
 
 TEST_F(RecordingsFolderTest, TakesARecordingAndPutsItAwayWhenItsTestIsConcluded) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   drop("april", "XT03-MV2");
   EXPECT_TRUE(watched.look().empty()) << "it might still be growing";
   const std::vector<Message> blocks = watched.look();
@@ -68,7 +83,7 @@ TEST_F(RecordingsFolderTest, TakesARecordingAndPutsItAwayWhenItsTestIsConcluded)
 
 TEST_F(RecordingsFolderTest, ReadsARecordingAgainThatWasNotConcludedAndIsMended) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   drop("april", "XT03-MV2");
   EXPECT_TRUE(watched.look().empty());
   EXPECT_EQ(watched.look().size(), 2U) << "and the service refuses it";
@@ -82,7 +97,7 @@ TEST_F(RecordingsFolderTest, ReadsARecordingAgainThatWasNotConcludedAndIsMended)
 
 TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer, 3);
+  Watched watched = folder(layer, 3);
   const auto looks = [&watched](int count) {
     std::size_t blocks = 0;
     for (int k = 0; k < count; ++k) blocks += watched.look().size();
@@ -104,11 +119,11 @@ TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {
 
 TEST_F(RecordingsFolderTest, ARestartReadsWhatWasNotConcludedAgainWithTheSameIds) {
   DataAcquisition layer(assets_);
-  RecordingsFolder before = folder(layer);
+  Watched before = folder(layer);
   drop("april", "XT03-MV2");
   (void)before.look();
   const std::vector<Message> first = before.look();
-  RecordingsFolder after = folder(layer);
+  Watched after = folder(layer);
   (void)after.look();
   const std::vector<Message> again = after.look();
   EXPECT_EQ(again, first);
@@ -116,7 +131,7 @@ TEST_F(RecordingsFolderTest, ARestartReadsWhatWasNotConcludedAgainWithTheSameIds
 
 TEST_F(RecordingsFolderTest, RejectsWhatCannotBeReadWithTheReason) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   drop("stranger", "XT09-MV9");
   std::ofstream(directory_ / "broken.csv") << "time[s],flow[m3/s]\n0,abc\n";
   std::ofstream(directory_ / "broken.yaml") << "asset_id: XT03-MV2\n";
@@ -131,7 +146,7 @@ TEST_F(RecordingsFolderTest, RejectsWhatCannotBeReadWithTheReason) {
 
 TEST_F(RecordingsFolderTest, ANameThatCameBeforeOverwritesNothing) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   for (const char* text : {"time,position\n0,first\n", "time,position\n0,second\n"}) {
     std::ofstream(directory_ / "may.csv") << text;
     std::ofstream(directory_ / "may.yaml") << "asset_id: XT03-MV2\n";
@@ -159,7 +174,7 @@ TEST_F(RecordingsFolderTest, LinksAreNotFollowed) {
   fs::create_symlink(elsewhere / "precious", directory_ / "rejected" / "bad.csv.error.txt");
   std::ofstream(directory_ / "bad.csv") << "no recording";
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   EXPECT_TRUE(watched.look().empty());
   EXPECT_TRUE(watched.look().empty());
   EXPECT_THAT(errors_, testing::Contains(testing::HasSubstr("link.csv: is a symbolic link, which is not followed")));
@@ -180,7 +195,7 @@ TEST_F(RecordingsFolderTest, LinksAreNotFollowed) {
 /// Who reads a pipe waits until somebody writes to it: the service would wait with it.
 TEST_F(RecordingsFolderTest, ALinkThatLeadsNowhereIsRefusedToo) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   fs::create_symlink("/nowhere", directory_ / "gone.csv");
   fs::create_symlink("round.csv", directory_ / "round.csv");
   EXPECT_TRUE(watched.look().empty());
@@ -192,7 +207,7 @@ TEST_F(RecordingsFolderTest, ALinkThatLeadsNowhereIsRefusedToo) {
 
 TEST_F(RecordingsFolderTest, AFolderThatIsGoneIsToldOfOnceAndUsedWhenItIsBack) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   fs::remove_all(directory_);
   for (int look = 0; look < 3; ++look) EXPECT_TRUE(watched.look().empty());
   EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("recordings_directory: cannot be read: No such file")));
@@ -205,7 +220,7 @@ TEST_F(RecordingsFolderTest, AFolderThatIsGoneIsToldOfOnceAndUsedWhenItIsBack) {
 
 TEST_F(RecordingsFolderTest, FilesThatAreGoneAreForgotten) {
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   std::size_t halfway = 0;
   for (int k = 0; k < 2000; ++k) {
     const fs::path file = directory_ / ("comes and goes " + std::to_string(k) + ".csv");
@@ -223,7 +238,7 @@ TEST_F(RecordingsFolderTest, ASidecarThatIsAPipeIsNotWaitedFor) {
   fs::remove(directory_ / "april.yaml");
   ASSERT_EQ(::mkfifo((directory_ / "april.yaml").c_str(), 0600), 0);
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   EXPECT_TRUE(watched.look().empty());
   EXPECT_TRUE(watched.look().empty());
   EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april.yaml: is a pipe")));
@@ -237,12 +252,86 @@ TEST_F(RecordingsFolderTest, ARecordingThatIsAPipeIsRefusedByName) {
   fs::remove(directory_ / "april.csv");
   ASSERT_EQ(::mkfifo((directory_ / "april.csv").c_str(), 0600), 0);
   DataAcquisition layer(assets_);
-  RecordingsFolder watched = folder(layer);
+  Watched watched = folder(layer);
   EXPECT_TRUE(watched.look().empty());
   EXPECT_TRUE(watched.look().empty());
   EXPECT_THAT(errors_, testing::ElementsAre(testing::HasSubstr("april.csv: is a pipe")));
   EXPECT_TRUE(fs::is_fifo(directory_ / "rejected" / "april.csv"));
 }
+
+/// Files before it may take long: it is not known to be whole any more.
+TEST_F(RecordingsFolderTest, ARecordingThatChangesBeforeItsTurnIsLeftAlone) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  drop("april", "XT03-MV2");
+  drop("may", "XT03-MV2");
+  watched.folder.look();
+  watched.folder.look();
+  EXPECT_THAT(watched.folder.read_next(), testing::Optional(testing::SizeIs(2)));
+  std::ofstream(directory_ / "may.csv", std::ios::app) << "6.1,";
+  EXPECT_THAT(watched.folder.read_next(), testing::Optional(testing::IsEmpty()));
+  EXPECT_EQ(watched.folder.read_next(), std::nullopt);
+  EXPECT_THAT(errors_, testing::IsEmpty());
+}
+
+class FolderReaderTest : public RecordingsFolderTest {
+ protected:
+  /// One with nearly as many numbers as a recording may have: it takes a while to read.
+  void drop_large(const std::string& name) {
+    std::ofstream file(directory_ / (name + ".csv"));
+    file << "time[s],position[m],pressure_a[Pa],pressure_b[Pa],velocity[m/s],motor_voltage[V],flow[m3/s]\n";
+    for (int k = 0; k < 220'000; ++k) file << k / 1000 << '.' << 1000 + k % 1000 << ",0.06,100001,100002,0.0,1.0,0\n";
+    std::ofstream(directory_ / (name + ".yaml")) << "asset_id: XT03-MV2\nrecording_id: " << name << "\n";
+  }
+  FolderReader reader() {
+    return {directory_, assets_, [](const Error& error) { ADD_FAILURE() << error.describe(); }, kBetweenLooks, 1};
+  }
+  const LocalInputs::LayerAtRest at_rest_ = [this](const std::string&) { return &layer_; };
+  static constexpr std::chrono::milliseconds kBetweenLooks{20};
+  DataAcquisition layer_{assets_};
+};
+
+/// The main loop's part of it takes no time, whatever the thread reads.
+TEST_F(FolderReaderTest, ALargeRecordingHoldsUpNobody) {
+  using Clock = std::chrono::steady_clock;
+  FolderReader watched = reader();
+  drop_large("large");
+  Clock::duration longest{};
+  std::size_t taken = 0;
+  const auto end = Clock::now() + std::chrono::seconds(60);
+  while (!fs::exists(directory_ / "done" / "large.csv") && Clock::now() < end) {
+    const auto begin = Clock::now();
+    watched.look(at_rest_);
+    const std::vector<Message> piece = watched.take();
+    longest = std::max(longest, Clock::now() - begin);
+    EXPECT_LE(piece.size(), 16U);
+    for (const Message& block : piece) (void)layer_.receive(block);
+    taken += piece.size();
+    if (piece.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(taken, 1100U);
+  EXPECT_TRUE(fs::exists(directory_ / "done" / "large.yaml"));
+  EXPECT_LT(longest, std::chrono::milliseconds(100)) << "it takes ten times as long to read";
+}
+
+TEST_F(FolderReaderTest, ReadsOneRecordingAtATimeAndStopsThoughNobodyTakesIt) {
+  FolderReader watched = reader();
+  drop("april", "XT03-MV2");
+  drop("may", "XT03-MV2");
+  watched.look(at_rest_);
+  std::set<std::string> taken;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!watched.has_some() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kBetweenLooks);
+  for (const Message& block : watched.take()) taken.insert(std::get<RawSamples>(block).recording_id);
+  EXPECT_THAT(taken, testing::ElementsAre("april"));
+  while (!watched.has_some() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kBetweenLooks);
+  EXPECT_TRUE(watched.has_some());
+  EXPECT_TRUE(watched.stop(std::chrono::seconds(5)));
+  EXPECT_TRUE(watched.stop(std::chrono::seconds(5))) << "told twice";
+  EXPECT_THAT(files(), testing::IsSupersetOf({"april.csv", "may.csv"})) << "read again at the next start";
+}
+
+TEST_F(FolderReaderTest, OneThatNeverLookedStopsAtOnce) { EXPECT_TRUE(reader().stop(std::chrono::milliseconds(0))); }
 
 }  // namespace
 }  // namespace sealwatch

@@ -1,0 +1,34 @@
+// Inputs of a service that come from no bus, such as recordings that are dropped into a directory.
+//
+// The runner's thread calls, between its other work. What takes long (to look at files, to read them) is done by a
+// thread of the implementation's own: nobody else's messages wait for it.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sealwatch/message/topics.hpp"
+#include "sealwatch/port/layer.hpp"
+
+namespace sealwatch {
+
+class LocalInputs {
+ public:
+  /// The layer of an asset, where nothing is under way in it.
+  using LayerAtRest = std::function<const Layer*(const std::string& asset_id)>;
+
+  virtual ~LocalInputs() = default;
+  /// About once a second: the time to ask layers what they have concluded.
+  virtual void look(const LayerAtRest& at_rest) = 0;
+  /// Whether there is something to take.
+  [[nodiscard]] virtual bool has_some() = 0;
+  /// A small piece of what is ready, in order: other messages get their turn after it. A message that comes twice is
+  /// taken once, by its id.
+  [[nodiscard]] virtual std::vector<Message> take() = 0;
+  /// Ends the work. False when some of it goes on after `patience`: then only the end of the process stops it.
+  [[nodiscard]] virtual bool stop(std::chrono::milliseconds patience) = 0;
+};
+
+}  // namespace sealwatch

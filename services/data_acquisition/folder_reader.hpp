@@ -1,0 +1,56 @@
+// The folder of recordings (recordings_folder.hpp) as inputs of data acquisition, looked at and read by a thread of its
+// own: a large recording, or one that hides gigabytes, holds up no live test. One recording is in memory at a time; the
+// next is read once all blocks of the last were taken.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sealwatch/port/local_inputs.hpp"
+#include "services/data_acquisition/recordings_folder.hpp"
+
+namespace sealwatch {
+
+class FolderReader final : public LocalInputs {
+ public:
+  /// `report` is called by the reading thread.
+  FolderReader(std::filesystem::path directory, std::vector<AssetConfig> assets, RecordingsFolder::Report report,
+               std::chrono::milliseconds between_looks = std::chrono::seconds(1), int looks_until_settled = 10);
+  ~FolderReader() override;
+  FolderReader(const FolderReader&) = delete;
+  FolderReader& operator=(const FolderReader&) = delete;
+
+  void look(const LayerAtRest& at_rest) override;
+  [[nodiscard]] bool has_some() override { return has_some_; }
+  [[nodiscard]] std::vector<Message> take() override;
+  [[nodiscard]] bool stop(std::chrono::milliseconds patience) override;
+
+ private:
+  void run(const std::stop_token& stop);
+  void look_at_folder();
+  [[nodiscard]] bool is_concluded(const RawSamples& first_block);
+  /// Waits until all were taken; false at a stop.
+  [[nodiscard]] bool hand_over(std::vector<RawSamples> blocks, const std::stop_token& stop);
+
+  std::chrono::milliseconds between_looks_;
+  RecordingsFolder folder_;  ///< the reading thread's alone
+  std::atomic<bool> has_some_{false};
+  std::mutex mutex_;  ///< of all below
+  std::condition_variable_any changed_;
+  std::deque<RawSamples> blocks_;     ///< of the recording that is being taken
+  std::vector<RawSamples> awaiting_;  ///< first blocks of those that were taken and are still in the folder
+  std::set<std::string> concluded_;   ///< PST ids of those among them whose tests are concluded
+  bool ended_ = true;                 ///< the thread
+  std::jthread thread_;               ///< last: it ends first
+};
+
+}  // namespace sealwatch

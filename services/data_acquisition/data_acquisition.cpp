@@ -6,6 +6,7 @@
 #include "services/common/text/format.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/data_acquisition/pst_id.hpp"
+#include "services/data_acquisition/recording_blocks.hpp"
 
 namespace sealwatch {
 namespace {
@@ -17,6 +18,7 @@ constexpr const char* kProducer = "data_acquisition 0.1.0";
 /// Time passes tick by tick, about once a second. A clock that is set, forwards or backwards, ends no test that goes
 /// on.
 constexpr double kLongestTickSeconds = 5.0;
+constexpr const char* kCut = "cut: another test began before this one ended";
 
 /// What all blocks of one test share. Neither content nor block number: a block in the middle must be known by it.
 std::string identity(const std::string& asset_id, const std::string& source_id, const std::string& recording_id,
@@ -31,11 +33,16 @@ std::string identity(const SampleBlock& block) {
                   block.header.event_time_ns);
 }
 
-/// What can run at once: one live test of an actuator, and any number of recordings of its tests that are played back.
-/// Those come whole, but for one whose player was stopped: it stays open until it is played again.
+std::optional<UtcTime> start_of(const RawSamples& raw) {
+  return raw.start_time_known ? std::optional(UtcTime{raw.start_time_ns}) : std::nullopt;
+}
+std::optional<UtcTime> start_of(const SampleBlock& block) {
+  return block.header.event_time_known ? std::optional(UtcTime{block.header.event_time_ns}) : std::nullopt;
+}
+
 template <class Block>
-std::string place_of(const Block& block) {
-  return block.header.replay ? identity(block) : block.asset_id;
+bool comes_whole(const Block& block) {
+  return block.header.replay || block.source_id == kFolderSource;
 }
 
 bool begins(const RawSamples& raw) {
@@ -90,15 +97,20 @@ OpenTest DataAcquisition::open(const std::string& asset_id) const {
 void DataAcquisition::restore(const Message& own_output) {
   const auto* block = std::get_if<SampleBlock>(&own_output);
   if (!block || finished_.contains(block->header.pst_id)) return;
-  const std::string place = place_of(*block);
-  auto found = running_.find(place);
-  if (found == running_.end())
-    found = running_
-                .emplace(place,
-                         Running{block->header.pst_id, identity(*block), open(block->asset_id), block->header.replay})
-                .first;
-  found->second.test.absorb(*block);
-  if (ends(block->boundary)) finish(place);
+  const auto found = running_.find(identity(*block));
+  Running& running = found == running_.end() ? begin(*block, block->header.pst_id) : found->second;
+  running.test.absorb(*block);
+  if (ends(block->boundary)) finish(identity(*block));
+}
+
+template <class Block>
+DataAcquisition::Running& DataAcquisition::begin(const Block& block, const std::string& pst_id) {
+  Running running{.pst_id = pst_id, .test = open(block.asset_id)};
+  running.asset_id = block.asset_id;
+  running.source_id = block.source_id;
+  running.start = start_of(block);
+  running.comes_whole = comes_whole(block);
+  return running_.emplace(identity(block), std::move(running)).first->second;
 }
 
 bool DataAcquisition::tells_all(const Message& last_of_test) const {
@@ -120,22 +132,34 @@ void DataAcquisition::take_raw(const RawSamples& raw, Conclusion& conclusion) {
   if (const auto beyond = running->test.beyond_limits(raw)) return refuse(raw, "refused: " + *beyond, conclusion);
   SampleBlock block = stamp(raw, running->pst_id);
   running->test.complete(raw, block);
-  if (ends(block.boundary)) finish(place_of(raw));
+  if (ends(block.boundary)) finish(identity(raw));
   conclusion.outputs.emplace_back(std::move(block));
 }
 
 /// The open test that the block belongs to, opened if need be; null for a block of a test that is over.
 DataAcquisition::Running* DataAcquisition::running_test(const RawSamples& raw, Conclusion& conclusion) {
-  const std::string place = place_of(raw);
-  const auto found = running_.find(place);
-  const bool same = found != running_.end() && found->second.identity == identity(raw);
-  if (same && !begins(raw)) return &found->second;
+  const auto found = running_.find(identity(raw));
+  const bool is_open = found != running_.end();
+  if (is_open && !begins(raw)) return &found->second;
   if (!begins(raw) && finished_identities_.contains(identity(raw))) return nullptr;
   const std::string pst_id = make_pst_id(raw);
-  if (same && found->second.pst_id == pst_id) return &found->second;
+  if (is_open && found->second.pst_id == pst_id) return &found->second;
   if (finished_.contains(pst_id)) return nullptr;
-  if (found != running_.end()) close(place, "cut: another test began before this one ended", conclusion);
-  return &running_.emplace(place, Running{pst_id, identity(raw), open(raw.asset_id), raw.header.replay}).first->second;
+  if (is_open) close(identity(raw), kCut, conclusion);
+  if (begins(raw) && !comes_whole(raw)) cut_earlier_tests(raw, conclusion);
+  return &begin(raw, pst_id);
+}
+
+/// An actuator does one stroke at a time: of a sender that begins the next, the last is over. What another source says
+/// of it does not end the test, nor does a test of the past that is sent late.
+void DataAcquisition::cut_earlier_tests(const RawSamples& raw, Conclusion& conclusion) {
+  std::vector<std::string> cut;
+  for (const auto& [identity, running] : running_) {
+    const bool is_other = running.asset_id != raw.asset_id || running.source_id != raw.source_id || running.comes_whole;
+    const bool is_later = start_of(raw) && running.start && *start_of(raw) < *running.start;
+    if (!is_other && !is_later) cut.push_back(identity);
+  }
+  for (const std::string& identity : cut) close(identity, kCut, conclusion);
 }
 
 SampleBlock DataAcquisition::stamp(const RawSamples& raw, const std::string& pst_id) const {
@@ -161,27 +185,25 @@ SampleBlock DataAcquisition::stamp(const RawSamples& raw, const std::string& pst
 /// Ends the test that would be more than one test may be: what came of it before is kept, with the reason, and what
 /// comes after is passed over.
 void DataAcquisition::refuse(const RawSamples& raw, const std::string& reason, Conclusion& conclusion) {
-  const std::string place = place_of(raw);
-  Running& running = running_.at(place);
-  if (running.test.begun()) return close(place, reason, conclusion);
+  Running& running = running_.at(identity(raw));
+  if (running.test.begun()) return close(identity(raw), reason, conclusion);
   SampleBlock block = stamp(raw, running.pst_id);
   block.boundary = BlockBoundary::whole;
   block.aborted = true;
   block.abort_reason = reason;
-  finish(place);
+  finish(identity(raw));
   conclusion.outputs.emplace_back(std::move(block));
 }
 
-void DataAcquisition::close(const std::string& place, const std::string& reason, Conclusion& conclusion) {
-  conclusion.outputs.emplace_back(running_.at(place).test.closing_block(reason));
-  finish(place);
+void DataAcquisition::close(const std::string& identity, const std::string& reason, Conclusion& conclusion) {
+  conclusion.outputs.emplace_back(running_.at(identity).test.closing_block(reason));
+  finish(identity);
 }
 
-void DataAcquisition::finish(const std::string& place) {
-  const auto found = running_.find(place);
-  finished_.insert(found->second.pst_id);
-  finished_identities_.insert(found->second.identity);
-  running_.erase(found);
+void DataAcquisition::finish(const std::string& identity) {
+  finished_.insert(running_.at(identity).pst_id);
+  finished_identities_.insert(identity);
+  running_.erase(identity);
 }
 
 Conclusion DataAcquisition::tick(UtcTime now) {
@@ -189,13 +211,13 @@ Conclusion DataAcquisition::tick(UtcTime now) {
   std::vector<std::string> silent;
   const double passed_s = last_tick_ ? std::clamp(seconds_between(*last_tick_, now), 0.0, kLongestTickSeconds) : 0.0;
   last_tick_ = now;
-  for (auto& [place, running] : running_) {
-    if (running.played_back) continue;
+  for (auto& [identity, running] : running_) {
+    if (running.comes_whole) continue;
     running.silent_s += passed_s;
-    if (running.silent_s >= options_.time_out_s) silent.push_back(place);
+    if (running.silent_s >= options_.time_out_s) silent.push_back(identity);
   }
   const std::string reason = text::format("cut: no samples for {:.0f} s", options_.time_out_s);
-  for (const std::string& place : silent) close(place, reason, conclusion);
+  for (const std::string& identity : silent) close(identity, reason, conclusion);
   return conclusion;
 }
 

@@ -222,6 +222,49 @@ TEST(DataAcquisition, ARecordingThatIsPlayedBackCutsNothingAndIsNotCut) {
   EXPECT_EQ(again.front().boundary, BlockBoundary::end);
 }
 
+/// Sends the first three blocks of a live test, then `between`, then the rest: how the live test ended.
+SampleBlock end_of_live_test_beside(const std::vector<RawSamples>& between) {
+  DataAcquisition layer(assets());
+  const std::vector<RawSamples> live = live_blocks_of(recording(5));
+  std::vector<SampleBlock> blocks = send(layer, {live.begin(), live.begin() + 3});
+  const std::string pst_id = blocks.front().header.pst_id;
+  for (const auto& more : {between, std::vector<RawSamples>{live.begin() + 3, live.end()}})
+    for (SampleBlock& block : send(layer, more))
+      if (block.header.pst_id == pst_id) blocks.push_back(std::move(block));
+  EXPECT_EQ(blocks.size(), live.size());
+  return blocks.back();
+}
+
+TEST(DataAcquisition, OnlyItsOwnSendersNextTestCutsALiveOne) {
+  std::vector<RawSamples> dropped = blocks_of(recording(2), kSamplesPerBlock, kFolderSource, false);
+  std::vector<RawSamples> sent_late = live_blocks_of(recording(2));
+  RawSamples stray;
+  stray.asset_id = "XT03-MV2";
+  stray.source_id = "stranger";
+  stray.header.message_id = "stray";
+  stray.block_number = 5;
+  stray.samples.time_s = {1.0};
+  std::vector<RawSamples> of_another = live_blocks_of(recording(6));
+  for (RawSamples& block : of_another) block.source_id = "another";
+  for (const auto& between : {dropped, sent_late, std::vector<RawSamples>{stray}, of_another}) {
+    const SampleBlock end = end_of_live_test_beside(between);
+    EXPECT_FALSE(end.aborted) << between.front().source_id << ": " << end.abort_reason;
+    EXPECT_EQ(end.boundary, BlockBoundary::end);
+  }
+}
+
+/// Its rest is read again at the next start, after other files it may be.
+TEST(DataAcquisition, ARecordingOfTheFolderIsNotCutByTime) {
+  DataAcquisition layer(assets());
+  const std::vector<RawSamples> dropped = blocks_of(recording(2), kSamplesPerBlock, kFolderSource, false);
+  send(layer, {dropped.begin(), dropped.begin() + 2});
+  UtcTime now{1'000'000'000};
+  for (int k = 0; k < 100; ++k) EXPECT_TRUE(layer.tick(now = add_seconds(now, 1.0)).outputs.empty());
+  send(layer, blocks_of(recording(3), kSamplesPerBlock, kFolderSource, false));
+  EXPECT_EQ(send(layer, dropped).size(), dropped.size() - 2);
+  EXPECT_TRUE(layer.is_closed(dropped.front()));
+}
+
 TEST(DataAcquisition, ATestWhoseBeginWasMissedIsTakenFromWhereItIs) {
   DataAcquisition layer(assets());
   const std::vector<RawSamples> raw = blocks_of(recording());

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "sealwatch/client/sender.hpp"
+#include "sealwatch/core/json_depth.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/common/message/json.hpp"
@@ -63,6 +64,12 @@ std::string no_number_in(const std::string& line) {
 }
 
 Result<RawSamples> block_of(const std::string& line) {
+  if (is_nested_too_deeply(line))
+    return fail(Error{.file = {},
+                      .place = {},
+                      .value = line.substr(0, 60),
+                      .rule = kNestedTooDeeply,
+                      .advice = "write a block as `sealwatch watch raw_samples --json` prints it"});
   const auto whole = nlohmann::json::parse(line, nullptr, false);
   if (const std::string word = whole.is_discarded() ? no_number_in(line) : std::string(); !word.empty())
     return fail(Error{.file = {},

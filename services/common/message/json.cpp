@@ -1,4 +1,5 @@
 #include "services/common/message/json.hpp"
+#include "sealwatch/core/json_depth.hpp"
 #include "sealwatch/message/blank.hpp"
 
 #include <algorithm>
@@ -250,9 +251,10 @@ std::string to_json(const ServiceStatus& status) { return write_json(status, Jso
 std::string to_json(const AlarmEntry& entry) { return write_json(entry, JsonForm::readable); }
 
 Result<AlarmEntry> alarm_from_json(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
   AlarmEntry entry;
   try {
+    if (is_nested_too_deeply(text)) throw LayoutError{{}, kNestedTooDeeply};
+    const Json json = Json::parse(text, nullptr, false);
     if (json.is_discarded()) throw LayoutError{{}, "is not JSON"};
     decode(json, {}, entry);
   } catch (const LayoutError& error) {
@@ -262,7 +264,6 @@ Result<AlarmEntry> alarm_from_json(std::string_view text) {
 }
 
 Result<Message> message_from_json(Topic topic, std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
   const auto wrong = [topic](std::string place, std::string rule) {
     return fail(Error{.file = "message of topic " + std::string(name_of(topic)),
                       .place = std::move(place),
@@ -270,6 +271,8 @@ Result<Message> message_from_json(Topic topic, std::string_view text) {
                       .rule = std::move(rule),
                       .advice = {}});
   };
+  if (is_nested_too_deeply(text)) return wrong({}, kNestedTooDeeply);
+  const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return wrong({}, "is not JSON");
   Message message = blank_message(topic);
   try {

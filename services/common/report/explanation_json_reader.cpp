@@ -2,6 +2,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "sealwatch/core/json_depth.hpp"
 #include "services/common/report/explanation_json.hpp"
 
 namespace sealwatch::report {
@@ -265,6 +266,7 @@ Explanation read(const Json& json) {
 }  // namespace
 
 Result<Explanation> explanation_from_json(std::string_view text) {
+  if (is_nested_too_deeply(text)) return fail(kNestedTooDeeply);
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail("is not JSON");
   try {

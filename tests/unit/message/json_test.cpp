@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "sealwatch/core/json_depth.hpp"
 #include "tests/unit/message/fill.hpp"
 
 namespace sealwatch {
@@ -93,6 +94,28 @@ TEST(Json, AWholeNumberThatDoesNotFitIsNamedAndNotCutDown) {
   EXPECT_EQ(std::get<RawSamples>(read("-9223372036854775808").value()).start_time_ns,
             std::numeric_limits<std::int64_t>::min());
   EXPECT_EQ(std::get<RawSamples>(read("3.0").value()).start_time_ns, 3);
+}
+
+/// A document of a million levels ended the process that read it, or wrote it again.
+TEST(Json, WhatIsNestedTooDeeplyIsNotRead) {
+  const auto nested = [](std::size_t levels, const std::string& open, const std::string& close) {
+    std::string text = R"({"unknown": )";
+    for (std::size_t k = 0; k < levels; ++k) text += open;
+    text += "1";
+    for (std::size_t k = 0; k < levels; ++k) text += close;
+    return text + "}";
+  };
+  for (const auto& [open, close] : {std::pair("[", "]"), std::pair(R"({"a":)", "}")}) {
+    EXPECT_TRUE(message_from_json(Topic::raw_samples, nested(kDeepestJson - 1, open, close)));
+    for (const std::size_t levels : {kDeepestJson, std::size_t{2'000'000}}) {
+      const auto read = message_from_json(Topic::raw_samples, nested(levels, open, close));
+      ASSERT_FALSE(read);
+      EXPECT_NE(read.error().describe().find("is nested deeper than 64 levels"), std::string::npos);
+      EXPECT_FALSE(alarm_from_json(nested(levels, open, close)));
+    }
+  }
+  const std::string brackets(100, '[');
+  EXPECT_TRUE(message_from_json(Topic::raw_samples, R"({"asset_id": "\"{)" + brackets + R"(\\"})")) << "in a string";
 }
 
 TEST(Json, NamesTheFieldThatIsWrong) {

@@ -10,8 +10,9 @@ namespace sealwatch {
 
 /// Whether `text` is UTF-8 (RFC 3629).
 [[nodiscard]] bool is_valid_utf8(std::string_view text);
-/// Whether it is UTF-8 without control characters (C0, DEL, C1) and without those that turn the direction of writing;
-/// with `several_lines`, line breaks and tabs may stand in it.
+/// Whether it is UTF-8 without what a reader does not see: control and format characters (zero width, direction of
+/// writing) and, as two names must not look the same, any white space but a blank. With `several_lines` it is running
+/// text: line breaks, tabs and other white space may stand in it, and what joins letters (Persian, emoji).
 [[nodiscard]] bool is_visible(std::string_view text, bool several_lines = false);
 /// The same text where it is visible; else with "\xHH" for every byte that is not.
 [[nodiscard]] std::string visible(std::string_view text, bool several_lines = true);

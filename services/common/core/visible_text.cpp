@@ -34,17 +34,6 @@ Letter first_letter(std::string_view text) {
   return {length, code, true};
 }
 
-bool turns_direction(std::uint32_t code) {
-  return (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
-}
-
-bool is_harmless(const Letter& letter, bool several_lines) {
-  if (several_lines && (letter.code == '\n' || letter.code == '\t')) return letter.valid;
-  const bool control = letter.code < 0x20 || (letter.code >= 0x7F && letter.code < 0xA0);
-  const bool line_break = letter.code == 0x2028 || letter.code == 0x2029;
-  return letter.valid && !control && !line_break && !turns_direction(letter.code);
-}
-
 /// Unicode 15: White_Space, Cc, Cf and Default_Ignorable_Code_Point, and the empty Braille pattern.
 constexpr std::array<std::array<std::uint32_t, 2>, 30> kBlanks = {
     {{0x0, 0x20},        {0x7F, 0xA0},       {0xAD, 0xAD},       {0x34F, 0x34F},     {0x600, 0x605},
@@ -58,6 +47,22 @@ bool is_blank(const Letter& letter) {
   return letter.valid && std::ranges::any_of(kBlanks, [&](const auto& range) {
            return range[0] <= letter.code && letter.code <= range[1];
          });
+}
+
+bool is_white_space(std::uint32_t code) {
+  return code == 0xA0 || code == 0x1680 || (code >= 0x2000 && code <= 0x200A) || code == 0x202F || code == 0x205F ||
+         code == 0x3000;
+}
+
+/// Zero-width joiners and variation selectors are part of words in some scripts.
+bool joins_letters(std::uint32_t code) {
+  return code == 0x200C || code == 0x200D || (code >= 0xFE00 && code <= 0xFE0F) || (code >= 0xE0100 && code <= 0xE01EF);
+}
+
+bool is_harmless(const Letter& letter, bool several_lines) {
+  if (!letter.valid || !is_blank(letter) || letter.code == ' ') return letter.valid;
+  const bool ends_line = letter.code == '\n' || letter.code == '\t';
+  return several_lines && (ends_line || is_white_space(letter.code) || joins_letters(letter.code));
 }
 
 }  // namespace

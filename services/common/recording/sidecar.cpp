@@ -4,11 +4,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/core/visible_text.hpp"
 
 namespace sealwatch {
 namespace {
@@ -92,8 +92,8 @@ Status read_noise(const KeyValue& item, const PlantDescription& plant, Sidecar& 
 Status read_name(const KeyValue& item, std::string& target) {
   const std::string name = item.value.IsNull() ? "" : item.value.Scalar();
   if (name.empty()) return fail(key_error(item, "must not be empty", "leave the key out where there is none"));
-  if (std::any_of(name.begin(), name.end(), [](unsigned char letter) { return std::iscntrl(letter) != 0; }))
-    return fail(key_error(item, "must not have line breaks or other control characters"));
+  if (!is_visible(name))
+    return fail(key_error(item, "must not have line breaks, other control characters or invisible ones"));
   target = name;
   return {};
 }

@@ -22,7 +22,7 @@ constexpr std::int64_t kLatest_ns = 290 * kYear_ns;
 /// A test has fewer rows.
 constexpr std::uint64_t kMostBlocks = kTestLimits.most_numbers;
 
-constexpr const char* kHasControls = "has control characters";
+constexpr const char* kHasControls = "has control or invisible characters";
 
 bool is_report(const Message& message) {
   return topic_of(message) == Topic::maintenance_event || topic_of(message) == Topic::acknowledgement;
@@ -43,7 +43,7 @@ std::optional<std::string> refusal_of_texts(const Message& message) {
   const std::optional<TextFault> fault = fault_of_texts(message);
   if (!fault) return std::nullopt;
   const bool shown = fault->rule == kHasControls;
-  return "its " + fault->field + (shown ? ", '" + visible(fault->text) + "', " : " ") + fault->rule +
+  return "its " + fault->field + (shown ? ", '" + visible(fault->text, false) + "', " : " ") + fault->rule +
          "; send it with a plain name";
 }
 
@@ -194,7 +194,7 @@ std::optional<UtcTime> Admission::future_test_before_live(const std::string& ass
 std::optional<std::string> Admission::refusal_of_asset(const Message& message) const {
   const std::string asset_id = asset_of(message);
   if (asset_id.empty() || assets_.names.contains(asset_id)) return std::nullopt;
-  const std::string what = "asset '" + visible(asset_id.substr(0, kLongestId)) + "' is not configured";
+  const std::string what = "asset '" + visible(asset_id.substr(0, kLongestId), false) + "' is not configured";
   if (assets_.refuses_others) return what + ", and unknown_assets are refused; give it an asset file, if it is yours";
   if (unknown_.contains(asset_id) || unknown_.size() < kMostUnknownAssets) return std::nullopt;
   return what + ", and " + std::to_string(unknown_.size()) +

@@ -1,11 +1,11 @@
 #include "services/common/runtime/asset_file.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
 #include "sealwatch/core/text.hpp"
+#include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/model/plant_description.hpp"
 #include "services/common/runtime/asset_sections.hpp"
 #include "services/common/runtime/channel_map_file.hpp"
@@ -224,9 +224,10 @@ Checked<AssetConfig> check_asset(const std::string& file, const std::vector<std:
     map.fault("asset_id", {}, "must be given");
   else if (map.has("asset_id") && config.asset_id.empty())
     map.fault("asset_id", {}, "must not be empty");
-  else if (std::ranges::any_of(config.asset_id, [](unsigned char c) { return std::iscntrl(c) != 0; }))
-    // It stands in topics, logs and file names, each on one line.
-    map.fault("asset_id", {}, "must not have line breaks or other control characters");
+  else if (!is_visible(config.asset_id))
+    // It stands in topics, logs and file names, each on one line, and no two must look the same.
+    map.fault("asset_id", visible(config.asset_id, false),
+              "must not have line breaks, other control characters or invisible ones");
   if (map.read("site", config.site) && sites && std::ranges::find(*sites, config.site) == sites->end())
     map.fault("site", config.site, "is not one of the configuration's sites", suggest(config.site, *sites));
   map.read("segment", config.segment);

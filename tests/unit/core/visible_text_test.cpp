@@ -32,6 +32,21 @@ TEST(VisibleText, ShowsWhatATerminalWouldObey) {
   }
 }
 
+/// "XT-1" and "XT-1" with something in between that nobody sees are two assets, and look like one.
+TEST(VisibleText, ANameHasNothingThatNobodySees) {
+  for (const char* unseen : {"\u200b", "\u200c", "\u200e", "\u200f", "\u061c", "\u2060", "\u2066", "\ufeff", "\u00ad",
+                             "\u00a0", "\u2003", "\u3000", "\u3164", "\u2800", "\ufe0f", "\U000e0041"}) {
+    const std::string name = "XT" + std::string(unseen) + "1";
+    EXPECT_FALSE(is_visible(name)) << visible(name, false);
+    EXPECT_TRUE(is_visible(visible(name, false)));
+  }
+  EXPECT_EQ(visible("z\u200bw"), "z\\xE2\\x80\\x8Bw");
+  EXPECT_EQ(visible("J.\u00a0Silva: \u0645\u06cc\u200c\u0631\u0648\u0645"),
+            "J.\u00a0Silva: \u0645\u06cc\u200c\u0631\u0648\u0645")
+      << "running text";
+  EXPECT_TRUE(is_visible("XT 1 \u00e9\u0645\u65e5"));
+}
+
 TEST(WithoutBlanks, LeavesWhatAReaderSees) {
   EXPECT_EQ(without_blanks(" J.\t Silva\n"), "J.Silva");
   EXPECT_EQ(without_blanks("J.\u00a0Si\u00adlva\u200b\u3000\ufeff\U000E0020"), "J.Silva");

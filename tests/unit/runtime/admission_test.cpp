@@ -168,7 +168,11 @@ TEST(AdmissionOfAssets, OrNoneAtAll) {
 TEST(AdmissionOfTexts, AnIdIsOneVisibleLineAndAllTextIsUtf8) {
   RawSamples raw = live_test("2031-04-10T00:00:00Z");
   raw.asset_id = "XT03\x1B[2J";
-  EXPECT_EQ(refusal(raw), "its asset_id, 'XT03\\x1B[2J', has control characters; send it with a plain name");
+  EXPECT_EQ(refusal(raw),
+            "its asset_id, 'XT03\\x1B[2J', has control or invisible characters; send it with a plain name");
+  raw = live_test("2031-04-10T00:00:00Z");
+  raw.asset_id = "XT03\u200b";
+  EXPECT_THAT(refusal(raw), HasSubstr("'XT03\\xE2\\x80\\x8B', has control or invisible characters"));
   raw = live_test("2031-04-10T00:00:00Z");
   raw.recording_id = "one\ntwo";
   EXPECT_THAT(refusal(raw), HasSubstr("recording_id"));

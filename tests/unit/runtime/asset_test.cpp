@@ -40,7 +40,10 @@ const BadCase kBadCases[] = {
     {"no_id", "site: x\n", "a.yaml: key asset_id: must be given"},
     {"empty_id", "asset_id: \"\"\n", "a.yaml: line 1, key asset_id: must not be empty"},
     {"control_characters", "asset_id: \"A\\nB\"\n",
-     "a.yaml: line 1, key asset_id: must not have line breaks or other control characters"},
+     "a.yaml: line 1, key asset_id: 'A\\x0AB': must not have line breaks, other control characters or invisible ones"},
+    {"invisible", "asset_id: A\u200b\n",
+     "a.yaml: line 1, key asset_id: 'A\\xE2\\x80\\x8B': must not have line breaks, other control characters or "
+     "invisible ones"},
     {"model", "asset_id: A\nmodel: eah\n", "a.yaml: line 2, key model: 'eah': is not known; did you mean 'eha'?"},
     {"unknown_key", "asset_id: A\nsegmnet: x\n",
      "a.yaml: line 2, key segmnet: 'segmnet': is not a known key; did you mean 'segment'?"},

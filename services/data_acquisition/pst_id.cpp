@@ -1,25 +1,16 @@
 #include "services/data_acquisition/pst_id.hpp"
 
-#include <cctype>
 #include <string_view>
 
 #include "sealwatch/core/text.hpp"
 #include "sealwatch/core/time.hpp"
+#include "sealwatch/message/id_part.hpp"
 #include "sealwatch/message/made_up.hpp"
 
 namespace sealwatch {
 namespace {
 
 constexpr std::size_t kHashDigits = 8;
-
-std::string plain(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    const bool allowed = std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-' || letter == '.';
-    result += allowed ? letter : '_';
-  }
-  return result;
-}
 
 void append_bytes(std::string& bytes, const std::vector<double>& values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
@@ -50,10 +41,10 @@ std::string make_pst_id(const RawSamples& first_block) {
   if (first_block.start_time_known)
     when = compact({.nanoseconds = first_block.start_time_ns});
   else if (!first_block.recording_id.empty())
-    when = plain(first_block.recording_id);
+    when = id_part(first_block.recording_id);
   const std::string content =
-      first_block.content_hash.empty() ? hash_of(first_block.samples) : plain(first_block.content_hash);
-  return plain(first_block.asset_id) + "-" + when + "-" + content.substr(0, kHashDigits) +
+      first_block.content_hash.empty() ? hash_of(first_block.samples) : id_part(first_block.content_hash);
+  return id_part(first_block.asset_id) + "-" + when + "-" + content.substr(0, kHashDigits) +
          std::string(is_made_up(first_block.source_id) ? kEndOfMadeUpId : "");
 }
 

@@ -6,6 +6,7 @@
 #include "sealwatch/core/visible_text.hpp"
 #include "sealwatch/message/alarm_acts.hpp"
 #include "sealwatch/message/confirmation.hpp"
+#include "sealwatch/message/id_part.hpp"
 #include "sealwatch/message/made_up.hpp"
 #include "sealwatch/message/outside.hpp"
 #include "sealwatch/message/retraction.hpp"
@@ -137,6 +138,11 @@ std::optional<TextFault> fault_of_texts(const Message& message) {
   return fault;
 }
 
+Admission::Admission(std::map<std::string, UtcTime> commissioned, ConfiguredAssets assets)
+    : commissioned_(std::move(commissioned)), assets_(std::move(assets)) {
+  for (const std::string& asset_id : assets_.names) asset_of_id_part_.emplace(id_part(asset_id), asset_id);
+}
+
 void Admission::note(const Message& message, bool concluded) {
   if (const auto* block = std::get_if<SampleBlock>(&message); block && !is_made_up(block->source_id))
     recorded_.insert(block->asset_id);
@@ -156,7 +162,9 @@ void Admission::note(const Message& message, bool concluded) {
 }
 
 void Admission::note_asset(const std::string& asset_id) {
-  if (!asset_id.empty() && !assets_.names.contains(asset_id)) unknown_.insert(asset_id);
+  if (asset_id.empty() || assets_.names.contains(asset_id)) return;
+  unknown_.insert(asset_id);
+  asset_of_id_part_.emplace(id_part(asset_id), asset_id);
 }
 
 /// Before data acquisition a test has no name by which it could be retracted: until then it is one of its date.
@@ -196,7 +204,10 @@ std::optional<std::string> Admission::refusal_of_asset(const Message& message) c
   if (asset_id.empty() || assets_.names.contains(asset_id)) return std::nullopt;
   const std::string what = "asset '" + visible(asset_id.substr(0, kLongestId), false) + "' is not configured";
   if (assets_.refuses_others) return what + ", and unknown_assets are refused; give it an asset file, if it is yours";
-  if (unknown_.contains(asset_id) || unknown_.size() < kMostUnknownAssets) return std::nullopt;
+  if (unknown_.contains(asset_id)) return std::nullopt;
+  if (const auto other = asset_of_id_part_.find(id_part(asset_id)); other != asset_of_id_part_.end())
+    return what + ", and its tests would have the ids of those of '" + other->second + "'; give it another id";
+  if (unknown_.size() < kMostUnknownAssets) return std::nullopt;
   return what + ", and " + std::to_string(unknown_.size()) +
          " such assets are there already; give it an asset file, if it is yours, or find out who sends it";
 }

@@ -54,8 +54,7 @@ struct ConfiguredAssets {
 class Admission {
  public:
   /// When assets were commissioned, where it is known.
-  explicit Admission(std::map<std::string, UtcTime> commissioned = {}, ConfiguredAssets assets = {})
-      : commissioned_(std::move(commissioned)), assets_(std::move(assets)) {}
+  explicit Admission(std::map<std::string, UtcTime> commissioned = {}, ConfiguredAssets assets = {});
   /// Takes note of its asset, of when a test was made, and of retractions. Of what others say of tests, from which
   /// nothing may be concluded, `concluded` is false: of them only the newest date is known, until a retraction.
   void note(const Message& message, bool concluded = true);
@@ -85,8 +84,15 @@ class Admission {
 
   std::map<std::string, UtcTime> commissioned_;
   ConfiguredAssets assets_;
-  std::set<std::string> unknown_;                   ///< assets that it does not name, and that were taken
-  std::map<std::string, RetractedTests> tests_;     ///< by asset
+  std::map<std::string, std::string> asset_of_id_part_;  ///< of all: no two may give their tests the same ids
+  std::set<std::string> unknown_;                        ///< assets that it does not name, and that were taken
+  std::map<std::string, RetractedTests> tests_;          ///< by asset
+  struct Acts {
+    std::set<std::string> retractions = {};  ///< and withdrawals, all that count
+    std::set<std::string> replacements = {};
+    std::size_t idle = 0;  ///< retractions that meant nothing that was known when they came
+  };
+  std::map<std::string, Acts> acts_;                ///< by asset: message ids of what people said
   std::map<std::string, std::set<UtcTime>> named_;  ///< dates of those that have a PST id, by asset
   std::map<std::string, UtcTime> heard_;            ///< the newest date of those that others speak of, by asset
   std::set<std::string> recorded_;                  ///< assets with tests that no bench made up

@@ -158,6 +158,16 @@ TEST(AdmissionOfAssets, OfThoseNotConfiguredSoManyAreTakenAndThoseStay) {
             "is yours, or find out who sends it");
 }
 
+TEST(AdmissionOfAssets, NoneWhoseTestsWouldHaveTheIdsOfAnother) {
+  Admission admission({}, {.names = {"XT_1"}});
+  EXPECT_EQ(admission.refusal_of_asset(test_of("XT 1")),
+            "asset 'XT 1' is not configured, and its tests would have the ids of those of 'XT_1'; give it another id");
+  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT/2")));
+  admission.note(test_of("XT/2"));
+  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT/2")));
+  EXPECT_TRUE(admission.refusal_of_asset(test_of("XT:2")));
+}
+
 TEST(AdmissionOfAssets, OrNoneAtAll) {
   Admission admission({}, {.names = {"XT03-MV2"}, .refuses_others = true});
   admission.note(test_of("old"));

@@ -129,6 +129,7 @@ Status LayerRunner::step(std::chrono::milliseconds timeout) {
   if (Status status = look_back_in_passing(is_idle); !status) return status;
   if (steady_clock::now() - last_second_ >= kSecond) {
     last_second_ = steady_clock::now();
+    if (Status there = journal_.is_in_place(); !there) return there;
     give_memory_back();
     if (Status status = try_again_what_was_asked(); !status) return status;
     if (Status status = let_time_pass(); !status) return status;

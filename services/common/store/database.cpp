@@ -1,5 +1,7 @@
 #include "services/common/store/database.hpp"
 
+#include <sys/stat.h>
+
 #include <array>
 #include <stdexcept>
 #include <string_view>
@@ -91,6 +93,27 @@ void Journal::Database::open(const std::string& connection) {
     tell_of_damage(aside);
   }
   statements.emplace(sql);
+  check_in_place();
+}
+
+/// SQLite goes on with files that were removed, or that others took the place of: all that is written, and confirmed, is
+/// gone when the process ends. It is noticed while little is lost; what follows is that of a lost journal.
+void Journal::Database::check_in_place() {
+  if (file.empty()) return;
+  for (const std::string& path : {file, file + "-wal"}) {
+    struct stat now {};
+    const bool is_there = ::stat(path.c_str(), &now) == 0;
+    const auto opened = opened_files.find(path);
+    if (opened == opened_files.end()) {
+      if (is_there) opened_files.emplace(path, std::pair(now.st_dev, now.st_ino));
+    } else if (!is_there || opened->second != std::pair(now.st_dev, now.st_ino)) {
+      throw Error{.file = name,
+                  .place = path,
+                  .value = {},
+                  .rule = "was removed or replaced while this service ran: what it wrote since is lost",
+                  .advice = "leave the files of a running service alone; restore a backup while it is stopped"};
+    }
+  }
 }
 
 /// The last few pages of a long log go into the file while nothing is written: then the next batch starts the log from
@@ -103,6 +126,7 @@ void Journal::Database::begin(Survives survives) {
                 .value = {},
                 .rule = "was removed while this service ran: another may have this journal now",
                 .advice = "stop all but one of them, and leave the lock alone"};
+  check_in_place();
   if (!checkpointer) {
     sql.begin();  // a server brings every batch to its disk
     return;

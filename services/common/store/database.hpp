@@ -2,6 +2,7 @@
 #pragma once
 
 #include <soci/soci.h>
+#include <sys/types.h>
 
 #include <cstdint>
 #include <map>
@@ -47,11 +48,14 @@ struct Journal::Database {
   std::optional<JournalLock> lock;  ///< SQLite's
   bool has_synced = false;          ///< the first batch brings the log's entry in its directory to the disk as well
   std::string file;                 ///< SQLite's
-  std::optional<JournalStatements> statements;  ///< after `sql`, as they must end before it
+  std::map<std::string, std::pair<dev_t, ino_t>> opened_files;  ///< SQLite's, by path: which files they were
+  std::optional<JournalStatements> statements;                  ///< after `sql`, as they must end before it
 
   /// Connects, sets SQLite up, creates or checks the schema. Throws soci::soci_error, std::runtime_error or Error.
   void open(const std::string& connection);
   void begin(Survives survives);
+  /// Throws Error where SQLite writes to files that nobody will find any more.
+  void check_in_place();
   /// Reads the counters that are kept in memory.
   void load_counters();
 

@@ -129,6 +129,10 @@ Result<std::vector<StreamPosition>> Journal::positions() {
   });
 }
 
+Status Journal::is_in_place() {
+  return database_->guard("looking for the journal", [&] { database_->check_in_place(); });
+}
+
 Status Journal::begin(Survives survives) {
   return database_->guard("beginning a batch", [&] {
     database_->begin(survives);

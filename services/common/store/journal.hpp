@@ -122,6 +122,9 @@ class Journal {
   /// Inputs received and not consumed.
   [[nodiscard]] std::uint64_t open_inputs() const;
 
+  /// An Error where its files were removed or replaced meanwhile; begin() looks as well.
+  [[nodiscard]] Status is_in_place();
+
   // Writing, between begin and commit. After an error call rollback.
 
   [[nodiscard]] Status begin(Survives survives = Survives::kills);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <map>
 
@@ -505,6 +506,21 @@ TEST_F(RunnerTest, WhatIsLiveGoesAmongLocalInputs) {
   step(*process, 10);
   EXPECT_TRUE(local->has_some());
   EXPECT_THAT(process->outputs(), Contains(ResultOf([](const Message& m) { return asset_of(m); }, "B")));
+}
+
+/// It went on, and what it had confirmed was gone at its next start.
+TEST_F(RunnerTest, AJournalThatWasRemovedEndsTheServiceAlsoWhereNothingComes) {
+  for (const char* end : {"", "-wal"}) {
+    auto process = cutter();
+    for (const RawSamples& block : blocks_of_tests(1, {"A"})) send(block);
+    step(*process, 3);
+    std::filesystem::remove((place_.directory() / "journal.db").string() + end);
+    std::this_thread::sleep_for(milliseconds(1050));
+    const Status stepped = process->try_step();
+    ASSERT_FALSE(stepped) << end;
+    EXPECT_THAT(stepped.error().describe(), AllOf(HasSubstr((place_.directory() / "journal.db").string() + end),
+                                                  HasSubstr("was removed or replaced while this service ran")));
+  }
 }
 
 /// A sender that outruns the flow watches positions; what is dropped into a directory does, too.

@@ -68,6 +68,11 @@ int complain(const std::string& service, const Error& error, int exit_status) {
   return exit_status;
 }
 
+/// On a full disk a service ends as it does when it cannot write its journal: it is started again until it can.
+int cannot_begin(const std::string& service, const Error& error) {
+  return complain(service, error, is_for_want_of_space(error) ? kInternalFailure : kBadUsage);
+}
+
 /// Ends the process though something in it still computes and cannot be stopped; all that counts is in the journal.
 [[noreturn]] void end_now(const std::string& service, const Status& served) {
   const int status = served ? kOk : complain(service, served.error(), kInternalFailure);
@@ -197,9 +202,9 @@ int run(const Arguments& arguments, const DaemonParts& parts) {
     return kBadUsage;
   }
   if (const Status logging = start_logging(configuration->logging, parts.service); !logging)
-    return complain(parts.service, logging.error(), kBadUsage);
+    return cannot_begin(parts.service, logging.error());
   const auto lock = InstanceLock::take(configuration->state_directory, parts.service);
-  if (!lock) return complain(parts.service, lock.error(), kBadUsage);
+  if (!lock) return cannot_begin(parts.service, lock.error());
   ::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a name, as is a full disk
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);

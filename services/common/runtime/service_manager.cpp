@@ -11,6 +11,11 @@
 #include <filesystem>
 
 namespace sealwatch {
+namespace {
+
+const std::string kAnother = "another ";
+
+}  // namespace
 
 void notify_service_manager(const std::string& state) { ::sd_notify(0, state.c_str()); }
 
@@ -21,6 +26,8 @@ Result<InstanceLock> InstanceLock::take(const std::string& directory, const std:
   };
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
+  if (failed)
+    return refuse("cannot be made: " + failed.message(), "name a state_directory that this user may write to");
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor < 0)
     return refuse(std::string("cannot be made: ") + std::strerror(errno),
@@ -29,19 +36,24 @@ Result<InstanceLock> InstanceLock::take(const std::string& directory, const std:
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     std::array<char, 32> owner{};
     const bool known = ::read(descriptor, owner.data(), owner.size() - 1) > 0;
-    return refuse("another " + service + " works in this directory" +
+    return refuse(kAnother + service + " works in this directory" +
                       (known ? ", process " + std::string(owner.data()) : std::string()),
                   "stop it, or give this one a state directory of its own");
   }
   const std::string process = std::to_string(::getpid());
-  const bool noted = ::ftruncate(descriptor, 0) == 0 &&
-                     ::pwrite(descriptor, process.data(), process.size(), 0) == static_cast<ssize_t>(process.size());
-  if (!noted) return refuse(std::string("cannot be written: ") + std::strerror(errno), "free some space on the disk");
+  if (::ftruncate(descriptor, 0) == 0) (void)!::pwrite(descriptor, process.data(), process.size(), 0);
   return lock;
 }
 
 InstanceLock::~InstanceLock() {
   if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool is_held_by_another(const Error& error) { return error.rule.starts_with(kAnother); }
+
+bool is_for_want_of_space(const Error& error) {
+  const auto says = [&](int code) { return error.rule.find(std::strerror(code)) != std::string::npos; };
+  return says(ENOSPC) || says(EDQUOT);
 }
 
 }  // namespace sealwatch

@@ -15,7 +15,8 @@ void notify_service_manager(const std::string& state);
 /// Held while the object lives; the kernel lets go of it however the process ends.
 class InstanceLock {
  public:
-  /// Locks "<directory>/<service>.lock", making the directory where there is none.
+  /// Locks "<directory>/<service>.lock", making the directory where there is none. Who holds it stands in the file, where
+  /// the disk has room for that: the lock holds without.
   [[nodiscard]] static Result<InstanceLock> take(const std::string& directory, const std::string& service);
   ~InstanceLock();
   InstanceLock(InstanceLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -25,5 +26,11 @@ class InstanceLock {
   explicit InstanceLock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_ = -1;
 };
+
+/// Whether it says that another process has the lock.
+[[nodiscard]] bool is_held_by_another(const Error& error);
+/// Whether it says that the disk, or the user's share of it, is full: no fault of the configuration, and it may have
+/// room again.
+[[nodiscard]] bool is_for_want_of_space(const Error& error);
 
 }  // namespace sealwatch

@@ -3,14 +3,20 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/mount.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <future>
+#include <optional>
 
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_manager.hpp"
@@ -173,6 +179,31 @@ TEST_F(DaemonTest, RefusesToRunTwiceOnOneState) {
   EXPECT_EQ(run(usual()), 2);
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
               HasSubstr("another data_acquisition works in this directory, process " + std::to_string(::getpid())));
+}
+
+/// Of a child process that runs with a full disk as its state directory; nothing where this user may not mount one.
+std::optional<int> exit_status_on_full_disk(const std::string& directory, const std::function<int()>& run) {
+  constexpr int kMayNot = 77;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::filesystem::create_directories(directory);
+    const bool mounted = ::unshare(CLONE_NEWNS) == 0 &&
+                         ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                         ::mount("full", directory.c_str(), "tmpfs", 0, "size=4k,nr_inodes=2") == 0;
+    std::ofstream(directory + "/filled") << std::string(8192, 'x');
+    ::_exit(mounted ? run() : kMayNot);
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  return WEXITSTATUS(status) == kMayNot ? std::nullopt : std::optional(WEXITSTATUS(status));
+}
+
+/// A first start on a full disk was for good: exit status 2 says that nothing but another configuration helps.
+TEST_F(DaemonTest, AFullDiskIsNoBadConfiguration) {
+  const auto on_full_disk = exit_status_on_full_disk(place_.directory() + "/state", [this] { return run(usual()); });
+  EXPECT_EQ(run({"--config", place_.directory(), "--state", "/proc/sealwatch"}), 2) << "never to be made";
+  if (!on_full_disk) GTEST_SKIP() << "may not mount";
+  EXPECT_EQ(*on_full_disk, 3);
 }
 
 TEST_F(DaemonTest, RefusesABadConfigurationBeforeAnythingStarts) {

@@ -29,6 +29,7 @@ constexpr std::array kTable = {
     Row{"clock_step", Ne107::out_of_specification, "clock was set"},
     Row{"clock_unsynchronised", Ne107::maintenance_required, "clock is not synchronised"},
     Row{"future_test", Ne107::failure, "live tests change no advice"},
+    Row{"refused_test", Ne107::failure, "a test was refused"},
     Row{"sensor_lost", Ne107::failure, "sensor lost"},
     Row{"awaits_confirmation", Ne107::maintenance_required, "an act waits for a second person"},
     Row{"unknown_writer", Ne107::out_of_specification, "messages from an unknown writer"},

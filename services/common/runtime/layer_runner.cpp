@@ -257,7 +257,10 @@ Status LayerRunner::take(Message message) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
     // Not journaled: the id of a recording says nothing of its start time, and the corrected one comes under the same.
-    if (topic_of(message) == Topic::raw_samples) return {};
+    if (const auto* raw = std::get_if<RawSamples>(&message)) {
+      note_refused_test(*raw, *refused);
+      return {};
+    }
   }
   if (!refused) admission_.note_asset(asset_of(message));
   const bool for_desk = is_for_desk(message);
@@ -275,6 +278,7 @@ Status LayerRunner::take(Message message) {
   if (state != InputState::open) return {};
   admission_.note(*input, false);
   const auto* const raw = std::get_if<RawSamples>(input.get());
+  if (raw != nullptr) note_good_test(*raw);
   if (raw == nullptr || raw->block_number == 0) look_for_future_test(asset_id);
   replaying_[asset_id] = header_of(*input).replay;
   log_message(LogLevel::debug, "received", *input);

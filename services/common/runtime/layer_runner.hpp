@@ -183,6 +183,8 @@ class LayerRunner {
   void note_rival(const ServiceStatus& rival);
   void hear_name(const ServiceStatus& status);
   void note_strangers(const std::vector<StrangerWatch::Stranger>& strangers);
+  void note_refused_test(const RawSamples& raw, const std::string& refused);
+  void note_good_test(const RawSamples& raw);
   void look_at_clock();
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);

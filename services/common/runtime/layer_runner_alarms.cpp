@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "sealwatch/core/visible_text.hpp"
 #include "services/common/runtime/layer_runner.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/operator_acts.hpp"
@@ -18,6 +19,7 @@ constexpr const char* kUnknownWriter = "unknown_writer";
 constexpr const char* kUnknownAsset = "unknown_asset";
 constexpr const char* kRefusedRight = "refused_right";
 constexpr const char* kFutureTest = "future_test";
+constexpr const char* kRefusedTest = "refused_test";
 constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
 constexpr const char* kFlood = "flood";
@@ -117,6 +119,27 @@ void LayerRunner::look_for_future_test(const std::string& asset_id) {
   if (!is_new) return;
   note_error(asset_id + ": " + text);
   log_event(LogLevel::error, "test of the future", {{"asset", asset_id}, {"error", text}});
+}
+
+/// Its blocks count as received, and its sender lets go of them: nobody else would learn that a test is lost, or that
+/// the sender's clock is wrong and the next ones will be as well. One for each asset, and one for all without a name. Who
+/// plays a recording back is told.
+void LayerRunner::note_refused_test(const RawSamples& raw, const std::string& refused) {
+  if (raw.header.replay) return;
+  const bool has_name = raw.asset_id.size() <= kLongestId && is_visible(raw.asset_id);
+  alarms_.raise({.kind = kRefusedTest,
+                 .asset_id = has_name ? raw.asset_id : std::string(),
+                 .subject = {},
+                 .pst_id = {},
+                 .text = refused,
+                 .since_ns = clock_.now().nanoseconds});
+}
+
+void LayerRunner::note_good_test(const RawSamples& raw) {
+  if (raw.header.replay || raw.block_number != 0) return;
+  for (const std::string& asset_id : {raw.asset_id, std::string()})
+    if (alarms_.clear(kRefusedTest, asset_id, {}))
+      log_event(LogLevel::info, "a test was taken again", {{"asset", raw.asset_id}});
 }
 
 void LayerRunner::look_at_clock() {

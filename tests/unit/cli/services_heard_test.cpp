@@ -116,8 +116,8 @@ TEST_F(Listening, OnlyWhatIsNotSeenNowCountsAsBlind) {
   EXPECT_EQ(one_line(alarm_of("clock_unsynchronised")[0], kNow),
             "ALARM (maintenance required)  data_acquisition  clock is not synchronised: why");
   EXPECT_FALSE(is_blind(alarm_of("clock_unsynchronised"), kNow)) << "it is right still, and will not be for ever";
-  for (const char* kind : {"sensor_lost", "future_test", "unknown_writer", "unknown_asset", "refused_right", "flood",
-                           "clock_step", "rival", "set_aside"})
+  for (const char* kind : {"sensor_lost", "future_test", "refused_test", "unknown_writer", "unknown_asset",
+                           "refused_right", "flood", "clock_step", "rival", "set_aside"})
     EXPECT_TRUE(is_blind(alarm_of(kind), kNow)) << kind;
   EXPECT_EQ(category_of("sensor_lost"), Ne107::failure);
   EXPECT_EQ(category_of("refused_right"), Ne107::out_of_specification);

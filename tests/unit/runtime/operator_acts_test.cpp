@@ -538,10 +538,38 @@ class DatesInAcquisition : public ActsTest {
     process.clock().set(add_seconds(process.clock().now(), 60.0));
     now_ = process.clock().now();
   }
+  /// The alarms of a heartbeat: "A: text".
+  std::vector<std::string> told(const std::unique_ptr<Process>& process) {
+    EXPECT_TRUE(operator_.subscribe_service_topics());
+    process->step();
+    (void)operator_.receive(std::chrono::milliseconds(0), 1'000'000);
+    std::vector<std::string> texts;
+    for (const BusItem& item : operator_.receive(std::chrono::milliseconds(100), 1))
+      if (const auto* status = std::get_if<ServiceStatus>(&item))
+        for (const ServiceAlarm& alarm : status->alarms) texts.push_back(alarm.asset_id + ": " + alarm.text);
+    return texts;
+  }
   int sent_ = 0;
   std::string retraction_;
   UtcTime now_;
 };
+
+/// Its blocks count as received: the sender lets go of them, and nobody would look for the test.
+TEST_F(DatesInAcquisition, ALiveTestThatIsRefusedIsAnAlarmUntilAGoodOneComes) {
+  const auto process = start();
+  const UtcTime now = process->clock().now();
+  ASSERT_TRUE(takes(*process, format_utc(add_months(now, -3.0)), false));
+  EXPECT_FALSE(takes(*process, format_utc(add_months(now, 12.0)), true));
+  EXPECT_THAT(told(process), IsEmpty()) << "who plays it back is told";
+  EXPECT_FALSE(takes(*process, format_utc(add_months(now, 13.0)), false));
+  EXPECT_THAT(told(process), ElementsAre(AllOf(HasSubstr("A: recording A-20"), HasSubstr("lies in the future"))));
+  EXPECT_FALSE(takes(*process, format_utc(add_months(now, 14.0)), false));
+  EXPECT_THAT(told(process), SizeIs(1));
+  EXPECT_TRUE(takes(*process, format_utc(add_months(now, -2.0)), true));
+  EXPECT_THAT(told(process), SizeIs(1)) << "played back, it says nothing of the sender";
+  EXPECT_TRUE(takes(*process, format_utc(now), false));
+  EXPECT_THAT(told(process), IsEmpty());
+}
 
 TEST_F(DatesInAcquisition, ARetractedTestIsNotTheNewestAlsoAfterARestart) {
   {
@@ -574,16 +602,6 @@ TEST_F(DatesInAcquisition, AllSinceADateMeansTheTestsThatWereKnownThen) {
 /// A slip in the year of the first recording that is played back: nothing live would change the advice any more.
 TEST_F(DatesInAcquisition, AFutureTestThatWasPlayedBackIsAnAlarmOnceTheAssetLivesUntilItIsRetracted) {
   const std::string today = format_utc(TestClock().now());
-  const auto told = [this](const std::unique_ptr<Process>& process) {
-    EXPECT_TRUE(operator_.subscribe_service_topics());
-    process->step();
-    (void)operator_.receive(std::chrono::milliseconds(0), 1'000'000);
-    std::vector<std::string> texts;
-    for (const BusItem& item : operator_.receive(std::chrono::milliseconds(100), 1))
-      if (const auto* status = std::get_if<ServiceStatus>(&item))
-        for (const ServiceAlarm& alarm : status->alarms) texts.push_back(alarm.asset_id + ": " + alarm.text);
-    return texts;
-  };
   auto process = start();
   ASSERT_TRUE(takes(*process, "2200-01-01T00:00:00Z"));
   EXPECT_THAT(told(process), IsEmpty()) << "it may be a simulated life";

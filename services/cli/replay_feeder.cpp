@@ -146,15 +146,23 @@ std::string Quiescence::explain() const {
   return text.empty() ? "no service has inputs waiting" : text;
 }
 
-void Quiescence::take(const ServiceStatus& status) {
-  waiting_at_first_.try_emplace(status.service, status.pending_inputs);
-  last_[status.service] = status;
+void Quiescence::take(const ServiceStatus& status, Time now) {
+  Waiting& waiting = waiting_.try_emplace(status.service, Waiting{status.pending_inputs, now}).first->second;
+  waiting.fewest = std::min(waiting.fewest, status.pending_inputs);
+  ServiceStatus& last = last_[status.service];
+  if (last.pending_inputs != status.pending_inputs) waiting.changed = now;
+  last = status;
 }
 
-bool Quiescence::reached(const std::string& source_writer, std::uint64_t source_sequence) const {
+bool Quiescence::is_done(const ServiceStatus& status, Time now) const {
+  const Waiting& waiting = waiting_.at(status.service);
+  return status.pending_inputs == 0 || (status.pending_inputs <= waiting.fewest && now - waiting.changed >= kStill);
+}
+
+bool Quiescence::reached(const std::string& source_writer, std::uint64_t source_sequence, Time now) const {
   for (const auto& [service, topics] : inputs_of_) {
     const auto reader = last_.find(service);
-    if (reader == last_.end() || reader->second.pending_inputs > waiting_at_first_.at(service)) return false;
+    if (reader == last_.end() || !is_done(reader->second, now)) return false;
     for (const std::string& topic : topics) {
       if (topic == "raw_samples" && received_up_to(reader->second, topic, source_writer) < source_sequence)
         return false;

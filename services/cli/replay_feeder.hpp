@@ -76,11 +76,16 @@ class Quiescence {
  public:
   /// `inputs_of` tells which topics a service reads.
   explicit Quiescence(std::map<std::string, std::vector<std::string>> inputs_of) : inputs_of_(std::move(inputs_of)) {}
-  void take(const ServiceStatus& status);
-  /// All expected services have been heard, none has more inputs waiting than when it was first heard (a layer may keep
-  /// an input of long ago), and each has received every stream of its input
-  /// topics to its end, that of `source` up to `sequence` included.
-  [[nodiscard]] bool reached(const std::string& source_writer, std::uint64_t source_sequence) const;
+  using Time = std::chrono::steady_clock::time_point;
+  /// A layer may keep an input of long ago. What lay around before and becomes less is still being concluded from.
+  static constexpr std::chrono::seconds kStill{3};
+
+  void take(const ServiceStatus& status, Time now = std::chrono::steady_clock::now());
+  /// All expected services have been heard, none has more inputs waiting than the fewest since it was first heard, their
+  /// number has not changed for kStill where there are any, and each has received every stream of its input topics to
+  /// its end, that of `source` up to `sequence` included.
+  [[nodiscard]] bool reached(const std::string& source_writer, std::uint64_t source_sequence,
+                             Time now = std::chrono::steady_clock::now()) const;
   /// Whether no service is so far behind the one before it that a replay should wait: `tests` messages about whole
   /// tests, or a stream's window of blocks of samples.
   [[nodiscard]] bool keeps_up(std::uint64_t tests) const;
@@ -94,10 +99,15 @@ class Quiescence {
  private:
   /// Messages of a topic that the service furthest behind has still to take.
   [[nodiscard]] std::uint64_t backlog(const std::string& topic) const;
+  [[nodiscard]] bool is_done(const ServiceStatus& status, Time now) const;
 
+  struct Waiting {
+    std::uint64_t fewest = 0;
+    Time changed{};
+  };
   std::map<std::string, std::vector<std::string>> inputs_of_;
   std::map<std::string, ServiceStatus> last_;
-  std::map<std::string, std::uint64_t> waiting_at_first_;
+  std::map<std::string, Waiting> waiting_;  ///< inputs, by service
 };
 
 }  // namespace sealwatch::cli

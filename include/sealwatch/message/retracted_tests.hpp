@@ -2,7 +2,7 @@
 // that remember tests and for who judges the dates of new ones.
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
@@ -19,26 +19,30 @@ class RetractedTests {
 
   void forget(const std::string& pst_id) { tests_.erase(pst_id); }
 
-  /// From now on the tests that it means do not count, or count again; or a replacement was none.
+  /// From now on the tests that it means do not count, or count again; or a replacement was none. What was withdrawn
+  /// holds no more, in whichever order the two are told.
   void apply(const Retraction& retraction) {
-    meant_.erase(retraction.withdrawn_id);
+    release(retraction.withdrawn_id);
     if (!retraction.withdrawn_id.empty()) {
       withdrawn_.insert(retraction.withdrawn_id);
       return;
     }
-    std::set<std::string>& meant = meant_[retraction.id];
-    if (!retraction.since) {
-      meant = {retraction.pst_id};
-      return;
-    }
-    for (const auto& [pst_id, time] : tests_)
-      if (time && *time >= *retraction.since) meant.insert(pst_id);
+    if (withdrawn_.contains(retraction.id)) return;
+    release(retraction.id);
+    std::set<std::string>& meant = meant_[retraction.id] = meant_by(retraction);
+    for (const std::string& pst_id : meant) ++retractions_of_[pst_id];
+  }
+
+  /// Whether it means nothing that is known: no test, no retraction in force, no replacement of `replacements`.
+  [[nodiscard]] bool changes_nothing(const Retraction& retraction, const std::set<std::string>& replacements) const {
+    const std::string& withdrawn = retraction.withdrawn_id;
+    if (is_replacement_id(withdrawn)) return !replacements.contains(withdrawn) || !holds(withdrawn);
+    if (!withdrawn.empty()) return !meant_.contains(withdrawn);
+    return retraction.since ? meant_by(retraction).empty() : !tests_.contains(retraction.pst_id);
   }
 
   /// Whether no retraction in force means it.
-  [[nodiscard]] bool counts(const std::string& pst_id) const {
-    return std::ranges::none_of(meant_, [&](const auto& one) { return one.second.contains(pst_id); });
-  }
+  [[nodiscard]] bool counts(const std::string& pst_id) const { return !retractions_of_.contains(pst_id); }
 
   /// Whether nobody took the replacement of this message id back.
   [[nodiscard]] bool holds(const std::string& replacement_id) const { return !withdrawn_.contains(replacement_id); }
@@ -52,8 +56,25 @@ class RetractedTests {
   }
 
  private:
+  [[nodiscard]] std::set<std::string> meant_by(const Retraction& retraction) const {
+    if (!retraction.since) return {retraction.pst_id};
+    std::set<std::string> meant;
+    for (const auto& [pst_id, time] : tests_)
+      if (time && *time >= *retraction.since) meant.insert(pst_id);
+    return meant;
+  }
+
+  void release(const std::string& retraction_id) {
+    const auto found = meant_.find(retraction_id);
+    if (found == meant_.end()) return;
+    for (const std::string& pst_id : found->second)
+      if (const auto by = retractions_of_.find(pst_id); --by->second == 0) retractions_of_.erase(by);
+    meant_.erase(found);
+  }
+
   std::map<std::string, std::optional<UtcTime>> tests_;
   std::map<std::string, std::set<std::string>> meant_;  ///< by the id of the retraction in force
+  std::map<std::string, std::size_t> retractions_of_;   ///< how many of them mean it, by test
   std::set<std::string> withdrawn_;                     ///< ids of what was taken back
 };
 

@@ -154,6 +154,8 @@ void Admission::note(const Message& message, bool concluded) {
     else
       heard_[asset_id] = std::max(heard_[asset_id], UtcTime{*time_ns});
     if (is_live(message)) live_.insert(asset_id);
+  } else if (concluded && !header_of(message).pst_id.empty()) {
+    tests_[asset_id].know(header_of(message).pst_id, std::nullopt);
   }
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
@@ -181,8 +183,14 @@ void Admission::note_test(const Message& message, UtcTime time) {
 }
 
 void Admission::note_act(const std::string& asset_id, const std::string& act_id) {
-  if (const auto retraction = is_retraction_id(act_id) ? retraction_of(asset_id, act_id) : std::nullopt)
-    tests_[asset_id].apply(*retraction), heard_.erase(asset_id);
+  if (is_replacement_id(act_id)) acts_[asset_id].replacements.insert(act_id);
+  const auto retraction = is_retraction_id(act_id) ? retraction_of(asset_id, act_id) : std::nullopt;
+  if (!retraction) return;
+  Acts& acts = acts_[asset_id];
+  if (!acts.retractions.insert(act_id).second) return;  // every answer to it names it
+  if (tests_[asset_id].changes_nothing(*retraction, acts.replacements)) ++acts.idle;
+  tests_[asset_id].apply(*retraction);
+  heard_.erase(asset_id);
 }
 
 std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {
@@ -233,7 +241,21 @@ std::optional<std::string> Admission::refusal_of_report(const Message& message, 
   if (topic_of(message) == Topic::maintenance_event && !header.event_time_known)
     return "its time is not known, so it cannot part a history; report it again, with the time at which it happened";
   if (auto why = refusal_of_kind(message)) return why;
+  if (auto why = refusal_of_idle(message)) return why;
   return refusal_of_future_act(message, now);
+}
+
+/// A test may be retracted before it comes. But whoever retracts tests that never come retracts many.
+std::optional<std::string> Admission::refusal_of_idle(const Message& message) const {
+  const std::string asset_id = asset_of(message);
+  const auto acts = acts_.find(asset_id);
+  const auto retraction = retraction_of(asset_id, header_of(message).message_id);
+  if (!retraction || acts == acts_.end() || acts->second.idle < kMostIdleRetractions) return std::nullopt;
+  const auto tests = tests_.find(asset_id);
+  if (tests != tests_.end() && !tests->second.changes_nothing(*retraction, acts->second.replacements))
+    return std::nullopt;
+  return "it means no test, retraction or replacement that is known, and " + std::to_string(acts->second.idle) +
+         " such ones of asset " + asset_id + " are there already; find out who sends them";
 }
 
 /// What the layers say after an act (that a test is overdue, that tests were retracted) has the time of now or of a test.

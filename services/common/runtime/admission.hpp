@@ -36,6 +36,8 @@ namespace sealwatch {
 inline constexpr std::size_t kLongestId = 500;  ///< bytes
 inline constexpr std::size_t kLongestRemark = 4000;
 inline constexpr std::size_t kMostUnknownAssets = 64;
+/// Of an asset. Each is answered by every layer, with a forecast and an advice that are the same as before.
+inline constexpr std::size_t kMostIdleRetractions = 64;
 
 /// A text that no service takes: not UTF-8, too long, or an id that is not one visible line.
 struct TextFault {
@@ -80,6 +82,7 @@ class Admission {
   /// The date of the asset's newest test that was not retracted.
   [[nodiscard]] std::optional<UtcTime> newest_test(const std::string& asset_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_idle(const Message& message) const;
   [[nodiscard]] std::optional<std::string> refusal_of_future_act(const Message& message, UtcTime now) const;
 
   std::map<std::string, UtcTime> commissioned_;

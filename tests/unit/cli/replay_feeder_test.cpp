@@ -201,9 +201,29 @@ TEST(Quiescence, IsReachedWhenEveryStreamIsReadToItsEnd) {
 TEST(Quiescence, DoesNotWaitForInputsThatLayAroundBefore) {
   const Inputs inputs = {{"first", {"raw_samples"}}};
   Quiescence quiescence(inputs);
-  quiescence.take(status("first", 2, {}, {}));
-  quiescence.take(status("first", 2, {}, {{"raw_samples", "w", 1}}));
-  EXPECT_TRUE(quiescence.reached("w", 1));
+  const Quiescence::Time start{};
+  quiescence.take(status("first", 2, {}, {}), start);
+  quiescence.take(status("first", 2, {}, {{"raw_samples", "w", 1}}), start + Quiescence::kStill);
+  EXPECT_TRUE(quiescence.reached("w", 1, start + Quiescence::kStill));
+}
+
+/// Replay ended well while a service was still busy with what somebody had flooded it with before.
+TEST(Quiescence, WaitsWhileInputsThatLayAroundBeforeBecomeLess) {
+  const Inputs inputs = {{"first", {"raw_samples"}}};
+  Quiescence quiescence(inputs);
+  Quiescence::Time now{};
+  const auto heard = [&](std::uint64_t pending) {
+    now += std::chrono::seconds(1);
+    quiescence.take(status("first", pending, {}, {{"raw_samples", "w", 1}}), now);
+    return quiescence.reached("w", 1, now);
+  };
+  for (const std::uint64_t pending : {6000U, 4000U, 2000U, 5U, 3U}) EXPECT_FALSE(heard(pending)) << pending;
+  for (int k = 0; k < 10; ++k) EXPECT_FALSE(heard(4)) << "one of its own is under way";
+  EXPECT_FALSE(heard(3));
+  EXPECT_FALSE(heard(3));
+  EXPECT_FALSE(heard(3));
+  EXPECT_TRUE(heard(3)) << "they stay";
+  EXPECT_TRUE(heard(0));
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <malloc.h>
 
+#include <chrono>
 #include <limits>
+#include <string_view>
 
 #include "sealwatch/message/retraction.hpp"
 
@@ -299,6 +301,91 @@ TEST(Admission, ATestThatWasRetractedIsNotTheNewest) {
   answer.header.source_ids = {retraction.header.message_id};
   restarted.note(answer);
   EXPECT_TRUE(restarted.refusal(replacement, kNow)) << "what answered the retraction names it";
+}
+
+MaintenanceEvent act_on(std::string_view kind, const std::string& what) {
+  MaintenanceEvent event;
+  event.asset_id = "XT03-MV2";
+  event.kind = kind;
+  event.header.message_id = retraction_id("XT03-MV2", kind, what, kNow);
+  event.header.event_time_known = true;
+  event.header.event_time_ns = kNow.nanoseconds;
+  return event;
+}
+
+TestWindow concluded_test(const std::string& pst_id, bool dated) {
+  TestWindow test;
+  test.asset_id = "XT03-MV2";
+  test.header.pst_id = pst_id;
+  test.header.event_time_known = dated;
+  test.header.event_time_ns = dated ? kNow.nanoseconds : 0;
+  return test;
+}
+
+/// Six thousand retractions of tests that are not there filled the journals with forecasts that changed nothing.
+TEST(AdmissionOfRetractions, OnlySoManyMayMeanNothing) {
+  Admission admission;
+  std::size_t taken = 0;
+  const auto take = [&](const MaintenanceEvent& event) {
+    if (!refusal(event, admission).empty()) return false;
+    admission.note(event, false);
+    return true;
+  };
+  for (int k = 0; k < 300; ++k) {
+    const std::string number = std::to_string(k);
+    taken += take(act_on(kTestRetracted, "XT03-MV2-none" + number));
+    taken += take(act_on(kTestsRetracted, "2199-01-01T00:00:00.000000" + std::to_string(100 + k) + "Z"));
+    taken += take(act_on(kRetractionWithdrawn, "retraction/XT03-MV2/test/none/" + number));
+    taken += take(
+        act_on(kRetractionWithdrawn, "maintenance_event/XT03-MV2/seal_replaced/" + number + "/2018-06-10T00:00:00Z"));
+  }
+  EXPECT_EQ(taken, kMostIdleRetractions);
+  EXPECT_THAT(
+      refusal(act_on(kTestRetracted, "XT03-MV2-another"), admission),
+      HasSubstr("it means no test, retraction or replacement that is known, and 64 such ones of asset XT03-MV2"));
+  for (const bool dated : {false, true}) {
+    const std::string test = dated ? "XT03-MV2-dated" : "XT03-MV2-undated";
+    admission.note(concluded_test(test, dated));
+    const MaintenanceEvent known = act_on(kTestRetracted, test);
+    EXPECT_TRUE(take(known)) << test;
+    EXPECT_TRUE(take(act_on(kRetractionWithdrawn, known.header.message_id))) << test;
+    EXPECT_FALSE(take(act_on(kRetractionWithdrawn, known.header.message_id))) << "it is withdrawn";
+  }
+  MaintenanceEvent replaced = act_on("seal_replaced", "");
+  replaced.header.message_id = "maintenance_event/XT03-MV2/seal_replaced/true/2018-06-10T00:00:00Z";
+  EXPECT_TRUE(take(replaced));
+  EXPECT_TRUE(take(act_on(kRetractionWithdrawn, replaced.header.message_id)));
+}
+
+/// What a retraction means is looked up, not looked for: a restart applies all there ever were.
+TEST(RetractedTests, ManyRetractionsCostNoMoreThanOneEach) {
+  RetractedTests tests;
+  for (int k = 0; k < 100; ++k) tests.know("test " + std::to_string(k), kNow);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 0; k < 20'000; ++k) {
+    tests.apply({.id = "retraction " + std::to_string(k), .pst_id = "none " + std::to_string(k)});
+    for (int test = 0; test < 100; ++test) EXPECT_TRUE(tests.counts("test " + std::to_string(test)));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << "it took an hour";
+}
+
+TEST(RetractedTests, WhatWasWithdrawnHoldsNoMoreWhicheverIsToldFirst) {
+  RetractedTests tests;
+  tests.know("one", kNow);
+  const Retraction first{.id = "first", .pst_id = "one"}, second{.id = "second", .since = kNow};
+  Retraction withdrawn{.id = "withdrawn"};
+  withdrawn.withdrawn_id = "first";
+  tests.apply(first);
+  tests.apply(first);
+  tests.apply(second);
+  EXPECT_FALSE(tests.counts("one"));
+  tests.apply(withdrawn);
+  EXPECT_FALSE(tests.counts("one")) << "the second holds";
+  withdrawn.withdrawn_id = "second";
+  tests.apply(withdrawn);
+  EXPECT_TRUE(tests.counts("one"));
+  tests.apply(second);
+  EXPECT_TRUE(tests.counts("one")) << "an answer to it that comes late names it again";
 }
 
 }  // namespace

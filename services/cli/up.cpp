@@ -11,6 +11,7 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/supervisor.hpp"
+#include "services/common/runtime/service_manager.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -87,6 +88,14 @@ int run_up(const UpOptions& options) {
     }
   catch_interrupts(kSupervisorStops);
   if (!free_to_start(*session, names_of(programs))) return kBadInput;
+  // Of two that are started at once neither hears the other's services: each would take the journals of some. Why a lock
+  // cannot be made otherwise is the services' to tell, and to try again.
+  const auto alone = InstanceLock::take(
+      options.state_directory.empty() ? session->configuration.state_directory : options.state_directory, "supervisor");
+  if (!alone && is_held_by_another(alone.error())) {
+    complain(alone.error());
+    return kBadInput;
+  }
   if (session->configuration.assets.empty())
     std::fprintf(stderr, "sealwatch: %s: no asset is configured: every recording will be passed over\n",
                  options.config.c_str());

@@ -26,12 +26,7 @@ class Operator : public SixServices {
   void SetUp() override {
     up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
                 folder_ / "up.log");
-    for (int attempt = 0; attempt < 30; ++attempt) {
-      const Finished played = replay();
-      if (played.status == 0) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    }
-    FAIL() << "the services never took the recordings";
+    EXPECT_TRUE(takes_recordings());
   }
   void TearDown() override {
     kill(up_, SIGTERM);
@@ -42,6 +37,14 @@ class Operator : public SixServices {
     arguments.insert(arguments.end(), more.begin(), more.end());
     arguments.insert(arguments.end(), recordings().begin(), recordings().begin() + 3);
     return run(arguments);
+  }
+  /// Once the services are up.
+  [[nodiscard]] bool takes_recordings() const {
+    for (int attempt = 0; attempt < 30; ++attempt) {
+      if (replay().status == 0) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    return false;
   }
   [[nodiscard]] Finished acknowledge(const std::string& advisory_id) const {
     return run({"sealwatch", "acknowledge", "--config", config(), "XT03-MV2", advisory_id, "--by", "operator"});
@@ -177,6 +180,23 @@ TEST_F(Operator, IsToldThatAllAreUpOnlyOnceAllAre) {
   EXPECT_THAT(refused.output, AllOf(HasSubstr("one could not start"), Not(HasSubstr("sealwatch is up"))));
   up_ = start({"sealwatch", "up", "--config", config(), "--state", state_directory("state").string()},
               folder_ / "up_again.log");
+}
+
+/// Each took the journals of some services, and both ended.
+TEST_F(Operator, OfTwoThatStartAtOnceOneRunsAndTheOtherSaysWhichDoes) {
+  kill(up_, SIGTERM);
+  waitpid(up_, nullptr, 0);
+  const std::vector<std::string> command = {"sealwatch", "up",      "--config",
+                                            config(),    "--state", state_directory("state").string()};
+  const pid_t one = start(command, folder_ / "one.log"), other = start(command, folder_ / "other.log");
+  int status = 0;
+  const pid_t loser = ::waitpid(-1, &status, 0);
+  up_ = loser == one ? other : one;
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  std::ostringstream said;
+  said << std::ifstream(folder_ / (loser == one ? "one.log" : "other.log")).rdbuf();
+  EXPECT_THAT(said.str(), ContainsRegex("process " + std::to_string(up_) + "|runs here already"));
+  EXPECT_TRUE(takes_recordings()) << "the other's services run";
 }
 
 TEST_F(Operator, IsToldWhatBecameOfIt) {

@@ -36,7 +36,7 @@ void AdvisoryGeneration::restore(const Message& own_output) {
   } else if (const auto renewed = retraction_of_renewed(*advisory)) {
     learn(*renewed, asset);
     const auto record = advisory->reasons.empty() ? std::nullopt : from_words(advisory->reasons.back());
-    if (record) revise_last(record->verdict, asset);
+    if (Judged* const last = record ? last_counted(asset) : nullptr) last->verdict = record->verdict;
     judge_anew(asset);
   } else if (const auto retraction = answered_retraction(*advisory)) {
     learn(*retraction, asset);
@@ -46,6 +46,7 @@ void AdvisoryGeneration::restore(const Message& own_output) {
     if (const auto record = from_words(advisory->reasons.back())) {
       asset.memory.restore(record->verdict, record->in_force);
       remember({header.pst_id, time, record->verdict}, asset);
+      remember_words(*advisory, asset);
     }
     if (time) asset.last_test = time;
   }
@@ -123,6 +124,7 @@ void AdvisoryGeneration::advise(const Evidence& evidence, Conclusion& conclusion
   const InForce& in_force = asset.memory.judge(assessment.verdict, now, options_);
   remember({cause.pst_id, now, assessment.verdict}, asset);
   put_out(evidence, cause, assessment, in_force, conclusion);
+  remember_words(*asset.current, asset);
 }
 
 void AdvisoryGeneration::put_out(const Evidence& evidence, const Header& cause, const Assessment& assessment,

@@ -59,6 +59,7 @@ class AdvisoryGeneration final : public Layer {
     std::optional<UtcTime> time;
     TestVerdict verdict;
     std::string replacement_id = {};  ///< "" of a test
+    TestWords said = {};
   };
   /// What is remembered of one asset, all of it rebuilt from its advisories, and what waits.
   struct Asset {
@@ -102,8 +103,10 @@ class AdvisoryGeneration final : public Layer {
   [[nodiscard]] static Answers& answers_to(const std::string& retraction_id, Asset& asset, Conclusion& conclusion);
   /// The advice that follows from them, once all have answered.
   void renew(const std::string& retraction_id, Asset& asset, Conclusion& conclusion);
-  /// What the last test that counts says by all that is known now.
-  static void revise_last(const TestVerdict& verdict, Asset& asset);
+  /// The last test that counts, where none since was a replacement's first; nullptr where it is not remembered.
+  [[nodiscard]] static Judged* last_counted(Asset& asset);
+  /// Takes note of what the test said of itself in its advice.
+  static void remember_words(const Advisory& advisory, Asset& asset);
   static void note_replacement(const std::string& message_id, UtcTime time, Asset& asset);
   static void remember(Judged judged, Asset& asset);
   static void stand(const Advisory& advisory, Asset& asset);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sealwatch/config/asset.hpp"
+#include "sealwatch/message/advisory_generation.hpp"
 #include "sealwatch/message/health_assessment.hpp"
 #include "sealwatch/message/prognostic_assessment.hpp"
 #include "sealwatch/message/state_detection.hpp"
@@ -14,12 +15,21 @@
 
 namespace sealwatch::advisory_generation {
 
+/// What a test said of itself when it came.
+struct TestWords {
+  std::vector<std::string> reasons = {};  ///< its condition, and why it was left out where it was
+  SafetyBook margins = {};
+};
+
 /// All that is known of one test.
 struct Evidence {
   RemainingLife life;
   HealthReport health;
   StateReport state;
   LeakageEstimate leakage;
+  /// After a retraction nobody sends the estimate of the test that is the last now: what it said then. Without it the
+  /// estimate tells.
+  std::optional<TestWords> said = {};
 };
 
 struct Assessment {

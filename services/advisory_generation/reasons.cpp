@@ -19,6 +19,9 @@ using text::with_unit;
 
 /// Below this a fault is proposed only because some fault must come first.
 constexpr double kWorthNaming = 0.10;
+/// Behind the name of a test.
+constexpr const char* kMeasured = ": ";
+constexpr const char* kLeftOut = " left out of the forecast: ";
 
 /// "test of 2018-03-24".
 std::string name_of_test(const Header& header) {
@@ -83,10 +86,10 @@ void add_condition(std::vector<std::string>& reasons, const LeakageEstimate& lea
                        three_digits(leakage.resistance_std_Pa_s_m3) + worn_unit(leakage) + " (by sensor noise alone)";
     if (leakage.condition_known)
       text = worn_condition(leakage) + " " + condition_in_percent(leakage.condition) + limit_of(life) + ", " + text;
-    reasons.push_back(name_of_test(leakage.header) + ": " + text);
+    reasons.push_back(name_of_test(leakage.header) + kMeasured + text);
   }
   if (!leakage.used_for_forecast)
-    reasons.push_back(name_of_test(leakage.header) + " left out of the forecast: " + text::joined(leakage.reasons));
+    reasons.push_back(name_of_test(leakage.header) + kLeftOut + text::joined(leakage.reasons));
 }
 
 /// Whether grade and proposals are those of an earlier test, as this one does not tell.
@@ -129,10 +132,21 @@ void add_state(std::vector<std::string>& reasons, const StateReport& state) {
 std::vector<std::string> reasons_of(const Evidence& evidence) {
   std::vector<std::string> reasons;
   add_forecast(reasons, evidence.life);
-  add_condition(reasons, evidence.leakage, evidence.life);
+  if (evidence.said)
+    reasons.insert(reasons.end(), evidence.said->reasons.begin(), evidence.said->reasons.end());
+  else
+    add_condition(reasons, evidence.leakage, evidence.life);
   add_health(reasons, evidence.health, evidence.state);
   add_state(reasons, evidence.state);
   return reasons;
+}
+
+std::vector<std::string> reasons_of_condition(const Header& test, const std::vector<std::string>& reasons) {
+  std::vector<std::string> found;
+  for (const std::string& reason : reasons)
+    if (reason.starts_with(name_of_test(test) + kMeasured) || reason.starts_with(name_of_test(test) + kLeftOut))
+      found.push_back(reason);
+  return found;
 }
 
 std::string limit_of(const RemainingLife& life) {

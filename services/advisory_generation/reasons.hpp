@@ -14,6 +14,10 @@ struct Evidence;
 /// Forecast, failure probabilities, seal condition, health, alert regions, verdict of the test; in this order.
 [[nodiscard]] std::vector<std::string> reasons_of(const Evidence& evidence);
 
+/// Those of an advice that tell of the condition that the test of this header measured.
+[[nodiscard]] std::vector<std::string> reasons_of_condition(const Header& test,
+                                                            const std::vector<std::string>& reasons);
+
 /// " (limit 60.0 %)", or nothing where the message knows of none.
 [[nodiscard]] std::string limit_of(const RemainingLife& life);
 

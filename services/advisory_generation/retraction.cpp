@@ -1,6 +1,7 @@
 // What the retraction of tests does to the advice: the next test is judged with those that still count.
 #include "services/advisory_generation/advisory_generation.hpp"
 #include "services/advisory_generation/advisory_revision.hpp"
+#include "services/advisory_generation/reasons.hpp"
 
 namespace sealwatch::advisory_generation {
 namespace {
@@ -56,14 +57,20 @@ void AdvisoryGeneration::judge_anew(Asset& asset) const {
   }
 }
 
-void AdvisoryGeneration::revise_last(const TestVerdict& verdict, Asset& asset) {
+AdvisoryGeneration::Judged* AdvisoryGeneration::last_counted(Asset& asset) {
   for (auto one = asset.judged.rbegin(); one != asset.judged.rend(); ++one) {
     const bool is_test = one->replacement_id.empty();
-    if (!is_test && asset.retracted.holds(one->replacement_id)) return;  // none since counts
-    if (!is_test || !asset.retracted.counts(one->pst_id)) continue;
-    one->verdict = verdict;
-    return;
+    if (!is_test && asset.retracted.holds(one->replacement_id)) return nullptr;  // none since counts
+    if (is_test && asset.retracted.counts(one->pst_id)) return &*one;
   }
+  return nullptr;
+}
+
+void AdvisoryGeneration::remember_words(const Advisory& advisory, Asset& asset) {
+  if (asset.judged.empty() || asset.judged.back().pst_id != advisory.header.pst_id) return;
+  TestWords& said = asset.judged.back().said;
+  said.reasons = reasons_of_condition(advisory.header, advisory.reasons);
+  if (!advisory.safety.empty()) said.margins = advisory.safety.front();
 }
 
 Conclusion AdvisoryGeneration::retracted(const MaintenanceEvent& event) {
@@ -119,7 +126,7 @@ void AdvisoryGeneration::renew(const std::string& retraction_id, Asset& asset, C
   last.asset_id = answers.life->asset_id;
   last.header.event_time_known = last.used_for_forecast = answers.life->condition_known;
   last.header.event_time_ns = answers.life->header.event_time_ns;
-  const Evidence evidence{*answers.life, *answers.health, *answers.state, last};
+  Evidence evidence{*answers.life, *answers.health, *answers.state, last, TestWords()};
   for (const Header* answer : {&evidence.life.header, &evidence.health.header, &evidence.state.header})
     conclusion.consumed.push_back(answer->message_id);
   const bool was_known = !learn(*retraction_of(evidence.life.asset_id, retraction_id), asset);
@@ -127,8 +134,11 @@ void AdvisoryGeneration::renew(const std::string& retraction_id, Asset& asset, C
   // A later test was judged meanwhile: its advice is newer than these answers.
   if (was_known && answered.event_time_known && asset.last_test && UtcTime{answered.event_time_ns} < *asset.last_test)
     return;
+  Judged* const now_last = last_counted(asset);
+  if (now_last && now_last->time && now_last->time->nanoseconds == answered.event_time_ns)
+    evidence.said = now_last->said;
   const Assessment assessment = assess(evidence, site_of(evidence.life.asset_id), options_);
-  revise_last(assessment.verdict, asset);
+  if (now_last) now_last->verdict = assessment.verdict;  // by all that is known now
   judge_anew(asset);
   Header cause = evidence.life.header;
   cause.message_id = renewed_id(retraction_id);

@@ -72,7 +72,13 @@ SafetyBook safety_book(const Evidence& evidence, const AssetConfig* asset, const
     book.partial_stroke_overdue_days = evidence.state.overdue_days;
   }
   if (safety) add_intervals(book, asset->pst, *safety, now);
-  add_margins(book, *asset, evidence);
+  if (evidence.said) {
+    book.margin_known = evidence.said->margins.margin_known;
+    book.closing_time_margin = evidence.said->margins.closing_time_margin;
+    book.closing_force_margin = evidence.said->margins.closing_force_margin;
+  } else {
+    add_margins(book, *asset, evidence);
+  }
   return book;
 }
 

@@ -160,6 +160,31 @@ TEST_F(AdviceAfterRetraction, WithdrawnItIsAsItWas) {
   EXPECT_EQ(last_of(joined(both, next)).reasons, last_of(joined(before, next)).reasons);
 }
 
+/// The estimate of the test that is the last again is sent by nobody: its advice lost condition and margins.
+TEST_F(AdviceAfterRetraction, KeepsWhatTheLastTestThatCountsSaidOfItself) {
+  configuration_.assets.front().parameters = {
+      {"A_C", {5.89e-3, 0, 1, false}}, {"x_C", {0.08, 0, 1, false}}, {"phi", {6e4, 0, 1e6, false}}};
+  const auto tests = [](int first, int last) {
+    std::vector<Message> inputs = inputs_of(life_until(first, last, 200.0));
+    for (Message& input : inputs)
+      if (auto* leakage = std::get_if<LeakageEstimate>(&input)) leakage->resistance_Pa_s_m3 = 2.6e13;
+    return inputs;
+  };
+  const auto before = tests(60, 70);
+  const auto all = joined(before, tests(71, 71));
+  const MaintenanceEvent one = event(kTestRetracted, TestCase{.month = 71}.pst_id(), 71.5);
+  const auto replies = answers(one, life_until(70, 70, 200.0).front());
+  const auto inputs = joined(joined(all, {one}), replies);
+  const Advisory expected = last_of(before);
+  ASSERT_TRUE(expected.safety.front().margin_known);
+  ASSERT_THAT(expected.reasons, testing::Contains(HasSubstr("leakage resistance R_CL =")));
+  for (std::size_t death = all.size(); death <= inputs.size(); ++death) {
+    const Advisory renewed = of_kind<Advisory>(run(inputs, death)).back();
+    EXPECT_EQ(renewed.reasons, expected.reasons);
+    EXPECT_EQ(renewed.safety, expected.safety);
+  }
+}
+
 TEST_F(AdviceAfterRetraction, DeathAnywhereChangesNothing) {
   auto inputs = inputs_of(life_until(60, 80, 100.0));
   const MaintenanceEvent since = event(kTestsRetracted, format_utc(add_months(kInstalled, 66.5)), 70.1);

@@ -197,7 +197,10 @@ SearchEnd BoxSearch::descend(const StoppingRule& rule, int maximum_iterations) {
       here.curve(curvature);
       beyond_is_none = beyond_is_none || !std::isfinite(after);
       if (renew()) continue;
+      // Where a step of the order of one promises nothing (an unknown that sets out at many times its scale), it must be
+      // longer: else the search would end where it set out.
       radius = std::min(kOrderOfOne, kShrinks * length);
+      if (here.promised(here.step(damping, radius)) <= tolerance) radius = kShrinks * length;
       if (radius < kNearest) return SearchEnd::stuck;
       shortened = true;
       continue;
@@ -229,7 +232,7 @@ SearchEnd BoxSearch::run(const StoppingRule& rule, int maximum_iterations) {
     end = descend(rule, maximum_iterations);
   }
   // Where the next search goes on, or what is told of this one.
-  if (end == SearchEnd::stuck || end == SearchEnd::out_of_reach) hold_outside();
+  if (end == SearchEnd::stuck || end == SearchEnd::out_of_reach || end == SearchEnd::hopeless) hold_outside();
   return end;
 }
 

@@ -39,6 +39,27 @@ TEST(FittedModel, ASearchGoesOnFromWhereItEnded) {
   EXPECT_NEAR(further->misfit / further->residuals, 1.0, 0.1);
 }
 
+// Its asset reads back: exp(ln x) may lie a digit beyond the bound x.
+TEST(FittedModel, ValuesAtABoundLieWithinIt) {
+  AssetConfig asset = far_from_the_truth();
+  Data data;
+  data.names = {"pst"};
+  data.samples = {simulated_test(nominal_asset("eha"), 1.0)};
+  const double truth = nominal_asset("eha").parameters.at("R_PL").value;
+  ParameterSetting& slip = asset.parameters.at("R_PL");
+  for (const double times : {0.6, 0.7, 0.8, 0.9, 1.1, 1.2, 1.3, 1.7}) {
+    const double bound = times * truth;
+    slip.min = times < 1.0 ? bound / 1e3 : bound;
+    slip.max = times < 1.0 ? bound : bound * 1e3;
+    slip.value = times < 1.0 ? 0.7 * bound : 1.4 * bound;
+    const Result<FittedModel> model = fit_model(asset, data, nullptr, 1);
+    ASSERT_TRUE(model) << model.error().describe();
+    const ParameterSetting& fitted = model->asset.parameters.at("R_PL");
+    EXPECT_GE(fitted.value, slip.min);
+    EXPECT_LE(fitted.value, slip.max);
+  }
+}
+
 // To the last digit: recordings are added up in their order, whoever simulated them.
 TEST(FittedModel, IsTheSameOnOneThreadAndOnThree) {
   Data data;

@@ -31,20 +31,34 @@ std::size_t place_of(const Trial& trial, std::size_t slot) {
   return trial.model->asset.physics.size() - trial.effects.size() + slot;
 }
 
-// The same law at the plant's other elements of that kind (the other chamber, the other valve), from where the search
-// ended here: from its own linear step that twin's refit may have ended in a local minimum, and the place would look
-// certain.
-std::vector<std::vector<LawStart>> twins_of(const Naming& naming, const Trial& best, std::size_t slot) {
+// The same law at the plant's other elements of that kind (the other chamber, the other valve), with the shape at which the
+// search ended here and the strengths that the linear model gives it there (behind a gear a torque is another): from its
+// own linear step that twin's refit may have ended in a local minimum, and the place would look certain.
+std::vector<std::vector<LawStart>> twins_of(const Trial& best, std::size_t slot, const FittedModel& fewer,
+                                            const Data& data, const ExplainOptions& options) {
   const Effect& effect = best.effects[slot];
+  if (effect.law->evaluate == nullptr) return {};
+  std::vector<double> found;
+  for (const LawParameter& parameter : effect.law->parameters)
+    found.push_back(best.model->asset.physics[place_of(best, slot)].parameters.at(std::string(parameter.name)).value);
+  std::vector<Candidate> twins =
+      find_candidates(*fewer.problem.recordings.front().simulation, fewer.asset.physics, effect.law->closed_form);
+  std::erase_if(twins, [&](const Candidate& candidate) {
+    return candidate.law != effect.law || candidate.element == effect.element;
+  });
+  if (twins.empty()) return {};
+  for (Candidate& twin : twins) twin.grid = {found};
+  const Result<Screening> linear = screen_laws(fewer, twins, data, {.seed = options.seed, .threads = options.threads});
+  const std::vector<std::size_t> strengths = strengths_of(*effect.law);
   std::vector<std::vector<LawStart>> starts;
-  if (effect.law->evaluate == nullptr) return starts;
-  const PhysicsTerm& term = best.model->asset.physics[place_of(best, slot)];
-  for (const Candidate& candidate : naming.first.candidates) {
-    if (candidate.law != effect.law || candidate.element == effect.element) continue;
-    LawStart twin{{effect.law, candidate.element}, {}};
-    for (const LawParameter& parameter : effect.law->parameters)
-      twin.parameters.push_back(term.parameters.at(std::string(parameter.name)).value);
-    starts.push_back({std::move(twin)});
+  for (std::size_t k = 0; k < twins.size(); ++k) {
+    LawStart start{{effect.law, twins[k].element}, found};
+    if (linear)
+      for (const Variant& variant : linear->variants)
+        if (linear->candidates[variant.candidate].element == twins[k].element &&
+            variant.strength.size() == strengths.size() && variant.gain > 0.0)
+          for (std::size_t s = 0; s < strengths.size(); ++s) start.parameters[strengths[s]] = variant.strength[s];
+    starts.push_back({std::move(start)});
   }
   return starts;
 }
@@ -82,7 +96,7 @@ std::vector<Trial> alternatives_of(const Naming& naming, const Trial& best, std:
   const RefitOptions rivals{.again_smaller = true, .to_beat = best.model->misfit};
   for (Trial& trial : refit(*fewer, starts, data, options.threads, rivals)) found.push_back(std::move(trial));
   constexpr double kNear = 1.01;  // times the misfit: further off a twin is told apart without its last iterations
-  for (Trial& twin : refit(*fewer, twins_of(naming, best, slot), data, options.threads, rivals))
+  for (Trial& twin : refit(*fewer, twins_of(best, slot, *fewer->model, data, options), data, options.threads, rivals))
     found.push_back(twin.model->misfit < kNear * best.model->misfit ? polished(std::move(twin), data, options.threads)
                                                                     : std::move(twin));
   return found;

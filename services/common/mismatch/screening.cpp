@@ -354,4 +354,9 @@ Result<Screening> screen(const FittedModel& model, const Data& data, const Scree
   return screen_candidates(model, data, options, std::move(screening));
 }
 
+Result<Screening> screen_laws(const FittedModel& model, std::vector<Candidate> laws, const Data& data,
+                              const ScreeningOptions& options) {
+  return screen_candidates(model, data, options, {.candidates = std::move(laws)});
+}
+
 }  // namespace sealwatch::mismatch

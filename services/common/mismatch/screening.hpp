@@ -69,6 +69,10 @@ struct ScreeningOptions {
 /// An Error when the model cannot be simulated at its estimates.
 [[nodiscard]] Result<Screening> screen(const FittedModel& model, const Data& data, const ScreeningOptions& options);
 
+/// The same of some laws alone, at the points of their grids.
+[[nodiscard]] Result<Screening> screen_laws(const FittedModel& model, std::vector<Candidate> laws, const Data& data,
+                                            const ScreeningOptions& options);
+
 /// Linearised gain of two variants together; strengths within bounds.
 [[nodiscard]] double pair_gain(const Screening& screening, const Variant& a, const Variant& b);
 

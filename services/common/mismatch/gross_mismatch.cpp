@@ -5,12 +5,14 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <tuple>
 
 #include "services/common/core/in_parallel.hpp"
 #include "services/common/estimation/channel_noise.hpp"
 #include "services/common/mismatch/balance_words.hpp"
+#include "services/common/mismatch/criterion.hpp"
 #include "services/common/mismatch/effects.hpp"
 #include "services/common/mismatch/error_floor.hpp"
 #include "services/common/mismatch/proof.hpp"
@@ -144,27 +146,45 @@ class GrossMismatch {
       fit_comparisons_.push_back(comparison(*before_, *after, fit_, noise_fit_, k));
   }
 
-  // Held-out balances, their loads fitted, must be better with each finding than without it.
+  // Held-out balances, their loads fitted, must be better with each finding than without it. Where they do not go where
+  // it acts (a drive's limit, at a lighter load) they cannot tell: then the fitted recordings must, each left out in turn.
   void take_back_what_does_not_hold(const SwitchedBalances& balances) {
     if (holdout_.samples.empty()) return;
     const Result<SwitchedBalances> held_out = SwitchedBalances::create(noise_holdout_);
     if (!held_out) return;
     const double with_all = held_out_loss(*held_out, found_.model);
-    std::vector<BalanceFinding> kept;
-    for (BalanceFinding& finding : found_.findings) {
-      const double gain = held_out_loss(*held_out, finding.without) - with_all;
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < found_.findings.size(); ++k) {
+      const BalanceFinding& finding = found_.findings[k];
+      double gain = held_out_loss(*held_out, finding.without) - with_all;
+      const bool not_shown = gain <= 0.0 && gain > -0.5 * kCannotTell;
+      if (not_shown) gain = gain_where_left_out(k);
       held_out_gain_[finding_key(finding)] = gain;
-      if (gain > 0.0) {
-        kept.push_back(std::move(finding));
-        continue;
-      }
+      if (gain <= 0.0) out.push_back(k);
+      if (gain > 0.0 && !not_shown) continue;
       result_.notes.push_back("What fits better (" + finding_in_words(finding) +
-                              ") does not improve the balances of the held-out recordings: it is not claimed.");
-      put_back(found_.model, asset_, finding.what);
+                              (gain > 0.0 ? ") does not show in the balances of the held-out recordings: the fitted "
+                                            "ones, each left out in turn, are better with it."
+                                          : ") does not improve the balances of the held-out recordings: it is not "
+                                            "claimed."));
     }
-    const bool fewer = kept.size() < found_.findings.size();
-    found_.findings = std::move(kept);
-    if (fewer) found_ = refit_findings(asset_, plant_, balances, found_, options_.threads);
+    if (out.empty()) return;
+    for (auto k = out.rbegin(); k != out.rend(); ++k) take_out(*k, found_);
+    found_ = refit_findings(asset_, plant_, balances, found_, options_.threads);
+  }
+
+  // By a finding, of minus the logarithm of the likelihood of each fitted recording's balances, fitted to the others'.
+  [[nodiscard]] double gain_where_left_out(std::size_t finding) const {
+    BalanceFit fewer = found_;
+    take_out(finding, fewer);
+    const auto gains = in_parallel<double>(noise_fit_.samples.size(), options_.threads, [&](std::size_t k) {
+      const Result<SwitchedBalances> one = SwitchedBalances::create(one_of(noise_fit_, k)),
+                                     rest = SwitchedBalances::create(all_but(noise_fit_, k));
+      if (!one || !rest) return 0.0;
+      return held_out_loss(*one, refit_balances(asset_, *rest, fewer).model) -
+             held_out_loss(*one, refit_balances(asset_, *rest, found_).model);
+    });
+    return std::accumulate(gains.begin(), gains.end(), 0.0);
   }
 
   // A recording that took no part, as the model is: one of those held out, or of those fitted, left out.

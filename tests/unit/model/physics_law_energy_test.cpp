@@ -30,6 +30,7 @@ const std::map<std::string, std::size_t> kDissipate = {
     {"driver_dead_time (voltage_loss)", 0},
     {"driver_dead_time (dead_zone)", 1},
     {"driver_dead_time (delay)", 2},
+    {"driver_saturation", 1},
     {"turbulent_pump_slip", 0},
     {"speed_dependent_pump_slip (rising)", 0},
     {"speed_dependent_pump_slip (falling)", 0},

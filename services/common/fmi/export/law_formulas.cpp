@@ -21,6 +21,7 @@ constexpr std::array kFormulas = {
     LawFormula{"driver_dead_time", "voltage_loss", "p1 * tanh(s1 / p2)"},
     LawFormula{"driver_dead_time", "delay", "p1 * s3"},
     LawFormula{"driver_dead_time", "dead_zone", "p1 * tanh(s2 / p2)"},
+    LawFormula{"driver_saturation", "", "p1 * (smooth_positive(s2 - p2, r1) - smooth_positive(-s2 - p2, r1))"},
     LawFormula{"entrained_air", "isothermal", "p1 * 101325.0 / square(above_vacuum(s1, r1, r2))"},
     LawFormula{
         "entrained_air", "dissolving",

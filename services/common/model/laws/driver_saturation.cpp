@@ -1,0 +1,29 @@
+#include "services/common/model/laws/law_files.hpp"
+
+namespace sealwatch::laws {
+
+// V = k (max(|u| - u_0, 0)) sign(u) as the difference of two positive parts, each rounded over 0.2 V: odd, zero at zero.
+static LawOutput evaluate_driver_saturation(const LawInput& in) {
+  const double width = in.rounding[0];
+  const auto& u = in.signal[1];
+  const auto& u_0 = in.parameter[1];
+  return {.contribution = in.parameter[0] * (smooth_positive(u - u_0, width) - smooth_positive(-u - u_0, width)),
+          .rate = {}};
+}
+
+Law driver_saturation() {
+  return {.id = "driver_saturation",
+          .form = "",
+          .kind = SiteKind::voltage_command,
+          .equation = "k max(abs(u) - u_0, 0) sign(u)",
+          .meaning = "the drive or its supply has reached its limit: of larger commands only a part arrives",
+          .energy = "0 <= k <= 1: what arrives never falls as the command grows",
+          .source = "saturation; Tao, Kokotovic, Adaptive Control of Systems with Actuator Nonlinearities (1996)",
+          .parameters = {strength("k", "1", "share of what exceeds the limit that does not arrive",
+                                  {.usual = 1.0, .significant = 0.05, .max = 1.0}),
+                         shape("u_0", "V", "limit", {10.0, 5.0, 20.0, 40.0, 80.0}, 0.1, 1000.0)},
+          .evaluate = &evaluate_driver_saturation,
+          .roundings = {{"V", 0.2}}};
+}
+
+}  // namespace sealwatch::laws

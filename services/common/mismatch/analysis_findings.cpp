@@ -181,10 +181,15 @@ void Analysis::note_laws_not_asked() {
 
 void Analysis::say_what_was_cut(Explanation& result) {
   if (result.not_asked.empty()) result.not_asked.emplace_back("further steps of what was being fitted");
-  result.summary += " The time limit cut the search: not everything was asked.";
   result.notes.push_back("Not asked, as time was up: " + joined(result.not_asked, "; and ") + ".");
+  // What is not explained may be by what was not asked: a law is no surer than its share.
+  for (FoundEffect& effect : result.effects) {
+    effect.probability = std::min(effect.probability, result.explained_share);
+    effect.element_probability = std::min(effect.element_probability, result.explained_share);
+  }
   const std::string more = "Give the analysis more time (--time-limit)";
   if (result.next_test.starts_with(more)) return;
+  result.summary = "The time limit cut the search: not everything was asked. " + result.summary;
   const bool alone = result.verdict == Verdict::undetermined || result.next_test.empty();
   result.next_test = alone ? more + "." : more + ". Then: " + result.next_test;
 }
@@ -227,7 +232,6 @@ bool Analysis::explains() const {
                              .proven = proven_,
                              .leave_nothing = leaves_nothing(),
                              .share = explained_share(),
-                             .cut_short = time_.deadline().was_met() && excess(*best_.model) > kGross,
                              .as_searched = naming_.best.effects.size() == best_.effects.size(),
                              .p_before = beside_ ? naming_.first.p_value : result_.p_value,
                              .p_after = naming_.last.p_value});

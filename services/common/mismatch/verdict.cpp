@@ -18,7 +18,6 @@ double share_explained(double before, double after) {
 
 bool explains(const LawsFound& laws) {
   if (!laws.any || !laws.proven) return false;
-  if (laws.cut_short) return laws.share >= 1.0 - kEvidenceLeft;
   const bool little_evidence_left =
       laws.as_searched && evidence(laws.p_after) <= kEvidenceLeft * evidence(laws.p_before);
   return laws.leave_nothing || laws.share >= kExplainedAtLeast || little_evidence_left;

@@ -7,8 +7,7 @@
 //
 // Laws explain where they are proven and leave nothing, take at least half of the misfit's excess over the noise, or
 // leave at most a tenth of the evidence, -ln p: the noise's own estimate is not exact enough for the first two alone
-// where the effect is small. Where time was up while the model was still grossly off, what was not asked may be what is
-// missing: they must leave at most a tenth of the excess.
+// where the effect is small.
 #pragma once
 
 #include "sealwatch/mismatch/explanation.hpp"
@@ -16,9 +15,8 @@
 namespace sealwatch::mismatch {
 
 inline constexpr double kExplainedAtLeast = 0.5;  ///< of the excess misfit, before a mismatch counts as explained
-inline constexpr double kEvidenceLeft =
-    0.1;  ///< of the evidence against the model, or of a search cut short of the excess
-inline constexpr double kSmallestP = 1e-300;  ///< that is told: the tail's own digits end there
+inline constexpr double kEvidenceLeft = 0.1;      ///< of the evidence against the model, or so much left
+inline constexpr double kSmallestP = 1e-300;      ///< that is told: the tail's own digits end there
 
 /// Of the misfit above the noise, by the mean square of whitened residuals before and after; 0 to 1.
 [[nodiscard]] double share_explained(double before, double after);
@@ -29,7 +27,6 @@ struct LawsFound {
   bool proven = false;         ///< on recordings that took no part
   bool leave_nothing = false;  ///< beyond the noise
   double share = 0.0;          ///< share_explained
-  bool cut_short = false;      ///< time was up, and the model with them is grossly off
   bool as_searched = false;    ///< all that the search ended with: `p_after` is then theirs
   double p_before = 1.0, p_after = 1.0;
 };

@@ -40,12 +40,6 @@ TEST(LawsExplain, ByHalfOfTheExcessOrNineTenthsOfTheEvidence) {
       << "that p-value is of other laws";
 }
 
-TEST(LawsExplain, NearlyAllOfAGrossMisfitWhereTimeWasUp) {
-  EXPECT_FALSE(explains({.any = true, .proven = true, .share = 0.8, .cut_short = true}));
-  EXPECT_TRUE(explains({.any = true, .proven = true, .share = 0.95, .cut_short = true}));
-  EXPECT_FALSE(explains({.any = true, .proven = false, .share = 0.95, .cut_short = true}));
-}
-
 TEST(LawsExplain, EvidenceBeyondTheSmallestDoubleCountsAsMuch) {
   EXPECT_TRUE(explains({.any = true, .proven = true, .as_searched = true, .p_before = 0.0, .p_after = 1e-30}));
   EXPECT_FALSE(explains({.any = true, .proven = true, .as_searched = true, .p_before = 0.0, .p_after = 1e-31}));

@@ -29,11 +29,11 @@ class RecordingsFolderTest : public testing::Test {
   }
   ~RecordingsFolderTest() override { fs::remove_all(directory_); }
 
-  void drop(const std::string& name, const std::string& asset_id) {
+  void drop(const std::string& name, const std::string& asset_id, double duration_s = 6.0) {
     Recording recording;
     recording.recording_id = name;
     recording.asset_id = asset_id;
-    recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = 6.0}.record();
+    recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = duration_s}.record();
     ASSERT_TRUE(write_recording_csv(recording, (directory_ / (name + ".csv")).string()));
   }
   struct Watched {
@@ -93,6 +93,23 @@ TEST_F(RecordingsFolderTest, ReadsARecordingAgainThatWasNotConcludedAndIsMended)
   const std::vector<Message> blocks = watched.look();
   ASSERT_EQ(blocks.size(), 2U);
   EXPECT_TRUE(std::get<RawSamples>(blocks[0]).start_time_known);
+}
+
+TEST_F(RecordingsFolderTest, OneThatIsOverwrittenWhenItsTestIsConcludedIsReadToo) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  drop("april", "XT03-MV2");
+  (void)watched.look();
+  for (const Message& block : watched.look()) (void)layer.receive(block);
+  drop("april", "XT03-MV2", 7.0);
+  EXPECT_TRUE(watched.look().empty()) << "it might still be growing";
+  EXPECT_THAT(files(), testing::ElementsAre("april.csv", "april.yaml")) << "it is not the one that was read";
+  const std::vector<Message> blocks = watched.look();
+  EXPECT_FALSE(blocks.empty());
+  for (const Message& block : blocks) (void)layer.receive(block);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(files(), testing::ElementsAre("done/april.csv", "done/april.yaml"));
+  EXPECT_THAT(errors_, testing::IsEmpty());
 }
 
 TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {

@@ -68,6 +68,10 @@ class Admission {
   [[nodiscard]] std::optional<std::string> refusal_of_asset(const Message& message) const;
   /// Why the message of such an asset is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
+  /// Whether the configuration names it, or it was taken without.
+  [[nodiscard]] bool knows(const std::string& asset_id) const {
+    return assets_.names.contains(asset_id) || unknown_.contains(asset_id);
+  }
   /// Of tests that were neither played back nor made up: time passes for such an asset, whatever is played back beside.
   [[nodiscard]] bool has_live_tests(const std::string& asset_id) const { return live_.contains(asset_id); }
 

@@ -64,6 +64,7 @@ Status LayerRunner::start() {
   if (Status status = lanes_.prepare(); !status) return status;
   for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);
   if (Status status = restore_quarantine(); !status) return status;
+  if (Status status = restore_refused_tests(); !status) return status;
   if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
   if (Status status = look_at_own_acts(); !status) return status;
@@ -178,7 +179,8 @@ Status LayerRunner::take_ready() {
   for (; !ready_.empty(); ready_.pop_front())
     if (Status status = take(std::move(ready_.front())); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
-  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty())
+  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty() ||
+      !changed_refused_tests_.empty())
     if (Status status = in_batch([this] { return store_batch(); }, batch_survives()); !status) return status;
   took_local_ = false;
   lanes_.save_memory();
@@ -357,6 +359,7 @@ Status LayerRunner::store_batch() {
   for (const Taken& one : taken_)
     if (Status status = journal_.add_input(*one.message, one.stream, clock_.now(), one.state); !status) return status;
   if (Status status = record_acts(); !status) return status;
+  if (Status status = keep_refused_tests(); !status) return status;
   for (const auto& [stream, sequence] : uncommitted_)
     if (Status status = journal_.set_position({stream.first, stream.second, sequence}); !status) return status;
   for (LaneResult& result : results_)

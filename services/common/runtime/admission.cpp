@@ -1,6 +1,7 @@
 #include "services/common/runtime/admission.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/visible_text.hpp"
@@ -140,7 +141,7 @@ std::optional<TextFault> fault_of_texts(const Message& message) {
 
 Admission::Admission(std::map<std::string, UtcTime> commissioned, ConfiguredAssets assets)
     : commissioned_(std::move(commissioned)), assets_(std::move(assets)) {
-  for (const std::string& asset_id : assets_.names) asset_of_id_part_.emplace(id_part(asset_id), asset_id);
+  for (const std::string& asset_id : assets_.names) note_name(asset_id);
 }
 
 void Admission::note(const Message& message, bool concluded) {
@@ -165,9 +166,16 @@ void Admission::note(const Message& message, bool concluded) {
 
 void Admission::note_asset(const std::string& asset_id) {
   if (asset_id.empty() || assets_.names.contains(asset_id)) return;
-  unknown_.insert(asset_id);
-  asset_of_id_part_.emplace(id_part(asset_id), asset_id);
+  if (unknown_.insert(asset_id).second) note_name(asset_id);
 }
+
+/// The likes of them are there already, with a history under these ids.
+void Admission::note_name(const std::string& asset_id) {
+  const auto [other, is_new] = asset_of_id_part_.emplace(id_part(asset_id), asset_id);
+  if (!is_new) alike_.push_back(alike_in_ids(asset_id, other->second));
+}
+
+std::vector<std::string> Admission::take_alike() { return std::exchange(alike_, {}); }
 
 /// Before data acquisition a test has no name by which it could be retracted: until then it is one of its date.
 void Admission::note_test(const Message& message, UtcTime time) {
@@ -213,8 +221,6 @@ std::optional<std::string> Admission::refusal_of_asset(const Message& message) c
   const std::string what = "asset '" + visible(asset_id.substr(0, kLongestId), false) + "' is not configured";
   if (assets_.refuses_others) return what + ", and unknown_assets are refused; give it an asset file, if it is yours";
   if (unknown_.contains(asset_id)) return std::nullopt;
-  if (const auto other = asset_of_id_part_.find(id_part(asset_id)); other != asset_of_id_part_.end())
-    return what + ", and its tests would have the ids of those of '" + other->second + "'; give it another id";
   if (unknown_.size() < kMostUnknownAssets) return std::nullopt;
   return what + ", and " + std::to_string(unknown_.size()) +
          " such assets are there already; give it an asset file, if it is yours, or find out who sends it";

@@ -26,6 +26,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/retracted_tests.hpp"
@@ -62,6 +63,8 @@ class Admission {
   void note(const Message& message, bool concluded = true);
   /// Takes note of an asset alone.
   void note_asset(const std::string& asset_id);
+  /// Of which assets two may give their tests the same ids, as far as it was not asked before.
+  [[nodiscard]] std::vector<std::string> take_alike();
   /// Takes note of an act of that id, if it is a retraction.
   void note_act(const std::string& asset_id, const std::string& act_id);
   /// Why nothing of its asset is taken in; none where it is.
@@ -79,6 +82,7 @@ class Admission {
   [[nodiscard]] std::optional<UtcTime> future_test_before_live(const std::string& asset_id, UtcTime now) const;
 
  private:
+  void note_name(const std::string& asset_id);
   void note_test(const Message& message, UtcTime time);
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw) const;
   [[nodiscard]] std::optional<std::string> refusal_of_time(const Message& message, UtcTime now) const;
@@ -91,7 +95,8 @@ class Admission {
 
   std::map<std::string, UtcTime> commissioned_;
   ConfiguredAssets assets_;
-  std::map<std::string, std::string> asset_of_id_part_;  ///< of all: no two may give their tests the same ids
+  std::map<std::string, std::string> asset_of_id_part_;  ///< of all, the first of those that are alike there
+  std::vector<std::string> alike_;                       ///< not yet told
   std::set<std::string> unknown_;                        ///< assets that it does not name, and that were taken
   std::map<std::string, RetractedTests> tests_;          ///< by asset
   struct Acts {

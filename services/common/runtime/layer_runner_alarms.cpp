@@ -324,6 +324,8 @@ void LayerRunner::look_for_trouble() {
   look_at_clock();
   end_refused_tests(
       [&](const RefusedTest& one) { return clock_.now().nanoseconds - one.last.nanoseconds > kRefusalIsForgotten_ns; });
+  for (const std::string& alike : admission_.take_alike())
+    if (reads_samples()) log_event(LogLevel::warn, "assets are alike in the ids of their tests", {{"error", alike}});
   note_strangers(strangers_.look(steady_now()));
   const auto refused = options_.refused_by_bus ? options_.refused_by_bus() : std::nullopt;
   if (refused)

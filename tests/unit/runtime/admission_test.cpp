@@ -160,14 +160,19 @@ TEST(AdmissionOfAssets, OfThoseNotConfiguredSoManyAreTakenAndThoseStay) {
             "is yours, or find out who sends it");
 }
 
-TEST(AdmissionOfAssets, NoneWhoseTestsWouldHaveTheIdsOfAnother) {
-  Admission admission({}, {.names = {"XT_1"}});
-  EXPECT_EQ(admission.refusal_of_asset(test_of("XT 1")),
-            "asset 'XT 1' is not configured, and its tests would have the ids of those of 'XT_1'; give it another id");
-  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT/2")));
-  admission.note(test_of("XT/2"));
-  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT/2")));
-  EXPECT_TRUE(admission.refusal_of_asset(test_of("XT:2")));
+/// What has run so for years has a history.
+TEST(AdmissionOfAssets, ThoseThatAreAlikeInTheIdsOfTheirTestsAreTakenAndToldOnce) {
+  Admission admission({}, {.names = {"Ventil-\u00C4", "Ventil-\u00D6", "XT_1"}});
+  const auto told = admission.take_alike();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_THAT(told[0], HasSubstr("asset 'Ventil-\u00D6': all but ASCII letters"));
+  EXPECT_THAT(told[0], HasSubstr("as of 'Ventil-\u00C4': two that begin at the same time"));
+  for (const char* asset_id : {"XT 1", "XT 1", "XT/2", "XT 3"}) {
+    EXPECT_FALSE(admission.refusal_of_asset(test_of(asset_id)));
+    admission.note(test_of(asset_id));
+  }
+  EXPECT_EQ(admission.take_alike().size(), 1U);
+  EXPECT_TRUE(admission.take_alike().empty());
 }
 
 TEST(AdmissionOfAssets, OrNoneAtAll) {

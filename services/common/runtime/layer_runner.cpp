@@ -255,6 +255,7 @@ Status LayerRunner::take(Message message) {
   header_of(message).message_id = **id;
   auto refused = admission_.refusal(message, clock_.now());
   if (!refused) refused = refusal_of_confirmation(message);
+  if (!refused) refused = refusal_of_waiting(message);
   if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});

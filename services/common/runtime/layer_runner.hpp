@@ -221,6 +221,7 @@ class LayerRunner {
   [[nodiscard]] Status restore_awaiting();
   void await(std::shared_ptr<const Message> act, UtcTime since);
   [[nodiscard]] std::optional<std::string> refusal_of_confirmation(const Message& message) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_waiting(const Message& message) const;
   [[nodiscard]] bool waits_for_second(const Message& message) const;
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
   [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused,

@@ -362,6 +362,26 @@ TEST(AdmissionOfRetractions, OnlySoManyMayMeanNothing) {
   EXPECT_TRUE(take(act_on(kRetractionWithdrawn, replaced.header.message_id)));
 }
 
+/// One test, retracted six thousand times, did the same.
+TEST(AdmissionOfRetractions, OfATestThatIsRetractedAlreadyMeanNothing) {
+  Admission admission;
+  admission.note(concluded_test("XT03-MV2-dated", true));
+  std::size_t taken = 0;
+  for (int k = 0; k < 300; ++k) {
+    MaintenanceEvent again = act_on(kTestRetracted, "XT03-MV2-dated");
+    again.header.message_id = retraction_id("XT03-MV2", kTestRetracted, "XT03-MV2-dated", add_seconds(kNow, k));
+    MaintenanceEvent since = act_on(kTestsRetracted, format_utc(add_seconds(kNow, -60.0 - k)));
+    for (const MaintenanceEvent& event : {again, since})
+      if (refusal(event, admission).empty()) {
+        admission.note(event, false);
+        ++taken;
+      }
+  }
+  EXPECT_EQ(taken, kMostIdleRetractions + 1);
+  admission.note(concluded_test("XT03-MV2-newer", true));
+  EXPECT_EQ(refusal(act_on(kTestsRetracted, format_utc(add_seconds(kNow, -1.0))), admission), "");
+}
+
 /// What a retraction means is looked up, not looked for: a restart applies all there ever were.
 TEST(RetractedTests, ManyRetractionsCostNoMoreThanOneEach) {
   RetractedTests tests;

@@ -24,6 +24,9 @@ constexpr std::int64_t kLatest_ns = 290 * kYear_ns;
 /// A test has fewer rows.
 constexpr std::uint64_t kMostBlocks = kTestLimits.most_numbers;
 
+/// Of an asset: not yet concluded here, the newest of them, as their ids begin with the date.
+constexpr std::size_t kMostOnTheirWay = 256;
+
 constexpr const char* kHasControls = "has control or invisible characters";
 
 bool is_report(const Message& message) {
@@ -149,14 +152,22 @@ void Admission::note(const Message& message, bool concluded) {
     recorded_.insert(block->asset_id);
   const std::string asset_id = asset_of(message);
   note_asset(asset_id);
-  if (const std::optional<std::int64_t> time_ns = time_of_test(message)) {
+  const std::optional<std::int64_t> time_ns = time_of_test(message);
+  const std::string& pst_id = header_of(message).pst_id;
+  auto& on_their_way = on_their_way_[asset_id];
+  if (concluded)
+    on_their_way.erase(pst_id);
+  else if (!pst_id.empty() && !is_report(message))
+    on_their_way[pst_id] = time_ns ? std::optional(UtcTime{*time_ns}) : std::nullopt;
+  if (on_their_way.size() > kMostOnTheirWay) on_their_way.erase(on_their_way.begin());
+  if (time_ns) {
     if (concluded || topic_of(message) == Topic::raw_samples)
       note_test(message, {*time_ns});
     else
       heard_[asset_id] = std::max(heard_[asset_id], UtcTime{*time_ns});
     if (is_live(message)) live_.insert(asset_id);
-  } else if (concluded && !header_of(message).pst_id.empty()) {
-    tests_[asset_id].know(header_of(message).pst_id, std::nullopt);
+  } else if (concluded && !pst_id.empty()) {
+    tests_[asset_id].know(pst_id, std::nullopt);
   }
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
@@ -196,9 +207,25 @@ void Admission::note_act(const std::string& asset_id, const std::string& act_id)
   if (!retraction) return;
   Acts& acts = acts_[asset_id];
   if (!acts.retractions.insert(act_id).second) return;  // every answer to it names it
-  if (tests_[asset_id].changes_nothing(*retraction, acts.replacements)) ++acts.idle;
+  if (means_nothing(asset_id, *retraction)) ++acts.idle;
   tests_[asset_id].apply(*retraction);
+  if (retraction->since)
+    std::erase_if(on_their_way_[asset_id], [&](const auto& one) { return one.second >= retraction->since; });
   heard_.erase(asset_id);
+}
+
+bool Admission::means_nothing(const std::string& asset_id, const Retraction& retraction) const {
+  const auto tests = tests_.find(asset_id);
+  const auto acts = acts_.find(asset_id);
+  const RetractedTests none;
+  const RetractedTests& known = tests == tests_.end() ? none : tests->second;
+  if (!known.changes_nothing(retraction, acts == acts_.end() ? std::set<std::string>() : acts->second.replacements))
+    return false;
+  const auto coming = on_their_way_.find(asset_id);
+  return coming == on_their_way_.end() || std::ranges::none_of(coming->second, [&](const auto& one) {
+           const bool is_meant = retraction.since ? one.second >= retraction.since : one.first == retraction.pst_id;
+           return is_meant && known.counts(one.first);
+         });
 }
 
 std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {
@@ -257,9 +284,7 @@ std::optional<std::string> Admission::refusal_of_idle(const Message& message) co
   const auto acts = acts_.find(asset_id);
   const auto retraction = retraction_of(asset_id, header_of(message).message_id);
   if (!retraction || acts == acts_.end() || acts->second.idle < kMostIdleRetractions) return std::nullopt;
-  const auto tests = tests_.find(asset_id);
-  if (tests != tests_.end() && !tests->second.changes_nothing(*retraction, acts->second.replacements))
-    return std::nullopt;
+  if (!means_nothing(asset_id, *retraction)) return std::nullopt;
   return "it means no test, retraction or replacement that is known, and " + std::to_string(acts->second.idle) +
          " such ones of asset " + asset_id + " are there already; find out who sends them";
 }

@@ -90,6 +90,9 @@ class Admission {
   /// The date of the asset's newest test that was not retracted.
   [[nodiscard]] std::optional<UtcTime> newest_test(const std::string& asset_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
+  /// Whether a retraction of the asset changes nothing. A test that others conclude from is known, with its date, before
+  /// it is concluded here: else a service that is behind would refuse what others take.
+  [[nodiscard]] bool means_nothing(const std::string& asset_id, const Retraction& retraction) const;
   [[nodiscard]] std::optional<std::string> refusal_of_idle(const Message& message) const;
   [[nodiscard]] std::optional<std::string> refusal_of_future_act(const Message& message, UtcTime now) const;
 
@@ -104,7 +107,8 @@ class Admission {
     std::set<std::string> replacements = {};
     std::size_t idle = 0;  ///< retractions that meant nothing that was known when they came
   };
-  std::map<std::string, Acts> acts_;                ///< by asset: message ids of what people said
+  std::map<std::string, Acts> acts_;  ///< by asset: message ids of what people said
+  std::map<std::string, std::map<std::string, std::optional<UtcTime>>> on_their_way_;  ///< see means_nothing
   std::map<std::string, std::set<UtcTime>> named_;  ///< dates of those that have a PST id, by asset
   std::map<std::string, UtcTime> heard_;            ///< the newest date of those that others speak of, by asset
   std::set<std::string> recorded_;                  ///< assets with tests that no bench made up

@@ -382,6 +382,31 @@ TEST(AdmissionOfRetractions, OfATestThatIsRetractedAlreadyMeanNothing) {
   EXPECT_EQ(refusal(act_on(kTestsRetracted, format_utc(add_seconds(kNow, -1.0))), admission), "");
 }
 
+/// What data acquisition has concluded waits here: refused here alone, the retracted test would enter the forecast.
+TEST(AdmissionOfRetractions, ATestThatIsNotConcludedYetIsMeantAllTheSame) {
+  const auto full = [] {
+    Admission admission;
+    for (std::size_t k = 0; k < kMostIdleRetractions; ++k)
+      admission.note(act_on(kTestRetracted, "XT03-MV2-none" + std::to_string(k)), false);
+    EXPECT_NE(refusal(act_on(kTestRetracted, "XT03-MV2-behind"), admission), "");
+    admission.note(concluded_test("XT03-MV2-behind", true), false);
+    return admission;
+  };
+  Admission one = full();
+  const MaintenanceEvent retracted = act_on(kTestRetracted, "XT03-MV2-behind");
+  EXPECT_EQ(refusal(retracted, one), "");
+  one.note(retracted, false);
+  MaintenanceEvent again = retracted;
+  again.header.message_id = retraction_id("XT03-MV2", kTestRetracted, "XT03-MV2-behind", add_seconds(kNow, 1.0));
+  EXPECT_NE(refusal(again, one), "");
+  Admission all = full();
+  EXPECT_NE(refusal(act_on(kTestsRetracted, format_utc(add_seconds(kNow, 60.0))), all), "");
+  const MaintenanceEvent since = act_on(kTestsRetracted, format_utc(add_seconds(kNow, -60.0)));
+  EXPECT_EQ(refusal(since, all), "");
+  all.note(since, false);
+  EXPECT_NE(refusal(act_on(kTestsRetracted, format_utc(add_seconds(kNow, -61.0))), all), "");
+}
+
 /// What a retraction means is looked up, not looked for: a restart applies all there ever were.
 TEST(RetractedTests, ManyRetractionsCostNoMoreThanOneEach) {
   RetractedTests tests;

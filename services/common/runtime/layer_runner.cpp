@@ -63,6 +63,7 @@ Status LayerRunner::start() {
 
   if (Status status = lanes_.prepare(); !status) return status;
   for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);
+  if (options_.local_inputs) options_.local_inputs->on_some([&bus = bus_] { bus.wake(); });
   if (Status status = restore_quarantine(); !status) return status;
   if (Status status = restore_refused_tests(); !status) return status;
   if (Status status = restore_awaiting(); !status) return status;

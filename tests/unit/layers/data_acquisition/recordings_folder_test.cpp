@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <set>
@@ -346,6 +347,24 @@ TEST_F(FolderReaderTest, ReadsOneRecordingAtATimeAndStopsThoughNobodyTakesIt) {
   EXPECT_TRUE(watched.stop(std::chrono::seconds(5)));
   EXPECT_TRUE(watched.stop(std::chrono::seconds(5))) << "told twice";
   EXPECT_THAT(files(), testing::IsSupersetOf({"april.csv", "may.csv"})) << "read again at the next start";
+}
+
+/// The main loop slept up to a second for each recording of a folder.
+TEST_F(FolderReaderTest, SaysWhenThereIsSomethingToTake) {
+  FolderReader watched = reader();
+  std::atomic<int> told = 0;
+  watched.on_some([&told] { ++told; });
+  drop("april", "XT03-MV2");
+  drop("may", "XT03-MV2");
+  watched.look(at_rest_);
+  for (const int expected : {1, 2}) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (told < expected && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_EQ(told, expected);
+    EXPECT_FALSE(watched.take().empty());
+  }
+  EXPECT_TRUE(watched.stop(std::chrono::seconds(5)));
 }
 
 TEST_F(FolderReaderTest, OneThatNeverLookedStopsAtOnce) { EXPECT_TRUE(reader().stop(std::chrono::milliseconds(0))); }

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "sealwatch/message/id_part.hpp"
 #include "services/cli/commands.hpp"
 #include "services/cli/terminal.hpp"
 #include "services/common/runtime/configuration_loader.hpp"
@@ -71,7 +73,8 @@ Checked<Configuration> load_and_check(const std::string& file) {
   return configuration;
 }
 
-/// What is allowed and yet leaves the others without work: a service of the chain that is disabled here.
+/// What is allowed and yet leaves the others without work: a service of the chain that is disabled here. And assets that
+/// are alike in the ids of their tests.
 std::vector<std::string> warnings_of(const Configuration& configuration) {
   const auto is_enabled = [&](const std::string& service) { return configuration.services.at(service).enabled; };
   std::vector<std::string> warnings;
@@ -81,6 +84,10 @@ std::vector<std::string> warnings_of(const Configuration& configuration) {
       warnings.push_back("services." + *service + " is disabled here: unless it runs on another machine of domain " +
                          std::to_string(configuration.domain) +
                          ", the services after it get nothing, and a replay waits for them in vain");
+  std::map<std::string, std::string> asset_of_id_part;
+  for (const AssetConfig& asset : configuration.assets)
+    if (const auto [other, is_new] = asset_of_id_part.emplace(id_part(asset.asset_id), asset.asset_id); !is_new)
+      warnings.push_back(alike_in_ids(asset.asset_id, other->second));
   return warnings;
 }
 

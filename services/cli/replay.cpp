@@ -226,10 +226,17 @@ int replay_live(const ReplayOptions& options, const LayerSet& layers, ReplaySour
                 double speed) {
   std::optional<Session> session = open_session(options.config);
   if (!session) return kBadInput;
+  std::optional<InstanceLock> alone;
   std::optional<Supervisor> supervisor;
   if (options.with_services) {
     const auto programs = service_programs(options.config, options.state_directory, session->configuration);
     if (!free_to_start(*session, names_of(programs))) return kBadInput;
+    auto lock = take_supervisor_lock(options.state_directory, session->configuration);
+    if (!lock) {
+      complain(lock.error());
+      return kBadInput;
+    }
+    if (*lock) alone.emplace(std::move(**lock));
     supervisor.emplace(programs);
     if (const Status started = supervisor->start(); !started) {
       complain(started.error());

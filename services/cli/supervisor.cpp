@@ -89,6 +89,15 @@ std::vector<std::string> names_of(const std::vector<ServiceProgram>& programs) {
   return names;
 }
 
+Result<std::optional<InstanceLock>> take_supervisor_lock(const std::string& state_directory,
+                                                         const Configuration& configuration) {
+  auto lock =
+      InstanceLock::take(state_directory.empty() ? configuration.state_directory : state_directory, "supervisor");
+  if (lock) return std::optional(std::move(*lock));
+  if (is_held_by_another(lock.error())) return fail(lock.error());
+  return std::optional<InstanceLock>();
+}
+
 Supervisor::Supervisor(std::vector<ServiceProgram> programs, std::chrono::milliseconds restart_pause)
     : restart_pause_(restart_pause) {
   for (ServiceProgram& program : programs)

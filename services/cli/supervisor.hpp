@@ -5,11 +5,13 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sealwatch/config/configuration.hpp"
 #include "sealwatch/core/result.hpp"
+#include "services/common/runtime/service_manager.hpp"
 
 namespace sealwatch::cli {
 
@@ -36,6 +38,11 @@ struct ServiceProgram {
 [[nodiscard]] bool enabled(const Configuration& configuration, const std::string& service);
 /// "services.state_detection disabled here ...": what a chain that stands still may lack; "" where all are enabled.
 [[nodiscard]] std::string explain_disabled(const Configuration& configuration);
+
+/// Of two that are started at once neither hears the other's services: each would take the journals of some. An Error
+/// where another has it. Why a lock cannot be made otherwise is the services' to tell, and to try again: then none.
+[[nodiscard]] Result<std::optional<InstanceLock>> take_supervisor_lock(const std::string& state_directory,
+                                                                       const Configuration& configuration);
 
 class Supervisor {
  public:

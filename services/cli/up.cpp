@@ -11,7 +11,6 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/session.hpp"
 #include "services/cli/supervisor.hpp"
-#include "services/common/runtime/service_manager.hpp"
 
 namespace sealwatch::cli {
 namespace {
@@ -88,11 +87,8 @@ int run_up(const UpOptions& options) {
     }
   catch_interrupts(kSupervisorStops);
   if (!free_to_start(*session, names_of(programs))) return kBadInput;
-  // Of two that are started at once neither hears the other's services: each would take the journals of some. Why a lock
-  // cannot be made otherwise is the services' to tell, and to try again.
-  const auto alone = InstanceLock::take(
-      options.state_directory.empty() ? session->configuration.state_directory : options.state_directory, "supervisor");
-  if (!alone && is_held_by_another(alone.error())) {
+  const auto alone = take_supervisor_lock(options.state_directory, session->configuration);
+  if (!alone) {
     complain(alone.error());
     return kBadInput;
   }

@@ -92,6 +92,7 @@ bool FolderReader::hand_over(std::vector<RawSamples> blocks, const std::stop_tok
   std::unique_lock lock(mutex_);
   for (RawSamples& block : blocks) blocks_.push_back(std::move(block));
   has_some_ = !blocks_.empty();
+  if (has_some_) on_some_();
   return changed_.wait(lock, stop, [this] { return blocks_.empty(); });
 }
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/port/local_inputs.hpp"
@@ -30,6 +32,7 @@ class FolderReader final : public LocalInputs {
   FolderReader& operator=(const FolderReader&) = delete;
 
   void look(const LayerAtRest& at_rest) override;
+  void on_some(std::function<void()> call) override { on_some_ = std::move(call); }
   [[nodiscard]] bool has_some() override { return has_some_; }
   [[nodiscard]] std::vector<Message> take() override;
   [[nodiscard]] bool stop(std::chrono::milliseconds patience) override;
@@ -42,6 +45,7 @@ class FolderReader final : public LocalInputs {
   [[nodiscard]] bool hand_over(std::vector<RawSamples> blocks, const std::stop_token& stop);
 
   std::chrono::milliseconds between_looks_;
+  std::function<void()> on_some_ = [] {};
   RecordingsFolder folder_;  ///< the reading thread's alone
   std::atomic<bool> has_some_{false};
   std::mutex mutex_;  ///< of all below

@@ -87,9 +87,12 @@ std::vector<fs::path> RecordingsFolder::recordings() {
   return paths;
 }
 
+/// What was overwritten since it was read is another recording, whose test nobody has seen: the look that follows finds
+/// it changed, and reads it.
 void RecordingsFolder::put_away_concluded() {
   for (auto file = files_.begin(); file != files_.end();) {
-    const bool concluded = file->second.taken && !file->second.stuck && is_concluded_(file->second.first_block);
+    const bool concluded = file->second.taken && !file->second.stuck && is_concluded_(file->second.first_block) &&
+                           stamp_of(file->first) == file->second.stamp;
     const bool gone = concluded && move_to("done", file->first);
     file->second.stuck = file->second.stuck || (concluded && !gone);
     file = gone ? files_.erase(file) : std::next(file);

@@ -543,6 +543,13 @@ TEST_F(Commands, ConfigurationIsCheckedAsAWhole) {
                                      folder_.string() + "\n")});
   EXPECT_EQ(without.status, 0);
   EXPECT_THAT(without.output, HasSubstr("warning: services.state_detection is disabled here"));
+  (void)write("a_asset.yaml", "asset_id: Ventil-\u00C4\n");
+  (void)write("o_asset.yaml", "asset_id: Ventil-\u00D6\n");
+  const Finished alike =
+      run({"sealwatch", "config", "check", "--config",
+           write("alike.yaml", "assets: [a_asset.yaml, o_asset.yaml]\nstate_directory: " + folder_.string() + "\n")});
+  EXPECT_EQ(alike.status, 0);
+  EXPECT_THAT(alike.output, HasSubstr("warning: asset 'Ventil-\u00D6': all but ASCII letters"));
   (void)write("two_lines_asset.yaml", "asset_id: \"XT03\\nMV2\"\n");
   const Finished two_lines =
       run({"sealwatch", "config", "check", "--config",

@@ -1,5 +1,6 @@
 // Recorded tests through the real six processes: live and offline agree, deaths change nothing, late subscribers are
 // served.
+#include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -11,6 +12,7 @@
 #include <thread>
 
 #include "services/common/runtime/configuration_loader.hpp"
+#include "services/common/runtime/service_manager.hpp"
 #include "tests/integration/six_services.hpp"
 
 namespace sealwatch::testing {
@@ -154,6 +156,18 @@ std::size_t processes_with(const std::string& state) {
     if (line.find(state) != std::string::npos) ++count;
   }
   return count;
+}
+
+/// Neither hears the other's services when both begin at once.
+TEST_F(Replay, WithServicesIsRefusedWhereAnotherIsStartingThem) {
+  const auto lock = InstanceLock::take(state_directory("taken").string(), "supervisor");
+  ASSERT_TRUE(lock.has_value());
+  const Finished refused = run(with({"sealwatch", "replay", "--with-services", "--state",
+                                     state_directory("taken").string(), "--config", config(), "--quiet"},
+                                    recordings()));
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_THAT(refused.output, ::testing::HasSubstr("process " + std::to_string(::getpid())));
+  EXPECT_EQ(processes_with(state_directory("taken").string()), 0U);
 }
 
 TEST_F(Replay, ToldToStopOrKilledItLeavesNoServiceBehind) {

@@ -2,6 +2,7 @@
 // that remember tests and for who judges the dates of new ones.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -33,12 +34,14 @@ class RetractedTests {
     for (const std::string& pst_id : meant) ++retractions_of_[pst_id];
   }
 
-  /// Whether it means nothing that is known: no test, no retraction in force, no replacement of `replacements`.
+  /// Whether it means nothing that is known: no test that counts, no retraction in force, no replacement of
+  /// `replacements`.
   [[nodiscard]] bool changes_nothing(const Retraction& retraction, const std::set<std::string>& replacements) const {
     const std::string& withdrawn = retraction.withdrawn_id;
     if (is_replacement_id(withdrawn)) return !replacements.contains(withdrawn) || !holds(withdrawn);
     if (!withdrawn.empty()) return !meant_.contains(withdrawn);
-    return retraction.since ? meant_by(retraction).empty() : !tests_.contains(retraction.pst_id);
+    if (!retraction.since) return !tests_.contains(retraction.pst_id) || !counts(retraction.pst_id);
+    return std::ranges::none_of(meant_by(retraction), [this](const std::string& pst_id) { return counts(pst_id); });
   }
 
   /// Whether no retraction in force means it.

@@ -22,6 +22,8 @@ class LocalInputs {
   virtual ~LocalInputs() = default;
   /// About once a second: the time to ask layers what they have concluded.
   virtual void look(const LayerAtRest& at_rest) = 0;
+  /// What to call, in any thread, when there is something to take, before the first look.
+  virtual void on_some(std::function<void()> /*call*/) {}
   /// Whether there is something to take.
   [[nodiscard]] virtual bool has_some() = 0;
   /// A small piece of what is ready, in order: other messages get their turn after it. A message that comes twice is

@@ -1,6 +1,7 @@
 #include "services/common/runtime/admission.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "sealwatch/core/test_limits.hpp"
 #include "sealwatch/core/visible_text.hpp"
@@ -22,6 +23,9 @@ constexpr std::int64_t kYear_ns = 366 * kDay_ns;
 constexpr std::int64_t kLatest_ns = 290 * kYear_ns;
 /// A test has fewer rows.
 constexpr std::uint64_t kMostBlocks = kTestLimits.most_numbers;
+
+/// Of an asset: not yet concluded here, the newest of them, as their ids begin with the date.
+constexpr std::size_t kMostOnTheirWay = 256;
 
 constexpr const char* kHasControls = "has control or invisible characters";
 
@@ -140,7 +144,7 @@ std::optional<TextFault> fault_of_texts(const Message& message) {
 
 Admission::Admission(std::map<std::string, UtcTime> commissioned, ConfiguredAssets assets)
     : commissioned_(std::move(commissioned)), assets_(std::move(assets)) {
-  for (const std::string& asset_id : assets_.names) asset_of_id_part_.emplace(id_part(asset_id), asset_id);
+  for (const std::string& asset_id : assets_.names) note_name(asset_id);
 }
 
 void Admission::note(const Message& message, bool concluded) {
@@ -148,14 +152,22 @@ void Admission::note(const Message& message, bool concluded) {
     recorded_.insert(block->asset_id);
   const std::string asset_id = asset_of(message);
   note_asset(asset_id);
-  if (const std::optional<std::int64_t> time_ns = time_of_test(message)) {
+  const std::optional<std::int64_t> time_ns = time_of_test(message);
+  const std::string& pst_id = header_of(message).pst_id;
+  auto& on_their_way = on_their_way_[asset_id];
+  if (concluded)
+    on_their_way.erase(pst_id);
+  else if (!pst_id.empty() && !is_report(message))
+    on_their_way[pst_id] = time_ns ? std::optional(UtcTime{*time_ns}) : std::nullopt;
+  if (on_their_way.size() > kMostOnTheirWay) on_their_way.erase(on_their_way.begin());
+  if (time_ns) {
     if (concluded || topic_of(message) == Topic::raw_samples)
       note_test(message, {*time_ns});
     else
       heard_[asset_id] = std::max(heard_[asset_id], UtcTime{*time_ns});
     if (is_live(message)) live_.insert(asset_id);
-  } else if (concluded && !header_of(message).pst_id.empty()) {
-    tests_[asset_id].know(header_of(message).pst_id, std::nullopt);
+  } else if (concluded && !pst_id.empty()) {
+    tests_[asset_id].know(pst_id, std::nullopt);
   }
   // An act is told once; after a restart it stands among the sources of what answered it.
   std::vector<std::string> acts = header_of(message).source_ids;
@@ -165,9 +177,16 @@ void Admission::note(const Message& message, bool concluded) {
 
 void Admission::note_asset(const std::string& asset_id) {
   if (asset_id.empty() || assets_.names.contains(asset_id)) return;
-  unknown_.insert(asset_id);
-  asset_of_id_part_.emplace(id_part(asset_id), asset_id);
+  if (unknown_.insert(asset_id).second) note_name(asset_id);
 }
+
+/// The likes of them are there already, with a history under these ids.
+void Admission::note_name(const std::string& asset_id) {
+  const auto [other, is_new] = asset_of_id_part_.emplace(id_part(asset_id), asset_id);
+  if (!is_new) alike_.push_back(alike_in_ids(asset_id, other->second));
+}
+
+std::vector<std::string> Admission::take_alike() { return std::exchange(alike_, {}); }
 
 /// Before data acquisition a test has no name by which it could be retracted: until then it is one of its date.
 void Admission::note_test(const Message& message, UtcTime time) {
@@ -188,9 +207,25 @@ void Admission::note_act(const std::string& asset_id, const std::string& act_id)
   if (!retraction) return;
   Acts& acts = acts_[asset_id];
   if (!acts.retractions.insert(act_id).second) return;  // every answer to it names it
-  if (tests_[asset_id].changes_nothing(*retraction, acts.replacements)) ++acts.idle;
+  if (means_nothing(asset_id, *retraction)) ++acts.idle;
   tests_[asset_id].apply(*retraction);
+  if (retraction->since)
+    std::erase_if(on_their_way_[asset_id], [&](const auto& one) { return one.second >= retraction->since; });
   heard_.erase(asset_id);
+}
+
+bool Admission::means_nothing(const std::string& asset_id, const Retraction& retraction) const {
+  const auto tests = tests_.find(asset_id);
+  const auto acts = acts_.find(asset_id);
+  const RetractedTests none;
+  const RetractedTests& known = tests == tests_.end() ? none : tests->second;
+  if (!known.changes_nothing(retraction, acts == acts_.end() ? std::set<std::string>() : acts->second.replacements))
+    return false;
+  const auto coming = on_their_way_.find(asset_id);
+  return coming == on_their_way_.end() || std::ranges::none_of(coming->second, [&](const auto& one) {
+           const bool is_meant = retraction.since ? one.second >= retraction.since : one.first == retraction.pst_id;
+           return is_meant && known.counts(one.first);
+         });
 }
 
 std::optional<UtcTime> Admission::newest_test(const std::string& asset_id) const {
@@ -213,8 +248,6 @@ std::optional<std::string> Admission::refusal_of_asset(const Message& message) c
   const std::string what = "asset '" + visible(asset_id.substr(0, kLongestId), false) + "' is not configured";
   if (assets_.refuses_others) return what + ", and unknown_assets are refused; give it an asset file, if it is yours";
   if (unknown_.contains(asset_id)) return std::nullopt;
-  if (const auto other = asset_of_id_part_.find(id_part(asset_id)); other != asset_of_id_part_.end())
-    return what + ", and its tests would have the ids of those of '" + other->second + "'; give it another id";
   if (unknown_.size() < kMostUnknownAssets) return std::nullopt;
   return what + ", and " + std::to_string(unknown_.size()) +
          " such assets are there already; give it an asset file, if it is yours, or find out who sends it";
@@ -251,9 +284,7 @@ std::optional<std::string> Admission::refusal_of_idle(const Message& message) co
   const auto acts = acts_.find(asset_id);
   const auto retraction = retraction_of(asset_id, header_of(message).message_id);
   if (!retraction || acts == acts_.end() || acts->second.idle < kMostIdleRetractions) return std::nullopt;
-  const auto tests = tests_.find(asset_id);
-  if (tests != tests_.end() && !tests->second.changes_nothing(*retraction, acts->second.replacements))
-    return std::nullopt;
+  if (!means_nothing(asset_id, *retraction)) return std::nullopt;
   return "it means no test, retraction or replacement that is known, and " + std::to_string(acts->second.idle) +
          " such ones of asset " + asset_id + " are there already; find out who sends them";
 }

@@ -26,6 +26,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "sealwatch/core/time.hpp"
 #include "sealwatch/message/retracted_tests.hpp"
@@ -62,12 +63,18 @@ class Admission {
   void note(const Message& message, bool concluded = true);
   /// Takes note of an asset alone.
   void note_asset(const std::string& asset_id);
+  /// Of which assets two may give their tests the same ids, as far as it was not asked before.
+  [[nodiscard]] std::vector<std::string> take_alike();
   /// Takes note of an act of that id, if it is a retraction.
   void note_act(const std::string& asset_id, const std::string& act_id);
   /// Why nothing of its asset is taken in; none where it is.
   [[nodiscard]] std::optional<std::string> refusal_of_asset(const Message& message) const;
   /// Why the message of such an asset is not to be taken in; none for nearly all.
   [[nodiscard]] std::optional<std::string> refusal(const Message& message, UtcTime now) const;
+  /// Whether the configuration names it, or it was taken without.
+  [[nodiscard]] bool knows(const std::string& asset_id) const {
+    return assets_.names.contains(asset_id) || unknown_.contains(asset_id);
+  }
   /// Of tests that were neither played back nor made up: time passes for such an asset, whatever is played back beside.
   [[nodiscard]] bool has_live_tests(const std::string& asset_id) const { return live_.contains(asset_id); }
 
@@ -75,6 +82,7 @@ class Admission {
   [[nodiscard]] std::optional<UtcTime> future_test_before_live(const std::string& asset_id, UtcTime now) const;
 
  private:
+  void note_name(const std::string& asset_id);
   void note_test(const Message& message, UtcTime time);
   [[nodiscard]] std::optional<std::string> refusal_of_test(const RawSamples& raw) const;
   [[nodiscard]] std::optional<std::string> refusal_of_time(const Message& message, UtcTime now) const;
@@ -82,12 +90,16 @@ class Admission {
   /// The date of the asset's newest test that was not retracted.
   [[nodiscard]] std::optional<UtcTime> newest_test(const std::string& asset_id) const;
   [[nodiscard]] std::optional<std::string> refusal_of_report(const Message& message, UtcTime now) const;
+  /// Whether a retraction of the asset changes nothing. A test that others conclude from is known, with its date, before
+  /// it is concluded here: else a service that is behind would refuse what others take.
+  [[nodiscard]] bool means_nothing(const std::string& asset_id, const Retraction& retraction) const;
   [[nodiscard]] std::optional<std::string> refusal_of_idle(const Message& message) const;
   [[nodiscard]] std::optional<std::string> refusal_of_future_act(const Message& message, UtcTime now) const;
 
   std::map<std::string, UtcTime> commissioned_;
   ConfiguredAssets assets_;
-  std::map<std::string, std::string> asset_of_id_part_;  ///< of all: no two may give their tests the same ids
+  std::map<std::string, std::string> asset_of_id_part_;  ///< of all, the first of those that are alike there
+  std::vector<std::string> alike_;                       ///< not yet told
   std::set<std::string> unknown_;                        ///< assets that it does not name, and that were taken
   std::map<std::string, RetractedTests> tests_;          ///< by asset
   struct Acts {
@@ -95,7 +107,8 @@ class Admission {
     std::set<std::string> replacements = {};
     std::size_t idle = 0;  ///< retractions that meant nothing that was known when they came
   };
-  std::map<std::string, Acts> acts_;                ///< by asset: message ids of what people said
+  std::map<std::string, Acts> acts_;  ///< by asset: message ids of what people said
+  std::map<std::string, std::map<std::string, std::optional<UtcTime>>> on_their_way_;  ///< see means_nothing
   std::map<std::string, std::set<UtcTime>> named_;  ///< dates of those that have a PST id, by asset
   std::map<std::string, UtcTime> heard_;            ///< the newest date of those that others speak of, by asset
   std::set<std::string> recorded_;                  ///< assets with tests that no bench made up

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "sealwatch/core/text.hpp"
-#include "sealwatch/message/id_part.hpp"
 #include "sealwatch/message/topics.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_options.hpp"
@@ -223,25 +222,17 @@ std::vector<std::string> asset_files(YamlMap& root, const fs::path& directory) {
 void read_assets(const std::vector<std::string>& files, Configuration& configuration, std::vector<Error>& errors) {
   std::vector<std::string> sites;
   for (const SiteConfig& site : configuration.sites) sites.push_back(site.site);
-  struct Known {
-    std::string asset_id, file;
-  };
-  std::map<std::string, Known> known;  // by what their tests' ids have of them
+  std::map<std::string, std::string> file_of;
   for (const std::string& file : files) {
     Checked<AssetConfig> asset = check_asset(file, &sites);
     if (!asset) {
       errors.insert(errors.end(), asset.error().begin(), asset.error().end());
       continue;
     }
-    const auto [at, is_new] = known.emplace(id_part(asset->asset_id), Known{asset->asset_id, file});
-    const Known& other = at->second;
+    const auto [other, is_new] = file_of.emplace(asset->asset_id, file);
     if (!is_new)
       errors.push_back({file, "key asset_id", asset->asset_id,
-                        other.asset_id == asset->asset_id
-                            ? "is the id of another asset already, in " + other.file
-                            : "gives its tests the ids of those of '" + other.asset_id + "', in " + other.file +
-                                  ": all but letters, digits, '-' and '.' is '_' there",
-                        "give each asset an id of its own"});
+                        "is the id of another asset already, in " + other->second, "give each asset an id of its own"});
     configuration.assets.push_back(std::move(*asset));
   }
 }

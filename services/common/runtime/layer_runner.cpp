@@ -63,7 +63,9 @@ Status LayerRunner::start() {
 
   if (Status status = lanes_.prepare(); !status) return status;
   for (const std::string& asset_id : options_.assets) lanes_.know(asset_id);
+  if (options_.local_inputs) options_.local_inputs->on_some([&bus = bus_] { bus.wake(); });
   if (Status status = restore_quarantine(); !status) return status;
+  if (Status status = restore_refused_tests(); !status) return status;
   if (Status status = restore_awaiting(); !status) return status;
   if (Status status = restore_past(); !status) return status;
   if (Status status = look_at_own_acts(); !status) return status;
@@ -178,7 +180,8 @@ Status LayerRunner::take_ready() {
   for (; !ready_.empty(); ready_.pop_front())
     if (Status status = take(std::move(ready_.front())); !status) return status;
   if (Status status = let_lanes_work(); !status) return status;
-  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty())
+  if (!taken_.empty() || !results_.empty() || !uncommitted_.empty() || !acts_.empty() ||
+      !changed_refused_tests_.empty())
     if (Status status = in_batch([this] { return store_batch(); }, batch_survives()); !status) return status;
   took_local_ = false;
   lanes_.save_memory();
@@ -253,6 +256,7 @@ Status LayerRunner::take(Message message) {
   header_of(message).message_id = **id;
   auto refused = admission_.refusal(message, clock_.now());
   if (!refused) refused = refusal_of_confirmation(message);
+  if (!refused) refused = refusal_of_waiting(message);
   if (refused) {
     note_error(std::string(name_of(topic_of(message))) + " refused: " + *refused);
     log_message(LogLevel::warn, "refused", message, {{"reason", *refused}});
@@ -357,6 +361,7 @@ Status LayerRunner::store_batch() {
   for (const Taken& one : taken_)
     if (Status status = journal_.add_input(*one.message, one.stream, clock_.now(), one.state); !status) return status;
   if (Status status = record_acts(); !status) return status;
+  if (Status status = keep_refused_tests(); !status) return status;
   for (const auto& [stream, sequence] : uncommitted_)
     if (Status status = journal_.set_position({stream.first, stream.second, sequence}); !status) return status;
   for (LaneResult& result : results_)

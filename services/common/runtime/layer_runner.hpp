@@ -185,6 +185,17 @@ class LayerRunner {
   void note_strangers(const std::vector<StrangerWatch::Stranger>& strangers);
   void note_refused_test(const RawSamples& raw, const std::string& refused);
   void note_good_test(const RawSamples& raw);
+  /// A sender, or the folder, of whose tests of an asset one was refused.
+  struct RefusedTest {
+    ServiceAlarm alarm;        ///< its subject is the source
+    UtcTime last;              ///< when one was refused
+    std::string recording_id;  ///< of that one; "" after a restart
+  };
+  [[nodiscard]] static bool is_of(const RefusedTest& refused, const RawSamples& raw);
+  void tell_of_refused_tests();
+  void end_refused_tests(const std::function<bool(const RefusedTest&)>& is_over);
+  [[nodiscard]] Status restore_refused_tests();
+  [[nodiscard]] Status keep_refused_tests();
   void look_at_clock();
   void tell_of_step();
   void tell_of_synchronisation(ClockQuality quality);
@@ -210,6 +221,7 @@ class LayerRunner {
   [[nodiscard]] Status restore_awaiting();
   void await(std::shared_ptr<const Message> act, UtcTime since);
   [[nodiscard]] std::optional<std::string> refusal_of_confirmation(const Message& message) const;
+  [[nodiscard]] std::optional<std::string> refusal_of_waiting(const Message& message) const;
   [[nodiscard]] bool waits_for_second(const Message& message) const;
   /// Writes down who said it, and what becomes of it: `state` for what no person said.
   [[nodiscard]] InputState note_act(const Message& message, const std::optional<std::string>& refused,
@@ -314,6 +326,8 @@ class LayerRunner {
   std::map<std::string, bool> replaying_;  ///< by asset: its last input was played back
   std::string last_error_;                 ///< with its time
   Alarms alarms_;
+  std::vector<RefusedTest> refused_tests_;                            ///< the newest last
+  std::vector<std::pair<ServiceAlarm, bool>> changed_refused_tests_;  ///< not yet in the journal: whether it stands
   std::optional<AlarmDesk> desk_;
   ServiceStatus told_at_desk_;  ///< its part of the heartbeat
   ClockWatch clock_watch_;

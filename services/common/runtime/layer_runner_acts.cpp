@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kAwaitsConfirmation = "awaits_confirmation";
 constexpr const char* kTaken = "taken";
+constexpr std::ptrdiff_t kMostAwaiting = 64;  ///< of an asset
 constexpr std::size_t kHashLength = 64;
 /// Of a second: who invents records invents many.
 constexpr std::size_t kMostNewAnchors = 16;
@@ -111,6 +112,17 @@ std::optional<std::string> LayerRunner::refusal_of_confirmation(const Message& m
 
 bool LayerRunner::waits_for_second(const Message& message) const {
   return options_.acts_confirmed_by_second && may_lower_an_advisory(message);
+}
+
+/// Each waits in the journal, with an alarm of its own, and nothing is known of what it will mean.
+std::optional<std::string> LayerRunner::refusal_of_waiting(const Message& message) const {
+  if (!waits_for_second(message)) return std::nullopt;
+  const std::string asset_id = asset_of(message);
+  const auto of_asset =
+      std::ranges::count_if(awaiting_, [&](const auto& one) { return asset_of(*one.second) == asset_id; });
+  if (of_asset < kMostAwaiting) return std::nullopt;
+  return std::to_string(of_asset) + " acts of asset " + asset_id +
+         " wait for a second person already; confirm or reject those, and say it again";
 }
 
 InputState LayerRunner::note_act(const Message& message, const std::optional<std::string>& refused, InputState state) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "sealwatch/core/visible_text.hpp"
 #include "services/common/runtime/layer_runner.hpp"
@@ -24,6 +25,11 @@ constexpr const char* kClockStep = "clock_step";
 constexpr const char* kClockUnsynchronised = "clock_unsynchronised";
 constexpr const char* kFlood = "flood";
 constexpr const char* kMissingBlocks = "missing_blocks";
+constexpr const char* kOtherSenders = "others";
+constexpr std::size_t kMostNamedRefusals = 8;
+constexpr std::ptrdiff_t kMostRefusedSenders = 4;  ///< of an asset
+/// A sender that is not heard any more: what is due and does not come is another alarm by then.
+constexpr std::int64_t kRefusalIsForgotten_ns = 90LL * 86'400'000'000'000;
 constexpr std::chrono::seconds kFloodIsOver{60};
 /// It is raised every second while they are missing.
 constexpr std::chrono::seconds kBlocksCame{5};
@@ -122,24 +128,107 @@ void LayerRunner::look_for_future_test(const std::string& asset_id) {
 }
 
 /// Its blocks count as received, and its sender lets go of them: nobody else would learn that a test is lost, or that
-/// the sender's clock is wrong and the next ones will be as well. One for each asset, and one for all without a name. Who
-/// plays a recording back is told.
+/// the sender's clock is wrong and the next ones will be as well. Who plays a recording back is told. Assets and senders
+/// may be invented: those that nobody knows share one alarm, and of one asset so many senders are told apart.
 void LayerRunner::note_refused_test(const RawSamples& raw, const std::string& refused) {
   if (raw.header.replay) return;
-  const bool has_name = raw.asset_id.size() <= kLongestId && is_visible(raw.asset_id);
-  alarms_.raise({.kind = kRefusedTest,
-                 .asset_id = has_name ? raw.asset_id : std::string(),
-                 .subject = {},
-                 .pst_id = {},
-                 .text = refused,
-                 .since_ns = clock_.now().nanoseconds});
+  const UtcTime now = clock_.now();
+  ServiceAlarm alarm{.kind = kRefusedTest,
+                     .asset_id = raw.asset_id,
+                     .subject = raw.source_id,
+                     .pst_id = {},
+                     .text = refused,
+                     .since_ns = now.nanoseconds};
+  const auto known = std::ranges::find_if(refused_tests_, [&](const RefusedTest& one) { return is_of(one, raw); });
+  if (known != refused_tests_.end()) {
+    known->last = now;
+    known->recording_id = raw.recording_id;
+    return;
+  }
+  const auto of_asset =
+      std::ranges::count_if(refused_tests_, [&](const RefusedTest& one) { return one.alarm.asset_id == raw.asset_id; });
+  const bool has_name = raw.source_id.size() <= kLongestId && is_visible(raw.source_id);
+  if (!admission_.knows(raw.asset_id) || !has_name) {
+    alarm.asset_id = alarm.subject = {};
+    alarms_.raise(std::move(alarm), steady_now() + options_.strangers_stand);
+  } else if (of_asset < kMostRefusedSenders) {
+    refused_tests_.push_back({alarm, now, raw.recording_id});
+    changed_refused_tests_.emplace_back(std::move(alarm), true);
+    tell_of_refused_tests();
+  }
 }
 
+/// Where many are refused at once (this machine's clock is wrong), the first few are named: there is room for other alarms.
+void LayerRunner::tell_of_refused_tests() {
+  for (std::size_t k = 0; k < refused_tests_.size(); ++k) {
+    const ServiceAlarm& alarm = refused_tests_[k].alarm;
+    if (k < kMostNamedRefusals)
+      alarms_.raise(alarm);
+    else
+      alarms_.clear(alarm.kind, alarm.asset_id, alarm.subject);
+  }
+  alarms_.clear(kRefusedTest, {}, kOtherSenders);
+  if (refused_tests_.size() <= kMostNamedRefusals) return;
+  const ServiceAlarm& first = refused_tests_[kMostNamedRefusals].alarm;
+  alarms_.raise({.kind = kRefusedTest,
+                 .asset_id = {},
+                 .subject = kOtherSenders,
+                 .pst_id = {},
+                 .text = "tests of " + std::to_string(refused_tests_.size() - kMostNamedRefusals) +
+                         " more are refused, among them: " + first.text,
+                 .since_ns = first.since_ns});
+}
+
+/// What its sender recorded after the refusal shows that it is mended, or the refused recording itself, corrected. An old
+/// recording shows nothing.
 void LayerRunner::note_good_test(const RawSamples& raw) {
   if (raw.header.replay || raw.block_number != 0) return;
-  for (const std::string& asset_id : {raw.asset_id, std::string()})
-    if (alarms_.clear(kRefusedTest, asset_id, {}))
-      log_event(LogLevel::info, "a test was taken again", {{"asset", raw.asset_id}});
+  const UtcTime time = raw.start_time_known ? UtcTime{raw.start_time_ns} : clock_.now();
+  end_refused_tests([&](const RefusedTest& one) {
+    const bool is_corrected = !raw.recording_id.empty() && one.recording_id == raw.recording_id;
+    return is_of(one, raw) && (is_corrected || time >= one.last);
+  });
+}
+
+void LayerRunner::end_refused_tests(const std::function<bool(const RefusedTest&)>& is_over) {
+  const std::size_t before = refused_tests_.size();
+  std::erase_if(refused_tests_, [&](const RefusedTest& one) {
+    if (!is_over(one)) return false;
+    alarms_.clear(kRefusedTest, one.alarm.asset_id, one.alarm.subject);
+    changed_refused_tests_.emplace_back(one.alarm, false);
+    log_event(LogLevel::info, "tests are refused no more",
+              {{"asset", one.alarm.asset_id}, {"source", one.alarm.subject}});
+    return true;
+  });
+  if (refused_tests_.size() != before) tell_of_refused_tests();
+}
+
+bool LayerRunner::is_of(const RefusedTest& refused, const RawSamples& raw) {
+  return refused.alarm.asset_id == raw.asset_id && refused.alarm.subject == raw.source_id;
+}
+
+/// The sender does not send them again after a restart: the alarm would be over, and the test as lost as before.
+Status LayerRunner::restore_refused_tests() {
+  if (!reads_samples()) return {};
+  auto kept = journal_.alarms();
+  if (!kept) return fail(kept.error());
+  for (AlarmEntry& one : *kept)
+    if (one.service == kind_->name() && one.alarm.kind == kRefusedTest)
+      refused_tests_.push_back({one.alarm, {one.alarm.since_ns}, {}});
+  std::ranges::stable_sort(refused_tests_, {}, [](const RefusedTest& one) { return one.alarm.since_ns; });
+  tell_of_refused_tests();
+  return {};
+}
+
+/// In the batch that is being written.
+Status LayerRunner::keep_refused_tests() {
+  for (const auto& [alarm, stands] : std::exchange(changed_refused_tests_, {})) {
+    AlarmEntry entry;
+    entry.service = kind_->name();
+    entry.alarm = alarm;
+    if (Status kept = stands ? journal_.keep_alarm(entry) : journal_.forget_alarm(alarm); !kept) return kept;
+  }
+  return {};
 }
 
 void LayerRunner::look_at_clock() {
@@ -233,6 +322,10 @@ void LayerRunner::look_for_trouble() {
   tell_of_floods();
   tell_of_missing_blocks();
   look_at_clock();
+  end_refused_tests(
+      [&](const RefusedTest& one) { return clock_.now().nanoseconds - one.last.nanoseconds > kRefusalIsForgotten_ns; });
+  for (const std::string& alike : admission_.take_alike())
+    if (reads_samples()) log_event(LogLevel::warn, "assets are alike in the ids of their tests", {{"error", alike}});
   note_strangers(strangers_.look(steady_now()));
   const auto refused = options_.refused_by_bus ? options_.refused_by_bus() : std::nullopt;
   if (refused)

@@ -160,14 +160,19 @@ TEST(AdmissionOfAssets, OfThoseNotConfiguredSoManyAreTakenAndThoseStay) {
             "is yours, or find out who sends it");
 }
 
-TEST(AdmissionOfAssets, NoneWhoseTestsWouldHaveTheIdsOfAnother) {
-  Admission admission({}, {.names = {"XT_1"}});
-  EXPECT_EQ(admission.refusal_of_asset(test_of("XT 1")),
-            "asset 'XT 1' is not configured, and its tests would have the ids of those of 'XT_1'; give it another id");
-  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT/2")));
-  admission.note(test_of("XT/2"));
-  EXPECT_FALSE(admission.refusal_of_asset(test_of("XT/2")));
-  EXPECT_TRUE(admission.refusal_of_asset(test_of("XT:2")));
+/// What has run so for years has a history.
+TEST(AdmissionOfAssets, ThoseThatAreAlikeInTheIdsOfTheirTestsAreTakenAndToldOnce) {
+  Admission admission({}, {.names = {"Ventil-\u00C4", "Ventil-\u00D6", "XT_1"}});
+  const auto told = admission.take_alike();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_THAT(told[0], HasSubstr("asset 'Ventil-\u00D6': all but ASCII letters"));
+  EXPECT_THAT(told[0], HasSubstr("as of 'Ventil-\u00C4': two that begin at the same time"));
+  for (const char* asset_id : {"XT 1", "XT 1", "XT/2", "XT 3"}) {
+    EXPECT_FALSE(admission.refusal_of_asset(test_of(asset_id)));
+    admission.note(test_of(asset_id));
+  }
+  EXPECT_EQ(admission.take_alike().size(), 1U);
+  EXPECT_TRUE(admission.take_alike().empty());
 }
 
 TEST(AdmissionOfAssets, OrNoneAtAll) {
@@ -355,6 +360,51 @@ TEST(AdmissionOfRetractions, OnlySoManyMayMeanNothing) {
   replaced.header.message_id = "maintenance_event/XT03-MV2/seal_replaced/true/2018-06-10T00:00:00Z";
   EXPECT_TRUE(take(replaced));
   EXPECT_TRUE(take(act_on(kRetractionWithdrawn, replaced.header.message_id)));
+}
+
+/// One test, retracted six thousand times, did the same.
+TEST(AdmissionOfRetractions, OfATestThatIsRetractedAlreadyMeanNothing) {
+  Admission admission;
+  admission.note(concluded_test("XT03-MV2-dated", true));
+  std::size_t taken = 0;
+  for (int k = 0; k < 300; ++k) {
+    MaintenanceEvent again = act_on(kTestRetracted, "XT03-MV2-dated");
+    again.header.message_id = retraction_id("XT03-MV2", kTestRetracted, "XT03-MV2-dated", add_seconds(kNow, k));
+    MaintenanceEvent since = act_on(kTestsRetracted, format_utc(add_seconds(kNow, -60.0 - k)));
+    for (const MaintenanceEvent& event : {again, since})
+      if (refusal(event, admission).empty()) {
+        admission.note(event, false);
+        ++taken;
+      }
+  }
+  EXPECT_EQ(taken, kMostIdleRetractions + 1);
+  admission.note(concluded_test("XT03-MV2-newer", true));
+  EXPECT_EQ(refusal(act_on(kTestsRetracted, format_utc(add_seconds(kNow, -1.0))), admission), "");
+}
+
+/// What data acquisition has concluded waits here: refused here alone, the retracted test would enter the forecast.
+TEST(AdmissionOfRetractions, ATestThatIsNotConcludedYetIsMeantAllTheSame) {
+  const auto full = [] {
+    Admission admission;
+    for (std::size_t k = 0; k < kMostIdleRetractions; ++k)
+      admission.note(act_on(kTestRetracted, "XT03-MV2-none" + std::to_string(k)), false);
+    EXPECT_NE(refusal(act_on(kTestRetracted, "XT03-MV2-behind"), admission), "");
+    admission.note(concluded_test("XT03-MV2-behind", true), false);
+    return admission;
+  };
+  Admission one = full();
+  const MaintenanceEvent retracted = act_on(kTestRetracted, "XT03-MV2-behind");
+  EXPECT_EQ(refusal(retracted, one), "");
+  one.note(retracted, false);
+  MaintenanceEvent again = retracted;
+  again.header.message_id = retraction_id("XT03-MV2", kTestRetracted, "XT03-MV2-behind", add_seconds(kNow, 1.0));
+  EXPECT_NE(refusal(again, one), "");
+  Admission all = full();
+  EXPECT_NE(refusal(act_on(kTestsRetracted, format_utc(add_seconds(kNow, 60.0))), all), "");
+  const MaintenanceEvent since = act_on(kTestsRetracted, format_utc(add_seconds(kNow, -60.0)));
+  EXPECT_EQ(refusal(since, all), "");
+  all.note(since, false);
+  EXPECT_NE(refusal(act_on(kTestsRetracted, format_utc(add_seconds(kNow, -61.0))), all), "");
 }
 
 /// What a retraction means is looked up, not looked for: a restart applies all there ever were.

@@ -132,7 +132,7 @@ class Process {
     const Status stepped = try_step();
     ASSERT_TRUE(stepped) << stepped.error().describe();
   }
-  Status try_step() { return runner_.step(std::chrono::milliseconds(1)); }
+  Status try_step(std::chrono::milliseconds timeout = std::chrono::milliseconds(1)) { return runner_.step(timeout); }
   [[nodiscard]] Journal& journal() { return journal_; }
   [[nodiscard]] int steps() const { return fate_.steps(); }
   [[nodiscard]] std::vector<Message> outputs() {

@@ -487,6 +487,19 @@ TEST_F(SecondPerson, WhatTakesAnActBackAndWhatOnlyLooksCountsAtOnce) {
   EXPECT_THAT(process->outputs(), SizeIs(3));
 }
 
+/// Each would be an alarm, and nobody could tell them apart from what is meant.
+TEST_F(SecondPerson, OnlySoManyActsOfAnAssetWait) {
+  const auto process = start(asking());
+  for (int k = 0; k < 300; ++k) say(*process, replaced("M. Okoye", UtcTime{1'899'000'000'000'000'001 + k}));
+  std::size_t waiting = 0;
+  for (const AuditEntry& entry : acts()) waiting += entry.act.outcome == "waits for a second person" ? 1 : 0;
+  EXPECT_EQ(waiting, 64U);
+  EXPECT_THAT(acts().back().act.outcome, HasSubstr("64 acts of asset A wait for a second person already"));
+  say(*process, confirmation(replaced("M. Okoye", UtcTime{1'899'000'000'000'000'001}), "J. Silva"));
+  say(*process, replaced_);
+  EXPECT_EQ(acts().back().act.outcome, "waits for a second person");
+}
+
 TEST_F(SecondPerson, OneStepIsEnoughWhereNobodyAsksForTwo) {
   const auto process = start();
   say(*process, replaced_);

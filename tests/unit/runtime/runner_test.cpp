@@ -495,6 +495,46 @@ TEST_F(RunnerTest, TakesLocalInputsOnceAndLooksForThemEverySecond) {
   EXPECT_THAT(process->outputs(), SizeIs(2));
 }
 
+/// Says that there is something, from a thread of its own, after a while.
+class LateLocalInputs final : public LocalInputs {
+ public:
+  void look(const LayerAtRest&) override {}
+  void on_some(std::function<void()> call) override { call_ = std::move(call); }
+  bool has_some() override { return has_some_; }
+  std::vector<Message> take() override {
+    has_some_ = false;
+    is_taken = true;
+    return {};
+  }
+  bool stop(milliseconds) override { return true; }
+  void come() {
+    has_some_ = true;
+    if (call_) call_();
+  }
+  bool is_taken = false;
+
+ private:
+  std::function<void()> call_;
+  std::atomic<bool> has_some_ = false;
+};
+
+TEST_F(RunnerTest, LocalInputsWakeItWhenTheyCome) {
+  const auto local = std::make_shared<LateLocalInputs>();
+  RunnerOptions options = fast_options();
+  options.local_inputs = local;
+  options.heartbeat.interval = std::chrono::seconds(60);  // it hears its own
+  auto process = cutter(options);
+  const auto quiet = std::chrono::steady_clock::now() + milliseconds(1000);
+  while (std::chrono::steady_clock::now() < quiet) step(*process, 1);  // all is looked back at
+  const std::jthread later([&] {
+    std::this_thread::sleep_for(milliseconds(100));
+    local->come();
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  while (!local->is_taken) ASSERT_TRUE(process->try_step(milliseconds(5000)));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(2500));
+}
+
 /// Forty recordings of the largest size held up a live test for half a minute.
 TEST_F(RunnerTest, WhatIsLiveGoesAmongLocalInputs) {
   const auto local = std::make_shared<FakeLocalInputs>(blocks_of_tests(500, {"A"}));

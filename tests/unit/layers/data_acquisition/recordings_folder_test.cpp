@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <set>
@@ -29,11 +30,11 @@ class RecordingsFolderTest : public testing::Test {
   }
   ~RecordingsFolderTest() override { fs::remove_all(directory_); }
 
-  void drop(const std::string& name, const std::string& asset_id) {
+  void drop(const std::string& name, const std::string& asset_id, double duration_s = 6.0) {
     Recording recording;
     recording.recording_id = name;
     recording.asset_id = asset_id;
-    recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = 6.0}.record();
+    recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = duration_s}.record();
     ASSERT_TRUE(write_recording_csv(recording, (directory_ / (name + ".csv")).string()));
   }
   struct Watched {
@@ -93,6 +94,23 @@ TEST_F(RecordingsFolderTest, ReadsARecordingAgainThatWasNotConcludedAndIsMended)
   const std::vector<Message> blocks = watched.look();
   ASSERT_EQ(blocks.size(), 2U);
   EXPECT_TRUE(std::get<RawSamples>(blocks[0]).start_time_known);
+}
+
+TEST_F(RecordingsFolderTest, OneThatIsOverwrittenWhenItsTestIsConcludedIsReadToo) {
+  DataAcquisition layer(assets_);
+  Watched watched = folder(layer);
+  drop("april", "XT03-MV2");
+  (void)watched.look();
+  for (const Message& block : watched.look()) (void)layer.receive(block);
+  drop("april", "XT03-MV2", 7.0);
+  EXPECT_TRUE(watched.look().empty()) << "it might still be growing";
+  EXPECT_THAT(files(), testing::ElementsAre("april.csv", "april.yaml")) << "it is not the one that was read";
+  const std::vector<Message> blocks = watched.look();
+  EXPECT_FALSE(blocks.empty());
+  for (const Message& block : blocks) (void)layer.receive(block);
+  EXPECT_TRUE(watched.look().empty());
+  EXPECT_THAT(files(), testing::ElementsAre("done/april.csv", "done/april.yaml"));
+  EXPECT_THAT(errors_, testing::IsEmpty());
 }
 
 TEST_F(RecordingsFolderTest, LeavesACopyInProgressAlone) {
@@ -329,6 +347,24 @@ TEST_F(FolderReaderTest, ReadsOneRecordingAtATimeAndStopsThoughNobodyTakesIt) {
   EXPECT_TRUE(watched.stop(std::chrono::seconds(5)));
   EXPECT_TRUE(watched.stop(std::chrono::seconds(5))) << "told twice";
   EXPECT_THAT(files(), testing::IsSupersetOf({"april.csv", "may.csv"})) << "read again at the next start";
+}
+
+/// The main loop slept up to a second for each recording of a folder.
+TEST_F(FolderReaderTest, SaysWhenThereIsSomethingToTake) {
+  FolderReader watched = reader();
+  std::atomic<int> told = 0;
+  watched.on_some([&told] { ++told; });
+  drop("april", "XT03-MV2");
+  drop("may", "XT03-MV2");
+  watched.look(at_rest_);
+  for (const int expected : {1, 2}) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (told < expected && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_EQ(told, expected);
+    EXPECT_FALSE(watched.take().empty());
+  }
+  EXPECT_TRUE(watched.stop(std::chrono::seconds(5)));
 }
 
 TEST_F(FolderReaderTest, OneThatNeverLookedStopsAtOnce) { EXPECT_TRUE(reader().stop(std::chrono::milliseconds(0))); }

@@ -141,7 +141,8 @@ FittedModel model_at(const AssetConfig& asset, PemProblem problem, PemOptimum op
   FittedModel model{.asset = asset, .problem = std::move(problem), .optimum = std::move(optimum)};
   for (std::size_t k = 0; k < model.problem.shared.size(); ++k) {
     const Unknown& unknown = model.problem.shared[k];
-    set_value(model.asset, parameter_of(unknown), within_range(unknown, unknown.to_value(model.optimum.point.shared[k])));
+    set_value(model.asset, parameter_of(unknown),
+              within_range(unknown, unknown.to_value(model.optimum.point.shared[k])));
     if (unknown.is_known())
       model.misfit += std::pow(unknown.prior_residual(model.optimum.point.shared[k]), 2);
     else if (!at_bound(unknown, model.optimum.point.shared[k]))

@@ -103,7 +103,7 @@ std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedMode
     for (std::size_t k = 0; k < errors.size(); ++k) {
       if (model.problem.shared[k].name != name) continue;
       found.std_error = std::hypot(errors[k], parameter.strength ? resolution.of(parameter) : 0.0);
-      found.at_bound = !std::isfinite(errors[k]);
+      found.at_bound = at_bound(model.problem.shared[k], model.optimum.point.shared[k]);
     }
     parameters.push_back(std::move(found));
   }

@@ -127,6 +127,12 @@ std::string law_name(const mismatch::LawAt& what) {
   return name;
 }
 
+std::string found_value(const mismatch::FoundParameter& parameter) {
+  std::string text = text::readable_with_error(parameter.value, parameter.std_error, parameter.unit);
+  if (parameter.at_bound) return text.append(", at its bound");
+  return std::isfinite(parameter.std_error) ? text : text.append(", not identifiable");
+}
+
 std::string element_name(const std::string& element) {
   constexpr std::string_view kSensor = "sensor:";
   constexpr std::string_view kInput = "input:";

@@ -207,19 +207,22 @@ const SiteConfig* AdvisoryGeneration::site_of(const std::string& asset_id) const
 
 std::string AdvisoryGeneration::part_of(const std::string& asset_id) const {
   const AssetConfig* asset = configuration_.find_asset(asset_id);
-  const bool told = asset && asset->condition && !asset->condition->part.empty();
-  return told ? asset->condition->part : "piston seal";
+  if (asset == nullptr) return kPistonSeal;  // its file is gone since: of the built-in plants, as most are
+  return asset->condition ? asset->condition->part : "";
 }
 
 RequestForWork AdvisoryGeneration::work_order(const Advisory& advisory, const Recommendation& recommendation) const {
   const AssetConfig* asset = configuration_.find_asset(advisory.asset_id);
   const std::optional<UtcTime>& replaced = assets_.at(advisory.asset_id).replaced;
   RequestForWork work;
-  work.work_id = "work/" + advisory.asset_id + "/" + (replaced ? "seal of " + format_date(*replaced) : "first seal");
+  const std::string part = part_of(advisory.asset_id);
+  const std::string replaceable = part == kPistonSeal ? "seal" : part.empty() ? "actuator" : part;
+  work.work_id = "work/" + advisory.asset_id + "/" +
+                 (replaced ? replaceable + " of " + format_date(*replaced) : "first " + replaceable);
   work.work_type = "replace actuator";
   work.segment = asset ? asset->site + (asset->segment.empty() ? "" : "/" + asset->segment) : "";
-  work.solution_package = "spare actuator" + (asset ? " (model " + asset->model + ")" : std::string()) + " with new " +
-                          part_of(advisory.asset_id) + ", vessel with remotely operated vehicle";
+  work.solution_package = "spare actuator" + (asset ? " (model " + asset->model + ")" : std::string()) +
+                          (part.empty() ? "" : " with new " + part) + ", vessel with remotely operated vehicle";
   if (recommendation.work_before) {
     work.start_before_known = true;
     work.start_before_ns = recommendation.work_before->nanoseconds;

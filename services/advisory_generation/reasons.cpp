@@ -102,7 +102,7 @@ bool is_carried_over(const HealthReport& health, const StateReport& state) {
 
 void add_health(std::vector<std::string>& reasons, const HealthReport& health, const StateReport& state) {
   std::string text = health.health_grade_known ? "health grade " + as_condition(health.health_grade)
-                                               : "health grade not known: no test has measured the seal's leakage";
+                                               : "health grade not known: no test has measured the wear";
   if (health.trend_known)
     text += ", " + as_condition(health.health_trend_per_year) + " +- " +
             as_condition(health.health_trend_std_per_year) + " a year";

@@ -16,11 +16,12 @@ std::string capitalised(std::string text) {
 }
 
 /// "Seal condition is 76.0 % (limit 60.0 %); its end of life is expected on 2018-05-02, with 80 % between ... and ...".
-std::string outlook(const Evidence& evidence) {
+std::string outlook(const Evidence& evidence, const std::string& part) {
   const RemainingLife& life = evidence.life;
   std::string text;
   if (life.condition_known) {
-    text = "Seal condition is " + text::condition_in_percent(life.condition) + limit_of(life);
+    text = (part == kPistonSeal ? "Seal condition" : "Condition of the " + part) + " is " +
+           text::condition_in_percent(life.condition) + limit_of(life);
     if (!evidence.leakage.used_for_forecast) text += " by the last test that counts, which this one does not";
   }
   if (life.forecasts.empty()) return text.empty() ? text : text + ".";
@@ -71,7 +72,7 @@ struct Context {
   const InForce& in_force;
   const SiteConfig* site;
   std::optional<UtcTime> book_by;
-  std::string part;  ///< what wears
+  std::string part;  ///< what wears, and is replaced
 };
 
 Recommendation by_wear(const Context& c) {
@@ -81,7 +82,7 @@ Recommendation by_wear(const Context& c) {
   const std::string when = r.work_before ? campaign_at(c.site, *r.work_before) : "at the next opportunity";
   const std::string booked_by = c.book_by ? format_date(*c.book_by) : "the next schedule meeting";
   std::string view = " ";
-  view += capitalised(outlook(c.evidence));
+  view += capitalised(outlook(c.evidence, c.part));
   switch (c.in_force.wear) {
     case WearLevel::none:
       r.text = (no_forecast_yet(c.evidence.life) ? "No action follows from this test." : "No action needed.") + view;
@@ -131,7 +132,8 @@ std::vector<Recommendation> calls(const Context& c) {
   const Assessment& a = c.assessment;
   if (c.in_force.failing && !c.in_force.instruments_doubted) {
     call(AdvisoryPriority::urgent, AdvisoryAction::replace_now,
-         "Replace the actuator now: it failed its partial stroke test repeatedly. " + capitalised(outlook(c.evidence)));
+         "Replace the actuator now: it failed its partial stroke test repeatedly. " +
+             capitalised(outlook(c.evidence, c.part)));
     if (const Header& test = c.evidence.life.header; test.event_time_known)
       calls.back().latest_by = calls.back().work_before = start_of_day({test.event_time_ns});
   }
@@ -169,7 +171,7 @@ Recommendation recommend(const Evidence& evidence, const Assessment& assessment,
     if (in_force.wear == WearLevel::book) in_force.wear = WearLevel::book_at_once;
     if (in_force.wear == WearLevel::plan) in_force.replace_by = book_by = std::nullopt;
   }
-  const Context context{evidence, assessment, in_force, site, book_by, part};
+  const Context context{evidence, assessment, in_force, site, book_by, part.empty() ? "actuator" : part};
   const std::vector<Recommendation> all = calls(context);
   // An actuator that fails its tests is not to wait for the vessel that its seal's wear books.
   const auto rank = [](const Recommendation& r) {

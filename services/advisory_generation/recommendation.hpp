@@ -10,6 +10,8 @@
 
 namespace sealwatch::advisory_generation {
 
+inline constexpr const char* kPistonSeal = "piston seal";
+
 struct Recommendation {
   AdvisoryPriority priority = AdvisoryPriority::information;
   AdvisoryAction action = AdvisoryAction::none;
@@ -19,9 +21,9 @@ struct Recommendation {
   std::vector<std::string> also;       ///< less urgent calls, as reasons
 };
 
-/// `part`: what wears, and is replaced.
+/// `part`: what wears, and is replaced; "" where nothing does.
 [[nodiscard]] Recommendation recommend(const Evidence& evidence, const Assessment& assessment, const InForce& in_force,
-                                       const SiteConfig* site, const std::string& part = "piston seal");
+                                       const SiteConfig* site, const std::string& part = kPistonSeal);
 
 /// Why the dates are what they are: the time to book a vessel; that the date in force is held where this test by itself
 /// names another. Nothing where the recommendation names no date.

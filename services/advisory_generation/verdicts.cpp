@@ -20,6 +20,7 @@ constexpr std::string_view kOldMiddle = "; what is in force after all tests so f
 constexpr std::string_view kOldSeparator = ", ";
 constexpr std::string_view kOldNone = "no work";
 constexpr std::string_view kOldNoDate = "no date yet";
+constexpr std::string_view kOldBy = "the seal replaced by ";  ///< of later versions, too
 constexpr const char* kNotJudged = "nothing about the wear";
 /// In the order of WearLevel.
 constexpr std::array<const char*, 5> kWear = {"no work yet", "plan the work", "book a vessel", "book a vessel at once",
@@ -65,7 +66,8 @@ bool raised(const std::vector<TestVerdict>& last, bool TestVerdict::*flag, bool 
   return before && std::any_of(row.begin(), row.end(), says_yes);
 }
 
-constexpr std::string_view kBy = "the seal replaced by ";
+/// No name of what is replaced: names are the user's, and this line is read again.
+constexpr std::string_view kBy = "replacement by ";
 
 constexpr std::string_view kTrusted = "instruments trusted";
 constexpr std::string_view kDoubted = "instruments doubted";
@@ -138,8 +140,9 @@ std::optional<Words> read(std::string text, std::string_view separator) {
   const std::string instruments = last();
   if (instruments.empty()) return std::nullopt;
   drop(instruments);
-  if (const std::string date = last(); date.starts_with(kBy) || date == kOldNoDate) {
-    if (const auto time = parse_utc(date.substr(std::min(kBy.size(), date.size())))) read.replace_by = *time;
+  if (const std::string date = last(); date.starts_with(kBy) || date.starts_with(kOldBy) || date == kOldNoDate) {
+    const std::size_t words = date.starts_with(kOldBy) ? kOldBy.size() : kBy.size();
+    if (const auto time = parse_utc(date.substr(std::min(words, date.size())))) read.replace_by = *time;
     drop(date);
   }
   read.wear = level_of(text);

@@ -132,15 +132,6 @@ std::string left_aside(const Understood& log) {
   return text;
 }
 
-/// What drives the plant and no column was taken for.
-std::string missing_inputs(const Understood& log) {
-  std::string text;
-  for (const ChannelDescription& channel : log.plant->channels)
-    if (channel.input && !log.map.columns.contains(channel.name))
-      text.append(text.empty() ? "" : ", ").append(channel.name).append(" [").append(channel.unit).append("]");
-  return text;
-}
-
 std::string mapping_text(const ColumnMapping& mapping) {
   std::string text = "{column: " + text::quoted(mapping.column);
   if (!mapping.unit.empty()) text += ", unit: " + text::quoted(mapping.unit);
@@ -160,7 +151,8 @@ std::string columns_text(const Understood& log, const std::vector<std::size_t>& 
   return text;
 }
 
-/// "PT-1 [psig] may be it, but '1,234.5' is no number": of the first column in a unit of the channel without numbers.
+/// "PT-1 [psig] may be it, but '1,234.5' in row 7 is no number": of the first column in a unit of the channel that has
+/// cells without numbers.
 std::string unreadable(const Understood& log, const ChannelDescription& channel) {
   for (std::size_t column = 0; column < log.offer.columns.size(); ++column) {
     const std::string unit = unit_of(log.offer.columns[column]);
@@ -171,13 +163,15 @@ std::string unreadable(const Understood& log, const ChannelDescription& channel)
       return !parse_number(cell, log.offer.layout.decimal).has_value();
     });
     if (word != log.offer.cells[column].end())
-      return log.offer.columns[column].text + " may be it, but '" + printable(*word) + "' is no number";
+      return log.offer.columns[column].text + " may be it, but '" + printable(*word) + "' in row " +
+             std::to_string(log.offer.rows[column][static_cast<std::size_t>(word - log.offer.cells[column].begin())]) +
+             " is no number";
   }
   return "";
 }
 
-/// What to write for a channel that was not found, and the columns that may be it.
-std::string by_hand(const Understood& log, const ChannelDescription& channel) {
+/// The columns that may be a channel that was not found, and what to write for it; "" where there is none.
+std::string may_be_it(const Understood& log, const ChannelDescription& channel) {
   if (std::string why = unreadable(log, channel); !why.empty()) return why;
   const std::string& time = log.map.columns.at("time").column;
   const std::vector<std::size_t> columns = columns_of_unit(log.offer, channel, time, log.guesses);
@@ -186,14 +180,20 @@ std::string by_hand(const Understood& log, const ChannelDescription& channel) {
     return "as " + mapping_text({.column = first.text, .unit = unit_of(first)}) +
            (columns.size() > 1 ? "; of that unit: " + columns_text(log, columns) : "");
   }
-  const std::string unit = ", unit: " + text::quoted(channel.unit) + "}";
   const std::vector<std::size_t> plain = plain_columns(log.offer, channel, time, log.guesses);
-  if (plain.empty()) return "as {column: NAME, scale: 1" + unit;
+  if (plain.empty()) return "";
+  const std::string unit = ", unit: " + text::quoted(channel.unit) + "}";
   const OfferedColumn& first = log.offer.columns[plain.front()];
   const bool percent = unit_of(first) == "%";
   return "as {column: " + text::quoted(first.text) + (percent ? ", scale: 0.01" : ", scale: 1") + unit +
          (percent ? ", with a hundredth of what 100 % is in place of 0.01" : ", with what one count is in place of 1") +
          (plain.size() > 1 ? "; plain numbers: " + columns_text(log, plain) : "");
+}
+
+/// What to write for a channel that was not found.
+std::string by_hand(const Understood& log, const ChannelDescription& channel) {
+  const std::string may_be = may_be_it(log, channel);
+  return may_be.empty() ? "as {column: NAME, scale: 1, unit: " + text::quoted(channel.unit) + "}" : may_be;
 }
 
 /// What the reader has to check of a channel that was found; "": nothing.
@@ -210,14 +210,19 @@ std::string doubt(const Understood& log, const ChannelDescription& channel) {
   return guess->sure ? "" : "uncertain, check it";
 }
 
+/// Whose asset it is: as given, as the log's sidecar says, else the log's name.
+std::string asset_id_of(const Understood& log, const AssetNewOptions& options) {
+  const std::string& named = options.asset_id.empty() ? log.asset_id : options.asset_id;
+  return named.empty() ? fs::path(options.log).stem().string() : named;
+}
+
 std::string yaml_of(const Understood& log, const AssetNewOptions& options) {
   const std::string model = model_name(*log.plant, fs::path(options.file).parent_path());
   std::string out = "# From " + fs::path(options.log).filename().string() +
                     ": what sealwatch understood of it. Correct what is wrong; docs/logs.md, docs/asset-file.md.\n";
   for (const std::string& remark : log.remarks) out += "# " + remark + "\n";
-  const std::string& named = options.asset_id.empty() ? log.asset_id : options.asset_id;
-  const std::string id = named.empty() ? fs::path(options.log).stem().string() : named;
-  out += "asset_id: " + text::quoted(id) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
+  out +=
+      "asset_id: " + text::quoted(asset_id_of(log, options)) + "\nmodel: " + model + "  # " + log.plant->meaning + "\n";
   out += "# The plant's own values hold until yours stand here, in SI units:\n# parameters: {";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, log.plant->parameters.size()); ++k)
     out.append(k > 0 ? ", " : "")
@@ -277,7 +282,25 @@ std::string page_of(const Understood& log, const std::string& file) {
                            body + table.html() + "<div class=\"plots\">" + plots + "</div>");
 }
 
-void print_table(const Understood& log) {
+/// Inputs and outputs of the plant that no column was taken for, and why; what nothing in the log may be, in one line.
+void print_not_found(const Understood& log, const std::string& file) {
+  std::string absent;
+  for (const ChannelDescription& channel : log.plant->channels) {
+    if (log.map.columns.contains(channel.name)) continue;
+    const std::string name = channel.name + " [" + channel.unit + "]";
+    const std::string may_be = may_be_it(log, channel);
+    if (may_be.empty())
+      absent.append(absent.empty() ? "" : ", ").append(name).append(channel.input ? ", an input" : "");
+    else
+      std::printf("  %s %s not found in %s: %s\n", channel.input ? "input" : "output", name.c_str(), file.c_str(),
+                  may_be.c_str());
+  }
+  if (!absent.empty())
+    std::printf("  not found in %s, as no column has the unit: %s; map by hand what is there\n", file.c_str(),
+                absent.c_str());
+}
+
+void print_table(const Understood& log, const std::string& file) {
   const FoundLayout& found = log.offer.layout;
   if (log.offer.text)
     std::printf("%s between columns, decimal %s, header in row %zu, numbers from row %zu\n", word_of(found.delimiter),
@@ -300,8 +323,7 @@ void print_table(const Understood& log) {
     const std::string check = doubt(log, channel);
     line(channel.name, mapping->second, range_text(log.tests, channel.name) + (check.empty() ? "" : "; " + check));
   }
-  if (const std::string drives = missing_inputs(log); !drives.empty())
-    std::printf("  inputs not found in the log: %s; map them by hand in the file\n", drives.c_str());
+  print_not_found(log, file);
   for (const std::string& remark : log.remarks) std::printf("  %s\n", remark.c_str());
   if (const std::string aside = left_aside(log); !aside.empty()) std::printf("  left aside: %s\n", aside.c_str());
 }
@@ -424,7 +446,13 @@ int run_asset_new(const AssetNewOptions& options) {
   if (const Result<AssetConfig> back = load_asset(options.file); !back) return complain(back.error()), kInternalFailure;
   const std::string page = fs::path(options.file).replace_extension(".html").string();
   std::ofstream(page, std::ios::binary) << page_of(*log, options.log);
-  print_table(*log);
+  print_table(*log, options.log);
+  const std::string id = asset_id_of(*log, options);
+  const char* from = !options.asset_id.empty() ? ""
+                     : !log->asset_id.empty()  ? " by the log's sidecar"
+                                               : " by the log's name";
+  std::printf("  asset id: %s%s; change it under asset_id in %s, or give --id\n", id.c_str(), from,
+              options.file.c_str());
   std::printf(
       "written: %s, with plots in %s. Correct what is wrong, then for instance:\n  sealwatch fit --asset %s %s\n",
       options.file.c_str(), page.c_str(), options.file.c_str(), options.log.c_str());

@@ -249,7 +249,7 @@ void add_asset(CommandLine& line) {
   fresh->add_option("--from", options->log, "your log: CSV or other text in columns, MATLAB or HDF5")->required();
   fresh->add_option("--out", options->file, "asset file to write, with plots beside it (.html)")->required();
   fresh->add_option("--model", options->model, "built-in plant (default: best match to the columns), or a plant file");
-  fresh->add_option("--id", options->asset_id, "asset id (default: the sidecar's, else the log's name)");
+  fresh->add_option("--id,--asset-id", options->asset_id, "asset id (default: the sidecar's, else the log's name)");
   fresh->add_flag("--yes", options->yes, "accept the guess without asking");
 }
 

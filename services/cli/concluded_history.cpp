@@ -69,6 +69,7 @@ std::optional<ForecastQuestion> ConcludedHistory::question(const AssetConfig& as
       .request = {.threshold = asset.condition->threshold, .now = now, .installed = replaced, .horizons = {}},
       .asset_id = asset.asset_id,
       .part = asset.condition->part,
+      .worn_parameter = asset.condition->parameter,
       .tests = tests.size(),
       .first = tests.empty() ? now : tests.front().sample.time,
       .last = now,

@@ -107,7 +107,7 @@ Status write_all(const Explanation& explanation, const std::string& json, const 
 }
 
 std::string parameter_text(const FoundParameter& parameter) {
-  return parameter.name + " = " + text::readable_with_error(parameter.value, parameter.std_error, parameter.unit);
+  return parameter.name + " = " + report::found_value(parameter);
 }
 
 void print_effect(const FoundEffect& effect) {

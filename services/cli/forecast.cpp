@@ -74,11 +74,11 @@ void print_json(const ForecastQuestion& question, const forecast::ForecastPanel:
 void print_text(const ForecastQuestion& question, const forecast::ForecastPanel::Answer& answer,
                 const std::vector<DecisionOption>& decision) {
   if (question.tests == 0) {
-    std::printf("%s: %s; a forecast needs tests of the seal that is in there now\n", question.asset_id.c_str(),
-                history_words(question).c_str());
+    std::printf("%s: %s; a forecast needs tests of the %s that is in there now\n", question.asset_id.c_str(),
+                history_words(question).c_str(), question.part.c_str());
     return;
   }
-  std::printf("%s; the seal fails at %s\n%s%s", history_words(question).c_str(),
+  std::printf("%s; the %s fails at %s\n%s%s", history_words(question).c_str(), question.part.c_str(),
               percent(question.request.threshold, 0).c_str(), forecast_table(answer.forecasts).c_str(),
               decision_chart(decision).c_str());
   if (!question.request.horizons.empty() && !tells_probability(answer.forecasts.front()))

@@ -99,7 +99,7 @@ std::string cost_words(const ForecastQuestion& question) {
   const SiteCosts& costs = *question.costs;
   std::string text =
       "Costs: planned " + number(costs.planned, 3) + ", after a failure " + number(costs.after_failure, 3);
-  text += ", a month with a failed valve " + number(costs.failed_month, 3) + ", a month of unused seal life " +
+  text += ", a month with a failed valve " + number(costs.failed_month, 3) + ", a month of unused life " +
           number(costs.unused_month, 3);
   text += "; waiting for the failure counts " + number(question.months_to_vessel, 3) +
           " months until a vessel comes. Formula: docs/forecast.md, Decision.";

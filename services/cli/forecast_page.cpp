@@ -113,8 +113,9 @@ void add_dates(const ForecastQuestion& question, Plot& plot) {
 Plot course(const ForecastQuestion& question, const ForecastPanel::Answer& answer,
             const std::vector<ConditionForecast>& conditions, int width) {
   const double threshold = question.request.threshold;
-  Plot plot{.title = width < kWide ? "Seal condition (new: 100)"
-                                   : "Seal condition, index derived from leakage (new seal: 100)",
+  Plot plot{.title = width < kWide ? "Condition (new: 100)"
+                                   : "Condition of the " + question.part + ", index derived from " +
+                                         question.worn_parameter + " (new: 100)",
             .x = {.label = "year", .unit = "1", .range = view_of(question, conditions), .whole = true},
             .y = {.label = "condition", .unit = "%"},
             .marks = {},
@@ -176,13 +177,13 @@ std::string methods_note(const ForecastPanel::Answer& answer) {
   };
   for (const auto& [method, meaning] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
            {"state_space", "state space: the law of ageing, followed through all tests"},
-           {"fleet", "fleet: the same, assuming that the seal belongs to a known population"},
+           {"fleet", "fleet: the same, assuming that it belongs to a known population"},
            {"ols",
             "ols: a straight line through the tests of the last so many months, whose own interval is too narrow "
-            "for an ageing seal"},
+            "for what ages"},
            {"ols_drift", "ols drift: the same line, whose slope may change"},
            {"ols_log_time", "ols log time: a straight line over the logarithm of time"},
-           {"average", "average: of methods, weighted by how well they forecast this seal before"}})
+           {"average", "average: of methods, weighted by how well they forecast this part before"}})
     if (any(method)) list.append("<li>").append(meaning);
   return report::paragraph(
              "Months count from the last test. The primary forecaster is in bold; the others stand beside it.",
@@ -290,7 +291,8 @@ std::string figures(const ForecastQuestion& question, const ForecastPanel::Answe
     add_figure(date(question.advice->latest_by_ns), "act by", html);
   if (!answer.used.empty())
     add_figure(text::condition_in_percent(answer.used.back().condition),
-               "seal condition; failed below " + text::percent_text(question.request.threshold), html);
+               "condition of the " + question.part + "; failed below " + text::percent_text(question.request.threshold),
+               html);
   if (primary.state == ForecastState::ok) {
     add_figure(text::in_months(primary.rul_months),
                "left; 80 %: " + number(primary.rul_p10_months, 3) + " to " + number(primary.rul_p90_months, 3), html);
@@ -306,13 +308,13 @@ Headline headline_without_advice(const ForecastQuestion& question, const Forecas
   const std::string why = outlook(primary) + ".";
   switch (primary.state) {
     case ForecastState::ok:
-      return {"Book a vessel by " + day(primary.rul_p10_months - question.months_to_vessel) +
-                  " to replace the seal before " + day(primary.rul_p10_months) + ".",
-              why + " By that day one seal in ten would have failed; a vessel takes " +
+      return {"Book a vessel by " + day(primary.rul_p10_months - question.months_to_vessel) + " to replace the " +
+                  question.part + " before " + day(primary.rul_p10_months) + ".",
+              why + " By that day one in ten would have failed; a vessel takes " +
                   text::in_months(question.months_to_vessel) +
                   ". The advisory of the services may differ: it needs confirmation by several tests."};
     case ForecastState::past_threshold:
-      return {"Replace the seal now: it has reached its limit.",
+      return {"Replace the " + question.part + " now: it has reached its limit.",
               why + " Follow the procedure for a valve that may not close."};
     case ForecastState::no_significant_trend:
       return {"No action needed: the condition does not fall beyond the scatter of the tests.",

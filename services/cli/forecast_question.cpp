@@ -96,7 +96,7 @@ bool sensible_threshold(double threshold) {
                  .place = "--threshold",
                  .value = number(threshold),
                  .rule = "must be above 0, at most 1",
-                 .advice = "0.6 for a seal that has failed at a condition of 60 %"});
+                 .advice = "0.6 for a part that has failed at a condition of 60 %"});
   return false;
 }
 
@@ -125,7 +125,8 @@ std::optional<ForecastQuestion> question_of_file(const ForecastOptions& options)
       .request = {.history = std::move(*history),
                   .threshold = options.threshold_given || !seal ? options.threshold : seal->threshold},
       .asset_id = asset ? asset->asset_id : "",
-      .part = asset && asset->condition ? asset->condition->part : "piston seal",
+      .part = seal ? seal->part : "piston seal",
+      .worn_parameter = seal ? seal->parameter : "leakage",
       .forecasters = forecast::default_forecasters()};
   forecast::ForecastRequest& request = question.request;
   question.tests = request.history.size();
@@ -168,7 +169,7 @@ std::optional<AssetConfig> asset_of_journals(const std::string& given, const Con
   complain(Error{.file = {},
                  .place = {},
                  .value = *asset_id,
-                 .rule = "is not a configured asset: its seal and its site are not known",
+                 .rule = "is not a configured asset: what wears and its site are not known",
                  .advice = "give the configuration of the services with --config"});
   return std::nullopt;
 }
@@ -190,7 +191,7 @@ std::optional<ForecastQuestion> question_of_journals(const ForecastOptions& opti
                    .place = {},
                    .value = asset->asset_id,
                    .rule = asset->condition ? "has no test with a date since its last replacement"
-                                            : "has no seal condition by its asset file: nothing is forecast",
+                                            : "has no condition by its asset file: nothing is forecast",
                    .advice = {}});
   if (question && options.threshold_given) question->request.threshold = options.threshold;
   return question;

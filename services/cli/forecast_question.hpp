@@ -22,9 +22,10 @@ struct TestNotCounted {
 
 struct ForecastQuestion {
   forecast::ForecastRequest request;
-  std::string asset_id;              ///< "" without an asset file
-  std::string part = "piston seal";  ///< what wears
-  std::size_t tests = 0;             ///< of the whole history; none: replaced at request.installed and not tested since
+  std::string asset_id;                    ///< "" without an asset file
+  std::string part = "piston seal";        ///< what wears
+  std::string worn_parameter = "leakage";  ///< by which it does
+  std::size_t tests = 0;  ///< of the whole history; none: replaced at request.installed and not tested since
   UtcTime first = {}, last = {};
   std::vector<forecast::ConditionSample> vague = {};  ///< left out as the services would leave them out
   std::vector<TestNotCounted> not_counted = {};       ///< of a history that the services judged

@@ -33,8 +33,12 @@ Result<Offer> offer_of_text(const std::string& file, const LogLayout& given) {
   for (std::size_t k = 0; k < offer.layout.header.size(); ++k) {
     offer.columns.push_back({offer.layout.header[k], offer.layout.units[k]});
     std::vector<std::string>& cells = offer.cells.emplace_back();
-    for (const auto& row : rows)
-      if (k < row.size() && !holds_no_value(row[k])) cells.push_back(row[k]);
+    std::vector<std::size_t>& stand_in = offer.rows.emplace_back();
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (k >= rows[row].size() || holds_no_value(rows[row][k])) continue;
+      cells.push_back(rows[row][k]);
+      stand_in.push_back(offer.layout.first_row + row);
+    }
   }
   return offer;
 }
@@ -49,6 +53,7 @@ Result<Offer> offer_of_vectors(const std::string& file) {
     if (vector.is_complex) continue;
     offer.columns.push_back({vector.name.substr(vector.name.rfind('/') + 1), vector.unit});
     offer.cells.emplace_back();  // numbers all
+    offer.rows.emplace_back();
   }
   return offer;
 }

@@ -14,6 +14,7 @@ namespace sealwatch::cli {
 struct Offer {
   std::vector<OfferedColumn> columns;
   std::vector<std::vector<std::string>> cells;  ///< the first ones of each column that hold a value; of vectors none
+  std::vector<std::vector<std::size_t>> rows;   ///< of the file, in which those cells stand
   FoundLayout layout;
   bool text = true;  ///< false: vectors of numbers, HDF5 or MATLAB
 };

@@ -9,6 +9,7 @@
 #include "services/cli/commands.hpp"
 #include "services/cli/plant_laws.hpp"
 #include "services/common/equations/own_law.hpp"
+#include "services/common/equations/reference_quantity.hpp"
 #include "services/common/runtime/plant_file.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/common/text/words.hpp"
@@ -72,11 +73,12 @@ void print_plant(const std::string& file, const ReadPlant& read) {
     const auto here = [&](double value) { return text::general(factor * value) + " " + size.unit; };
     rows.push_back(
         {size.unit, "x " + text::general(factor),
+         "of " + equations::in_words(equations::reference_quantity(size, read.text.sites), size.unit),
          std::string(size.law->id) + ": " + std::string(parameter.name) + " usually " + here(parameter.start.front()),
          parameter.strength ? "matters from " + here(parameter.significant) : "",
          "from " + here(parameter.min) + " to " + here(parameter.max)});
   }
-  print_table("Sizes of laws here, each unit by one law that has it (law_sizes)", rows);
+  print_table("Sizes of laws here against the 60 kN actuator's, each unit by one law that has it (law_sizes)", rows);
 }
 
 nlohmann::ordered_json errors_of(const std::vector<Error>& errors) {
@@ -117,6 +119,13 @@ nlohmann::ordered_json plant_as_json(const std::string& file, const Checked<Read
                                {"kind", name_of(site.kind)},
                                {"unit", site.unit},
                                {"laws", laws_at(site, read->built.laws)}});
+  for (const equations::NeededSize& size : equations::needed_sizes(read->text)) {
+    const equations::ReferenceQuantity reference = equations::reference_quantity(size, read->text.sites);
+    result["law_sizes"].push_back({{"unit", size.unit},
+                                   {"size", read->text.law_sizes.at(size.unit)},
+                                   {"one_is", reference.value},
+                                   {"one_is_of", reference.meaning}});
+  }
   return result;
 }
 

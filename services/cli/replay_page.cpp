@@ -70,7 +70,7 @@ int write_replay_page(const ReplayOptions& options, const Configuration& configu
   }
   if (questions->empty()) {
     std::fprintf(stderr,
-                 "sealwatch: %s is not written: nothing new was concluded of a seal in this replay; `sealwatch "
+                 "sealwatch: %s is not written: nothing new was concluded of what wears in this replay; `sealwatch "
                  "forecast --page` draws what the services keep\n",
                  options.page.c_str());
     return kAnswerIsNo;

@@ -54,9 +54,6 @@ std::vector<const LeakageEstimate*> AssetView::estimates_of_now() const {
 
 std::string AssetView::seal_lines() const {
   std::string text;
-  if (life_ && life_->condition_known)
-    text += "  seal condition   " + percent(life_->condition) + " (index from the leakage: 100 % is new, fails at " +
-            percent(life_->threshold, 0) + ")\n";
   const LeakageEstimate* latest = nullptr;
   const bool life_has_time = life_ && life_->header.event_time_known;
   // The remaining life speaks of the last test that counts: a later estimate is of a test that was retracted.
@@ -64,6 +61,11 @@ std::string AssetView::seal_lines() const {
     if (estimate->estimated && (!life_has_time || estimate->header.event_time_ns <= life_->header.event_time_ns) &&
         (latest == nullptr || estimate->header.event_time_ns >= latest->header.event_time_ns))
       latest = estimate;
+  const bool of_seal = latest == nullptr || is_of_seal(*latest);
+  if (life_ && life_->condition_known)
+    text += (of_seal ? "  seal condition   " : "  condition        ") + percent(life_->condition) + " (index from " +
+            (of_seal ? "the leakage" : worn_parameter(*latest)) + ": 100 % is new, fails at " +
+            percent(life_->threshold, 0) + ")\n";
   if (latest != nullptr)
     text += (is_of_seal(*latest) ? "  leakage          " : "  wear             ") + worn_parameter(*latest) + " " +
             number(latest->resistance_Pa_s_m3, 4) + " +- " + number(latest->resistance_std_Pa_s_m3, 2) +
@@ -71,7 +73,7 @@ std::string AssetView::seal_lines() const {
   if (health_ && is_of_now(health_->header)) {
     text += "  health           ";
     text += health_->health_grade_known ? "grade " + number(health_->health_grade, 2) + " (1 as new, 0 failed)"
-                                        : "no grade: no test has measured the seal's leakage";
+                                        : "no grade: no test has measured the wear";
     if (health_->trend_known) text += ", " + number(health_->health_trend_per_year, 2) + " a year";
     if (!health_->ambiguity_group.empty()) text += "; " + fault_words(health_->ambiguity_group);
     text += "\n";
@@ -107,7 +109,8 @@ std::string AssetView::history_chart() const {
   options.height = 1 + static_cast<int>(std::lround((options.y_high - options.y_low) / 2.5));
   options.x_low_label = date(first);
   options.x_high_label = date(last);
-  return "\n  seal condition in % over " + count_of(points.size(), "test") + "\n" + chart(points, options) + "\n";
+  const std::string of = is_of_seal(*estimates_of_now().back()) ? "seal condition" : "condition";
+  return "\n  " + of + " in % over " + count_of(points.size(), "test") + "\n" + chart(points, options) + "\n";
 }
 
 std::string AssetView::forecast_lines() const {

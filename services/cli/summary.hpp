@@ -14,11 +14,11 @@ namespace sealwatch::cli {
 [[nodiscard]] std::string one_line(const Message& message);
 [[nodiscard]] std::string one_line(const ServiceStatus& status);
 
-/// The last word of every layer on one asset, and the history of its seal.
+/// The last word of every layer on one asset, and the history of what wears.
 class AssetView {
  public:
   void take(const Message& message);
-  /// One screen: seal condition and its history, forecasts with intervals, advisory with its reasons, where to look
+  /// One screen: condition of what wears and its history, forecasts with intervals, advisory with its reasons, where to look
   /// further. Where no services run (any more) nobody could take an acknowledgement, so the hint to give one is left
   /// out.
   [[nodiscard]] std::string screen(bool services_run = true) const;

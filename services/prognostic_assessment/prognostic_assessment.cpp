@@ -7,6 +7,7 @@
 
 #include "sealwatch/forecast/decision.hpp"
 #include "sealwatch/message/provenance.hpp"
+#include "sealwatch/message/worn_words.hpp"
 #include "services/common/text/numbers.hpp"
 #include "services/prognostic_assessment/judge_estimate.hpp"
 #include "services/prognostic_assessment/pst_request.hpp"
@@ -46,7 +47,7 @@ void mark_unconfirmed(LeakageEstimate& estimate, const std::vector<forecast::Con
   });
   if (!alone || !estimate.used_for_forecast) return;
   estimate.used_for_forecast = false;
-  estimate.reasons.push_back(kUnconfirmed + std::string("the seal condition, ") +
+  estimate.reasons.push_back(kUnconfirmed + std::string("the ") + worn_condition(estimate) + ", " +
                              text::condition_in_percent(estimate.condition) +
                              ", is more than five robust standard deviations off its neighbours; it counts "
                              "once the next test confirms it");

@@ -186,7 +186,7 @@ TEST_F(Commands, ForecastWritesAPageWithTheDecision) {
   std::ostringstream html;
   html << std::ifstream(page).rdbuf();
   for (const char* part :
-       {"</html>", "Seal condition", "end of life, 80 %", "Probability of failure before the replacement",
+       {"</html>", "Condition of the piston seal", "end of life, 80 %", "Probability of failure before the replacement",
         "Expected cost of the replacement", "wait for failure", "cheapest", "state space 240"})
     EXPECT_THAT(html.str(), HasSubstr(part));
   for (const char* outside : {"src=", "href=", "<link", "@import", "url("})

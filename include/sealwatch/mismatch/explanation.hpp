@@ -128,9 +128,10 @@ struct Rejected {
   double allowed_share = 0.0;  ///< that the best law within physics would have taken
 };
 
-/// What the effect does to prognosis. Empty when the plant has no seal.
+/// What the effect does to prognosis. Empty when nothing in the plant wears.
 struct PrognosisShift {
   bool known = false;
+  std::string part, parameter, unit;  ///< what wears ("piston seal") and by which parameter; R_CL_* are its values
   double R_CL_before = 0.0, R_CL_after = 0.0, theta_before = 0.0, theta_after = 0.0;
   /// That the mean seal of the reference population (forecast/fleet_population.hpp) has left at that condition.
   double months_before = 0.0, months_after = 0.0;

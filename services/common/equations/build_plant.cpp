@@ -6,21 +6,15 @@
 #include "services/common/equations/derived_sizes.hpp"
 #include "services/common/equations/own_law.hpp"
 #include "services/common/equations/plant_names.hpp"
+#include "services/common/equations/reference_quantity.hpp"
 #include "services/common/equations/site_table.hpp"
 #include "services/common/equations/text_equations.hpp"
-#include "services/common/text/format.hpp"
 
 namespace sealwatch::equations {
 namespace {
 
 Error fault(std::string value, std::string rule, std::string advice = {}) {
   return {.file = {}, .place = {}, .value = std::move(value), .rule = std::move(rule), .advice = std::move(advice)};
-}
-
-// "shaft_coulomb_friction has T_c = 0.02 N m".
-std::string usual_words(const NeededSize& size) {
-  return text::format("{} has {} = {:g} {}", size.law->id, size.parameter->name, size.parameter->start.front(),
-                      size.unit);
 }
 
 class Builder {
@@ -188,12 +182,14 @@ class Builder {
       const std::vector<std::string> sources = sources_of_size(size.unit);
       if (!sources.empty() && std::ranges::all_of(sources, can_be_given)) continue;  // those are named
       missing.append(missing.empty() ? "" : ", ").append(size.unit);
-      there.append(there.empty() ? "" : "; ").append(usual_words(size));
+      there.append(there.empty() ? "" : "; ")
+          .append(size.unit + ": " + in_words(reference_quantity(size, text_.sites), size.unit));
     }
     if (!missing.empty())
       faults_("law_sizes", fault(missing, "is missing: units of laws that fit the plant's sites",
-                                 "say how many times larger each is here than on the 60 kN actuator, where " + there +
-                                     "; begin with 1, 'sealwatch plant check' then shows what that means here"));
+                                 "divide what is usual here by what is on the actuator of the catalogue, where 1 "
+                                 "stands for " +
+                                     there + "; 'sealwatch plant check' then shows what laws become"));
     for (std::size_t k = 0; k < text_.states.size(); ++k)
       if (!(scale_of(k) > 0.0))
         faults_("states." + text_.states[k].description.name,

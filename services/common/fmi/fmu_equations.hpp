@@ -92,8 +92,9 @@ class FmuEquations final : public RuntimeEquations {
   std::unique_ptr<HostedRuns> runs_;
 };
 
-/// Compares the directional derivatives that the FMU gives with differences, at its start and near it; an Error that
-/// names the first that is wrong. Also refuses derivatives that are not finite numbers. A unit that fails over them, and for
+/// Compares the directional derivatives that the FMU gives, of its state derivatives and outputs by its states and
+/// inputs, with differences near its start; an Error that names the first that is wrong. Those by parameters are never
+/// asked for: their differences are of further instances. Also refuses derivatives that are not finite numbers. A unit that fails over them, and for
 /// good, is asked for none from then on.
 [[nodiscard]] Status check_derivatives(FmuBlock& block);
 

@@ -45,6 +45,11 @@ MakeLocalHost& local_hosts() {
   return make;
 }
 
+std::function<void(const std::string&)>& slow_starts() {
+  static std::function<void(const std::string&)> tell;
+  return tell;
+}
+
 HostProcess::HostProcess(std::string file, std::size_t heap_bytes, const ProcessLimits& limits)
     : file_(std::move(file)), limits_(limits), memory_bytes_(sizeof(SharedHeader) + heap_bytes) {}
 
@@ -130,6 +135,7 @@ Status HostProcess::request(Operation operation, const char* what, double second
   constexpr double kLook_s = 0.02;  // how soon an end of the process is seen
   auto begin = Clock::now();
   std::uint32_t calls = header_->calls.load();
+  bool told = !slow_starts();
   for (std::uint32_t last = number - 1; !wait_while(header_->answers, last, kLook_s);) {
     if (look) look();
     if (has_ended()) {
@@ -138,8 +144,15 @@ Status HostProcess::request(Operation operation, const char* what, double second
       return fail(ended(place(what, time_s), status));
     }
     if (const std::uint32_t now = header_->calls.load(); now != calls) calls = now, begin = Clock::now();
+    const bool starts =
+        header_->inside == Operation::begin || operation == Operation::load || operation == Operation::begin;
     const double most = header_->inside == Operation::begin ? limits_.start_s : seconds;
-    if (std::chrono::duration<double>(Clock::now() - begin).count() < most) continue;
+    const double waited = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (starts && !told && waited > limits_.told_s) {
+      slow_starts()(file_ + ": waiting for the FMU to start, at most " + std::to_string(std::lround(most)) + " s");
+      told = true;
+    }
+    if (waited < most) continue;
     const std::string where = place(what, time_s), memory = exhausted_memory();
     kill_and_reap();
     const std::string silent = "did not answer within " + std::to_string(std::lround(most)) + " s and was ended";

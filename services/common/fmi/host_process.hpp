@@ -24,6 +24,7 @@ struct ProcessLimits {
   std::uint64_t memory_bytes = 4ULL << 30U;
   double start_s = 120.0;  ///< for loading and for the start of a run: some tools' binaries ask a licence server
   double call_s = 30.0;    ///< for every other call of the binary
+  double told_s = 5.0;     ///< after which a start that is still waited for is told
 };
 
 /// The work of the process, where this is that process: then a request is a call.
@@ -37,6 +38,9 @@ class LocalHost {
 using MakeLocalHost = std::function<std::unique_ptr<LocalHost>(const Setup& setup)>;
 /// Set by sealwatch-fmu-host alone, before it does anything else.
 [[nodiscard]] MakeLocalHost& local_hosts();
+
+/// Takes what is to be told of a start that is waited for, once each; set by programs with somebody before the screen.
+[[nodiscard]] std::function<void(const std::string&)>& slow_starts();
 
 class HostProcess {
  public:

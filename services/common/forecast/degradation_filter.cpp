@@ -175,7 +175,7 @@ void observe(SealBelief& belief, double condition, double condition_std) {
 
 Result<PredictiveDistribution> crossing_distribution(std::span<const WeightedBelief> beliefs, const DegradationLaw& law,
                                                      double threshold, double longest_months) {
-  if (beliefs.empty()) return fail("a forecast needs at least one belief about the seal");
+  if (beliefs.empty()) return fail("a forecast needs at least one belief about what wears");
   std::vector<HorizonTable> tables;
   std::vector<double> ages;
   std::vector<std::size_t> table_of;

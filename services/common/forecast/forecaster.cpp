@@ -66,8 +66,7 @@ std::string disagreement(const std::vector<Forecast>& forecasts) {
   }
   if (!shortest || !apart(*shortest, *longest)) return {};
   const bool faster = shortest->rul_p50_months < longest->rul_p50_months;
-  return std::string(faster ? "the seal has been ageing faster of late: "
-                            : "the seal has been ageing more slowly of late: ") +
+  return std::string(faster ? "ageing has been faster of late: " : "ageing has been slower of late: ") +
          describe(*shortest) + ", " + describe(*longest);
 }
 
@@ -136,7 +135,7 @@ Status ForecastRequest::validate() const {
                     .place = "threshold",
                     .value = text::general(threshold),
                     .rule = "must be above 0, at most 1",
-                    .advice = "0.6 for a seal that has failed at a condition of 60 %"});
+                    .advice = "0.6 for a part that has failed at a condition of 60 %"});
 }
 
 Result<PredictiveForecast> Forecaster::predict(const ForecastRequest& request) const {

@@ -154,8 +154,7 @@ PredictiveForecast OlsForecaster::answer(const ForecastRequest& request) const {
 
   const TimeAxis axis = time_axis(options_.time, request);
   const auto line = fit(options_, axis, window);
-  if (!line)
-    return {say(forecast, ForecastState::insufficient_history, "fewer than three tests since the seal was new")};
+  if (!line) return {say(forecast, ForecastState::insufficient_history, "fewer than three tests since it was new")};
   const double p = line->no_fall_probability();
   auto remaining = crossing_distribution(*line, request.threshold, axis);
   if (p > options_.significance || !remaining)

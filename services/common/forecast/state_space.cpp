@@ -74,7 +74,7 @@ const char* name_of_change(SealChange change) {
     case SealChange::level:
       return "the estimates have stood at another level";
     case SealChange::replaced:
-      return "it has looked like another, new seal";
+      return "it has looked like another, new one";
     case SealChange::none:
       break;
   }

@@ -261,7 +261,8 @@ const ChannelComparison* Analysis::missed_in(const PooledFit& fit) {
 }
 
 std::string Analysis::what_happened() const {
-  return is_wear(*own_) ? what_aged(asset_) + " aged between these tests. " : "Something changed between these tests. ";
+  return is_wear(*own_) ? "The " + worn_part(asset_) + " aged between these tests. "
+                        : "Something changed between these tests. ";
 }
 
 void Analysis::say_what_else_is_known() {

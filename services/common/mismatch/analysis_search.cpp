@@ -51,7 +51,7 @@ Status Analysis::look_for_what_is_missing() {
   if (own_) fit_.may_differ.clear();  // nothing else was found to differ beside it
   std::optional<Trial> from;
   if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
-  if (own_) tell("looking again, with one seal for all tests", 0.5);
+  if (own_) tell("looking again, with one value for all tests", 0.5);
   Result<Naming> naming = look_in_common(from.value_or(Trial{{}, baseline_}), options, &*first);
   if (!naming) return fail(naming.error());
   if (!naming->differs_in.empty()) {
@@ -243,9 +243,10 @@ void Analysis::say_what_differs() {
   const std::string course = course_in_words(*best_.model, fit_);
   const bool no_more = best_.effects.empty() && leaves_nothing();
   if (!own_->goes_its_way)
-    why_none_ = seal_changed_but_not_by_wear(course);
+    why_none_ = part_changed_but_not_by_wear(course, worn_part(asset_), worn_element(asset_));
   else if (no_more)
-    why_none_ = is_wear(*own_) ? seal_aged_and_no_more(course) : differed_and_no_more(course);
+    why_none_ = is_wear(*own_) ? part_aged_and_no_more(course, worn_part(asset_), worn_element(asset_))
+                               : differed_and_no_more(course);
 }
 
 bool Analysis::leaves_nothing() const {

@@ -18,7 +18,7 @@ void Analysis::ask_values_in_place_of_own() {
   const DatasheetQuestion question{asset_, *baseline_, own_->naming.best, fit_, options_.threads};
   const auto wrong = values_alone(question, fit_.samples.size());
   if (!wrong || wrong->behind > 0.0) return;
-  const std::string other = is_wear(*own_) ? "seal" : own_->fit.own_parameter;
+  const std::string other = is_wear(*own_) ? worn_part(asset_) : own_->fit.own_parameter;
   std::vector<RecordingComparison> compared;
   if (bears_out(*wrong, *own_->naming.best.model, compared))
     blame_the_asset_file(*wrong, "another " + other + " in each test", compared);

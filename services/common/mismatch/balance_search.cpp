@@ -247,6 +247,7 @@ class Search {
       BalanceFinding& found = fit_.findings[k];
       found.value = value_of(fit_.model, found.what);
       found.std_error = errors[fixed_ + k];
+      found.at_bound = at_bound(fit_.model, found.what);
       if (found.what.law == nullptr) found.datasheet = datasheet_.parameters.at(found.what.name).value;
     }
     for (std::size_t k = 0; k < fit_.free.size(); ++k) {

@@ -24,6 +24,7 @@ namespace sealwatch::mismatch {
 struct BalanceFinding {
   BalanceUnknown what;
   double value = 0.0, std_error = 0.0;
+  bool at_bound = false;
   double datasheet = 0.0;  ///< of a datasheet value
   double weight = 0.0;
   std::vector<BalanceFinding> alternatives;  ///< others in its place, by how much worse the criterion is (weight)

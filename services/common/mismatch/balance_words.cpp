@@ -93,7 +93,7 @@ FoundEffect effect_of(const BalanceFinding& finding, const PlantDescription& pla
                                .unit = unit_of(finding, plant),
                                .value = finding.value,
                                .std_error = finding.std_error,
-                               .at_bound = !std::isfinite(finding.std_error)});
+                               .at_bound = finding.at_bound});
   effect.delta_bic = -finding.weight;
   if (is_datasheet(finding)) {
     effect.engineering_share = std::abs(finding.value / finding.datasheet - 1.0) / kDatasheetMatters;

@@ -117,7 +117,7 @@ std::vector<FoundParameter> parameters_of(const Effect& effect, const FittedMode
     for (std::size_t k = 0; k < errors.size(); ++k) {
       if (model.problem.shared[k].name != name) continue;
       found.std_error = std::hypot(errors[k], parameter.strength ? resolution.of(parameter) : 0.0);
-      found.at_bound = !std::isfinite(errors[k]);
+      found.at_bound = at_bound(model.problem.shared[k], model.optimum.point.shared[k]);
     }
     parameters.push_back(std::move(found));
   }
@@ -406,27 +406,34 @@ PrognosisShift prognosis_shift(const AssetConfig& asset, const std::vector<Param
   if (!std::isfinite(leakage->before_std) || !std::isfinite(leakage->after_std))
     return shift;  // at a bound, or not told
   shift.known = true;
+  shift.part = asset.condition->part;
+  shift.parameter = leakage->name;
+  shift.unit = leakage->unit;
   shift.R_CL_before = leakage->before;
   shift.R_CL_after = leakage->after;
   shift.theta_before = asset.condition->condition(leakage->before);
   shift.theta_after = asset.condition->condition(leakage->after);
-  shift.months_before = forecast::mean_remaining_months(shift.theta_before, asset.condition->threshold);
-  shift.months_after = forecast::mean_remaining_months(shift.theta_after, asset.condition->threshold);
-  const bool seal = asset.condition->part.ends_with("seal");
-  const std::string of_what = seal ? "The seal's" : "The";
+  const bool of_population = shift.part.ends_with("seal");  // which is one of seals: nothing is known of other parts
+  const auto months_left = [&](double theta) {
+    return of_population ? forecast::mean_remaining_months(theta, asset.condition->threshold)
+                         : std::numeric_limits<double>::quiet_NaN();
+  };
+  shift.months_before = months_left(shift.theta_before);
+  shift.months_after = months_left(shift.theta_after);
+  const std::string of_what = "The condition of the " + shift.part;
   const std::string condition = number(100.0 * shift.theta_after, 4) + " %";
   const double months = std::round(shift.months_after), months_before = std::round(shift.months_before);
-  if (condition == number(100.0 * shift.theta_before, 4) + " %" && months == months_before) {
+  if (condition == number(100.0 * shift.theta_before, 4) + " %" && (months == months_before || !of_population)) {
     const bool nothing_found = leakage->after == leakage->before;
-    shift.sentence =
-        of_what + " condition is " + condition + (nothing_found ? "." : " with and without what was found.");
+    shift.sentence = of_what + " is " + condition + (nothing_found ? "." : " with and without what was found.");
     return shift;
   }
   const std::string not_before = months == months_before ? ", as before" : ", not " + number(months_before);
-  shift.sentence = of_what + " condition is " + condition + " instead of " + number(100.0 * shift.theta_before, 4) +
-                   " %: a mean seal then has " + number(months) + " months left until " +
-                   number(100.0 * asset.condition->threshold) + " %" + not_before +
-                   ". This actuator's own remaining life comes from its history (sealwatch forecast).";
+  shift.sentence = of_what + " is " + condition + " instead of " + number(100.0 * shift.theta_before, 4) + " %";
+  if (of_population)
+    shift.sentence += ": a mean " + shift.part + " then has " + number(months) + " months left until " +
+                      number(100.0 * asset.condition->threshold) + " %" + not_before;
+  shift.sentence += ". This asset's own remaining life comes from its history (sealwatch forecast).";
   return shift;
 }
 

@@ -141,9 +141,14 @@ double predicted_leakage(const FittedModel& model, const Data& fit, std::optiona
   return before * std::pow(after / before, share);
 }
 
-std::string what_aged(const AssetConfig& asset) {
+std::string worn_part(const AssetConfig& asset) {
   const std::optional<ConditionSetting> scale = asset.condition ? asset.condition : plant_of(asset).condition;
-  return "The " + (scale && !scale->part.empty() ? scale->part : "part whose " + what_wears(asset) + " wears");
+  return scale && !scale->part.empty() ? scale->part : "part whose " + what_wears(asset) + " wears";
+}
+
+std::string worn_element(const AssetConfig& asset) {
+  const std::optional<ConditionSetting>& of_plant = plant_of(asset).condition;
+  return of_plant && of_plant->parameter == what_wears(asset) ? "piston_seal" : "";
 }
 
 std::string course_in_words(const FittedModel& model, const Data& fit) {

@@ -72,8 +72,10 @@ struct OwnValues {
 /// Whether it is what wears.
 [[nodiscard]] bool is_wear(const OwnValues& own);
 
-/// "The piston seal": what wears in the asset.
-[[nodiscard]] std::string what_aged(const AssetConfig& asset);
+/// "piston seal": what wears in the asset.
+[[nodiscard]] std::string worn_part(const AssetConfig& asset);
+/// The element that it is of the plant; "" where a plant as text does not say it.
+[[nodiscard]] std::string worn_element(const AssetConfig& asset);
 
 /// "From test to test R_CL is ...", value by value.
 [[nodiscard]] std::string course_in_words(const FittedModel& model, const Data& fit);

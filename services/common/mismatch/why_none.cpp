@@ -35,18 +35,18 @@ WhyNone something_changed(const ChangeBetweenTests& change) {
   return {.summary = change.sentence, .next_test = kTestsOfOneTime, .element = change.element};
 }
 
-WhyNone seal_changed_but_not_by_wear(const std::string& course) {
-  return {.summary = course +
-                     " This is not wear: the seal was changed, or something else changed between these "
+WhyNone part_changed_but_not_by_wear(const std::string& course, const std::string& part, const std::string& element) {
+  return {.summary = course + " This is not wear: the " + part +
+                     " was changed, or something else changed between these "
                      "tests. One law for all of them cannot be identified.",
           .next_test = kTestsOfOneTime,
-          .element = "piston_seal"};
+          .element = element};
 }
 
-WhyNone seal_aged_and_no_more(const std::string& course) {
-  return {.summary = course + " The piston seal aged; nothing else shows.",
+WhyNone part_aged_and_no_more(const std::string& course, const std::string& part, const std::string& element) {
+  return {.summary = course + " The " + part + " aged; nothing else shows.",
           .next_test = kTestsOfOneTime,
-          .element = "piston_seal"};
+          .element = element};
 }
 
 WhyNone differed_and_no_more(const std::string& course) {

@@ -22,9 +22,11 @@ struct WhyNone {
 [[nodiscard]] WhyNone nothing_moves();
 [[nodiscard]] WhyNone something_changed(const ChangeBetweenTests& change);
 
-/// `course`: R_CL from test to test, in words.
-[[nodiscard]] WhyNone seal_changed_but_not_by_wear(const std::string& course);
-[[nodiscard]] WhyNone seal_aged_and_no_more(const std::string& course);
+/// `course`: what wears from test to test, in words; `part`: what it is, and which element of the plant ("": none).
+[[nodiscard]] WhyNone part_changed_but_not_by_wear(const std::string& course, const std::string& part,
+                                                   const std::string& element);
+[[nodiscard]] WhyNone part_aged_and_no_more(const std::string& course, const std::string& part,
+                                            const std::string& element);
 /// `course`: of another parameter.
 [[nodiscard]] WhyNone differed_and_no_more(const std::string& course);
 /// Behind one of these; `worst`: of the held-out channels, further off than its noise.

@@ -46,7 +46,7 @@ void add_figure(const std::string& value, const std::string& meaning, std::strin
 }
 
 /// What to look at for one effect, and how soon.
-std::string step_for(const mismatch::FoundEffect& effect) {
+std::string step_for(const mismatch::FoundEffect& effect, const std::string& worn_part) {
   const std::string& element = effect.what.element;
   const bool sensor = element.starts_with("sensor:") || element.starts_with("input:") || element == "clock";
   std::string step = (sensor ? "Check " : "Inspect ") + the_element(element) +
@@ -54,14 +54,14 @@ std::string step_for(const mismatch::FoundEffect& effect) {
   if (!effect.what.meaning.empty()) step += ": " + effect.what.meaning;
   step += ". ";
   if (effect.engineering_share >= 1.0)
-    step += "At " + text::number_text(effect.engineering_share, 2) +
-            " times the size that matters, do this before you rely on the seal condition. If the effect is normal "
-            "for this actuator, keep it in the asset file.";
+    step += "At " + text::number_text(effect.engineering_share, 2) + " times the size that matters, do this " +
+            (worn_part.empty() ? "soon" : "before you rely on the condition of the " + worn_part) +
+            ". If the effect is normal for this asset, keep it in the asset file.";
   else if (effect.engineering_share > 0.0)
     step += "At " + text::number_text(effect.engineering_share, 2) +
             " of the size that matters, it can wait for the next planned work. Follow it in the next tests.";
   else
-    step += "It is either normal for this actuator or a fault.";
+    step += "It is either normal for this asset or a fault.";
   std::vector<std::string> others;
   for (const std::string& other : effect.same_elements) others.push_back(the_element(other));
   if (!others.empty()) step += " These recordings fit equally well with it in: " + text::joined(others) + ".";
@@ -72,7 +72,9 @@ std::string step_for(const mismatch::FoundEffect& effect) {
 std::string steps_after(const Explanation& explanation) {
   std::string html = "<ol>\n";
   const auto add = [&html](const std::string& step) { html.append("<li>").append(escaped(step)).append("</li>\n"); };
-  for (const mismatch::FoundEffect& effect : explanation.effects) add(step_for(effect));
+  const std::optional<ConditionSetting>& wear = explanation.explained.condition;
+  const std::string worn_part = wear ? wear->part : "";
+  for (const mismatch::FoundEffect& effect : explanation.effects) add(step_for(effect, worn_part));
   add("Use asset.explained.yaml instead of the asset file in fit, forecast, simulate and explain. For the services, "
       "put it in place of the asset file.");
   if (!explanation.next_test.empty()) add(explanation.next_test);
@@ -125,6 +127,12 @@ std::string law_name(const mismatch::LawAt& what) {
   std::string name = text::in_words(what.id);
   if (!what.form.empty()) name.append(" (").append(text::in_words(what.form)).append(")");
   return name;
+}
+
+std::string found_value(const mismatch::FoundParameter& parameter) {
+  std::string text = text::readable_with_error(parameter.value, parameter.std_error, parameter.unit);
+  if (parameter.at_bound) return text.append(", at its bound");
+  return std::isfinite(parameter.std_error) ? text : text.append(", not identifiable");
 }
 
 std::string element_name(const std::string& element) {

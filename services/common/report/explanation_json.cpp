@@ -170,7 +170,10 @@ void add_parameters(const Explanation& explanation, Json& json) {
 
 Json prognosis_json(const mismatch::PrognosisShift& prognosis) {
   if (!prognosis.known) return nullptr;
-  return {{"R_CL_before", number(prognosis.R_CL_before)},
+  return {{"part", prognosis.part},
+          {"parameter", prognosis.parameter},
+          {"unit", prognosis.unit},
+          {"R_CL_before", number(prognosis.R_CL_before)},
           {"R_CL_after", number(prognosis.R_CL_after)},
           {"theta_before", number(prognosis.theta_before)},
           {"theta_after", number(prognosis.theta_after)},

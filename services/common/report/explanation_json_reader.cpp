@@ -213,7 +213,12 @@ std::vector<std::vector<AssetValue>> read_asset_values(const Json& json) {
 
 PrognosisShift read_prognosis(const Json& json) {
   if (json.is_null()) return {};
+  // Reports of earlier versions do not say what wears.
+  const auto told = [&](const char* key) { return json.contains(key) ? text(json, key) : std::string(); };
   return {.known = true,
+          .part = told("part"),
+          .parameter = told("parameter"),
+          .unit = told("unit"),
           .R_CL_before = number(json, "R_CL_before"),
           .R_CL_after = number(json, "R_CL_after"),
           .theta_before = number(json, "theta_before"),

@@ -158,18 +158,19 @@ std::string prognosis_section(const Explanation& explanation) {
   const mismatch::PrognosisShift& prognosis = explanation.prognosis;
   if (!prognosis.known || !explanation.changed()) return {};
   Table table({"", ">before", ">after", ">change"});
-  table.row({"leakage resistance R_CL", text::readable(prognosis.R_CL_before, "Pa s/m3"),
-             text::readable(prognosis.R_CL_after, "Pa s/m3"),
+  table.row({prognosis.parameter, text::readable(prognosis.R_CL_before, prognosis.unit),
+             text::readable(prognosis.R_CL_after, prognosis.unit),
              change_text(prognosis.R_CL_before, prognosis.R_CL_after)});
   const auto theta = [](double value) {
     return std::isfinite(value) ? text::number_text(100.0 * value, 4).append(" %") : "–";
   };
-  table.row({"seal condition", theta(prognosis.theta_before), theta(prognosis.theta_after),
+  table.row({"condition of the " + prognosis.part, theta(prognosis.theta_before), theta(prognosis.theta_after),
              change_text(prognosis.theta_before, prognosis.theta_after)});
   const auto months = [](double value) { return std::isfinite(value) ? std::to_string(std::lround(value)) : "–"; };
-  table.row({"months left of a mean seal", months(prognosis.months_before), months(prognosis.months_after),
-             change_text(prognosis.months_before, prognosis.months_after)});
-  return folded_section("Effect on the remaining life", "R_CL and seal condition before and after",
+  if (std::isfinite(prognosis.months_after))
+    table.row({"months left of a mean " + prognosis.part, months(prognosis.months_before),
+               months(prognosis.months_after), change_text(prognosis.months_before, prognosis.months_after)});
+  return folded_section("Effect on the remaining life", prognosis.parameter + " and condition before and after",
                         paragraph(prognosis.sentence).append(table.html()));
 }
 

@@ -45,11 +45,7 @@ std::string meaning_of(const mismatch::LawAt& what, const std::string& parameter
 std::string parameter_table(const FoundEffect& effect) {
   Table table({"parameter", ">value ± standard error", "~meaning"});
   for (const mismatch::FoundParameter& parameter : effect.parameters) {
-    std::string meaning = meaning_of(effect.what, parameter.name);
-    if (parameter.at_bound || !std::isfinite(parameter.std_error))
-      meaning.append(meaning.empty() ? "" : "; ").append("not identifiable from these recordings");
-    table.row(
-        {parameter.name, text::readable_with_error(parameter.value, parameter.std_error, parameter.unit), meaning});
+    table.row({parameter.name, found_value(parameter), meaning_of(effect.what, parameter.name)});
   }
   return table.empty() ? std::string() : table.html();
 }
@@ -94,8 +90,7 @@ std::string effect_in_short(const FoundEffect& effect) {
   std::string html = std::string("<h3>").append(escaped(title_of(effect))).append("</h3>\n");
   html += law_line(effect.what.law);
   for (const mismatch::FoundParameter& parameter : effect.parameters)
-    html += paragraph(parameter.name + " = " +
-                      text::readable_with_error(parameter.value, parameter.std_error, parameter.unit));
+    html += paragraph(parameter.name + " = " + found_value(parameter));
   html += paragraph("Probability of this law: " + text::percent_text(effect.probability) +
                         "; of this element: " + text::percent_text(effect.element_probability) + " (not calibrated).",
                     "small muted");

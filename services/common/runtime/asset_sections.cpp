@@ -79,6 +79,18 @@ std::vector<std::string> quantities_of(const PlantDescription& plant) {
   return judged_quantities(names_of_rows(simulated), names_of_rows(plant.channels));
 }
 
+/// Plant files give the tolerance as a share of the value: whoever does so here would set a small value free.
+void check_tolerance(YamlMap& map, const ParameterDescription& description, const ParameterSetting& setting) {
+  const double size = std::abs(setting.value);
+  if (!description.positive || setting.tolerance <= size) return;
+  map.fault("tolerance", text::general(setting.tolerance),
+            "must not be above the value, " + text::general(setting.value) + " " + description.unit +
+                ", in whose unit it is one standard deviation",
+            setting.tolerance < 1.0 ? "a share of " + text::general(setting.tolerance) + " is written " +
+                                          text::general(setting.tolerance * size)
+                                    : "");
+}
+
 }  // namespace
 
 void read_parameter(YamlMap& parameters, const ParameterDescription& description, ParameterSetting& setting,
@@ -100,6 +112,7 @@ void read_parameter(YamlMap& parameters, const ParameterDescription& description
   map.read("tolerance", setting.tolerance, kNotNegative);
   map.finish();
   if (!sound) return;
+  check_tolerance(map, description, setting);
   if (!has_bounds) widen(setting, description);
   if (setting.min > setting.max)
     map.fault(

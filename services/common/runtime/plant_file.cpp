@@ -71,6 +71,11 @@ void read_channels(YamlMap& root, TextPlant& plant) {
   });
 }
 
+constexpr NumberRule kToleranceShare{.min = 0.0,
+                                     .max = 1.0,
+                                     .min_excluded = true,
+                                     .words = "must be a share of the value, above 0, at most 1: 0.01 for 1 %"};
+
 void read_parameters(YamlMap& root, TextPlant& plant) {
   for_each(root, "parameters", [&](const std::string& name, YamlMap& map) {
     ParameterDescription parameter{.name = name, .unit = {}, .meaning = name};
@@ -83,7 +88,7 @@ void read_parameters(YamlMap& root, TextPlant& plant) {
     parameter.max = 10.0 * size;
     map.read("min", parameter.min);
     map.read("max", parameter.max);
-    map.read("tolerance", parameter.tolerance, kPositive);
+    map.read("tolerance", parameter.tolerance, kToleranceShare);
     map.read("estimate", parameter.estimate);
     parameter.role = read_role<ParameterRole>(map);
     if (given && size == 0.0 && !(map.has("min") && map.has("max")))

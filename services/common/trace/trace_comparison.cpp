@@ -53,6 +53,11 @@ MatrixXd beside(const std::vector<VectorXd>& columns) {
 }
 
 /// Where a file has samples. One without a usual interval, as a solver of variable steps writes it, has no gaps.
+constexpr const char* kMapThem =
+    "say with --map MAP.yaml which columns of the log are which (`sealwatch asset new --from LOG` writes a map), or "
+    "give "
+    "both the same column names";
+
 class Presence {
  public:
   explicit Presence(const std::vector<double>& time_s) : time_s_(time_s) {
@@ -140,13 +145,16 @@ class Comparison {
     for (const Series& channel : recorded_.channels) take(channel);
     for (const Series& channel : simulated_.channels)
       if (!recorded_.has(channel.name)) out_.only_simulated.push_back(channel.name);
-    if (pairs_.empty()) return fail("the files share no channel", "give both the same column names, or a map");
+    if (pairs_.empty())
+      return fail("the files share no channel: the recording has " + text::joined(out_.only_recorded) +
+                      ", the simulation " + text::joined(out_.only_simulated),
+                  kMapThem);
     // What the simulation was given is the same in both by itself: it agrees with nothing.
     const auto given = [](const Pair& pair) { return pair.input || pair.recorded == pair.simulated; };
     if (std::ranges::all_of(pairs_, given) && !out_.only_recorded.empty() && !out_.only_simulated.empty())
       return fail("the files share inputs alone: only the recording has " + text::joined(out_.only_recorded) +
                       ", only the simulation " + text::joined(out_.only_simulated),
-                  "give both the same column names, or a map");
+                  kMapThem);
     return {};
   }
 

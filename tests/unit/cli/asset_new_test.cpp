@@ -229,7 +229,12 @@ TEST_F(AssetNew, WhatIsUncertainIsSaidOnTheScreen) {
   ::testing::internal::CaptureStdout();
   ASSERT_EQ(make("t [s],Stellung [%],LVDT [counts],Pressure\n0,1,2000,1\n1,1,2001,1\n2,1,2003,1\n", path("pump.yaml")),
             kOk);
-  EXPECT_THAT(::testing::internal::GetCapturedStdout(), ::testing::HasSubstr("the log gives no unit: taken for Pa"));
+  const std::string told = ::testing::internal::GetCapturedStdout();
+  EXPECT_THAT(told, ::testing::HasSubstr("the log gives no unit: taken for Pa"));
+  EXPECT_THAT(told, ::testing::HasSubstr("output valve_lift [m] not found in "));
+  EXPECT_THAT(told, ::testing::HasSubstr("{column: \"LVDT [counts]\", scale: 1, unit: \"m\"}"));
+  EXPECT_THAT(told,
+              ::testing::HasSubstr("asset id: log by the log's name; change it under asset_id in " + path("a.yaml")));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
   EXPECT_THAT(text.str(), ::testing::HasSubstr("{column: \"LVDT [counts]\", scale: 1, unit: \"m\"}"));
@@ -237,10 +242,15 @@ TEST_F(AssetNew, WhatIsUncertainIsSaidOnTheScreen) {
 
 TEST_F(AssetNew, AColumnWhoseCellsAreNoNumbersIsNamed) {
   write_pump();
-  ASSERT_EQ(make("t [s],Opening [%],Pressure [psig]\n0,1,\"1,234.5\"\n1,1,\"1,235.5\"\n", path("pump.yaml")), kOk);
+  ::testing::internal::CaptureStdout();
+  ASSERT_EQ(make("t [s],Opening [%],Pressure [psig]\n0,1,1\n1,1,\"1,235.5\"\n", path("pump.yaml")), kOk);
+  const std::string told = ::testing::internal::GetCapturedStdout();
+  EXPECT_THAT(told, ::testing::HasSubstr("output pressure [Pa] not found in "));
+  EXPECT_THAT(told, ::testing::HasSubstr("may be it, but '1,235.5' in row 3"));
+  EXPECT_THAT(told, ::testing::HasSubstr("as no column has the unit: valve_lift [m]"));
   std::ostringstream text;
   text << std::ifstream(path("a.yaml")).rdbuf();
-  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,234.5' is no number"));
+  EXPECT_THAT(text.str(), ::testing::HasSubstr("Pressure [psig] may be it, but '1,235.5' in row 3 is no number"));
 }
 
 TEST_F(AssetNew, AColumnWithoutAUnitIsMarked) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "services/cli/explain_command.hpp"
@@ -85,14 +86,18 @@ TEST_F(ExplainCommand, WritesTheThreeFilesAndSaysWhereToLook) {
   found_.summary = "The piston meets dry friction.";
   found_.effects.resize(1);
   found_.effects[0].what = {"coulomb_friction", "", "piston", "F_c tanh(v / v_s)", ""};
-  found_.effects[0].parameters = {{"F_c", "N", 4010.0, 60.0, false}};
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  found_.effects[0].parameters = {
+      {"F_c", "N", 4010.0, 60.0, false}, {"v_s", "m/s", 0.05, kInfinite, true}, {"v_t", "m/s", 0.02, kInfinite, false}};
   options_.seed = 7;
   options_.threads = 3;
   EXPECT_EQ(run(), kOk);
   EXPECT_THAT(out_, HasSubstr("A: mismatch"));
   EXPECT_THAT(out_, HasSubstr("The piston meets dry friction."));
   EXPECT_THAT(out_, HasSubstr("coulomb friction of the piston"));
-  EXPECT_THAT(out_, HasSubstr("F_c = 4.010 ± 0.060 kN"));
+  EXPECT_THAT(out_, HasSubstr("F_c = 4.010 ± 0.060 kN\n"));
+  EXPECT_THAT(out_, ContainsRegex("v_s = [^\n]*, at its bound\n"));
+  EXPECT_THAT(out_, ContainsRegex("v_t = [^\n]*, not identifiable\n"));
   EXPECT_THAT(out_, HasSubstr("report.html"));
   EXPECT_THAT(err_, HasSubstr("thinking"));
   EXPECT_EQ(given_.seed, 7U);

@@ -261,6 +261,21 @@ TEST(FmuPlant, OneThatLiesAboutItsDerivativesIsRefused) {
               AllOf(HasSubstr("d der(v) / d v is said to be 0"), HasSubstr("not the derivatives of its own values")));
 }
 
+TEST(FmuPlant, OneThatLiesByItsInputsOrOfItsOutputsIsRefused) {
+  const std::pair<const char*, const char*> lies[] = {
+      {"fmu_spring_lies_by_input2", "d der(v) / d u is said to be 10.0"},
+      {"fmu_spring_lies_of_output2", "d position / d x is said to be 2.0"},
+      {"fmu_spring_lies_of_both2", "d position / d u is said to be 0.5"}};
+  for (const auto& [binary, said] : lies) {
+    const TestFolder folder;
+    TestUnit unit = spring_return(binary);
+    unit.directional = true;
+    const std::string fmu = folder.build(unit);
+    EXPECT_THAT(fault(folder, plant_text(binary)),
+                AllOf(HasSubstr(said), HasSubstr("not the derivatives of its own values")));
+  }
+}
+
 /// The asset's plant with its laws, exported and imported again, simulates as the asset does. `hidden`: states of laws, as
 /// an imported plant names them.
 void expect_same_exported(const TestFolder& folder, const std::string& plant_file, const AssetConfig& asset,

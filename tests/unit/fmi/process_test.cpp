@@ -169,6 +169,15 @@ TEST_F(FmuProcessTest, AHangIsAnError) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
 }
 
+TEST_F(FmuProcessTest, AStartThatIsWaitedForIsTold) {
+  std::vector<std::string> told;
+  slow_starts() = [&](const std::string& text) { told.push_back(text); };
+  EXPECT_THAT(trouble(folder_, "fmu_spring_hang2", {.start_s = 2.0, .told_s = 0.2}),
+              HasSubstr("did not answer within 2 s"));
+  slow_starts() = {};
+  EXPECT_THAT(told, ::testing::ElementsAre(HasSubstr("model.fmu: waiting for the FMU to start, at most 2 s")));
+}
+
 // Sanitizers reserve more addresses than a process may have: then it has no limit.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST_F(FmuProcessTest, MemoryThatIsUsedUpIsToldAsThat) {

@@ -205,7 +205,7 @@ TEST(StateSpace, FewFailBeforeP10AfterSealsBeganToAgeFaster) {
 
 TEST(StateSpace, SaysWhatHappened) {
   EXPECT_THAT(ask("state_space", cut(1, "rate", 6.0, 0.0005).request).explanation, HasSubstr("another rate since"));
-  EXPECT_THAT(ask("state_space", cut(3, "replaced", 24.0).request).explanation, HasSubstr("another, new seal since"));
+  EXPECT_THAT(ask("state_space", cut(3, "replaced", 24.0).request).explanation, HasSubstr("another, new one since"));
   EXPECT_THAT(ask("state_space", cut(1, "level", 12.0, 0.002).request).explanation, HasSubstr("another level since"));
   EXPECT_THAT(ask("state_space", cut(1, "errors", 24.0).request).explanation, HasSubstr("besides their errors"));
   const std::string usual = ask("state_space", cut(1, "reference", 24.0).request).explanation;

@@ -162,6 +162,9 @@ Explanation example_explanation() {
   add_power(explanation);
   explanation.rejected = {{.what = kLeakage, .why = "fits better only with oil flowing from low to high pressure"}};
   explanation.prognosis = {.known = true,
+                           .part = "piston seal",
+                           .parameter = "R_CL",
+                           .unit = "Pa s/m3",
                            .R_CL_before = 1.9e13,
                            .R_CL_after = 2.58e13,
                            .theta_before = 0.869,

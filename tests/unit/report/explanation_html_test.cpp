@@ -100,12 +100,26 @@ TEST(ReportHtml, ASensorIsNothingThatTheModelLacks) {
 
 TEST(ReportHtml, TellsWhatWasFound) {
   const std::string html = explanation_to_html(example_explanation());
-  for (const char* part : {"Mismatch found and explained", "dry friction of 4.0 kN", "Stribeck friction of the piston",
-                           "98 %", "(F_c + F_x exp(-(v / v_st)^2)) tanh(v / v_s)", "4.010 ± 0.060 kN", "old model",
-                           "new model", "holdout_0", "coulomb friction", "misses the rise near standstill",
-                           "fits better only with oil flowing", "had been compensating for it", "13 % more worn",
-                           "cannot be detected in these recordings", "Record a stroke at 0.2 mm/s",
-                           "Inspect the piston for ", "put it in place of the asset file", "117 laws were tried"})
+  for (const char* part : {"Mismatch found and explained",
+                           "dry friction of 4.0 kN",
+                           "Stribeck friction of the piston",
+                           "98 %",
+                           ", at its bound",
+                           "(F_c + F_x exp(-(v / v_st)^2)) tanh(v / v_s)",
+                           "4.010 ± 0.060 kN",
+                           "old model",
+                           "new model",
+                           "holdout_0",
+                           "coulomb friction",
+                           "misses the rise near standstill",
+                           "fits better only with oil flowing",
+                           "had been compensating for it",
+                           "13 % more worn",
+                           "cannot be detected in these recordings",
+                           "Record a stroke at 0.2 mm/s",
+                           "Inspect the piston for ",
+                           "put it in place of the asset file",
+                           "117 laws were tried"})
     EXPECT_THAT(html, HasSubstr(part));
 }
 
@@ -136,7 +150,8 @@ TEST(ReportHtml, ShowsParametersAtABoundBeforeTheOthers) {
   const auto at = [&](const char* name) { return html.find(std::string(">").append(name).append("<"), table); };
   EXPECT_LT(at("R_M"), at("f_C"));
   EXPECT_LT(at("f_C"), at("R_CL")) << "moved by more of its error";
-  EXPECT_THAT(explanation_to_html(example_explanation()), Not(HasSubstr("at its bound")));
+  const std::string without = explanation_to_html(example_explanation());
+  EXPECT_EQ(without.find("at its bound", without.find("What had absorbed the effect")), std::string::npos);
 }
 
 TEST(ReportHtml, SaysHowMuchAForbiddenFitWouldHaveTaken) {

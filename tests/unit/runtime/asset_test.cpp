@@ -60,6 +60,9 @@ const BadCase kBadCases[] = {
      "a.yaml: line 2, key parameters.p_ambient: '.inf': must be a number"},
     {"below_min", "asset_id: A\nparameters: {R_CL: {value: 1.0e12, min: 2.0e12, max: 3.0e13}}\n",
      "a.yaml: line 2, key parameters.R_CL.value: '1e+12': must lie between min and max, 2e+12 and 3e+13"},
+    {"tolerance_as_a_share", "asset_id: A\nparameters: {alpha_P: {value: 4.0e-8, tolerance: 5.0e-4}}\n",
+     "a.yaml: line 2, key parameters.alpha_P.tolerance: '0.0005': must not be above the value, 4e-08 m3/rad, in whose "
+     "unit it is one standard deviation; a share of 0.0005 is written 2e-11"},
     {"min_above_max", "asset_id: A\nparameters: {R_CL: {min: 3.0e13, max: 2.0e13}}\n",
      "a.yaml: line 2, key parameters.R_CL.min: '3e+13': min must not be above max, which are 3e+13 and 2e+13"},
     {"unknown_channel", "asset_id: A\nsensors: {presure_a: {noise_std: 1}}\n",

@@ -311,7 +311,10 @@ TEST(Trace, AFrictionIsNoneOfThese) {
 TEST(Trace, WhatCannotBeComparedIsSaid) {
   TimeSeries other = stroke();
   other.channels[0].name = "x", other.channels[1].name = "p";
-  EXPECT_THAT(compare_traces(stroke(), other, {}).error().describe(), HasSubstr("the files share no channel"));
+  const std::string no_channel = compare_traces(stroke(), other, {}).error().describe();
+  EXPECT_THAT(no_channel, HasSubstr("the files share no channel: the recording has "));
+  EXPECT_THAT(no_channel, HasSubstr("the simulation x, p"));
+  EXPECT_THAT(no_channel, HasSubstr("--map"));
   TimeSeries later = stroke();
   for (double& time : later.time_s) time += 28.0;
   EXPECT_THAT(compare_traces(stroke(), later, {}).error().describe(), HasSubstr("less than a quarter"));

@@ -1,4 +1,4 @@
-/* With directional derivatives, which LIE makes wrong: it forgets the friction. OF_STATES_ALONE: none of outputs.
+/* With directional derivatives, which LIE makes wrong: it forgets the friction. LIE_BY_INPUT, LIE_OF_OUTPUT, LIE_OF_OUTPUT_BY_INPUT: wrong there. OF_STATES_ALONE: none of outputs.
  * STEADY: its initial equation is that it rests, wherever its input holds it.
  * STUBBORN: hangs at other
  * parameters. SLOW_TO_REFUSE: refuses them, after 0.2 s. FORKS: starts a process that stays. MUTTERS: prints why it gives no instance. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
@@ -81,6 +81,15 @@ API int fmi2GetDerivatives(void* c, double* x, size_t n) { return c == broken ? 
 #define FRICTION (-p[F_V] / p[M_])
 #endif
 static double partial(const double* p, unsigned unknown, unsigned known) {
+#ifdef LIE_BY_INPUT
+  if (unknown != 5000U && unknown != 2000U && known != 1000U && known != 1001U) return 2.0 * p[K_F] / p[M_];
+#endif
+#ifdef LIE_OF_OUTPUT
+  if (unknown == 5000U && known == 1000U) return 2.0;
+#endif
+#ifdef LIE_OF_OUTPUT_BY_INPUT
+  if (unknown == 5000U && known != 1000U && known != 1001U) return 0.5;
+#endif
   if (unknown == 5000U) return known == 1000U ? 1.0 : 0.0;
   if (unknown == 2000U) return known == 1001U ? 1.0 : 0.0;
   if (known == 1000U) return -p[K_S] / p[M_];

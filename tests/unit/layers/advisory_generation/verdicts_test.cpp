@@ -157,11 +157,10 @@ TEST_F(VerdictMemoryTest, IsNotEasedWhileACampaignEarlierWouldCallForAsMuch) {
 
 TEST(VerdictWords, AreThoseOfTheOperator) {
   const TestVerdict verdict{.wear = WearLevel::book_at_once, .replace_by = day("2017-06-01")};
-  EXPECT_EQ(
-      in_words(verdict, {.wear = WearLevel::book, .replace_by = day("2019-06-01")}),
-      "this test alone says: book a vessel at once; the seal replaced by 2017-06-01; instruments trusted; stroke done. "
-      "The advice goes by all tests so far, which say: book a vessel; the seal replaced by 2019-06-01; instruments "
-      "trusted; stroke done");
+  EXPECT_EQ(in_words(verdict, {.wear = WearLevel::book, .replace_by = day("2019-06-01")}),
+            "this test alone says: book a vessel at once; replacement by 2017-06-01; instruments trusted; stroke done. "
+            "The advice goes by all tests so far, which say: book a vessel; replacement by 2019-06-01; instruments "
+            "trusted; stroke done");
   EXPECT_EQ(
       in_words({.wear = WearLevel::none}, {}),
       "this test alone says: no work yet; instruments trusted; stroke done. The advice goes by all tests so far, which "
@@ -181,6 +180,11 @@ TEST(VerdictWords, OfOlderJournalsAreReadToo) {
                                           .replace_by = day("2017-06-01"),
                                           .instruments_doubted = true}));
   EXPECT_EQ(record->in_force, (InForce{.wear = WearLevel::plan, .failing = true}));
+  const auto later = from_words(
+      "this test alone says: plan the work; the seal replaced by 2017-06-01; instruments trusted; stroke done. The "
+      "advice goes by all tests so far, which say the same");
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->in_force, (InForce{.wear = WearLevel::plan, .replace_by = day("2017-06-01")}));
 }
 
 TEST(VerdictWords, OtherReasonsAreNoRecord) {

@@ -1,6 +1,7 @@
 // The table of plant `eha`: nominal asset of the reference model (a 300 W class actuator). Symbols as in
 // include/sealwatch/model/eha.hpp, whose EhaParameters has the same names in the same order (a test compares them).
 #include "sealwatch/model/eha.hpp"
+#include "sealwatch/model/law_references.hpp"
 #include "services/common/model/plant_tables.hpp"
 
 namespace sealwatch {
@@ -200,6 +201,25 @@ PlantDescription describe_eha() {
   set_role(plant, "f_M", ParameterRole::motor_friction);
   add_sensor_elements(plant);
   return plant;
+}
+
+std::vector<LawReference> law_references() {
+  constexpr double kPressure_Pa = 1e7;  // under which the pump's torque is meant
+  const PlantDescription eha = describe_eha();
+  const auto value = [&](std::string_view parameter) { return eha.find_parameter(parameter)->value; };
+  return {
+      {"N", value("phi"), "load on its rod"},
+      {"m", value("x_C"), "its stroke"},
+      {"m2", value("A_C"), "area of its piston"},
+      {"N s/m", value("f_C"), "viscous friction of its piston"},
+      {"N m", value("alpha_P") * kPressure_Pa, "torque on its shaft"},
+      {"N m s/rad", value("f_M") + value("d_P"), "viscous friction of its shaft"},
+      {"m3/rad", value("alpha_P"), "displacement of its pump"},
+      {"N m/A", value("T_M"), "torque constant of its motor"},
+      {"ohm", value("R_M"), "resistance of its winding"},
+      {"m3/Pa", value("V_0") / value("beta"), "compliance of the oil in a chamber"},
+      {"s", eha.find_channel(ChannelRole::pressure_up)->time_constant_s, "time constant of its sensors"},
+  };
 }
 
 }  // namespace sealwatch

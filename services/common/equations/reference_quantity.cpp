@@ -54,7 +54,7 @@ ReferenceQuantity reference_quantity(const NeededSize& size, const std::vector<T
 }
 
 std::string in_words(const ReferenceQuantity& quantity, const std::string& unit) {
-  return text::format("about {:.2g} {} ({})", quantity.value, unit, quantity.meaning);
+  return text::format("about {:.3g} {} ({})", quantity.value, unit, quantity.meaning);
 }
 
 }  // namespace sealwatch::equations

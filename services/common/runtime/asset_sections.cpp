@@ -82,7 +82,7 @@ std::vector<std::string> quantities_of(const PlantDescription& plant) {
 /// Plant files give the tolerance as a share of the value: whoever does so here would set a small value free.
 void check_tolerance(YamlMap& map, const ParameterDescription& description, const ParameterSetting& setting) {
   const double size = std::abs(setting.value);
-  if (!description.positive || setting.tolerance <= size) return;
+  if (!description.positive || setting.estimate || setting.tolerance <= size) return;
   map.fault("tolerance", text::general(setting.tolerance),
             "must not be above the value, " + text::general(setting.value) + " " + description.unit +
                 ", in whose unit it is one standard deviation",

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "sealwatch/core/file.hpp"
@@ -29,7 +30,9 @@ void write_setting(YAML::Emitter& out, const std::string& name, const ParameterS
                      {"min", text::exact(setting.min)},
                      {"max", text::exact(setting.max)},
                      {"estimate", setting.estimate ? "true" : "false"}};
-  if (setting.tolerance > 0.0) entries.emplace_back("tolerance", text::exact(setting.tolerance));
+  // Of a value that came out smaller than it was given: a tolerance above the value is refused.
+  const double tolerance = setting.min > 0.0 ? std::min(setting.tolerance, setting.value) : setting.tolerance;
+  if (tolerance > 0.0) entries.emplace_back("tolerance", text::exact(tolerance));
   write_flow(out, name, entries);
 }
 

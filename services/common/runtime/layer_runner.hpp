@@ -190,6 +190,7 @@ class LayerRunner {
     ServiceAlarm alarm;        ///< its subject is the source
     UtcTime last;              ///< when one was refused
     std::string recording_id;  ///< of that one; "" after a restart
+    Alarms::Steady heard;  ///< of it, or this service's start: what is forgotten does not go by a clock that is wrong
   };
   [[nodiscard]] static bool is_of(const RefusedTest& refused, const RawSamples& raw);
   void tell_of_refused_tests();

@@ -29,7 +29,7 @@ constexpr const char* kOtherSenders = "others";
 constexpr std::size_t kMostNamedRefusals = 8;
 constexpr std::ptrdiff_t kMostRefusedSenders = 4;  ///< of an asset
 /// A sender that is not heard any more: what is due and does not come is another alarm by then.
-constexpr std::int64_t kRefusalIsForgotten_ns = 90LL * 86'400'000'000'000;
+constexpr std::chrono::hours kRefusalIsForgotten{90 * 24};
 constexpr std::chrono::seconds kFloodIsOver{60};
 /// It is raised every second while they are missing.
 constexpr std::chrono::seconds kBlocksCame{5};
@@ -143,6 +143,7 @@ void LayerRunner::note_refused_test(const RawSamples& raw, const std::string& re
   if (known != refused_tests_.end()) {
     known->last = now;
     known->recording_id = raw.recording_id;
+    known->heard = steady_now();
     return;
   }
   const auto of_asset =
@@ -152,7 +153,7 @@ void LayerRunner::note_refused_test(const RawSamples& raw, const std::string& re
     alarm.asset_id = alarm.subject = {};
     alarms_.raise(std::move(alarm), steady_now() + options_.strangers_stand);
   } else if (of_asset < kMostRefusedSenders) {
-    refused_tests_.push_back({alarm, now, raw.recording_id});
+    refused_tests_.push_back({alarm, now, raw.recording_id, steady_now()});
     changed_refused_tests_.emplace_back(std::move(alarm), true);
     tell_of_refused_tests();
   }
@@ -214,7 +215,7 @@ Status LayerRunner::restore_refused_tests() {
   if (!kept) return fail(kept.error());
   for (AlarmEntry& one : *kept)
     if (one.service == kind_->name() && one.alarm.kind == kRefusedTest)
-      refused_tests_.push_back({one.alarm, {one.alarm.since_ns}, {}});
+      refused_tests_.push_back({one.alarm, {one.alarm.since_ns}, {}, steady_now()});
   std::ranges::stable_sort(refused_tests_, {}, [](const RefusedTest& one) { return one.alarm.since_ns; });
   tell_of_refused_tests();
   return {};
@@ -322,8 +323,9 @@ void LayerRunner::look_for_trouble() {
   tell_of_floods();
   tell_of_missing_blocks();
   look_at_clock();
-  end_refused_tests(
-      [&](const RefusedTest& one) { return clock_.now().nanoseconds - one.last.nanoseconds > kRefusalIsForgotten_ns; });
+  for (RefusedTest& one : refused_tests_)  // refused while this machine's clock was ahead
+    one.last = std::min(one.last, clock_.now());
+  end_refused_tests([&](const RefusedTest& one) { return steady_now() - one.heard > kRefusalIsForgotten; });
   for (const std::string& alike : admission_.take_alike())
     if (reads_samples()) log_event(LogLevel::warn, "assets are alike in the ids of their tests", {{"error", alike}});
   note_strangers(strangers_.look(steady_now()));

@@ -88,7 +88,7 @@ void read_parameters(YamlMap& root, TextPlant& plant) {
     parameter.max = 10.0 * size;
     map.read("min", parameter.min);
     map.read("max", parameter.max);
-    map.read("tolerance", parameter.tolerance, kToleranceShare);
+    map.read("tolerance", parameter.tolerance, parameter.min > 0.0 ? kToleranceShare : kPositive);
     map.read("estimate", parameter.estimate);
     parameter.role = read_role<ParameterRole>(map);
     if (given && size == 0.0 && !(map.has("min") && map.has("max")))

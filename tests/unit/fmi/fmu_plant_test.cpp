@@ -276,6 +276,15 @@ TEST(FmuPlant, OneThatLiesByItsInputsOrOfItsOutputsIsRefused) {
   }
 }
 
+/// Differences across a corner where the input starts are the mean of both sides.
+TEST(FmuPlant, OneWithACornerWhereItsInputStartsIsRead) {
+  const TestFolder folder;
+  TestUnit unit = spring_return("fmu_spring_one_sided2");
+  unit.directional = true;
+  const std::string fmu = folder.build(unit);
+  EXPECT_EQ(fault(folder, plant_text("one_sided")), "read");
+}
+
 /// The asset's plant with its laws, exported and imported again, simulates as the asset does. `hidden`: states of laws, as
 /// an imported plant names them.
 void expect_same_exported(const TestFolder& folder, const std::string& plant_file, const AssetConfig& asset,

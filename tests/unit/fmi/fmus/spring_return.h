@@ -24,7 +24,11 @@ static void model_derivatives(double t, const double* x, const double* u, const 
   (void)t;
   DERIVATIVES_BEGIN
   dx[0] = x[1];
+#ifdef ONE_SIDED
+  dx[1] = (p[K_F] * (u[0] > 0.0 ? u[0] : 0.0) - p[F_V] * x[1] - p[K_S] * x[0]) / p[M_];
+#else
   dx[1] = (p[K_F] * u[0] - p[F_V] * x[1] - p[K_S] * x[0]) / p[M_];
+#endif
 }
 static void model_outputs(double t, const double* x, const double* u, const double* p, double* y) {
   (void)t, (void)u, (void)p;

@@ -1,4 +1,5 @@
 /* With directional derivatives, which LIE makes wrong: it forgets the friction. LIE_BY_INPUT, LIE_OF_OUTPUT, LIE_OF_OUTPUT_BY_INPUT: wrong there. OF_STATES_ALONE: none of outputs.
+ * ONE_SIDED: its drive gives nothing backwards, which its derivatives say.
  * STEADY: its initial equation is that it rests, wherever its input holds it.
  * STUBBORN: hangs at other
  * parameters. SLOW_TO_REFUSE: refuses them, after 0.2 s. FORKS: starts a process that stays. MUTTERS: prints why it gives no instance. BREAKS: it fails over them, and the instance gives nothing after that. ONCE: one instance in a process's life. */
@@ -106,8 +107,14 @@ API int fmi2GetDirectionalDerivative(void* c, const unsigned* unknowns, size_t n
     if (unknowns[row] == 5000U) return kError;
 #endif
     sensitivity[row] = 0.0;
-    for (column = 0; column < nk; ++column)
+    for (column = 0; column < nk; ++column) {
+#ifdef ONE_SIDED
+      if (unknowns[row] != 5000U && unknowns[row] != 2000U && knowns[column] != 1000U && knowns[column] != 1001U &&
+          ((Model*)c)->u[0] <= 0.0)
+        continue;
+#endif
       sensitivity[row] += partial(((Model*)c)->p, unknowns[row], knowns[column]) * seed[column];
+    }
   }
   return kOk;
 }

@@ -26,11 +26,6 @@ constexpr std::size_t kAskedToCarryOver = 3;
 
 bool same(const Effect& a, const Effect& b) { return a.law == b.law && a.element == b.element; }
 
-// Index of an effect among the laws of its model's asset.
-std::size_t place_of(const Trial& trial, std::size_t slot) {
-  return trial.model->asset.physics.size() - trial.effects.size() + slot;
-}
-
 // The same law at the plant's other elements of that kind (the other chamber, the other valve), with the shape at which the
 // search ended here and the strengths that the linear model gives it there (behind a gear a torque is another): from its
 // own linear step that twin's refit may have ended in a local minimum, and the place would look certain.
@@ -39,8 +34,15 @@ std::vector<std::vector<LawStart>> twins_of(const Trial& best, std::size_t slot,
   const Effect& effect = best.effects[slot];
   if (effect.law->evaluate == nullptr) return {};
   std::vector<double> found;
-  for (const LawParameter& parameter : effect.law->parameters)
-    found.push_back(best.model->asset.physics[place_of(best, slot)].parameters.at(std::string(parameter.name)).value);
+  for (const PhysicsTerm& term : best.model->asset.physics) {
+    if (term.id != effect.law->id || term.element != effect.element) continue;
+    found.clear();
+    for (const LawParameter& parameter : effect.law->parameters)
+      if (const auto setting = term.parameters.find(std::string(parameter.name)); setting != term.parameters.end())
+        found.push_back(setting->second.value);
+    if (found.size() == effect.law->parameters.size()) break;  // that form of the law
+  }
+  if (found.size() != effect.law->parameters.size()) return {};
   std::vector<Candidate> twins =
       find_candidates(*fewer.problem.recordings.front().simulation, fewer.asset.physics, effect.law->closed_form);
   std::erase_if(twins, [&](const Candidate& candidate) {

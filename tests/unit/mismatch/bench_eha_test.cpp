@@ -143,7 +143,7 @@ TEST(BenchEha, CarriesOverToAnotherDay) {
 TEST(BenchEha, NamesNothingWhereTooLittleIsExplained) {
   const auto fit = recordings({"load1_stroke2", "load2_stroke2", "load3_stroke2"});
   if (fit.empty()) GTEST_SKIP() << "the recordings bench_eha are not here";
-  const auto explanation = explain(bench(), fit, {});
+  const auto explanation = explain(bench(), fit, {}, {.maximum_laws = 1});
   ASSERT_TRUE(explanation);
   EXPECT_EQ(explanation->verdict, Verdict::undetermined) << explanation->summary;
   EXPECT_TRUE(explanation->effects.empty());

@@ -87,7 +87,8 @@ struct RunnerOptions {
   bool refuses_unknown_assets = false;    ///< takes `assets` alone
   bool acts_confirmed_by_second = false;  ///< see message/confirmation.hpp
   StrangerWatch::Options strangers = {};
-  std::chrono::milliseconds strangers_stand{3'600'000};  ///< how long an alarm of who is heard no more stands
+  std::chrono::milliseconds strangers_stand{3'600'000};         ///< how long an alarm of who is heard no more stands
+  std::chrono::milliseconds refusals_stand{90LL * 86'400'000};  ///< an alarm of a sender that is refused no more
   /// What the bus has refused to others since the last call, in words; nothing when it was nothing.
   std::function<std::optional<std::string>()> refused_by_bus = {};
   std::chrono::milliseconds resent_at_once = ResendQueue::kAtOnce;  ///< the same is not sent again to one reader

@@ -28,8 +28,6 @@ constexpr const char* kMissingBlocks = "missing_blocks";
 constexpr const char* kOtherSenders = "others";
 constexpr std::size_t kMostNamedRefusals = 8;
 constexpr std::ptrdiff_t kMostRefusedSenders = 4;  ///< of an asset
-/// A sender that is not heard any more: what is due and does not come is another alarm by then.
-constexpr std::chrono::hours kRefusalIsForgotten{90 * 24};
 constexpr std::chrono::seconds kFloodIsOver{60};
 /// It is raised every second while they are missing.
 constexpr std::chrono::seconds kBlocksCame{5};
@@ -325,7 +323,7 @@ void LayerRunner::look_for_trouble() {
   look_at_clock();
   for (RefusedTest& one : refused_tests_)  // refused while this machine's clock was ahead
     one.last = std::min(one.last, clock_.now());
-  end_refused_tests([&](const RefusedTest& one) { return steady_now() - one.heard > kRefusalIsForgotten; });
+  end_refused_tests([&](const RefusedTest& one) { return steady_now() - one.heard > options_.refusals_stand; });
   for (const std::string& alike : admission_.take_alike())
     if (reads_samples()) log_event(LogLevel::warn, "assets are alike in the ids of their tests", {{"error", alike}});
   note_strangers(strangers_.look(steady_now()));

@@ -37,7 +37,8 @@ Unknown shared_unknown(const ParameterDescription& parameter, const ParameterSet
 }
 
 // A strength may pass through 0; a shape is a scale where it is positive. The size of a user's own law, and one so wrong
-// that the law sets out beyond what it allows, are no measure of it: such a strength is of its own order of magnitude.
+// that the law sets out beyond what it allows or at next to nothing of it, are no measure of it: such a strength is of
+// its own order of magnitude.
 Unknown law_unknown(const PlantDescription& plant, const PhysicsParameter& parameter, FreeQuantity quantity) {
   const ParameterSetting& setting = parameter.setting;
   const bool logarithmic = !parameter.parameter->strength && setting.min > 0.0;
@@ -45,6 +46,9 @@ Unknown law_unknown(const PlantDescription& plant, const PhysicsParameter& param
   double usual = std::abs(size * parameter.parameter->start.front());
   if (parameter.parameter->own_size || std::abs(setting.value) > size * parameter.parameter->max)
     usual = std::max(usual, std::abs(setting.value));
+  constexpr double kNextToNothing = 1e-4;
+  if (parameter.parameter->strength && setting.value != 0.0 && std::abs(setting.value) < kNextToNothing * usual)
+    usual = std::abs(setting.value);
   return {.name = parameter.name,
           .unit = std::string(parameter.parameter->unit),
           .quantity = quantity,

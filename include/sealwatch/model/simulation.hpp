@@ -72,6 +72,8 @@ struct SimulationOptions {
   double relative_tolerance = 1e-6;  ///< of each step, per state; the absolute one is this times the state's usual size
   double maximum_step_s = 1e300;     ///< beside kLongestStep_s
   std::size_t maximum_steps = 200000;
+  /// Above 0: measured states are held to their recorded course within so many seconds, and the run is no free one.
+  double held_within_s = 0.0;
   const Deadline* deadline = nullptr;  ///< when it passes the run ends, as an Error
 };
 

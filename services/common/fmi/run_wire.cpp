@@ -147,6 +147,7 @@ void put_run(Packer& packer, const RuntimeRun& run) {
   packer.put(run.options.relative_tolerance);
   packer.put(run.options.maximum_step_s);
   put_count(packer, run.options.maximum_steps);
+  packer.put(run.options.held_within_s);
   packer.put(static_cast<std::uint64_t>(run.injected != nullptr));
   if (run.injected == nullptr) return;
   put_count(packer, run.injected->columns());
@@ -180,6 +181,7 @@ Result<HostedRun> get_run(Unpacker& unpacker, const PlantDescription& plant) {
   run.options.relative_tolerance = unpacker.get<double>();
   run.options.maximum_step_s = unpacker.get<double>();
   run.options.maximum_steps = get_count(unpacker);
+  run.options.held_within_s = unpacker.get<double>();
   run.injected = unpacker.get<std::uint64_t>() != 0;
   if (!run.injected) return run;
   run.injected_columns = get_count(unpacker);

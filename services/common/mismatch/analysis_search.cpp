@@ -6,6 +6,7 @@
 
 #include "services/common/mismatch/between_tests.hpp"
 #include "services/common/mismatch/effects.hpp"
+#include "services/common/mismatch/held_start.hpp"
 #include "services/common/mismatch/resolution.hpp"
 #include "services/common/mismatch/telling.hpp"
 #include "services/common/mismatch/tolerance.hpp"
@@ -52,6 +53,10 @@ Status Analysis::look_for_what_is_missing() {
   std::optional<Trial> from;
   if (own_ && !own_->naming.best.effects.empty()) from = found_in_common(*own_);
   if (own_) tell("looking again, with one value for all tests", 0.5);
+  if (!from && is_far_off(*baseline_)) {
+    tell("setting out from the recorded states", 0.2);
+    from = start_from_held(*baseline_, prepared(fit_), options);
+  }
   Result<Naming> naming = look_in_common(from.value_or(Trial{{}, baseline_}), options, &*first);
   if (!naming) return fail(naming.error());
   if (!naming->differs_in.empty()) {

@@ -121,7 +121,14 @@ void leave_out(const std::vector<Eigen::Index>& samples, PemRecording& recording
   for (const Eigen::Index sample : samples) recording.weight.segment(sample * channels, channels).setZero();
 }
 
-Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const ActuatorFitOptions& options) {
+bool is_exact_enough(const FittedModel& model) {
+  constexpr double kEnough = 3.0;
+  return model.problem.simulation_options.relative_tolerance <= kEnough * tolerance_for(model);
+}
+
+// `from`: where the search sets out; null: not known.
+Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const ActuatorFitOptions& options,
+                              const FittedModel* from) {
   Result<PemProblem> problem = make_pem_problem(asset, data.samples, data.groups, data.own_parameter, data.known);
   if (!problem) return problem;
   for (std::size_t k = 0; k < data.colour.size(); ++k) problem->recordings[k].colour = data.colour[k];
@@ -133,7 +140,10 @@ Result<PemProblem> problem_of(const AssetConfig& asset, const Data& data, const 
       std::erase_if(recording.own, [](const Unknown& unknown) { return unknown.name.starts_with("initial:"); });
   }
   problem->simulation_options = simulation_options(data.samples, options);
+  problem->simulation_options.relative_tolerance =
+      from != nullptr && from->residuals > 0.0 ? tolerance_for(*from) : data.relative_tolerance;
   problem->simulation_options.deadline = data.deadline;
+  problem->simulation_options.held_within_s = data.held_within_s;
   return problem;
 }
 
@@ -161,17 +171,25 @@ Result<FittedModel> fit_from(const FittedModel& start, const PemPoint& beside, c
                              const Data& data, int threads, int iterations, const SearchBound& bound,
                              Places places = {}) {
   const ActuatorFitOptions options = search_options(threads, iterations);
-  Result<PemProblem> problem = problem_of(asset, data, options);
+  Result<PemProblem> problem = problem_of(asset, data, options, &start);
   if (!problem) return fail(problem.error());
   PemPoint point = start_point(*problem, 1.0);
   continue_from(start, beside, places, *problem, point);
   Result<PemOptimum> optimum =
       search(*problem, std::move(point), options, {.kept = derivatives_from(start, places, *problem), .bound = bound});
   if (!optimum) return fail(optimum.error());
-  return model_at(asset, std::move(*problem), std::move(*optimum));
+  FittedModel model = model_at(asset, std::move(*problem), std::move(*optimum));
+  if (is_exact_enough(model)) return model;
+  return continue_fit(model, data, threads, iterations, bound);
 }
 
 }  // namespace
+
+double tolerance_for(const FittedModel& model) {
+  constexpr double kCoarsest = 1e-4;
+  const double finest = SimulationOptions{}.relative_tolerance;
+  return excess(model) <= kGross ? finest : std::clamp(finest * std::sqrt(excess(model)), finest, kCoarsest);
+}
 
 bool at_bound(const Unknown& unknown, double at) {
   constexpr double kNear = 1e-6;
@@ -182,7 +200,7 @@ Result<FittedModel> fit_model(const AssetConfig& asset, const Data& data, const 
                               int iterations, const SearchBound& bound) {
   if (start != nullptr) return fit_from(*start, {}, asset, data, threads, iterations, bound);
   ActuatorFitOptions options = search_options(threads, iterations);
-  Result<PemProblem> problem = problem_of(asset, data, options);
+  Result<PemProblem> problem = problem_of(asset, data, options, nullptr);
   if (!problem) return fail(problem.error());
   // A model that lacks physics often does not converge, and pieces, with states of their own, hide what it lacks: they
   // are for values with which nothing can be simulated.
@@ -207,19 +225,21 @@ Result<FittedModel> fit_to_some(const FittedModel& model, const Data& data, std:
 Result<FittedModel> continue_fit(const FittedModel& model, const Data& data, int threads, int iterations,
                                  const SearchBound& bound) {
   const ActuatorFitOptions options = search_options(threads, iterations);
-  Result<PemProblem> problem = problem_of(model.asset, data, options);
+  Result<PemProblem> problem = problem_of(model.asset, data, options, &model);
   if (!problem) return fail(problem.error());
   // The point and the derivatives there are in the unknowns of the search that ended: a logarithm's zero is where that
   // one set out.
   problem->shared = model.problem.shared;
   for (std::size_t k = 0; k < problem->recordings.size(); ++k)
     problem->recordings[k].own = model.problem.recordings[k].own;
-  const bool known = model.optimum.at_optimum.front().jacobian.size() > 0;
+  const bool known = model.optimum.at_optimum.front().jacobian.size() > 0 && is_exact_enough(model);
   KnownBefore before{.bound = bound};
   if (known) before.at_start = model.optimum.at_optimum;
   Result<PemOptimum> optimum = search(*problem, model.optimum.point, options, std::move(before));
   if (!optimum) return fail(optimum.error());
-  return model_at(model.asset, std::move(*problem), std::move(*optimum));
+  FittedModel further = model_at(model.asset, std::move(*problem), std::move(*optimum));
+  if (is_exact_enough(further)) return further;
+  return continue_fit(further, data, threads, iterations, bound);
 }
 
 const Linearisation& linearised(const FittedModel& model, std::size_t recording, std::optional<Linearisation>& anew) {

@@ -35,7 +35,9 @@ struct Data {
   std::vector<KnownValue> sensors = {};  ///< taken for exact until one of them is found to be off within its tolerance
   /// Recordings start from what was measured. Else a recording's initial state is among its own unknowns.
   bool start_as_measured = false;
-  const Deadline* deadline = nullptr;  ///< of everything that is simulated
+  double held_within_s = 0.0;  ///< simulations are held to the recordings (SimulationOptions::held_within_s); 0: free
+  double relative_tolerance = SimulationOptions{}.relative_tolerance;  ///< where a fit sets out from no other one
+  const Deadline* deadline = nullptr;                                  ///< of everything that is simulated
 };
 
 struct FittedModel {
@@ -46,6 +48,10 @@ struct FittedModel {
   double residuals = 0.0;       ///< how many
   std::size_t free_shared = 0;  ///< shared unknowns that are neither known beforehand nor at a bound
 };
+
+/// Relative tolerance of simulations that miss as that model does: they err by the same share of what is missed, near the
+/// noise by a hundredth of that. Steps are then as few as the answer needs.
+[[nodiscard]] double tolerance_for(const FittedModel& model);
 
 /// Of a search, where nothing else is said.
 inline constexpr int kSearchIterations = 30;

@@ -33,6 +33,7 @@ Result<FittedModel> predict(const HeldOut& of, const FittedModel& model, const D
   Data one = in_windows(only(data, recording), of.window_s);
   one.own_parameter.clear();
   one.known.clear();  // as fitted
+  one.relative_tolerance = tolerance_for(model);
   return fit_model(asset, one, nullptr, 1);
 }
 
@@ -111,7 +112,7 @@ Predictions predict_in_turn(const HeldOut& of, const FittedModel& model) {
 Result<RecordingComparison> compare_whole(const FittedModel& before, const FittedModel& after, const Data& data,
                                           std::size_t recording, double window_s) {
   if (window_s == 0.0) return compare(before, after, only(data, recording), 0);
-  const auto old_model = free_run(before.asset, data, recording), new_model = free_run(after.asset, data, recording);
+  const auto old_model = free_run(before, data, recording), new_model = free_run(after, data, recording);
   if (!old_model) return fail(old_model.error());
   if (!new_model) return fail(new_model.error());
   return compare(*old_model, *new_model, only(data, recording), 0);
@@ -121,10 +122,11 @@ Result<RecordingComparison> compare_whole(const FittedModel& before, const Fitte
 
 Data in_windows(const Data& data, double window_s) { return window_s > 0.0 ? cut_into_windows(data, window_s) : data; }
 
-Result<FittedModel> free_run(const AssetConfig& asset, const Data& data, std::size_t recording) {
+Result<FittedModel> free_run(const FittedModel& model, const Data& data, std::size_t recording) {
   Data one = only(data, recording);
   one.known.clear();
-  return fit_model(with_fixed_parameters(asset), one, nullptr, 1);
+  one.relative_tolerance = tolerance_for(model);
+  return fit_model(with_fixed_parameters(model.asset), one, nullptr, 1);
 }
 
 void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const FittedModel& after, std::uint64_t seed) {

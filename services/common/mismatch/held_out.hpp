@@ -53,8 +53,8 @@ struct HeldOut {
 
 [[nodiscard]] Data in_windows(const Data& data, double window_s);
 
-/// One whole recording from one initial state, all parameters of the asset fixed.
-[[nodiscard]] Result<FittedModel> free_run(const AssetConfig& asset, const Data& data, std::size_t recording);
+/// One whole recording from one initial state, all parameters as the model has them.
+[[nodiscard]] Result<FittedModel> free_run(const FittedModel& model, const Data& data, std::size_t recording);
 
 /// Likelihood gain of a recording with its interval, by the dispersion of the model after.
 void add_gain(RecordingComparison& comparison, const BlockGains& blocks, const FittedModel& after, std::uint64_t seed);

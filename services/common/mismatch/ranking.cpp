@@ -33,7 +33,7 @@ PemPoint beside(const Screening& screening, const Variant& variant, std::span<co
   return change;
 }
 
-LawStart start_of(const Screening& screening, const Variant& variant) {
+LawStart start_of(const Screening& screening, const Variant& variant, bool in_proportion = false) {
   const Candidate& candidate = screening.candidates[variant.candidate];
   LawStart start{.effect = {candidate.law, candidate.element}, .parameters = candidate.grid[variant.point]};
   const std::vector<std::size_t> strengths = strengths_of(*candidate.law);
@@ -44,7 +44,9 @@ LawStart start_of(const Screening& screening, const Variant& variant) {
     const double linear = variant.strength.size() == strengths.size()
                               ? variant.strength[k]
                               : std::hypot(variant.strength[0], variant.strength[1]);
-    const double size = std::clamp(std::abs(linear), kSmallestStart * usual, kLargestStart * usual);
+    const bool told = in_proportion && linear != 0.0;
+    const double size =
+        told ? std::abs(linear) : std::clamp(std::abs(linear), kSmallestStart * usual, kLargestStart * usual);
     value = linear < 0.0 && candidate.law->parameters[strengths[k]].min < 0.0 ? -size : size;
   }
   if (variant.columns.size() != strengths.size()) return start;
@@ -78,11 +80,11 @@ std::vector<const Variant*> by_gain(const Screening& screening) {
   return order;
 }
 
-std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most) {
+std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most, bool in_proportion) {
   std::vector<LawStart> starts;
   for (const Variant* variant : best_of_each(screening)) {
     if (starts.size() == most) break;
-    starts.push_back(start_of(screening, *variant));
+    starts.push_back(start_of(screening, *variant, in_proportion));
   }
   return starts;
 }

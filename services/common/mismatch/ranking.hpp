@@ -11,8 +11,10 @@ namespace sealwatch::mismatch {
 /// All variants that promise something, by their gain.
 [[nodiscard]] std::vector<const Variant*> by_gain(const Screening& screening);
 
-/// Best variants by gain, no law at the same element twice; with start values from the linear step.
-[[nodiscard]] std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most);
+/// Best variants by gain, no law at the same element twice; with start values from the linear step. These are kept near
+/// usual sizes, unless the model is known to answer `in_proportion`.
+[[nodiscard]] std::vector<LawStart> ranked_laws(const Screening& screening, std::size_t most,
+                                                bool in_proportion = false);
 
 /// How many of the first `most` ranked laws promise nearly as much as the best, at least three: half as much, or less by
 /// no more than twice what decides between models. None that promises less than `least`, but for the best.

@@ -53,7 +53,7 @@ Result<FittedModel> sizes_first(AssetConfig asset, const std::vector<LawStart>& 
   return fit_model(free, data, sizes_fit ? &*sized : &from, 1, kFirstRound, bound);
 }
 
-// What changes beside all of them; empty where that is not known. In a gross misfit the linear model says too little.
+// What changes beside all of them; empty where that is not known.
 PemPoint beside_all(const std::vector<LawStart>& added, double share) {
   PemPoint all;
   const auto add = [share](const std::vector<double>& change, std::vector<double>& sum) {
@@ -166,7 +166,8 @@ Trial polished(Trial trial, const Data& data, int threads) {
 
 std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawStart>>& laws, const Data& data,
                          int threads, const RefitOptions& options) {
-  const bool gross = excess(*from.model) > kGross;
+  // In a gross misfit the linear model of a free run says too little of what changes beside a law.
+  const bool tells_little = excess(*from.model) > kGross && data.held_within_s == 0.0;
   SearchBound bound;
   if (std::isfinite(options.to_beat)) bound = GoesOn(*from.model, options.to_beat).bound();
   const auto start = [&](const std::vector<LawStart>& added, double share) -> Refit {
@@ -185,7 +186,7 @@ std::vector<Trial> refit(const Trial& from, const std::vector<std::vector<LawSta
     const auto set_out = [&](const PemPoint& beside) {
       return fit_model_beside(beside, asset, data, *from.model, kFirstRound, bound);
     };
-    const PemPoint beside = gross ? PemPoint{} : beside_all(added, share);
+    const PemPoint beside = tells_little ? PemPoint{} : beside_all(added, share);
     Result<FittedModel> model =
         options.in_place_of.empty() ? set_out(beside) : sizes_first(asset, added, data, *from.model, bound);
     if (!model && !beside.own.empty()) model = set_out({});  // where the linear model leads, nothing can be simulated

@@ -42,6 +42,8 @@ Data cut_into_windows(const Data& data, double window_s) {
   windows.known = data.known;
   windows.given = data.given;
   windows.deadline = data.deadline;
+  windows.held_within_s = data.held_within_s;
+  windows.relative_tolerance = data.relative_tolerance;
   for (std::size_t k = 0; k < data.samples.size(); ++k) {
     const TimeSeries& samples = data.samples[k];
     std::size_t begin = 0, count = 0;

@@ -11,6 +11,7 @@
 
 #include "sealwatch/model/simulation.hpp"
 #include "sealwatch/ode/bdf.hpp"
+#include "services/common/model/held_to_recording.hpp"
 #include "services/common/model/quasi_steady.hpp"
 
 namespace sealwatch {
@@ -49,6 +50,8 @@ class RecordedSystem {
   enum class Passed { failed, smooth, jump };
   [[nodiscard]] virtual Passed pass_event(double /*t*/, double* /*y*/) const { return Passed::smooth; }
 
+  /// Integrated so from now on. `at`: a state at which the equations have a value.
+  virtual void hold_to(MeasuredStates measured, const std::vector<double>& at) = 0;
   /// What integrates it.
   [[nodiscard]] virtual std::unique_ptr<BackwardDifferences> integrator(int parameters, std::vector<double> scale,
                                                                         const BdfOptions& options) const = 0;
@@ -63,13 +66,20 @@ class SizedSystem : public RecordedSystem, public OdeSystem<N> {
  public:
   [[nodiscard]] std::unique_ptr<BackwardDifferences> integrator(int parameters, std::vector<double> scale,
                                                                 const BdfOptions& options) const final {
-    return std::make_unique<Bdf<N>>(*this, parameters, std::move(scale), options);
+    const OdeSystem<N>& integrated = held_ ? static_cast<const OdeSystem<N>&>(*held_) : *this;
+    return std::make_unique<Bdf<N>>(integrated, parameters, std::move(scale), options);
+  }
+  void hold_to(MeasuredStates measured, const std::vector<double>& at) final {
+    held_ = std::make_unique<HeldToRecording<N>>(*this, std::move(measured), at);
   }
   [[nodiscard]] bool settle(double time, const std::vector<bool>& fast, const std::vector<double>& scale,
                             std::vector<double>& state, double* point, std::size_t stride) const final {
     QuasiSteadyState<N> rest(*this, time, fast, scale);
     return rest.solve(state) && rest.differentiate(state, point, stride);
   }
+
+ private:
+  std::unique_ptr<HeldToRecording<N>> held_;
 };
 
 }  // namespace sealwatch

@@ -25,6 +25,20 @@ constexpr double kAllRemembered = 2.0, kForgotten = 4.0;
 constexpr std::size_t kStepsOfARestart = 30;
 constexpr std::size_t kManyJumps = 100;
 
+// The system, held to the recorded course of its measured states where that is wanted.
+RecordedSystem& held(const RecordedSimulation& simulation, const RecordedInput& input, RecordedSystem& system,
+                     const ModelValues& values, const SimulationOptions& options) {
+  if (!(options.held_within_s > 0.0)) return system;
+  std::vector<MeasuredStates::State> states;
+  for (std::size_t k = 0; k < simulation.simulated_channels().size(); ++k) {
+    const int state = simulation.simulated_channels()[k].state;
+    const auto recorded = simulation.recorded().col(static_cast<Eigen::Index>(k));
+    if (state >= 0) states.push_back({.state = state, .recorded = {recorded.begin(), recorded.end()}});
+  }
+  system.hold_to({input.times(), std::move(states), options.held_within_s}, values.initial_state);
+  return system;
+}
+
 class RecordingRun {
  public:
   RecordingRun(const RecordedSimulation& simulation, const RecordedInput& input, RecordedSystem& system,
@@ -34,7 +48,7 @@ class RecordingRun {
         input_(input),
         free_(free),
         columns_(1 + free.size() + (injected == nullptr ? 0 : injected->columns())),
-        system_(system),
+        system_(held(simulation, input, system, values, options)),
         scale_(system_.scale(options.relative_tolerance)),
         deadline_(options.deadline),
         most_steps_(options.maximum_steps + kStepsOfARestart * (std::max<std::size_t>(input.segment_count(), 1) - 1)),

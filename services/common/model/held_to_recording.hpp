@@ -1,0 +1,127 @@
+// A simulation that is held to what was recorded: a Luenberger observer in place of a free run. Where a free run from
+// wrong parameters stands still or runs away, it stays near the recorded course, so that what its equations lack shows
+// where and when it is lacking, and nearly in proportion.
+//
+//   dy_i/dt = f_i + g_1 (r_i(t) - y_i)     y_i a state that is measured, r_i its record, linear between samples
+//   dy_j/dt = f_j + g_2 (r_i(t) - y_i)     y_j the rate of y_i (f_i = y_j, as speed to position) that is not measured
+//   g_1 = 1 / tau, g_2 = 0; with a rate g_1 = 2 / tau, g_2 = 1 / tau^2: critically damped, both within tau
+//
+// D. G. Luenberger, IEEE Trans. Automatic Control 16 (1971) 596. As a start of a fit: H. D. I. Abarbanel, D. R. Creveling,
+// R. Farsian, M. Kostuk, SIAM J. Applied Dynamical Systems 8 (2009) 1341.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "sealwatch/ode/bdf.hpp"
+
+namespace sealwatch {
+
+/// The recorded course of the states that are measured.
+class MeasuredStates {
+ public:
+  struct State {
+    int state = 0;
+    std::vector<double> recorded;  ///< at the samples
+    int rate = -1;                 ///< the state that is its rate and not measured; -1: none
+  };
+
+  /// `time_constant_s`: tau.
+  MeasuredStates(std::vector<double> times, std::vector<State> states, double time_constant_s)
+      : times_(std::move(times)), states_(std::move(states)), tau_s_(time_constant_s) {}
+
+  /// Asks the equations, at any state, which states are the rates of measured ones.
+  template <int N>
+  void find_rates(const OdeSystem<N>& system, const std::vector<double>& at);
+
+  /// f += g (r - y)
+  void add_to(double t, const double* y, double* f) const {
+    locate(t);
+    for (const State& one : states_) {
+      const double r = one.recorded[sample_] + share_ * (one.recorded[sample_ + 1] - one.recorded[sample_]),
+                   difference = r - y[one.state];
+      f[one.state] += gain(one) * difference;
+      if (one.rate >= 0) f[one.rate] += gain_of_rate() * difference;
+    }
+  }
+  template <class Matrix>
+  void add_to(Matrix& jacobian) const {
+    for (const State& one : states_) {
+      jacobian[one.state][one.state] -= gain(one);
+      if (one.rate >= 0) jacobian[one.rate][one.state] -= gain_of_rate();
+    }
+  }
+
+ private:
+  [[nodiscard]] double gain(const State& one) const { return (one.rate >= 0 ? 2.0 : 1.0) / tau_s_; }
+  [[nodiscard]] double gain_of_rate() const { return 1.0 / (tau_s_ * tau_s_); }
+  void locate(double t) const {
+    while (sample_ + 2 < times_.size() && times_[sample_ + 1] <= t) ++sample_;
+    while (sample_ > 0 && times_[sample_] > t) --sample_;
+    share_ = (t - times_[sample_]) / (times_[sample_ + 1] - times_[sample_]);
+  }
+
+  std::vector<double> times_;
+  std::vector<State> states_;
+  double tau_s_;
+  mutable std::size_t sample_ = 0;
+  mutable double share_ = 0.0;
+};
+
+template <int N>
+void MeasuredStates::find_rates(const OdeSystem<N>& system, const std::vector<double>& at) {
+  const int count = state_count(system);
+  auto f = SquareSystem<N>::vector(count);
+  auto jacobian = SquareSystem<N>::matrix(count);
+  system.linearise(times_.front(), at.data(), f.data(), jacobian);
+  const auto is_measured = [&](int state) {
+    for (const State& one : states_)
+      if (one.state == state) return true;
+    return false;
+  };
+  for (State& one : states_) {
+    int rate = -1, others = 0;
+    for (int k = 0; k < count; ++k) {
+      if (jacobian[one.state][k] == 1.0 && f[one.state] == at[static_cast<std::size_t>(k)])
+        rate = k;
+      else if (jacobian[one.state][k] != 0.0)
+        ++others;
+    }
+    if (rate >= 0 && others == 0 && !is_measured(rate)) one.rate = rate;
+  }
+}
+
+/// Equations with their measured states held.
+template <int N>
+class HeldToRecording final : public OdeSystem<N> {
+ public:
+  using typename OdeSystem<N>::Matrix;
+
+  /// `at`: any state at which the equations have a value.
+  HeldToRecording(const OdeSystem<N>& system, MeasuredStates measured, const std::vector<double>& at)
+      : system_(system), measured_(std::move(measured)) {
+    measured_.find_rates(system, at);
+  }
+
+  [[nodiscard]] int states() const override { return state_count(system_); }
+  void evaluate(double t, const double* y, double* f) const override {
+    system_.evaluate(t, y, f);
+    measured_.add_to(t, y, f);
+  }
+  void linearise(double t, const double* y, double* f, Matrix& jacobian) const override {
+    system_.linearise(t, y, f, jacobian);
+    measured_.add_to(t, y, f);
+    measured_.add_to(jacobian);
+  }
+  void add_parameter_derivatives(double t, const double* y, double factor, double* x,
+                                 std::size_t stride) const override {
+    system_.add_parameter_derivatives(t, y, factor, x, stride);
+  }
+
+ private:
+  const OdeSystem<N>& system_;
+  MeasuredStates measured_;
+};
+
+}  // namespace sealwatch

@@ -23,6 +23,10 @@ FolderReader::FolderReader(std::filesystem::path directory, std::vector<AssetCon
 
 FolderReader::~FolderReader() = default;
 
+FolderReader::Test FolderReader::test_of(const RawSamples& first_block) {
+  return {first_block.asset_id, make_pst_id(first_block)};
+}
+
 /// A test that the layer at rest has closed is a test that is stored. The thread starts with the first look: a service
 /// that ends before has none to wait for.
 void FolderReader::look(const LayerAtRest& at_rest) {
@@ -31,10 +35,10 @@ void FolderReader::look(const LayerAtRest& at_rest) {
     const std::lock_guard lock(mutex_);
     awaiting = awaiting_;
   }
-  std::set<std::string> concluded;
+  std::set<Test> concluded;
   for (const RawSamples& first : awaiting) {
     const auto* const layer = dynamic_cast<const DataAcquisition*>(at_rest(first.asset_id));
-    if (layer != nullptr && layer->is_closed(first)) concluded.insert(make_pst_id(first));
+    if (layer != nullptr && layer->is_closed(first)) concluded.insert(test_of(first));
   }
   const std::lock_guard lock(mutex_);
   concluded_ = std::move(concluded);
@@ -85,7 +89,7 @@ void FolderReader::look_at_folder() {
 
 bool FolderReader::is_concluded(const RawSamples& first_block) {
   const std::lock_guard lock(mutex_);
-  return concluded_.contains(make_pst_id(first_block));
+  return concluded_.contains(test_of(first_block));
 }
 
 bool FolderReader::hand_over(std::vector<RawSamples> blocks, const std::stop_token& stop) {

@@ -38,6 +38,8 @@ class FolderReader final : public LocalInputs {
   [[nodiscard]] bool stop(std::chrono::milliseconds patience) override;
 
  private:
+  using Test = std::pair<std::string, std::string>;  // asset and PST id: two assets may give theirs the same ids
+  [[nodiscard]] static Test test_of(const RawSamples& first_block);
   void run(const std::stop_token& stop);
   void look_at_folder();
   [[nodiscard]] bool is_concluded(const RawSamples& first_block);
@@ -52,7 +54,7 @@ class FolderReader final : public LocalInputs {
   std::condition_variable_any changed_;
   std::deque<RawSamples> blocks_;     ///< of the recording that is being taken
   std::vector<RawSamples> awaiting_;  ///< first blocks of those that were taken and are still in the folder
-  std::set<std::string> concluded_;   ///< PST ids of those among them whose tests are concluded
+  std::set<Test> concluded_;          ///< those among them that are concluded
   bool ended_ = true;                 ///< the thread
   std::jthread thread_;               ///< last: it ends first
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "sealwatch/message/id_part.hpp"
 #include "services/common/runtime/confirmed_positions.hpp"
 #include "services/common/runtime/identity.hpp"
 #include "services/common/runtime/log.hpp"

@@ -344,7 +344,7 @@ class LayerRunner {
   std::map<Topic, KeptSamples> kept_samples_;
   std::chrono::steady_clock::time_point next_retention_{};
   std::vector<SetAside> set_aside_;
-  std::map<std::string, std::set<std::string>> set_aside_elsewhere_;  ///< tests, by the service that did so
+  std::map<std::string, std::set<Journal::Test>> set_aside_elsewhere_;  ///< by the service that did so
   std::uint64_t waiting_in_vain_ = 0;                                 ///< open inputs of those tests
   std::chrono::steady_clock::time_point started_{};
   std::chrono::steady_clock::time_point last_second_{};

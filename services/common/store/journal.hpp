@@ -15,6 +15,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sealwatch/core/result.hpp"
@@ -104,8 +105,9 @@ class Journal {
   [[nodiscard]] Result<std::vector<std::string>> open_inputs_of(const std::string& asset_id);
   /// An input that is kept; none when it was consumed.
   [[nodiscard]] Result<std::optional<Message>> input(const std::string& message_id);
+  using Test = std::pair<std::string, std::string>;  // asset and PST id: two assets may give theirs the same ids
   /// How many open inputs are of these tests.
-  [[nodiscard]] Result<std::uint64_t> open_inputs_of_tests(const std::set<std::string>& pst_ids);
+  [[nodiscard]] Result<std::uint64_t> open_inputs_of_tests(const std::set<Test>& tests);
   /// Outputs of one topic's stream, first <= sequence <= last, at most `most`, stamped.
   [[nodiscard]] Result<std::vector<Message>> outputs(Topic topic, std::uint64_t first, std::uint64_t last,
                                                      std::size_t most);
@@ -137,7 +139,8 @@ class Journal {
                                  InputState state);
   /// Marks an input as not needed again and drops its message; unknown ids are passed over.
   [[nodiscard]] Status consume(const std::string& message_id);
-  /// Numbers and keeps an output and returns it stamped, or nothing when this message id was concluded before.
+  /// Numbers and keeps an output and returns it stamped, or nothing when it was concluded before. Beside one of its id that
+  /// is another asset's, it is kept under another.
   [[nodiscard]] Result<std::optional<Message>> add_output(Message message, UtcTime publishing_time);
   [[nodiscard]] Status set_position(const StreamPosition& position);
   /// Notes that its writer now sends a known input under this number.

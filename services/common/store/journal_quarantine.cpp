@@ -55,14 +55,15 @@ Result<std::optional<Message>> Journal::input(const std::string& message_id) {
   });
 }
 
-Result<std::uint64_t> Journal::open_inputs_of_tests(const std::set<std::string>& pst_ids) {
+Result<std::uint64_t> Journal::open_inputs_of_tests(const std::set<Test>& tests) {
   return database_->guard("counting open inputs", [&] {
     std::uint64_t found = 0;
-    std::string pst_id;
+    Test test;
     soci::statement statement =
-        (database_->sql.prepare << "SELECT pst_id FROM inputs WHERE consumed = 0 ORDER BY receipt", into(pst_id));
+        (database_->sql.prepare << "SELECT asset_id, pst_id FROM inputs WHERE consumed = 0 ORDER BY receipt",
+         into(test.first), into(test.second));
     statement.execute();
-    while (statement.fetch()) found += pst_ids.contains(pst_id) ? 1 : 0;
+    while (statement.fetch()) found += tests.contains(test) ? 1 : 0;
     return found;
   });
 }

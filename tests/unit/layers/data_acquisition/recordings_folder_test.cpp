@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <thread>
 
@@ -30,10 +31,12 @@ class RecordingsFolderTest : public testing::Test {
   }
   ~RecordingsFolderTest() override { fs::remove_all(directory_); }
 
-  void drop(const std::string& name, const std::string& asset_id, double duration_s = 6.0) {
+  void drop(const std::string& name, const std::string& asset_id, double duration_s = 6.0,
+            std::optional<UtcTime> start_time = {}) {
     Recording recording;
     recording.recording_id = name;
     recording.asset_id = asset_id;
+    recording.start_time = start_time;
     recording.samples = test::SyntheticPst{.rate_Hz = 50.0, .duration_s = duration_s}.record();
     ASSERT_TRUE(write_recording_csv(recording, (directory_ / (name + ".csv")).string()));
   }
@@ -347,6 +350,35 @@ TEST_F(FolderReaderTest, ReadsOneRecordingAtATimeAndStopsThoughNobodyTakesIt) {
   EXPECT_TRUE(watched.stop(std::chrono::seconds(5)));
   EXPECT_TRUE(watched.stop(std::chrono::seconds(5))) << "told twice";
   EXPECT_THAT(files(), testing::IsSupersetOf({"april.csv", "may.csv"})) << "read again at the next start";
+}
+
+/// Ids of tests have '_' for what stands between: of the same content at the same time, two have one id. What is put
+/// away is read no more, also by a service that was killed before it took the blocks.
+TEST_F(FolderReaderTest, OneOfTwoAssetsThatAreAlikeInTheIdsOfTheirTestsPutsTheOthersRecordingNotAway) {
+  assets_.resize(2, assets_.front());
+  assets_[0].asset_id = "XT_1";
+  assets_[1].asset_id = "XT 1";
+  DataAcquisition concluded(assets_), behind(assets_);
+  const LocalInputs::LayerAtRest each = [&](const std::string& asset_id) {
+    return asset_id == "XT_1" ? &concluded : &behind;
+  };
+  FolderReader watched = reader();
+  drop("april", "XT_1", 6.0, UtcTime{1'900'000'000'000'000'000});
+  drop("april too", "XT 1", 6.0, UtcTime{1'900'000'000'000'000'000});
+  const auto look_until = [&](const std::function<bool()>& is_so) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!is_so() && std::chrono::steady_clock::now() < end) {
+      watched.look(each);
+      for (const Message& block : watched.take())
+        if (std::get<RawSamples>(block).asset_id == "XT_1") (void)concluded.receive(block);
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+    return is_so();
+  };
+  EXPECT_TRUE(look_until([&] { return fs::exists(directory_ / "done" / "april.csv"); }));
+  int looks = 0;
+  EXPECT_TRUE(look_until([&] { return ++looks > 20; }));
+  EXPECT_TRUE(fs::exists(directory_ / "april too.csv"));
 }
 
 /// The main loop slept up to a second for each recording of a folder.
